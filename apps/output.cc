@@ -21,10 +21,6 @@ namespace softland::apps {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-std::string json_text(const json& data, int indent) {
-  return data.dump(indent, ' ', false, json::error_handler_t::replace) + "\n";
-}
-
 // Besides what every output must keep off: standard output, which may be the same file, and what a run keeps in its folder while
 // it works.
 void check_json_place(const std::string& file, const fs::path& folder) {

@@ -11,11 +11,9 @@
 #include "apps/result_folder.h"
 #include "model/status.h"
 #include "reports/result.h"
+#include "reports/result_json.h"
 
 namespace softland::apps {
-
-/// JSON on one line, or with `indent` blanks per level; what is not UTF-8 (a path may not be) becomes U+FFFD.
-[[nodiscard]] std::string json_text(const nlohmann::json& data, int indent = -1);
 
 /// Takes the places that --json and --out name, for the run's output alone: to be called when the scene has been read and before
 /// anything long is computed. The folder, where there is one, will hold `files`, of which the `kept` ones are those of an earlier

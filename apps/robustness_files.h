@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "apps/result_folder.h"
-#include "base/watch.h"
 #include "reports/robustness_report.h"
 
 namespace softland::apps {
@@ -15,10 +14,6 @@ inline constexpr std::array<const char*, 3> robustness_files{"robustness.html", 
 
 /// The scene of the worst device of the box.
 [[nodiscard]] std::string box_file(std::string_view key);
-
-/// What is known of the last drive beside its figures, `other_ways_too` at the cost of further searches; nothing where the work
-/// was interrupted.
-void add_details(RobustnessReport& report, bool other_ways_too, const Watch& watch);
 
 void write_robustness(ResultFolder& folder, const RobustnessReport& report);
 

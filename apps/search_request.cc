@@ -27,8 +27,6 @@ using nlohmann::json;
 constexpr const char* kind = "search";
 constexpr const char* raced_families_key = "raced_waveform";  // as it was given
 
-constexpr long share_of_drawing = 5;  // of a budget one part is for the drawing
-
 // What `parse` gives; its complaints name the option.
 template <class Parse>
 auto read(const std::string& option, const Parse& parse) {
@@ -82,7 +80,8 @@ bool is_by_measure(const OptimizeRequest& r) { return r.robust != by_race && r.r
 // The families that do best where none is given. Devices that differ want one that is slow and free, or, where each is driven in
 // its own units, a quick one that holds fast.
 std::string waveform_of(const OptimizeRequest& r, const SceneFile& scene) {
-  if (is_by_measure(r)) return r.calibration.empty() || r.calibration == "none" ? "knots" : "catch";
+  if (is_by_measure(r))
+    return std::string(r.calibration.empty() || r.calibration == "none" ? default_robust_family : default_calibrated_family);
   const Named<Actuator>* actuator = find_named(actuators, r.actuator);
   return actuator == nullptr ? std::string() : std::string(default_families(shaped_drives(scene, actuator->value)));
 }
@@ -146,7 +145,6 @@ void read_shared_conditions(const OptimizeRequest& request, std::vector<Criterio
   }
 }
 
-// The budget is that of everything together: a fifth of it at most is for the drawing.
 ForDevicesOptions read_race_options(const OptimizeRequest& request, OptimizeOptions& options) {
   ForDevicesOptions race;
   read_shared_conditions(request, options.conditions, race.conditions);
@@ -158,9 +156,7 @@ ForDevicesOptions read_race_options(const OptimizeRequest& request, OptimizeOpti
                                       std::clamp(options.max_seconds / usual_seconds, 0.25, most_lengths));
     return race;
   }
-  const long all = options.max_evaluations;
-  options.max_evaluations = std::max(1L, all / share_of_drawing);
-  race.closings = all - options.max_evaluations;
+  share_budget(options, race);
   return race;
 }
 

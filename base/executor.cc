@@ -109,7 +109,7 @@ void hand_over() {
 }
 
 // Threads of the loop whose task the current thread runs; 0 outside of any.
-thread_local int threads_of_loop = 0;
+[[gnu::tls_model("initial-exec")]] thread_local int threads_of_loop = 0;
 
 class Loop {
  public:

@@ -14,6 +14,7 @@
 #include "base/require.h"
 #include "base/shortened.h"
 #include "config/drives.h"
+#include "config/invalid_key.h"
 #include "config/scene.h"
 #include "config/scene_file_impl.h"
 #include "config/schema.h"
@@ -337,18 +338,36 @@ std::string SceneFile::Impl::written(std::string_view path) const {
   return fmt::format("{} = {}", shortened(path), shortened(node ? internal::inline_text(*node) : std::string()));
 }
 
+namespace {
+
+// "scenes/x.toml:12" as file and line.
+InvalidKey::Place place_of_origin(std::string_view key, const SceneFile::Impl::Origin& origin) {
+  InvalidKey::Place place{.key = std::string(key)};
+  if (origin.is_option) return place;
+  const std::size_t colon = origin.text.rfind(':');
+  const auto line = colon == std::string::npos ? std::string() : origin.text.substr(colon + 1);
+  const bool is_line = !line.empty() && line.size() < 9 && line.find_first_not_of("0123456789") == std::string::npos;
+  place.file = is_line ? origin.text.substr(0, colon) : origin.text;
+  place.line = is_line ? std::stoi(line) : 0;
+  return place;
+}
+
+}  // namespace
+
 void SceneFile::Impl::fail(std::string_view path, std::string_view rule) const {
   const Origin place = origin(path);
   const auto exact = origins.find(path);
-  if (place.is_option && exact != origins.end()) throw InvalidInput(fmt::format("{}: {}", place.text, printable_line(rule)));
-  throw InvalidInput(fmt::format("{}: {}: {}", place.text, written(path), printable_line(rule)));
+  const bool is_said = place.is_option && exact != origins.end();
+  throw InvalidKey(is_said ? fmt::format("{}: {}", place.text, printable_line(rule))
+                           : fmt::format("{}: {}: {}", place.text, written(path), printable_line(rule)),
+                   place_of_origin(path, place));
 }
 
 void SceneFile::Impl::fail_section(std::string_view path, std::string_view rule) const {
   const auto is_option_below = [&](const auto& entry) { return entry.second.is_option && is_below(entry.first, path); };
   const auto option = std::find_if(origins.begin(), origins.end(), is_option_below);
   const Origin place = option == origins.end() ? origin(path) : option->second;
-  throw InvalidInput(fmt::format("{}: [{}]: {}", place.text, shortened(path), printable_line(rule)));
+  throw InvalidKey(fmt::format("{}: [{}]: {}", place.text, shortened(path), printable_line(rule)), place_of_origin(path, place));
 }
 
 void SceneFile::Impl::insert(const std::vector<std::string>& path, const toml::node& value, const Origin& place) {

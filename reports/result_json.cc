@@ -60,6 +60,10 @@ void add_verdict(json& j, const Result& r) {
 
 }  // namespace
 
+std::string json_text(const json& data, int indent) {
+  return data.dump(indent, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
 json result_json(const Result& r) {
   json j = internal::record_json(r);
   j["kind"] = r.is_search ? "optimize" : "simulate";

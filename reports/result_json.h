@@ -2,10 +2,14 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "reports/result.h"
 
 namespace softland {
+
+/// JSON on one line, or with `indent` blanks per level; what is not UTF-8 (a path may not be) becomes U+FFFD.
+[[nodiscard]] std::string json_text(const nlohmann::json& data, int indent = -1);
 
 [[nodiscard]] nlohmann::json result_json(const Result& result);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "reports/result_json.h"
 #include "reports/robustness_words.h"
 #include "studies/closed_state.h"
+#include "studies/other_ways.h"
 #include "waveforms/export.h"
 
 namespace softland {
@@ -132,6 +134,20 @@ json internal::windows_json(const HoldWindows& windows) {
   for (const auto& [electrode, window] : windows.of_electrodes)
     all[electrode] = std::isfinite(window.lower) ? json::array({window.lower, json_number(window.upper)}) : json();
   return all;
+}
+
+void add_details(RobustnessReport& report, bool other_ways_too, const Watch& watch) {
+  if (report.found.interrupted || report.found.devices == 0) return;
+  constexpr std::uint64_t devices_per_row = 4, most_rows = 1024;
+  const DriveRobustness& last = report.found.drives.back();
+  report.sensitivity =
+      sensitivity(report.nominal, last, std::clamp<std::uint64_t>(report.options.samples / devices_per_row, 8, most_rows),
+                  report.options, watch);
+  report.derivatives = derivatives(report.nominal, internal::exactly_measured(report.nominal, last), {}, watch);
+  report.windows = hold_windows(report.nominal, report.options, watch);
+  report.courses = device_courses(report.nominal, last, report.found, report.options);
+  if (other_ways_too) report.other_ways = other_ways(report.nominal, last, report.options, {}, watch);
+  report.interrupted = watch.stopped();
 }
 
 json robustness_json(const RobustnessReport& report) {

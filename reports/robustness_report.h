@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/watch.h"
 #include "reports/result_maker.h"
 #include "studies/derivatives.h"
 #include "studies/hold_window.h"
@@ -28,6 +29,10 @@ struct RobustnessReport {
   HoldWindows windows = {};                  ///< of hold levels, whatever the drive
   bool interrupted = found.interrupted;      ///< in the study, or in what was to be known beside it
 };
+
+/// What is known of the last drive beside its figures, `other_ways_too` at the cost of further searches; nothing where the work
+/// was interrupted.
+void add_details(RobustnessReport& report, bool other_ways_too, const Watch& watch);
 
 [[nodiscard]] nlohmann::json robustness_json(const RobustnessReport& report);
 [[nodiscard]] std::string robustness_text(const RobustnessReport& report);

@@ -407,6 +407,22 @@ void judge_hold(DeviceOutcome& outcome, const Hold& hold) {
 
 }  // namespace
 
+std::vector<DeviceOutcome> close_driven(std::span<const DrivenDevice> devices, const MetricsOptions& options,
+                                        const ClosingOptions& run, const std::optional<ClosedEquilibrium>& near,
+                                        bool measures_drive_energy, Vectors vectors) {
+  std::vector<DeviceClosing> closings;
+  std::vector<Hold> holds;
+  for (const auto& [device, signals, duration] : devices) {
+    holds.push_back(device->model ? hold_of(*device->model, *signals, near) : Hold{});
+    closings.push_back({.device = device, .signals = signals, .run = run, .measures_drive_energy = measures_drive_energy});
+    closings.back().run.duration = duration;
+    closings.back().run.steady_force = holds.back().steady_force(options);
+  }
+  std::vector<DeviceOutcome> outcomes = close_devices(closings, options, vectors);
+  for (std::size_t i = 0; i < outcomes.size(); ++i) judge_hold(outcomes[i], holds[i]);
+  return outcomes;
+}
+
 DeviceCloser::DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
                            const std::atomic<bool>* stop)
     : nominal_(&nominal),
@@ -440,9 +456,8 @@ std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const
   for (std::size_t d = 0; d < outcomes.size() && !stopped(); ++d) {
     const EnsembleDrive& drive = (*drives_)[d];
     std::vector<std::vector<Signal>> own(devices.size());
-    std::vector<DeviceClosing> closings;
+    std::vector<DrivenDevice> driven;
     std::vector<std::size_t> places;
-    std::vector<Hold> holds;  // of closings
     for (std::size_t i = 0; i < devices.size(); ++i) {
       const std::vector<Signal>* signals = &nominal_signals_[d];
       const DeviceUnits units = devices[i].model ? drive.known.of(exact[i], seed_, first + i) : DeviceUnits{};
@@ -455,16 +470,11 @@ std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const
         signals = &own[i];
       }
       places.push_back(i);
-      holds.push_back(devices[i].model ? hold_of(*devices[i].model, *signals, nominal_closed_[d]) : Hold{});
-      closings.push_back(
-          {.device = &devices[i], .signals = signals, .run = options_, .measures_drive_energy = measures_drive_energy_});
-      closings.back().run.steady_force = holds.back().steady_force(nominal_->scene.metrics);
+      driven.push_back({.device = &devices[i], .signals = signals, .duration = options_.duration});
     }
-    std::vector<DeviceOutcome> closed = close_devices(closings, nominal_->scene.metrics, vectors_);
-    for (std::size_t n = 0; n < places.size(); ++n) {
-      judge_hold(closed[n], holds[n]);
-      outcomes[d][places[n]] = std::move(closed[n]);
-    }
+    std::vector<DeviceOutcome> closed =
+        close_driven(driven, nominal_->scene.metrics, options_, nominal_closed_[d], measures_drive_energy_, vectors_);
+    for (std::size_t n = 0; n < places.size(); ++n) outcomes[d][places[n]] = std::move(closed[n]);
   }
   return outcomes;
 }

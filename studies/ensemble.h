@@ -221,6 +221,19 @@ struct DeviceClosing {
 [[nodiscard]] std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings, const MetricsOptions& options,
                                                        Vectors vectors);
 
+/// A device and what drives it.
+struct DrivenDevice {
+  const SampledDevice* device = nullptr;
+  const std::vector<Signal>* signals = nullptr;  ///< one per drive
+  double duration = 0;                           ///< window [s]
+};
+/// The closings of devices, in lanes as close_devices(), to outcomes that say what is held closed. `run`: but for its window and
+/// its steady force, which are those of each device. `near`: the closed equilibrium of a switch and drives little different from
+/// these.
+[[nodiscard]] std::vector<DeviceOutcome> close_driven(std::span<const DrivenDevice> devices, const MetricsOptions& options,
+                                                      const ClosingOptions& run, const std::optional<ClosedEquilibrium>& near,
+                                                      bool measures_drive_energy, Vectors vectors);
+
 /// Closes devices under drives, in the units of each device where they are calibrated.
 class DeviceCloser {
  public:

@@ -613,6 +613,13 @@ class DevicesStudy {
 
 }  // namespace
 
+void share_budget(OptimizeOptions& options, ForDevicesOptions& devices) {
+  constexpr long share_of_drawing = 5;  // one part of so many
+  const long all = options.max_evaluations;
+  options.max_evaluations = std::max(1L, all / share_of_drawing);
+  devices.closings = all - options.max_evaluations;
+}
+
 ForDevicesResult optimize_for_devices(const SceneFile& file, const OptimizeOptions& options, const ForDevicesOptions& devices) {
   require(
       options.own_waveforms.empty(),

@@ -44,6 +44,10 @@ struct ForDevicesOptions {
   long closings = race_closings;  ///< of the race
 };
 
+/// Shares a budget of closings, which is that of everything together: a fifth of options.max_evaluations is for the drawing, the
+/// rest for the race.
+void share_budget(OptimizeOptions& options, ForDevicesOptions& devices);
+
 /// A row of the first table: drives of one kind on the fresh devices.
 struct DevicesRow {
   std::string name;             ///< "plain step", "for the drawing", "for the devices", "Vdp to 1 %"

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string_view>
 
 #include "base/clock.h"
 #include "studies/optimize.h"
@@ -24,6 +25,8 @@
 namespace softland {
 
 inline constexpr long default_closings = 60'000;
+/// The family that is searched where none is named: with the same volts for all devices, and in units that are measured on each.
+inline constexpr std::string_view default_robust_family = "knots", default_calibrated_family = "catch";
 inline constexpr std::uint64_t most_searched = 100'000;  ///< devices of a search, which are all kept
 
 struct RobustOptions {

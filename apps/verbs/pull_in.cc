@@ -15,7 +15,6 @@
 #include "apps/exit_status.h"
 #include "apps/output.h"
 #include "apps/progress.h"
-#include "apps/pull_in_words.h"
 #include "apps/scenes.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
@@ -23,6 +22,7 @@
 #include "base/require.h"
 #include "config/schema.h"
 #include "config/units.h"
+#include "reports/pull_in_words.h"
 #include "reports/quantity.h"
 #include "reports/sweep_report.h"
 #include "studies/choices.h"
@@ -125,16 +125,6 @@ std::string words_of(const Prepared& p, std::size_t k, const nlohmann::json& one
   return text;
 }
 
-// Everything by name; beside it the keys of one electrode, or of several `status` and their voltages as other verbs give them.
-nlohmann::json pull_in_json_of(const std::map<std::string, nlohmann::json>& by_name, const std::string& status) {
-  nlohmann::json all{{"status", status}, {"pull_in", nlohmann::json::object()}};
-  if (by_name.size() == 1) all = by_name.begin()->second;
-  if (by_name.size() > 1)
-    for (const auto& [name, one] : by_name) all["pull_in"][name] = one["pull_in"];
-  all["electrodes"] = by_name;
-  return all;
-}
-
 // The sweep of the electrode that closes the switch.
 void write_sweep(ResultFolder& folder, const Prepared& p, const SweepRange& range, const Watch& watch) {
   require(has_pulling_electrode(p.scene.device), "--sweep: there is no electrode that pulls towards the contact");
@@ -179,7 +169,7 @@ int pull_in_verb(const Common& c, const PullInRequest& request) {
     folder->publish(false);
   }
   work.reset();
-  print_json_or(c, pull_in_json_of(by_name, interrupted ? std::string(to_string(Status::interrupted)) : status), text);
+  print_json_or(c, pull_in_json(by_name, interrupted ? std::string(to_string(Status::interrupted)) : status), text);
   return interrupted ? exit_interrupted : failed ? exit_numerical_failure : none ? exit_no_success : exit_done;
 }
 

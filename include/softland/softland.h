@@ -21,6 +21,7 @@
 #include "config/aim.h"             // parse_aim("0.7 bounce + 0.3 energy")
 #include "config/assumed_spread.h"  // how devices differ, where a scene does not say
 #include "config/criterion.h"       // conditions: "permanent_contact_time < 60 us"
+#include "config/invalid_key.h"     // InvalidKey: key, file and line of what is wrong in a scene
 #include "config/scene.h"           // SceneFile, Scene
 #include "model/device.h"           // Device
 #include "model/tabulated_modes.h"  // ModalTable: a structure by its modes
@@ -38,6 +39,7 @@
 #include "studies/choices.h"          // prepare_and_choose: a scene made ready to run
 #include "studies/derivatives.h"      // figures by what the scene says
 #include "studies/effects.h"          // effects
+#include "studies/evaluator.h"        // figures as a function of numbers of a scene, many rows at once
 #include "studies/for_devices.h"      // optimize: for the drawing, and for devices that differ
 #include "studies/limit.h"            // limit
 #include "studies/optimize.h"         // optimize --robust none

@@ -15,5 +15,6 @@ using CeresSolve = void(const LeastSquares& problem, std::vector<double> start, 
 
 }  // namespace softland
 
-extern "C" void softland_ceres_solve(const softland::LeastSquares& problem, std::vector<double> start,
-                                     const softland::Watch& watch, softland::LeastSquaresEnd& end, std::exception_ptr& fault);
+extern "C" [[gnu::visibility("default")]] void softland_ceres_solve(const softland::LeastSquares& problem,
+                                                                    std::vector<double> start, const softland::Watch& watch,
+                                                                    softland::LeastSquaresEnd& end, std::exception_ptr& fault);

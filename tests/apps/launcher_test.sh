@@ -390,4 +390,32 @@ wait
 check 'two at once build once' [ "$(grep -c "^ninja .* -j" "$work/calls")" = 1 ]
 check 'two at once both run' [ "$(cat "$work/first" "$work/second" | grep -c 'in /: <modes>')" = 2 ]
 
+# The Python module.
+project="$work/with a module"
+mkdir -p "$project/base" "$project/cmake" "$project/python"
+cp "$launcher" "$project/softland"
+echo 'add_subdirectory(base)' >"$project/CMakeLists.txt"
+touch "$project/CMakePresets.json" "$project/base/one.cc" "$project/python/module.cc"
+every_package_installed
+run "$project/softland" python
+check 'python prints the line that makes the module importable' \
+  out_is "export PYTHONPATH='$project/build/release/python'"'${PYTHONPATH:+:$PYTHONPATH}'
+check 'python builds the module' called 'ninja .* python$'
+check 'python configures it' called 'cmake .*-DSOFTLAND_PYTHON=ON'
+run "$project/softland" python
+check 'python builds once' [ ! -s "$work/calls" ]
+echo changed >>"$project/python/module.cc"
+run "$project/softland" modes
+check 'a verb does not build the module' [ ! -s "$work/calls" ]
+run "$project/softland" python
+check 'python builds a changed module' called 'ninja .* python$'
+run "$project/softland" python more
+check 'python takes no arguments' status_is 2
+packages_missing pybind11-dev
+echo changed >>"$project/base/one.cc"
+run "$project/softland" modes
+check 'a verb does not need the packages of the module' status_is 0
+run "$project/softland" python
+check 'python names the packages that it needs' err_has 'missing packages: pybind11-dev'
+
 [ "$failed" = 0 ]

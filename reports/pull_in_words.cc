@@ -1,10 +1,12 @@
-#include "apps/pull_in_words.h"
+#include "reports/pull_in_words.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/pull_in.h"
@@ -12,7 +14,7 @@
 #include "studies/closed_state.h"
 #include "studies/static_excess.h"
 
-namespace softland::apps {
+namespace softland {
 
 using nlohmann::json;
 
@@ -45,6 +47,28 @@ json pull_in_json(const Prepared& p, std::size_t k, const ElectrodePullIn& known
     }
   }
   return found;
+}
+
+json pull_in_json(const std::map<std::string, json>& by_name, const std::string& status) {
+  json all{{"status", status}, {"pull_in", json::object()}};
+  if (by_name.size() == 1) all = by_name.begin()->second;
+  if (by_name.size() > 1)
+    for (const auto& [name, one] : by_name) all["pull_in"][name] = one["pull_in"];
+  all["electrodes"] = by_name;
+  return all;
+}
+
+json pull_in_json(const Prepared& p, const Watch& watch) {
+  const auto& electrodes = p.scene.device.electrodes;
+  std::map<std::string, json> by_name;
+  std::string status(to_string(Status::done));
+  for (std::size_t k = 0; k < electrodes.size(); ++k) {
+    json one = pull_in_of(p, k, watch);
+    watch.throw_if_stopped();
+    if (pulls_in(p.scene.device, k) && status == to_string(Status::done)) status = one["status"].get<std::string>();
+    by_name[electrodes[k].name] = std::move(one);
+  }
+  return pull_in_json(by_name, status);
 }
 
 std::string bias_words(const Prepared& p, std::size_t k) {
@@ -85,4 +109,4 @@ std::string dynamic_words(const Prepared& p, std::size_t k, const json& pull_in)
                                    : " (overdamped: equals the static one)");
 }
 
-}  // namespace softland::apps
+}  // namespace softland

@@ -1,14 +1,15 @@
-// Pull-in voltages as `pull-in` and `check` show them.
+// Pull-in voltages as `pull-in` and `check` tell them: as JSON, and in words.
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "base/watch.h"
 #include "studies/prepared.h"
 
-namespace softland::apps {
+namespace softland {
 
 inline constexpr const char* no_open_state = "no pull-in voltage: the switch has no open state";
 
@@ -19,6 +20,13 @@ inline constexpr const char* no_open_state = "no pull-in voltage: the switch has
 
 /// The same of voltages that are known.
 [[nodiscard]] nlohmann::json pull_in_json(const Prepared& prepared, std::size_t k, const ElectrodePullIn& known);
+
+/// Everything by name; beside it the keys of one electrode, or of several `status` and their voltages as other verbs give them.
+[[nodiscard]] nlohmann::json pull_in_json(const std::map<std::string, nlohmann::json>& by_name, const std::string& status);
+
+/// What all electrodes have come to, as the exit status says it: `done`, or the status of the first one that pulls and has no
+/// voltage.
+[[nodiscard]] nlohmann::json pull_in_json(const Prepared& prepared, const Watch& watch);
 
 /// Whether this, as pull_in_of() has found it, is a switch that closes by itself.
 [[nodiscard]] bool collapsed(const nlohmann::json& pull_in);
@@ -35,4 +43,4 @@ inline constexpr const char* no_open_state = "no pull-in voltage: the switch has
 /// less than the static one; nor does one that leaves the switch where it rests.
 [[nodiscard]] std::string dynamic_words(const Prepared& prepared, std::size_t k, const nlohmann::json& pull_in);
 
-}  // namespace softland::apps
+}  // namespace softland

@@ -1,0 +1,28 @@
+// Bad input of a scene file, for programs that point at it.
+#pragma once
+
+#include <source_location>
+#include <string>
+#include <utility>
+
+#include "base/require.h"
+
+namespace softland {
+
+/// A key or section of a scene that breaks a rule: its message says all of this in words.
+class InvalidKey : public InvalidInput {
+ public:
+  struct Place {
+    std::string key;   ///< its path, "gap.contact"
+    std::string file;  ///< as messages name it; empty where an option set the key
+    int line = 0;      ///< counted from 1; 0: not known
+  };
+  InvalidKey(const std::string& message, Place place, std::source_location where = std::source_location::current())
+      : InvalidInput(message, where), place_(std::move(place)) {}
+  [[nodiscard]] const Place& place() const noexcept { return place_; }
+
+ private:
+  Place place_;
+};
+
+}  // namespace softland

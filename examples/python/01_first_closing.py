@@ -1,0 +1,38 @@
+# %% [markdown]
+# # A first closing
+# A gold cantilever that is simply switched on slams into its contact. How fast, and how often does it bounce?
+
+# %%
+import sys
+
+import softland
+
+scene = softland.shipped("mem-gold")
+closing = scene.simulate()
+closing
+
+# %% [markdown]
+# Figures are floats in SI units that know their unit and their error.
+
+# %%
+print(f"first contact   {closing.initial_contact_time * 1e6:.3f} us")
+print(f"error of it     {closing.initial_contact_time.error:.1e} {closing.initial_contact_time.unit}")
+print(f"highest rebound {closing.major_bounce_height * 1e9:.1f} nm")
+
+# %% [markdown]
+# The course at the contact, and the whole beam at any time.
+
+# %%
+run = closing.trajectory
+x, y = closing.shape([10e-6, 20e-6, float(closing.initial_contact_time)])
+print(f"{len(run)} knots; the tip is deflected by {1e6 * y[-1, -1]:.3f} um at first contact")
+if "ipykernel" in sys.modules:
+    closing.plot()
+
+# %% [markdown]
+# A thicker beam: changes are checked as a scene file is.
+
+# %%
+scene["structure.thickness"] = "2.2 um"
+thicker = scene.simulate()
+print(f"impact speed {closing.impact_velocity * 1e3:.1f} mm/s, of the thicker one {thicker.impact_velocity * 1e3:.1f} mm/s")

@@ -1,0 +1,19 @@
+// The modes of a switch along its length, to be drawn.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "model/switch.h"
+
+namespace softland {
+
+struct ModeShapes {
+  Eigen::VectorXd places;  ///< from the clamped end [m]
+  Eigen::MatrixXd shapes;  ///< phi_i there, a row per place [kg^(-1/2)]
+};
+
+/// Of a beam at so many places from end to end; of anything else at the quadrature points of the switch. Throws InvalidInput for
+/// fewer than two.
+[[nodiscard]] ModeShapes mode_shapes(const Switch& model, int places);
+
+}  // namespace softland

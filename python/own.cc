@@ -1,0 +1,177 @@
+#include "python/own.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/require.h"
+#include "model/constants.h"
+#include "objectives/figures.h"
+
+namespace softland::python {
+
+namespace py = pybind11;
+
+namespace {
+
+constexpr std::size_t fewest_intervals = 8, most_intervals = 512, most_known = 64;
+constexpr double aim =
+    1e-12;  // of the polynomials, over the largest voltage: beyond own_waveform_accuracy, since they converge so fast
+
+// Chebyshev point k of so many intervals over [begin, end], from the end to the begin.
+double chebyshev_point(double begin, double end, std::size_t k, std::size_t intervals) {
+  return (begin + end) / 2 + (end - begin) / 2 * std::cos(pi * static_cast<double>(k) / static_cast<double>(intervals));
+}
+
+py::array_t<double> array(std::span<const double> values) {
+  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+std::vector<double> numbers(const py::object& given) {
+  const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+  if (!values) throw py::error_already_set();
+  return {values.data(), values.data() + values.size()};
+}
+
+}  // namespace
+
+PythonWaveform::PythonWaveform(std::string name, std::vector<OwnParameter> parameters, py::object breakpoints, py::object voltage)
+    : name_(std::move(name)),
+      parameters_(std::move(parameters)),
+      breakpoints_(std::move(breakpoints)),
+      voltage_(std::move(voltage)) {}
+
+PythonWaveform::~PythonWaveform() {
+  const py::gil_scoped_acquire held;
+  breakpoints_ = py::object(), voltage_ = py::object();
+}
+
+double PythonWaveform::Arc::at(double time) const {
+  const std::size_t intervals = values.size() - 1;
+  double above = 0, below = 0;
+  for (std::size_t k = 0; k <= intervals; ++k) {
+    const double distance = time - chebyshev_point(begin, end, k, intervals);
+    if (distance == 0) return values[k];
+    const double weight = ((k % 2 == 0) ? 1.0 : -1.0) * (k == 0 || k == intervals ? 0.5 : 1.0) / distance;
+    above += weight * values[k], below += weight;
+  }
+  const double value = above / below;
+  // What rounding leaves beyond the samples would break a limit of a driver that they keep.
+  if (value < least && least - value <= own_waveform_accuracy * std::max(-least, most)) return least;
+  if (value > most && value - most <= own_waveform_accuracy * std::max(-least, most)) return most;
+  return value;
+}
+
+std::vector<double> PythonWaveform::called(const std::vector<double>& times, std::span<const double> x) const {
+  std::vector<double> volts = numbers(voltage_(array(times), array(x)));
+  require(volts.size() == times.size(), [&] {
+    return "the own waveform '" + name_ + "' gave " + std::to_string(volts.size()) + " volts for " +
+           std::to_string(times.size()) + " times";
+  });
+  return volts;
+}
+
+std::shared_ptr<const PythonWaveform::Course> PythonWaveform::course(std::span<const double> x) const {
+  {
+    const std::scoped_lock lock(lock_);
+    for (const auto& one : known_) {
+      if (std::equal(x.begin(), x.end(), one->x.begin(), one->x.end())) return one;
+    }
+  }
+  const auto made = std::make_shared<Course>();
+  made->x.assign(x.begin(), x.end());
+  try {
+    const py::gil_scoped_acquire held;
+    made->breakpoints = numbers(PyCallable_Check(breakpoints_.ptr()) != 0 ? breakpoints_(array(x)) : breakpoints_);
+    double begin = 0;
+    for (const double end : made->breakpoints) {
+      if (end > begin) made->arcs.push_back({.begin = begin, .end = end});
+      begin = end;
+    }
+    double largest = 0;
+    std::vector<std::size_t> open(made->arcs.size());
+    for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
+    for (std::size_t intervals = fewest_intervals; !open.empty() && intervals <= most_intervals; intervals *= 2) {
+      // All arcs that are not followed yet in one call. What holds at a breakpoint is the voltage after it: the end of an arc is
+      // looked at from inside.
+      std::vector<double> times;
+      for (const std::size_t i : open) {
+        const Arc& arc = made->arcs[i];
+        for (std::size_t k = 0; k <= intervals; ++k)
+          times.push_back(k == 0           ? std::nextafter(arc.end, arc.begin)
+                          : k == intervals ? arc.begin
+                                           : chebyshev_point(arc.begin, arc.end, k, intervals));
+      }
+      const std::vector<double> volts = called(times, x);
+      for (const double one : volts) largest = std::max(largest, std::abs(one));
+      std::vector<std::size_t> still;
+      for (std::size_t n = 0; n < open.size(); ++n) {
+        Arc& arc = made->arcs[open[n]];
+        const double* const own = volts.data() + n * (intervals + 1);
+        double missed = 0;
+        for (std::size_t k = 1; !arc.values.empty() && k < intervals; k += 2)
+          missed = std::max(missed, std::abs(arc.at(chebyshev_point(arc.begin, arc.end, k, intervals)) - own[k]));
+        const double accuracy = intervals == most_intervals ? own_waveform_accuracy / 10 : aim;
+        const bool followed = !arc.values.empty() && missed <= accuracy * largest;
+        arc.values.assign(own, own + intervals + 1);
+        arc.least = *std::min_element(arc.values.begin(), arc.values.end());
+        arc.most = *std::max_element(arc.values.begin(), arc.values.end());
+        if (!followed) still.push_back(open[n]);
+      }
+      open = std::move(still);
+    }
+    require(open.empty(), [&] { return "the own waveform '" + name_ + "' is not smooth between its breakpoints"; });
+  } catch (...) {
+    first_.keep(std::current_exception());
+    throw;
+  }
+  const std::scoped_lock lock(lock_);
+  if (known_.size() == most_known) known_.erase(known_.begin());
+  known_.push_back(made);
+  return made;
+}
+
+std::vector<double> PythonWaveform::breakpoints(std::span<const double> x) const { return course(x)->breakpoints; }
+
+double PythonWaveform::voltage(double time, std::span<const double> x) const {
+  const auto known = course(x);
+  if (known->arcs.empty()) {  // constant
+    const py::gil_scoped_acquire held;
+    return called({time}, x)[0];
+  }
+  const auto after =
+      std::upper_bound(known->arcs.begin(), known->arcs.end(), time, [](double t, const Arc& arc) { return t < arc.end; });
+  if (after == known->arcs.end()) {  // at the end, what it stays on
+    const py::gil_scoped_acquire held;
+    return called({time}, x)[0];
+  }
+  return after->at(time);
+}
+
+PythonObjective::PythonObjective(std::string name, py::object value, bool lands_first)
+    : name_(std::move(name)), value_(std::move(value)), lands_first_(lands_first) {}
+
+PythonObjective::~PythonObjective() {
+  const py::gil_scoped_acquire held;
+  value_ = py::object();
+}
+
+double PythonObjective::value(const Metrics& closing, const Metrics& step) const {
+  const py::gil_scoped_acquire held;
+  const auto figures = [](const Metrics& metrics) {
+    py::dict all;
+    for (const Figure& figure : figure_table) all[py::str(std::string(figure.quantity()))] = figure.value(metrics);
+    return all;
+  };
+  try {
+    return value_(figures(closing), figures(step)).cast<double>();
+  } catch (...) {
+    first_.keep(std::current_exception());
+    throw;
+  }
+}
+
+}  // namespace softland::python

@@ -1,0 +1,103 @@
+// Waveforms and objectives that are Python functions.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "objectives/own_objective.h"
+#include "waveforms/own_waveform.h"
+
+namespace softland::python {
+
+/// The first exception of functions that the library calls, and takes for a bad candidate: it is raised when the work has ended.
+class FirstError {
+ public:
+  void keep(std::exception_ptr error) {
+    const std::scoped_lock lock(lock_);
+    if (!first_) first_ = std::move(error);
+  }
+  [[nodiscard]] bool is_there() const {
+    const std::scoped_lock lock(lock_);
+    return first_ != nullptr;
+  }
+  /// Throws it, if there is one, and forgets it.
+  void rethrow() {
+    std::unique_lock lock(lock_);
+    const std::exception_ptr first = std::exchange(first_, nullptr);
+    lock.unlock();
+    if (first) std::rethrow_exception(first);
+  }
+
+ private:
+  mutable std::mutex lock_;
+  std::exception_ptr first_;
+};
+
+/// A voltage that a Python function tells for an array of times. Between two breakpoints it is followed by the polynomial through
+/// Chebyshev points of the second kind, doubled in number until the polynomial of half of them gives the others within
+/// own_waveform_accuracy, so that a candidate takes a few calls. Barycentric formula: J.-P. Berrut & L. N. Trefethen, SIAM Review
+/// 46 (2004) 501, eq. 4.2.
+class PythonWaveform final : public OwnWaveform {
+ public:
+  /// `voltage`: (times, x) -> volts, arrays; `breakpoints`: (x) -> times, or their array.
+  PythonWaveform(std::string name, std::vector<OwnParameter> parameters, pybind11::object breakpoints, pybind11::object voltage);
+  PythonWaveform(const PythonWaveform&) = delete;
+  PythonWaveform& operator=(const PythonWaveform&) = delete;
+  ~PythonWaveform() override;
+
+  [[nodiscard]] std::string_view name() const override { return name_; }
+  [[nodiscard]] std::vector<OwnParameter> parameters() const override { return parameters_; }
+  [[nodiscard]] std::vector<double> breakpoints(std::span<const double> x) const override;
+  [[nodiscard]] double voltage(double time, std::span<const double> x) const override;
+  [[nodiscard]] FirstError& first_error() const { return first_; }
+
+ private:
+  struct Arc {
+    double begin = 0, end = 0;
+    std::vector<double> values;  // at Chebyshev points, from the end to the begin
+    double least = 0, most = 0;  // of these
+    [[nodiscard]] double at(double time) const;
+  };
+  struct Course {
+    std::vector<double> x, breakpoints;
+    std::vector<Arc> arcs;
+  };
+  [[nodiscard]] std::shared_ptr<const Course> course(std::span<const double> x) const;
+  [[nodiscard]] std::vector<double> called(const std::vector<double>& times, std::span<const double> x) const;
+
+  std::string name_;
+  std::vector<OwnParameter> parameters_;
+  pybind11::object breakpoints_, voltage_;
+  mutable std::mutex lock_;
+  mutable std::vector<std::shared_ptr<const Course>> known_;  // the latest candidates
+  mutable FirstError first_;
+};
+
+/// An objective that a Python function tells of the figures of a closing and of the plain step.
+class PythonObjective final : public OwnObjective {
+ public:
+  PythonObjective(std::string name, pybind11::object value, bool lands_first);
+  PythonObjective(const PythonObjective&) = delete;
+  PythonObjective& operator=(const PythonObjective&) = delete;
+  ~PythonObjective() override;
+
+  [[nodiscard]] std::string_view name() const override { return name_; }
+  [[nodiscard]] double value(const Metrics& closing, const Metrics& step) const override;
+  [[nodiscard]] bool lands_first() const override { return lands_first_; }
+  [[nodiscard]] FirstError& first_error() const { return first_; }
+
+ private:
+  std::string name_;
+  pybind11::object value_;
+  bool lands_first_;
+  mutable FirstError first_;
+};
+
+}  // namespace softland::python

@@ -1,0 +1,495 @@
+#include "python/scene.h"
+
+#include <fmt/format.h>
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include "config/assumed_spread.h"
+#include "config/bench.h"
+#include "config/units.h"
+#include "model/mode_shapes.h"
+#include "model/motion_tape.h"
+#include "reports/accuracy_report.h"
+#include "reports/effects_report.h"
+#include "reports/files.h"
+#include "reports/fit_report.h"
+#include "reports/html.h"
+#include "reports/limit_report.h"
+#include "reports/measurement_report.h"
+#include "reports/pull_in_words.h"
+#include "reports/release_report.h"
+#include "reports/result_json.h"
+#include "reports/result_maker.h"
+#include "reports/robustness_report.h"
+#include "reports/svg.h"
+#include "studies/accuracy.h"
+#include "studies/certify.h"
+#include "studies/choices.h"
+#include "studies/effects.h"
+#include "studies/fitting/fit.h"
+#include "studies/limit.h"
+#include "studies/measurements.h"
+#include "studies/release.h"
+#include "studies/robustness.h"
+#include "waveforms/export.h"
+
+namespace softland::python {
+
+namespace py = pybind11;
+
+std::shared_ptr<const Prepared> PyScene::ready(bool default_limits, Run& run) {
+  std::shared_ptr<const Prepared>& kept = default_limits ? limited : plain;
+  if (!kept) {
+    const SceneFile copy = file;  // another Python thread may change it meanwhile
+    kept = run(
+        [&](const Watch& watch) { return std::make_shared<const Prepared>(prepare_and_choose(copy, default_limits, watch)); });
+  }
+  return kept;
+}
+
+std::shared_ptr<const Prepared> driven_by(const std::shared_ptr<const Prepared>& prepared, const Waveforms& waveforms) {
+  if (waveforms.empty()) return prepared;
+  auto own = std::make_shared<Prepared>(*prepared);
+  const std::vector<std::string> names = own->drive_names();
+  for (const auto& [drive, waveform] : waveforms) {
+    const auto found = std::find(names.begin(), names.end(), drive);
+    require(found != names.end(), [&] { return fmt::format("waveforms: the scene has no drive '{}'", drive); });
+    const auto limits = own->drives.limits.find(drive);
+    if (limits != own->drives.limits.end()) {
+      const Signal told = own->told(static_cast<std::size_t>(found - names.begin()), waveform);
+      // An own waveform is followed by cubics, which may miss it by as much.
+      const double missed = std::holds_alternative<Own>(waveform) ? own_waveform_accuracy * told.peak() : 0;
+      const std::string why = violation(told, {.min_voltage = limits->second.min_voltage - missed,
+                                               .max_voltage = limits->second.max_voltage + missed,
+                                               .max_slew = limits->second.max_slew});
+      require(why.empty(), [&] { return fmt::format("waveforms: {}: {}", drive, why); });
+    }
+    own->drives.waveforms[drive] = waveform;
+  }
+  return own;
+}
+
+namespace {
+
+using Value = std::variant<bool, int, double, std::string>;
+
+// As --set, or of a number as its SI unit has it.
+void change(SceneFile& file, const std::string& key, const Value& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return file.set(key + "=" + *text);
+  try {
+    if (const auto* flag = std::get_if<bool>(&value)) return file.assign(key, SceneValue(*flag));
+    if (const auto* whole = std::get_if<int>(&value)) return file.assign(key, SceneValue(*whole));
+    file.assign(key, SceneValue(std::get<double>(value)));
+  } catch (const std::logic_error&) {  // what reads the scene says what is wrong with the key
+    file.set(key + "=" +
+             std::visit(
+                 []<class T>(const T& one) {
+                   if constexpr (std::is_same_v<T, bool>)
+                     return std::string(one ? "true" : "false");
+                   else if constexpr (std::is_same_v<T, std::string>)
+                     return one;
+                   else
+                     return fmt::format("{}", one);
+                 },
+                 value));
+  }
+}
+
+std::string json_of_scene(const SceneFile& file) { return json_text(file.json()); }
+
+py::array_t<double> array(const std::vector<double>& values) {
+  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+// Time, deflection, velocity, acceleration and contact force, a row per knot.
+py::array_t<double> points_of(const Trajectory& run) {
+  py::array_t<double> all({static_cast<py::ssize_t>(run.points.size()), py::ssize_t{5}});
+  auto to = all.mutable_unchecked<2>();
+  for (py::ssize_t i = 0; i < to.shape(0); ++i) {
+    const TrajectoryPoint& p = run.points[static_cast<std::size_t>(i)];
+    to(i, 0) = p.time, to(i, 1) = p.position, to(i, 2) = p.velocity, to(i, 3) = p.acceleration, to(i, 4) = p.contact_force;
+  }
+  return all;
+}
+
+py::array_t<double> rebounds_of(const std::vector<Rebound>& rebounds) {
+  py::array_t<double> all({static_cast<py::ssize_t>(rebounds.size()), py::ssize_t{3}});
+  auto to = all.mutable_unchecked<2>();
+  for (py::ssize_t i = 0; i < to.shape(0); ++i) {
+    const Rebound& r = rebounds[static_cast<std::size_t>(i)];
+    to(i, 0) = r.begin, to(i, 1) = r.end, to(i, 2) = r.height;
+  }
+  return all;
+}
+
+// The run of a closing again, with all its modes.
+struct Motion {
+  MotionTape tape;
+  std::size_t modes = 0;
+};
+Motion motion_of(const PyClosing& c, const Watch& watch) {
+  const Switch model(c.prepared->scene.device, c.closing.quadrature);
+  const std::vector<Signal> signals = c.prepared->signals();
+  const Hold hold = hold_of(model, signals);
+  Motion motion{.modes = static_cast<std::size_t>(model.modes())};
+  const Trajectory end = observe_closing(model, signals,
+                                         {.duration = c.prepared->duration,
+                                          .tolerance = c.closing.tolerance,
+                                          .steady_force = hold.steady_force(c.prepared->scene.metrics),
+                                          .stop = watch.stop},
+                                         motion.tape);
+  watch.throw_if_stopped();
+  return motion;
+}
+
+// Begin and end of each step: times (steps x 2), and q, v and accelerations (steps x 2 x 3 x modes).
+py::tuple arrays_of(const Motion& motion) {
+  const auto steps = static_cast<py::ssize_t>(motion.tape.arcs().size()), modes = static_cast<py::ssize_t>(motion.modes);
+  py::array_t<double> times({steps, py::ssize_t{2}}), states({steps, py::ssize_t{2}, py::ssize_t{3}, modes});
+  double* t = times.mutable_data();
+  double* x = states.mutable_data();
+  for (std::size_t k = 0; k < motion.tape.arcs().size(); ++k) {
+    for (const MotionTape::Motion& side : {motion.tape.begin(k), motion.tape.end(k)}) {
+      *t++ = side.time;
+      for (const double* part : {side.q, side.v, side.accelerations}) x = std::copy_n(part, motion.modes, x);
+    }
+  }
+  return py::make_tuple(times, states);
+}
+
+py::tuple shapes_of(const Prepared& p, int places) {
+  const ModeShapes all = mode_shapes(p.model, places);
+  return py::make_tuple(all.places, all.shapes);
+}
+
+Result result_of(const PyClosing& c) { return softland::result_of(*c.prepared, c.closing, {.command = c.command}); }
+
+std::map<std::string, std::function<std::string()>> files_of(const Result& result) {
+  const auto kept = std::make_shared<const Result>(result);
+  std::map<std::string, std::function<std::string()>> files{{"result.json", [kept] { return json_text(result_json(*kept)); }},
+                                                            {"report.html", [kept] { return html_report(*kept); }},
+                                                            {"gap.svg", [kept] { return svg_gap_chart(*kept); }}};
+  if (kept->best.figures) files["trajectory.csv"] = [kept] { return trajectory_csv(kept->best.curve); };
+  return files;
+}
+
+// quantity -> (value, error, unit), in the order of the table; yes or no without error and unit.
+py::dict figures_of(const Closing& closing) {
+  py::dict all;
+  for (const Figure& figure : all_figures) {
+    const double value = figure.value(closing.metrics);
+    all[py::str(std::string(figure.quantity()))] =
+        figure.is_yes_or_no() ? py::object(py::bool_(value == 1))
+                              : py::object(py::make_tuple(value, closing.errors[figure], std::string(figure.unit)));
+  }
+  return all;
+}
+
+PyClosing simulate(PyScene& scene, bool errors, bool certified, int jobs, const py::dict& waveforms, std::string command,
+                   const py::object& progress) {
+  Run run(progress);
+  const auto prepared = driven_by(scene.ready(false, run), waveforms_of(waveforms, run));
+  return run([&](const Watch& watch) {
+    PyClosing found{.prepared = prepared,
+                    .closing = certified ? certify(*prepared, watch, jobs) : softland::simulate(*prepared, errors, watch),
+                    .command = std::move(command)};
+    watch.throw_if_stopped();
+    return found;
+  });
+}
+
+template <class Named>
+auto named(const Named& all, const std::string& option, const std::string& name) {
+  const auto* found = find_named(all, name);
+  require(found != nullptr, [&] { return fmt::format("{} {}: must be {}", option, name, listed(all)); });
+  return found->value;
+}
+
+Outcome pull_in(PyScene& scene, const py::object& progress) {
+  Run run(progress);
+  const auto p = scene.ready(false, run);
+  return {.json = run([&](const Watch& watch) { return json_text(pull_in_json(*p, watch)); })};
+}
+
+Outcome effects(PyScene& scene, std::string command, const py::object& progress) {
+  Run run(progress);
+  const auto p = scene.ready(false, run);
+  return {.json = run([&](const Watch& watch) {
+            const Effects found = compare_effects(*p, watch);
+            watch.throw_if_stopped();
+            return json_text(effects_json(*p, found, {.command = command}));
+          })};
+}
+
+Outcome accuracy(PyScene& scene, std::string command, const py::object& progress) {
+  Run run(progress);
+  const auto p = scene.ready(false, run);
+  return run([&](const Watch& watch) {
+    AccuracyOptions options{.on_progress =
+                                [&](std::size_t done, std::size_t of) {
+                                  watch.tell("settings",
+                                             static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, of)));
+                                },
+                            .stop = watch.stop};
+    const auto found = std::make_shared<const AccuracyStudy>(study_accuracy(*p, options));
+    watch.throw_if_stopped();
+    Outcome outcome{.json = json_text(accuracy_json(*p, *found, {.command = command}))};
+    if (!found->rows.empty())
+      outcome.files = {
+          {"accuracy.json", [p, found, command] { return json_text(accuracy_json(*p, *found, {.command = command}), 2); }},
+          {"accuracy.svg", [p, found] { return accuracy_svg(p->scene.title, *found); }},
+          {"report.html", [p, found, command] { return accuracy_html(*p, *found, {.command = command}); }}};
+    return outcome;
+  });
+}
+
+Outcome limit(PyScene& scene, const std::string& actuator, std::optional<double> impact_velocity, bool curves,
+              std::string command, const py::object& progress) {
+  LimitOptions options{.actuator = named(actuators, "actuator", actuator), .impact_velocity = impact_velocity, .curves = curves};
+  require(!impact_velocity || *impact_velocity > 0, "impact_velocity: must be a speed above 0 m/s");
+  Run run(progress);
+  const SceneFile file = scene.file;
+  return run([&](const Watch& watch) {
+    const auto found = std::make_shared<const Limit>(softland::limit(file, options, watch));
+    watch.throw_if_stopped();
+    Outcome outcome{.json = json_text(limit_json(*found, {.command = command}))};
+    outcome.files = {{"limit.json", [found, command] { return json_text(limit_json(*found, {.command = command}), 1) + "\n"; }},
+                     {"limit.svg", [found] { return limit_svg(*found); }}};
+    if (found->landing) outcome.files["best.toml"] = [found] { return found->landing->scene.scene.file.text(); };
+    return outcome;
+  });
+}
+
+Outcome opening(PyScene& scene, const std::string& actuator, double band, long budget, std::uint64_t samples, std::uint64_t seed,
+                int jobs, std::string command, const py::object& progress) {
+  require(band > 0 && band < 1, "band: must be a share of the contact gap above 0 and below 1");
+  require(budget >= 1, "budget: must be at least 1 evaluation");
+  const ReleaseOptions options{.actuator = named(actuators, "actuator", actuator),
+                               .band = band,
+                               .max_evaluations = budget,
+                               .seed = seed,
+                               .jobs = jobs,
+                               .devices = samples};
+  Run run(progress);
+  const SceneFile file = scene.file;
+  return run([&](const Watch& watch) {
+    const auto found = std::make_shared<const Release>(release(file, options, watch));
+    watch.throw_if_stopped();
+    return Outcome{
+        .json = json_text(release_json(*found, {.command = command})),
+        .files = {{"release.json", [found, command] { return json_text(release_json(*found, {.command = command}), 1) + "\n"; }},
+                  {"release.svg", [found] { return release_svg(*found); }},
+                  {"release.csv", [found] { return release_csv(*found); }},
+                  {"release.toml", [found] { return found->scene->text(); }}}};
+  });
+}
+
+struct KeptRobustness {
+  std::shared_ptr<const Prepared> nominal;
+  Robustness found;
+  std::unique_ptr<RobustnessReport> report;
+};
+
+Outcome judged(PyScene& scene, std::string name, const py::dict& others, std::uint64_t samples, std::uint64_t seed,
+               const std::string& points, bool other_ways_too, int jobs, std::string command, const py::object& progress) {
+  require(samples >= 1 && samples <= SamplePoints::largest_size,
+          [&] { return fmt::format("samples {}: must be from 1 to {}", samples, SamplePoints::largest_size); });
+  const RobustnessOptions options{
+      .samples = samples, .seed = seed, .points = named(point_sets, "points", points), .jobs = jobs, .worth_of_measuring = true};
+  PyScene spread{.file = scene.file, .directory = scene.directory};
+  const bool assumed = assume_spread(spread.file);
+  Run run(progress);
+  const auto kept = std::make_shared<KeptRobustness>();
+  kept->nominal = assumed ? spread.ready(true, run) : scene.ready(true, run);
+  const Prepared& nominal = *kept->nominal;
+  const Calibration& calibration = nominal.scene.calibration;
+  std::vector<NamedDrive> drives{{.name = std::move(name), .waveforms = nominal.drives.waveforms, .calibration = calibration}};
+  for (const auto& [other, given] : others) {
+    NamedDrive drive{.name = other.cast<std::string>(), .waveforms = nominal.drives.waveforms, .calibration = calibration};
+    for (auto& [of, waveform] : driven_by(kept->nominal, waveforms_of(given.cast<py::dict>(), run))->drives.waveforms)
+      drive.waveforms[of] = waveform;
+    drives.push_back(std::move(drive));
+  }
+  return run([&](const Watch& watch) {
+    kept->found = robustness(nominal, drives, options, watch);
+    watch.throw_if_stopped();
+    kept->report = std::make_unique<RobustnessReport>(
+        RobustnessReport{.nominal = nominal, .found = kept->found, .options = options, .command = command});
+    add_details(*kept->report, other_ways_too, watch);
+    watch.throw_if_stopped();
+    nlohmann::json data = robustness_json(*kept->report);
+    data["spread_assumed"] = assumed;
+    return Outcome{.json = json_text(data),
+                   .files = {{"robustness.json", [kept] { return json_text(robustness_json(*kept->report), 2); }},
+                             {"devices.csv", [kept] { return robustness_csv(*kept->report); }},
+                             {"robustness.html", [kept] { return robustness_html(*kept->report); }}}};
+  });
+}
+
+Outcome calibrated(PyScene& scene, const std::map<std::string, double>& errors, const std::vector<double>& steps,
+                   std::uint64_t samples, std::uint64_t seed, int jobs, std::string command, const py::object& progress) {
+  MeasurementOptions options{.samples = samples, .seed = seed, .jobs = jobs};
+  if (!steps.empty()) options.steps = steps;
+  const std::map<std::string, double*> all{{"Vdp", &options.pull_in_error},     {"Vsp", &options.static_pull_in_error},
+                                           {"release", &options.release_error}, {"frequency", &options.frequency_error},
+                                           {"piezo", &options.piezo_error},     {"time", &options.time_error}};
+  for (const auto& [what, error] : errors) {
+    const auto found = all.find(what);
+    require(found != all.end() && error >= 0 && error <= 0.5, [&] {
+      return fmt::format("errors {}: must be Vdp, Vsp, release, frequency, piezo or time with an error from 0 to 0.5", what);
+    });
+    *found->second = error;
+  }
+  PyScene spread{.file = scene.file, .directory = scene.directory};
+  assume_spread(spread.file);
+  Run run(progress);
+  return {.json = run([&](const Watch& watch) {
+            const MeasurementStudy found = study_measurements(spread.file, options, watch);
+            watch.throw_if_stopped();
+            return json_text(measurements_json(found, options, command));
+          })};
+}
+
+Outcome fitted(PyScene& scene, const std::string& data, const std::vector<std::string>& unknowns,
+               const std::vector<std::string>& shared, const std::string& loss, std::optional<std::size_t> starts,
+               std::uint64_t seed, int jobs, std::string command, const py::object& progress) {
+  FitOptions options{.unknowns = unknowns, .shared = shared, .loss = named(losses, "loss", loss)};
+  if (starts) {
+    require(*starts >= 1, "starts: must be at least 1");
+    options.starts = *starts;
+  }
+  options.seed = seed;
+  options.jobs = jobs;
+  const Bench bench = load_bench(data);
+  const SceneFile file = scene.file;
+  Run run(progress);
+  return run([&](const Watch& watch) {
+    const auto found = std::make_shared<const Fit>(fit(file, bench, options, watch));
+    watch.throw_if_stopped();
+    Outcome outcome{
+        .json = json_text(fit_json(*found, {.command = command})),
+        .files = {{"fit.json", [found, command] { return json_text(fit_json(*found, {.command = command}), 1) + "\n"; }},
+                  {"fit.html", [found, command] { return fit_html(*found, {.command = command}); }}}};
+    if (found->found)
+      outcome.files["fitted.toml"] = [found, text = file.text(), name = file.name()] {
+        return fitted_text(*found, text, name, found->devices.front());
+      };
+    return outcome;
+  });
+}
+
+}  // namespace
+
+void bind_scene(py::module_& m) {
+  py::class_<Outcome>(m, "Outcome")
+      .def_readonly("json", &Outcome::json)
+      .def_property_readonly("files",
+                             [](const Outcome& o) {
+                               std::vector<std::string> names;
+                               for (const auto& [name, ignored] : o.files) names.push_back(name);
+                               return names;
+                             })
+      .def("file", [](const Outcome& o, const std::string& name) { return py::bytes(o.files.at(name)()); });
+  py::class_<PyClosing>(m, "Closing")
+      .def_property_readonly("status", [](const PyClosing& c) { return std::string(to_string(c.closing.metrics.status)); })
+      .def_property_readonly("message", [](const PyClosing& c) { return c.closing.trajectory.message; })
+      .def_property_readonly("warnings", [](const PyClosing& c) { return c.closing.warnings; })
+      .def_property_readonly("figures", [](const PyClosing& c) { return figures_of(c.closing); })
+      .def_property_readonly("duration", [](const PyClosing& c) { return c.prepared->duration; })
+      .def_property_readonly("contact_gap", [](const PyClosing& c) { return c.prepared->scene.device.gap.contact; })
+      .def_property_readonly("points", [](const PyClosing& c) { return points_of(c.closing.trajectory); })
+      .def_property_readonly("rebounds", [](const PyClosing& c) { return rebounds_of(c.closing.rebounds); })
+      .def_property_readonly("json", [](const PyClosing& c) { return json_text(result_json(result_of(c))); })
+      .def_property_readonly("drives", [](const PyClosing& c) { return c.prepared->drive_names(); })
+      .def("voltage",
+           [](const PyClosing& c, const std::string& drive, const std::vector<double>& times) {
+             const std::vector<std::string> names = c.prepared->drive_names();
+             const auto found = std::find(names.begin(), names.end(), drive);
+             require(found != names.end(), [&] { return fmt::format("the scene has no drive '{}'", drive); });
+             const Signal signal = c.prepared->signals()[static_cast<std::size_t>(found - names.begin())];
+             std::vector<double> volts;
+             for (const double t : times) volts.push_back(signal.voltage(t));
+             return array(volts);
+           })
+      .def("motion",
+           [](const PyClosing& c) {
+             Run run;
+             return arrays_of(run([&](const Watch& watch) { return motion_of(c, watch); }));
+           })
+      .def("shapes", [](const PyClosing& c, int places) { return shapes_of(*c.prepared, places); })
+      .def("outcome", [](const PyClosing& c) {
+        const Result result = result_of(c);
+        return Outcome{.json = json_text(result_json(result)), .files = files_of(result)};
+      });
+  py::class_<PyScene>(m, "Scene")
+      .def_static("load",
+                  [](const std::filesystem::path& path) {
+                    return PyScene{.file = SceneFile::load(path), .directory = path.parent_path()};
+                  })
+      .def_static("parse",
+                  [](const std::string& text, const std::string& name, const std::filesystem::path& directory) {
+                    return PyScene{.file = SceneFile::parse(text, name, directory), .directory = directory};
+                  })
+      .def("copy", [](const PyScene& s) { return PyScene(s); })
+      .def("change",  // all of them, or none
+           [](PyScene& s, const std::vector<std::pair<std::string, Value>>& changes) {
+             SceneFile changed = s.file;
+             for (const auto& [key, value] : changes) change(changed, key, value);
+             static_cast<void>(read_scene(changed));
+             s.file = std::move(changed), s.plain.reset(), s.limited.reset();
+           })
+      .def("set_waveform",
+           [](PyScene& s, const std::string& drive, const PyWaveform& waveform) {
+             SceneFile changed = s.file;
+             changed.set_waveform(drive, waveform.value);
+             static_cast<void>(read_scene(changed));
+             s.file = std::move(changed), s.plain.reset(), s.limited.reset();
+           })
+      .def("erase",
+           [](PyScene& s, const std::string& key) {
+             SceneFile changed = s.file;
+             changed.erase(key);
+             static_cast<void>(read_scene(changed));
+             s.file = std::move(changed), s.plain.reset(), s.limited.reset();
+           })
+      .def("check", [](const PyScene& s) { static_cast<void>(read_scene(s.file)); })
+      .def("written", [](const PyScene& s, const std::string& key) { return s.file.written(key); })
+      .def_property_readonly("text", [](const PyScene& s) { return s.file.text(); })
+      .def_property_readonly("json", [](const PyScene& s) { return json_of_scene(s.file); })
+      .def_property_readonly("name", [](const PyScene& s) { return s.file.name(); })
+      .def_property_readonly("directory", [](const PyScene& s) { return s.directory; })
+      .def("resolved",
+           [](PyScene& s) {
+             const auto p = s.ready();
+             return PyScene{.file = p->resolved(), .directory = s.directory};
+           })
+      .def("warnings", [](PyScene& s) { return s.ready()->scene.warnings; })
+      .def("drives", [](PyScene& s) { return s.ready()->drive_names(); })
+      .def("waveforms",
+           [](PyScene& s) {
+             std::map<std::string, PyWaveform> all;
+             for (const auto& [drive, waveform] : s.ready()->drives.waveforms) all.emplace(drive, PyWaveform{waveform});
+             return all;
+           })
+      .def("duration", [](PyScene& s) { return s.ready()->duration; })
+      .def("frequencies", [](PyScene& s) { return Eigen::VectorXd(s.ready()->model.angular_frequencies()); })
+      .def("shapes", [](PyScene& s, int places) { return shapes_of(*s.ready(), places); })
+      .def("simulate", &simulate)
+      .def("pull_in", &pull_in)
+      .def("effects", &effects)
+      .def("accuracy", &accuracy)
+      .def("limit", &limit)
+      .def("opening", &opening)
+      .def("robustness", &judged)
+      .def("calibrate", &calibrated)
+      .def("fit", &fitted);
+}
+
+}  // namespace softland::python

@@ -1,0 +1,66 @@
+// A scene under Python, and what the verbs make of it.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/scene.h"
+#include "python/run.h"
+#include "studies/prepared.h"
+#include "studies/simulate.h"
+
+namespace softland::python {
+
+/// A scene file and what was made of it, which is kept until the scene changes.
+struct PyScene {
+  SceneFile file;
+  std::filesystem::path directory;                           ///< from which relative paths in it are taken
+  std::shared_ptr<const Prepared> plain = {}, limited = {};  ///< prepare_and_choose() without and with default limits
+
+  /// Made ready, when it is first asked for.
+  [[nodiscard]] std::shared_ptr<const Prepared> ready(bool default_limits, Run& run);
+  [[nodiscard]] std::shared_ptr<const Prepared> ready(bool default_limits = false) {
+    Run run;
+    return ready(default_limits, run);
+  }
+};
+
+/// What a verb found: its JSON, and the files that the program writes of it, each made when it is asked for.
+struct Outcome {
+  std::string json;
+  std::map<std::string, std::function<std::string()>> files = {};
+};
+
+/// One closing, with what it is of.
+struct PyClosing {
+  std::shared_ptr<const Prepared> prepared;
+  Closing closing;
+  std::string command;
+};
+
+void bind_scene(pybind11::module_& module);
+void bind_waveforms(pybind11::module_& module);
+void bind_evaluator(pybind11::module_& module);
+void bind_search(pybind11::module_& module);
+
+/// A waveform, wrapped so that it is one Python type whatever its family.
+struct PyWaveform {
+  Waveform value;
+};
+
+/// What stands in the place of a scene's waveforms, by drive.
+using Waveforms = std::map<std::string, Waveform>;
+/// From a Python dict of softland._softland.Waveform.
+[[nodiscard]] Waveforms waveforms_of(const pybind11::dict& given, Run& run);
+
+/// A scene like this one under other waveforms. Throws InvalidInput for a drive that it has not, and beyond its limits.
+[[nodiscard]] std::shared_ptr<const Prepared> driven_by(const std::shared_ptr<const Prepared>& prepared,
+                                                        const Waveforms& waveforms);
+
+}  // namespace softland::python

@@ -1,0 +1,33 @@
+"""The wheel: the package, and the module that `./softland python` builds. For machines like this one: the processor's instructions, the Debian packages."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+ROOT = Path(__file__).resolve().parents[1]
+SCRATCH = ROOT / "build" / "wheel"  # not among the sources, by which the launcher sees what changed
+SCRATCH.mkdir(parents=True, exist_ok=True)
+
+
+class Built(build_ext):
+    """Takes the module from the build folder, which the launcher names."""
+
+    def build_extension(self, ext):
+        line = subprocess.run([ROOT / "softland", "python"], check=True, stdout=subprocess.PIPE, text=True).stdout
+        folder = Path(line.split("=", 1)[1].split("${")[0].strip().strip("'"))
+        (module,) = (folder / "softland").glob("_softland.*.so")
+        target = Path(self.get_ext_fullpath(ext.name))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(module, target)
+
+
+setup(
+    packages=["softland"],
+    package_data={"softland": ["*.pyi", "py.typed"]},
+    ext_modules=[Extension("softland._softland", [])],
+    cmdclass={"build_ext": Built},
+    options={"build": {"build_base": str(SCRATCH)}, "egg_info": {"egg_base": str(SCRATCH)}},
+)

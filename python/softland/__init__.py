@@ -1,0 +1,28 @@
+"""softland: how MEMS and NEMS switches close, and the waveforms that land them softly.
+
+>>> import softland
+>>> scene = softland.load("scenes/mem-gold.toml")
+>>> closing = scene.simulate()
+>>> closing.impact_velocity
+0.08558113969278344 ± 1.6e-08 m/s
+
+All numbers are in SI units; text with a unit is read like in a scene file. docs/python.md is the way in.
+"""
+
+from . import _softland
+from ._closing import Closing
+from ._errors import InvalidInput
+from ._evaluator import Evaluator
+from ._outcome import Outcome
+from ._records import Quantity, Record
+from ._results import Result, Store, open
+from ._scene import Modes, Scene, load, shipped
+from ._units import units
+from ._waveform import OwnWaveform, Waveform
+
+__version__: str = _softland.version
+
+__all__ = [
+    "Closing", "Evaluator", "InvalidInput", "Modes", "Outcome", "OwnWaveform", "Quantity", "Record", "Result", "Scene", "Store", "Waveform",
+    "load", "open", "shipped", "units",
+]  # fmt: skip

@@ -1,0 +1,85 @@
+"""Figures of merit as a function of numbers of a scene."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _softland
+from ._progress import Progress, shown
+
+if TYPE_CHECKING:
+    from ._scene import Scene
+
+Array = npt.NDArray[np.float64]
+
+
+class Evaluator:
+    """A function of arrays: rows of keys to rows of figures, (n, d) -> (n, m), SI units. Made by `Scene.evaluator`.
+
+    The scene is made ready once. Rows are closed in lanes on all cores; a row has the same figures whatever other rows there are, and those that
+    `softland robustness` gives such a device. What a row does not have is NaN. It can be called by several threads, pickled, and serves SciPy,
+    Optuna, OpenTURNS, scikit-learn and Dask.
+
+    Attributes: `keys`, `units` of the columns; `figures`; `nominal`, what the scene itself has (d,).
+    """
+
+    def __init__(
+        self, scene: Scene, keys: Sequence[str], figures: Sequence[str], vdp: Literal["nominal", "each"], jobs: int | None, tolerance: float
+    ) -> None:
+        self._scene = scene.copy()
+        self._given = (list(keys), list(figures), vdp, jobs, tolerance)
+        self._native = _softland.Evaluator(self._scene._native, list(keys), list(figures), vdp, tolerance, None)
+        self.keys: list[str] = self._native.keys
+        self.units: list[str] = self._native.units
+        self.figures: list[str] = [name for name, _ in self._native.figures]
+        self.nominal: Array = self._native.nominal
+        self.jobs = jobs if jobs is not None else os.cpu_count() or 1
+        self._status: list[str] = []
+        self._reasons: dict[int, str] = {}
+
+    def __call__(self, x: npt.ArrayLike, progress: bool | Progress | None = False) -> Array:
+        """Figures of rows: (n, d) -> (n, m), or of one row (d,) -> (m,). Raises InvalidInput for another shape, KeyboardInterrupt on Ctrl-C."""
+        rows = np.asarray(x, float)
+        with shown(progress) as tell:
+            values, self._status, self._reasons = self._native.evaluate(np.atleast_2d(rows), self.jobs, tell)
+        return np.asarray(values[0] if rows.ndim == 1 else values)
+
+    @property
+    def status(self) -> npt.NDArray[np.str_]:
+        """How the rows of the last call ended, (n,): "done", ..., or "infeasible": there is no such device, or no such waveform."""
+        return np.array(self._status, dtype=np.str_)
+
+    @property
+    def reasons(self) -> dict[int, str]:
+        """Why rows of the last call have no figures, by their number."""
+        return dict(self._reasons)
+
+    def jacobian(self, x: npt.ArrayLike) -> Array:
+        """The derivatives of the figures by the keys at a row (d,) -> (m, d): exact ones, through impacts and rebounds (docs/figures.md).
+
+        Raises InvalidInput with the reason where there is none: of counts and settling times, of parameters of waveforms, and for vdp="each".
+        """
+        return np.asarray(self._native.jacobian(np.asarray(x, float)))
+
+    def one(self, figure: str | int = 0) -> Any:
+        """The function of one figure for `scipy.optimize` with vectorized=True: (d, n) -> (n,), and (d,) -> float."""
+        column = figure if isinstance(figure, int) else self.figures.index(figure)
+
+        def function(x: npt.ArrayLike) -> Any:
+            points = np.asarray(x, float)
+            if points.ndim == 1:
+                return float(self(points)[column])
+            return self(points.T)[:, column]
+
+        return function
+
+    def __repr__(self) -> str:
+        return f"Evaluator({', '.join(self.keys)} -> {', '.join(self.figures)})"
+
+    def __reduce__(self) -> Any:
+        return Evaluator, (self._scene, *self._given)

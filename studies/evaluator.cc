@@ -1,0 +1,393 @@
+#include "studies/evaluator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+#include <variant>
+
+#include "base/executor.h"
+#include "base/require.h"
+#include "config/schema.h"
+#include "config/units.h"
+#include "model/constants.h"
+#include "studies/choices.h"
+#include "studies/derivatives.h"
+#include "studies/exploration.h"
+#include "waveforms/limits.h"
+
+namespace softland {
+namespace {
+
+constexpr std::size_t rows_of_task = 128;  // rows of one task: many to a lane, few between two looks at a Watch
+
+// "electrode.main.span[2]" as its path and 2; without an element 0.
+std::pair<std::string, std::size_t> key_and_element(const std::string& key) {
+  const std::size_t open = key.rfind('[');
+  if (open == std::string::npos || !key.ends_with("]")) return {key, 0};
+  const std::string inside = key.substr(open + 1, key.size() - open - 2);
+  const bool is_number = !inside.empty() && inside.size() < 6 && inside.find_first_not_of("0123456789") == std::string::npos;
+  return is_number ? std::pair(key.substr(0, open), std::stoul(inside)) : std::pair(key, std::size_t{0});
+}
+
+// "waveform.main.level" as main and level.
+std::optional<std::pair<std::string, std::string>> waveform_key(const std::string& path) {
+  constexpr std::string_view before = "waveform.";
+  if (!path.starts_with(before)) return std::nullopt;
+  const std::size_t dot = path.rfind('.');
+  if (dot < before.size()) return std::nullopt;
+  return std::pair(path.substr(before.size(), dot - before.size()), path.substr(dot + 1));
+}
+
+// The parameter of a waveform; null where its family has none of that name. Calls with_names for a message.
+double* waveform_parameter(Waveform& waveform, const std::string& name, std::size_t element, std::vector<std::string_view>& names,
+                           Meaning& meaning) {
+  return std::visit(
+      [&]<class Family>(Family& family) -> double* {
+        for (const Parameter<Family>& one : FamilyOf<Family>::parameters) {
+          names.push_back(one.name);
+          if (one.name != name) continue;
+          meaning = one.meaning;
+          if (const auto* number = std::get_if<double Family::*>(&one.member)) return element == 0 ? &(family.**number) : nullptr;
+          auto& list = family.*std::get<std::vector<double> Family::*>(one.member);
+          return element >= 1 && element <= list.size() ? &list[element - 1] : nullptr;
+        }
+        return nullptr;
+      },
+      waveform);
+}
+
+std::string unit_of_parameter(Meaning meaning, const std::string& drive) {
+  switch (meaning) {
+    case Meaning::level:
+    case Meaning::swing:
+      return drive == dispersion_drive ? "" : "V";
+    case Meaning::time:
+    case Meaning::end_time:
+      return "s";
+    case Meaning::angular_frequency:
+      return "rad/s";
+    case Meaning::angle:
+      return "rad";
+    case Meaning::ratio:
+      break;
+  }
+  return "";
+}
+
+// What the scene writes at a key; none where it writes no quantity there.
+std::optional<Quantity> written_quantity(const SceneFile& file, const std::string& path, std::size_t element) {
+  std::optional<std::string> text = file.written(path);
+  if (!text) return std::nullopt;
+  if (element > 0) {
+    const nlohmann::json list = nlohmann::json::parse(*text, nullptr, false);
+    if (!list.is_array() || element > list.size()) return std::nullopt;
+    const nlohmann::json& one = list[element - 1];
+    text = one.is_string() ? one.get<std::string>() : one.dump();
+  }
+  try {
+    return parse_quantity(*text);
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+}
+
+std::string spread_entry(const std::string& key) { return fmt::format("spread.\"{}\"", key); }
+
+// A scene in which these keys vary, each by its own value: to vary by a factor would cost the last bit.
+SceneFile scene_that_varies(SceneFile file, const std::vector<std::string>& keys) {
+  file.erase("spread");
+  file.erase("calibration");
+  for (const std::string& key : keys) file.set(spread_entry(key) + R"(={distribution="normal",cov="1 %"})");
+  for (const SpreadVariable& variable : read_scene(file).spread.variables) {
+    const VariedKey& key = variable.keys.front();
+    if (key.measured_in == dimension::none) continue;
+    const double width = key.nominal == 0 ? 1e-9 : std::abs(key.nominal) / 100;
+    file.set(spread_entry(variable.name) +
+             fmt::format(R"(={{distribution="normal",standard_deviation="{}"}})", quantity_text(width, key.measured_in)));
+  }
+  return file;
+}
+
+}  // namespace
+
+struct Evaluator::Row {
+  SampledDevice own;                      // of the row, unless it is the nominal one
+  const SampledDevice* device = nullptr;  // to be closed
+  std::vector<Signal> signals;            // of the row, where they differ from the scene's
+  std::string refusal = {};
+  double duration = 0;
+  bool has_signals = false;
+};
+
+bool Evaluator::measured(const Figure& figure) {
+  const auto is = [&](Figure::Member member) { return figure.member == member; };
+  return figure.of_devices || is(&Metrics::bounce_time) || is(&Metrics::first_rebound_time) || is(&Metrics::drive_energy) ||
+         is(&Metrics::settled);
+}
+
+Evaluator::Evaluator(const SceneFile& file, std::vector<std::string> keys, std::vector<Figure> figures,
+                     const EvaluatorOptions& options, const Watch& watch)
+    : keys_(std::move(keys)), figures_(std::move(figures)), options_(options) {
+  require(!keys_.empty(), "evaluator: there is no key to vary");
+  require(!figures_.empty(), "evaluator: there is no figure to tell");
+  require(options.tolerance > 0 && options.tolerance <= 0.1, "evaluator: the tolerance must be above 0 and at most 0.1");
+  for (const Figure& figure : figures_)
+    require(measured(figure), [&] {
+      return fmt::format("evaluator: {} is not measured of devices in lanes: simulate() tells it", figure.quantity());
+    });
+  for (std::size_t i = 0; i < keys_.size(); ++i)
+    require(std::find(keys_.begin(), keys_.begin() + static_cast<std::ptrdiff_t>(i), keys_[i]) ==
+                keys_.begin() + static_cast<std::ptrdiff_t>(i),
+            [&] { return fmt::format("evaluator: the key '{}' stands twice", keys_[i]); });
+  units_.resize(keys_.size());
+  values_.assign(keys_.size(), Metrics::unset);
+  vary_device(file, watch);
+  waveforms_ = nominal_->in_drive_order(nominal_->drives.waveforms);
+  if (options_.volts == VoltsOf::nominal) {
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      if (waveform_key(key_and_element(keys_[i]).first)) read_waveform_key(i);
+    }
+  }
+  signals_ = nominal_->driven(waveforms_);
+  closed_ = closed_equilibrium(nominal_->model, hold_levels(signals_));
+  drives_ = std::make_unique<DeviceDrives>(*nominal_);
+}
+
+// Reads which columns are of the device, and makes the scene ready.
+void Evaluator::vary_device(const SceneFile& file, const Watch& watch) {
+  if (options_.volts == VoltsOf::each) {
+    SceneFile scene = file;
+    scene.erase("spread");
+    scene.erase("calibration");
+    nominal_ = std::make_unique<Prepared>(prepare_and_choose(scene, false, watch));
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      const auto [path, element] = key_and_element(keys_[i]);
+      require(!path.starts_with("metrics."),
+              [&] { return fmt::format("evaluator: {} cannot vary: all rows are judged alike", keys_[i]); });
+      const std::optional<Quantity> given = written_quantity(scene, path, element);
+      require(given.has_value(), [&] {
+        return fmt::format("{}: {} holds no number that could vary: write it in the scene first", scene.name(), keys_[i]);
+      });
+      values_[i] = given->value;
+      units_[i] = unit_symbol(given->dimension);
+    }
+    return;
+  }
+  std::vector<std::string> of_device;
+  for (const std::string& key : keys_) {
+    if (!waveform_key(key_and_element(key).first)) of_device.push_back(key);
+  }
+  nominal_ = std::make_unique<Prepared>(prepare_and_choose(scene_that_varies(file, of_device), false, watch));
+  if (of_device.empty()) return;
+  for (const SpreadVariable& variable : nominal_->scene.spread.variables) {
+    const auto column = static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), variable.name) - keys_.begin());
+    of_device_.push_back(column);
+    units_[column] = variable.keys.front().unit;
+    values_[column] = variable.keys.front().nominal;
+  }
+  ensemble_ = std::make_unique<Ensemble>(*nominal_, 1);
+}
+
+void Evaluator::read_waveform_key(std::size_t column) {
+  const auto [path, element] = key_and_element(keys_[column]);
+  const auto [drive, name] = *waveform_key(path);
+  const std::vector<std::string> drives = nominal_->drive_names();
+  const auto found = std::find(drives.begin(), drives.end(), drive);
+  require(found != drives.end(), [&] {
+    return fmt::format("{}: '{}' is not a key of this scene: no drive '{}'{}", nominal_->scene.file.name(), keys_[column], drive,
+                       internal::hint(drive, {drives.begin(), drives.end()}));
+  });
+  WaveformKey key{.column = column,
+                  .drive = static_cast<std::size_t>(found - drives.begin()),
+                  .parameter = name == "frequency" ? "angular_frequency" : name,
+                  .element = element,
+                  .factor = name == "frequency" ? 2 * pi : 1};
+  std::vector<std::string_view> names;
+  Meaning meaning{};
+  const double* const number = waveform_parameter(waveforms_[key.drive], key.parameter, element, names, meaning);
+  require(number != nullptr, [&] {
+    return fmt::format("{}: '{}' is not a number of the waveform there, which is a {}{}", nominal_->scene.file.name(),
+                       keys_[column], family(waveforms_[key.drive]), internal::hint(name, names));
+  });
+  units_[column] = name == "frequency" ? "Hz" : unit_of_parameter(meaning, drive);
+  values_[column] = *number / key.factor;
+  of_waveforms_.push_back(std::move(key));
+}
+
+std::vector<Waveform> Evaluator::waveforms_of(std::span<const double> values) const {
+  std::vector<Waveform> all = waveforms_;
+  for (const WaveformKey& key : of_waveforms_) {
+    std::vector<std::string_view> names;
+    Meaning meaning{};
+    *waveform_parameter(all[key.drive], key.parameter, key.element, names, meaning) = key.factor * values[key.column];
+  }
+  return all;
+}
+
+SceneFile Evaluator::scene_of(std::span<const double> values) const {
+  SceneFile file = nominal_->scene.file;
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    const auto [path, element] = key_and_element(keys_[i]);
+    const std::optional<Quantity> given = written_quantity(file, path, element);
+    file.assign(path, Quantity{.value = values[i], .dimension = given->dimension}, element);
+  }
+  return file;
+}
+
+void Evaluator::build_anew(Row& row, std::span<const double> values) const {
+  Prepared prepared = prepare_and_choose(scene_of(values));
+  row.signals = prepared.signals();
+  row.has_signals = true;
+  row.duration = prepared.duration;
+  row.own.model.emplace(std::move(prepared.model));
+  row.device = &row.own;
+}
+
+void Evaluator::build_device(Row& row, std::span<const double> values, DeviceBuilder& builder) const {
+  row.duration = nominal_->duration;
+  std::vector<double> varied(of_device_.size());
+  for (std::size_t i = 0; i < varied.size(); ++i) {
+    const SpreadVariable& variable = nominal_->scene.spread.variables[i];
+    varied[i] = values[of_device_[i]] / (variable.is_factor ? variable.keys.front().nominal : 1);
+  }
+  row.own = builder.device(std::move(varied));
+  row.device = &row.own;
+  row.refusal = row.own.refusal;
+}
+
+std::unique_ptr<DeviceBuilder> Evaluator::take_builder() const {
+  const std::scoped_lock lock(builders_lock_);
+  if (builders_.empty()) return std::make_unique<DeviceBuilder>(*ensemble_);
+  std::unique_ptr<DeviceBuilder> one = std::move(builders_.back());
+  builders_.pop_back();
+  return one;
+}
+
+std::vector<Evaluator::Row> Evaluator::built(std::span<const double> rows, std::size_t first, std::size_t count) const {
+  std::vector<Row> all(count);
+  std::unique_ptr<DeviceBuilder> builder = ensemble_ ? take_builder() : nullptr;
+  for (std::size_t i = 0; i < count; ++i) {
+    Row& row = all[i];
+    const std::span<const double> values = rows.subspan((first + i) * keys_.size(), keys_.size());
+    if (!std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) {
+      row.refusal = "a number of the row is not finite";
+      continue;
+    }
+    try {
+      if (options_.volts == VoltsOf::each) {
+        build_anew(row, values);
+        continue;
+      }
+      if (builder) {
+        build_device(row, values, *builder);
+      } else {
+        row.duration = nominal_->duration;
+        row.own.model.emplace(nominal_->model);
+        row.device = &row.own;
+      }
+      if (!row.refusal.empty() || (of_waveforms_.empty() && !drives_->differ({}))) continue;
+      const std::vector<Waveform> own = waveforms_of(values);
+      const std::vector<std::string> names = nominal_->drive_names();
+      for (const WaveformKey& key : of_waveforms_) {
+        const auto limits = nominal_->drives.limits.find(names[key.drive]);
+        if (limits == nominal_->drives.limits.end()) continue;
+        if (row.refusal.empty()) row.refusal = violation(nominal_->told(key.drive, own[key.drive]), limits->second);
+      }
+      if (!row.refusal.empty()) continue;
+      row.signals = drives_->signals(own, {}, row.own.values);
+      row.has_signals = true;
+    } catch (const InvalidInput& error) {
+      row.refusal = error.what();
+    }
+  }
+  if (builder) {
+    const std::scoped_lock lock(builders_lock_);
+    builders_.push_back(std::move(builder));
+  }
+  return all;
+}
+
+void Evaluator::evaluate(std::span<const double> rows, std::span<double> figures, std::span<RowEnd> ends, int jobs,
+                         const Watch& watch) const {
+  const std::size_t count = ends.size();
+  require(rows.size() == count * keys_.size() && figures.size() == count * figures_.size(), [&] {
+    return fmt::format("evaluator: rows of {} numbers and {} figures do not fit each other", keys_.size(), figures_.size());
+  });
+  const bool measures_energy = std::any_of(
+      figures_.begin(), figures_.end(), [](const Figure& one) { return one.member == Figure::Member(&Metrics::drive_energy); });
+  std::atomic<std::size_t> done = 0;
+  std::mutex telling;
+  const auto task = [&](std::size_t c) {
+    const std::size_t first = c * rows_of_task, size = std::min(rows_of_task, count - first);
+    const std::vector<Row> built_rows = built(rows, first, size);
+    std::vector<DrivenDevice> driven;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < size; ++i) {
+      const Row& row = built_rows[i];
+      if (!row.refusal.empty()) {
+        ends[first + i] = {.status = std::string(infeasible), .reason = row.refusal};
+        std::fill_n(figures.begin() + static_cast<std::ptrdiff_t>((first + i) * figures_.size()), figures_.size(),
+                    Metrics::unset);
+        continue;
+      }
+      places.push_back(first + i);
+      driven.push_back({.device = row.device, .signals = row.has_signals ? &row.signals : &signals_, .duration = row.duration});
+    }
+    const std::vector<DeviceOutcome> closed = close_driven(
+        driven, nominal_->scene.metrics, {.duration = nominal_->duration, .tolerance = options_.tolerance, .stop = watch.stop},
+        options_.volts == VoltsOf::nominal ? closed_ : std::nullopt, measures_energy, vectors_in_use());
+    for (std::size_t n = 0; n < places.size(); ++n) {
+      const DeviceOutcome& outcome = closed[n];
+      ends[places[n]] = {.status = std::string(to_string(outcome.metrics.status)), .reason = outcome.failure};
+      for (std::size_t f = 0; f < figures_.size(); ++f)
+        figures[places[n] * figures_.size() + f] = figures_[f].value(outcome.metrics);
+    }
+    done += size;
+    const std::scoped_lock lock(telling);
+    watch.tell("rows", static_cast<double>(done) / static_cast<double>(count));
+  };
+  run_tasks((count + rows_of_task - 1) / rows_of_task, jobs, task, watch.stop);
+  watch.throw_if_stopped();
+}
+
+Eigen::MatrixXd Evaluator::jacobian(std::span<const double> row, const Watch& watch) const {
+  require(row.size() == keys_.size(), [&] { return fmt::format("jacobian: a row has {} numbers", keys_.size()); });
+  require(options_.volts == VoltsOf::nominal,
+          "jacobian: volts that follow the pull-in voltage of each row have no exact derivative");
+  require(of_waveforms_.empty(),
+          "jacobian: there is no exact derivative by a parameter of a waveform: vary the device and errors of drives");
+  SceneFile file = nominal_->resolved();
+  file.erase("spread");
+  for (std::size_t i = 0; i < of_device_.size(); ++i) {
+    const VariedKey& key = nominal_->scene.spread.variables[i].keys.front();
+    file.assign(key.path, Quantity{.value = row[of_device_[i]], .dimension = key.measured_in}, key.element);
+  }
+  const Prepared there = prepare(scene_that_varies(file, keys_), false, watch);
+  const Derivatives found = derivatives(there, {.waveforms = there.in_drive_order(there.drives.waveforms)}, {}, watch);
+  watch.throw_if_stopped();
+  require(found.why_none.empty(), [&] { return "jacobian: no derivatives here: " + found.why_none; });
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(figures_.size()), static_cast<Eigen::Index>(keys_.size()));
+  for (std::size_t f = 0; f < figures_.size(); ++f) {
+    const auto of = std::find_if(found.figures.begin(), found.figures.end(),
+                                 [&](const FigureDerivatives& one) { return one.key == figures_[f].key; });
+    require(of != found.figures.end(),
+            [&] { return fmt::format("jacobian: {} has no slope: it jumps", figures_[f].quantity()); });
+    require(of->is_known(),
+            [&] { return fmt::format("jacobian: {} has no derivative here: {}", figures_[f].quantity(), of->why_none); });
+    for (std::size_t i = 0; i < of_device_.size(); ++i) {
+      const SpreadVariable& variable = there.scene.spread.variables[i];
+      require(found.variables[i].why_none.empty(),
+              [&] { return fmt::format("jacobian: no derivative by {}: {}", variable.name, found.variables[i].why_none); });
+      const auto column = std::find(keys_.begin(), keys_.end(), variable.name) - keys_.begin();
+      all(static_cast<Eigen::Index>(f), column) = of->by_variable[i] / (variable.is_factor ? variable.keys.front().nominal : 1);
+    }
+  }
+  return all;
+}
+
+}  // namespace softland

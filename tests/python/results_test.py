@@ -1,0 +1,72 @@
+"""What the program wrote is read, and what Python found is written as the program does."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+import softland
+
+SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes"
+GOLD = SCENES / "mem-gold.toml"
+PROGRAM = os.environ["SOFTLAND_PROGRAM"]
+
+
+class Results(unittest.TestCase):
+    def setUp(self):
+        self.place = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.place.name)
+
+    def tearDown(self):
+        self.place.cleanup()
+
+    def run_program(self, *words):
+        subprocess.run([PROGRAM, *map(str, words)], check=True, capture_output=True)
+
+    def test_a_folder_of_the_program(self):
+        self.run_program("optimize", GOLD, "--robust", "none", "--budget", 200, "--out", self.folder / "run")
+        found = softland.open(self.folder / "run")
+        self.assertIn("best.toml", found.files)
+        closing = found.scene().simulate()
+        self.assertEqual(closing.impact_velocity, found.metrics.impact_velocity)
+        self.assertEqual(closing.impact_velocity.unit, found.metrics.impact_velocity.unit)
+        again = softland.load(GOLD).simulate(errors=False, waveforms=found.waveforms())
+        self.assertLess(abs(again.initial_contact_time / closing.initial_contact_time - 1), 1e-6)
+        self.assertGreater(len(found.trajectory()), 100)
+
+    def test_python_writes_the_files_of_the_program(self):
+        folder = softland.load(GOLD).simulate().save(self.folder / "mine")
+        self.run_program("simulate", GOLD, "--out", self.folder / "theirs")
+        names = {"result.json", "report.html", "gap.svg", "trajectory.csv"}
+        self.assertEqual(names, {path.name for path in folder.iterdir()})
+        for name in ("gap.svg", "trajectory.csv"):
+            self.assertEqual((folder / name).read_bytes(), (self.folder / "theirs" / name).read_bytes(), name)
+        self.run_program("report", folder)
+        self.assertEqual(softland.open(folder).metrics.impact_velocity, softland.load(GOLD).simulate().impact_velocity)
+        json.loads((folder / "result.json").read_text())
+
+    def test_a_store(self):
+        store = self.folder / "map.sqlite"
+        self.run_program("explore", GOLD, "--vary", "gap.contact=1.8 um:2.2 um:3", "--vary", "structure.thickness=1.9 um:2.1 um:2", "--out", store)
+        found = softland.open(store)
+        self.assertEqual((len(found), found.points), (6, 6))
+        rows = found.rows()
+        scene = softland.load(GOLD)
+        columns = {name: key for key, (name, _) in found.columns.items()}
+        scene.update({key: float(rows[columns[key]][4]) for key in ("gap.contact", "structure.thickness")})
+        self.assertEqual(scene.simulate().impact_velocity, rows["impact_velocity_m_s"][4])
+        self.assertEqual(found.columns["impact_velocity_m_s"][1], "m/s")
+        self.assertTrue(np.all(rows["status"] != ""))
+
+    def test_what_is_nothing_of_ours_is_refused(self):
+        with self.assertRaises(softland.InvalidInput):
+            softland.open(self.folder)
+        with self.assertRaises(softland.InvalidInput):
+            softland.open(self.folder / "nothing")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,138 @@
+"""Searches: own objectives and waveforms, callbacks, Ctrl-C."""
+
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import textwrap
+import time
+import unittest
+
+import numpy as np
+import softland
+
+SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes"
+GOLD = SCENES / "mem-gold.toml"
+
+
+def swell(hold, limit):
+    """The waveform of examples/05_own_waveform.cc."""
+
+    def between(start, end, part):
+        return start + (end - start) / 2 * (1 - np.cos(np.pi * np.minimum(1, part)))
+
+    def voltage(t, x):
+        high, low, up, down, back = x
+        return np.where(t < up, between(0, high, t / up),
+                        np.where(t < up + down, between(high, low, (t - up) / down), between(low, hold, (t - up - down) / back)))  # fmt: skip
+
+    return softland.OwnWaveform(
+        "swell",
+        voltage,
+        lambda x: np.cumsum(x[2:]),
+        {
+            "high_V": (0, limit, 1.1 * hold),
+            "low_V": (0, limit, 0.6 * hold),
+            "up_s": ("1 us", "50 us", "10 us"),
+            "down_s": ("1 us", "50 us", "25 us"),
+            "back_s": ("1 us", "50 us", "10 us"),
+        },
+    )
+
+
+class Searches(unittest.TestCase):
+    def test_an_own_waveform_is_run_and_searched_like_in_cpp(self):
+        scene = softland.load(GOLD)
+        hold = scene.waveforms["main"].hold_level
+        own = swell(hold, 1.2 * hold)  # the driver of the scene: 1.5 Vdp at a hold level of 1.25
+        as_it_stands = scene.simulate(errors=False, waveforms={"main": own})
+        # What the C++ example prints: 51.86 us, 51.45 mm/s.
+        self.assertAlmostEqual(as_it_stands.initial_contact_time * 1e6, 51.86, places=2)
+        self.assertAlmostEqual(as_it_stands.impact_velocity * 1e3, 51.45, places=2)
+        found = scene.optimize(robust="none", own_waveforms=[own], waveform="swell", budget=300)
+        self.assertLess(found.metrics.impact_velocity, 0.5 * as_it_stands.impact_velocity)
+        self.assertIn("main.high_V", found["best"]["parameters"])
+
+    def test_an_own_objective_leads_the_search(self):
+        scene = softland.load(GOLD)
+        calls = []
+
+        def gentle(closing, step):
+            calls.append(closing["impact_velocity"])
+            return closing["peak_contact_force"] / step["peak_contact_force"]
+
+        found = scene.optimize(robust="none", objective=gentle, lands_first=False, budget=200)
+        self.assertGreater(len(calls), 100)
+        self.assertLess(found.metrics.peak_contact_force, found.baseline.metrics.peak_contact_force)
+
+    def test_what_an_objective_raises_comes_out_at_once(self):
+        def broken(closing, step):
+            raise ZeroDivisionError("mine")
+
+        began = time.monotonic()
+        with self.assertRaisesRegex(ZeroDivisionError, "mine"):
+            softland.load(GOLD).optimize(robust="none", objective=broken, budget=2500)
+        self.assertLess(time.monotonic() - began, 3)
+
+    def test_a_callback_sees_every_evaluation_and_ends_the_search(self):
+        seen = []
+
+        def callback(evaluations, best, of_step, now):
+            seen.append(evaluations)
+            return evaluations >= 100
+
+        found = softland.load(GOLD).optimize(robust="none", budget=2000, jobs=1, callback=callback)
+        self.assertLess(seen[-1], 200)
+        self.assertLess(found.metrics.impact_velocity, found.baseline.metrics.impact_velocity)
+
+    def test_progress_is_told(self):
+        told = []
+        softland.load(GOLD).robustness(samples=2000, progress=lambda what, part: told.append((what, part)))
+        self.assertTrue(all(0 <= part <= 1 for _, part in told))
+        self.assertTrue(any("devices" in what for what, _ in told))
+
+
+class Interrupts(unittest.TestCase):
+    def interrupted(self, work):
+        """Seconds from SIGINT to the end of a Python that runs `work`."""
+        script = textwrap.dedent(f"""
+            import softland, sys, time
+            scene = softland.load({str(GOLD)!r})
+            print("begins", flush=True)
+            try:
+                {work}
+            except KeyboardInterrupt:
+                print("stopped", flush=True)
+                sys.exit(7)
+        """)
+        with tempfile.NamedTemporaryFile("w", suffix=".py") as file:
+            file.write(script)
+            file.flush()
+            run = subprocess.Popen([sys.executable, file.name], stdout=subprocess.PIPE, text=True, env=os.environ)
+            self.assertEqual(run.stdout.readline(), "begins\n")
+            time.sleep(2.5)
+            sent = time.monotonic()
+            run.send_signal(signal.SIGINT)
+            self.assertEqual(run.stdout.readline(), "stopped\n")
+            took = time.monotonic() - sent
+            self.assertEqual(run.wait(), 7)
+            run.stdout.close()
+        return took
+
+    def test_ctrl_c_stops_within_a_fifth_of_a_second(self):
+        for work in (
+            'scene.optimize(robust="cvar:0.9", budget=10**7)',
+            'scene.optimize(robust="none", budget=10**7)',
+            "scene.optimize(budget=10**7)",
+            "scene.robustness(samples=10**5)",
+            'scene.evaluator(["gap.contact"], ["impact_velocity"])([[2e-6]] * 10**5)',
+        ):
+            with self.subTest(work=work):
+                # A machine that does other things, too: the least of three.
+                self.assertLess(min(self.interrupted(work) for _ in range(3)), 0.2)
+
+
+if __name__ == "__main__":
+    unittest.main()
