@@ -11,7 +11,7 @@
 #include "base/choice.h"
 #include "base/require.h"
 #include "config/units.h"
-#include "reports/course.h"
+#include "reports/closing_clauses.h"
 #include "reports/quantity.h"
 #include "reports/result_maker.h"
 #include "studies/simulate.h"
@@ -22,7 +22,7 @@ namespace {
 using internal::plain_number;
 using internal::quantity;
 
-std::size_t place_of(const Prepared& p, const std::string& drive) {
+std::size_t place_of(const PreparedScene& p, const std::string& drive) {
   const std::vector<std::string> names = p.drive_names();
   return static_cast<std::size_t>(std::ranges::find(names, drive) - names.begin());
 }
@@ -33,7 +33,7 @@ std::string words(const DriverModel& source) {
   return source.bits ? fmt::format("{}, {} bit", rate, *source.bits) : rate;
 }
 
-std::string clause(const Prepared& p, const Closing& closing) {
+std::string clause(const PreparedScene& p, const Closing& closing) {
   return internal::closing_clause({.subject = "the switch"}, result_of(p, closing, {}).best, p.duration);
 }
 
@@ -46,7 +46,7 @@ bool is_worse(const Metrics& sampled, const Metrics& drawn) {
 
 }  // namespace
 
-std::vector<std::string> exported_drives(const Prepared& p, const std::string& named) {
+std::vector<std::string> exported_drives(const PreparedScene& p, const std::string& named) {
   const std::vector<std::string> names = p.drive_names();
   const std::vector<Signal> told = p.told(p.in_drive_order(p.drives.waveforms));
   std::vector<std::string> driven, all;
@@ -68,7 +68,7 @@ void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const
   }
 }
 
-std::string generator_text(const GeneratorFormat& format, const Prepared& p, const std::string& drive, const Signal& told,
+std::string generator_text(const GeneratorFormat& format, const PreparedScene& p, const std::string& drive, const Signal& told,
                            const Sampling& sampling) {
   const DriverModel source = p.source(place_of(p, drive));
   require(source.sample_rate.has_value(), [&] {
@@ -92,7 +92,7 @@ std::string generator_text(const GeneratorFormat& format, const Prepared& p, con
   return generator_file(format, std::move(samples));
 }
 
-void tell_sampled(const Prepared& sampled, const Prepared* drawn, const std::string& drive, const Watch& watch) {
+void tell_sampled(const PreparedScene& sampled, const PreparedScene* drawn, const std::string& drive, const Watch& watch) {
   const Closing as_sampled = simulate(sampled, false, watch);
   say(fmt::format("as sampled, {}: {}", words(sampled.source(place_of(sampled, drive))), clause(sampled, as_sampled)));
   if (drawn == nullptr) return;

@@ -24,18 +24,18 @@ struct Sampling {
 
 /// The drives of voltages that are exported: the named one, or all that are not at 0 V at all times. Throws InvalidInput where it
 /// is none.
-[[nodiscard]] std::vector<std::string> exported_drives(const Prepared& prepared, const std::string& named);
+[[nodiscard]] std::vector<std::string> exported_drives(const PreparedScene& prepared, const std::string& named);
 
 /// Puts sample rate and bits into [driver] of these drives.
 void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling);
 
 /// The samples of a drive, `told` by its source from t = 0 on, as a file of this format. Throws InvalidInput where the source
 /// takes no samples, and what generator_file() throws.
-[[nodiscard]] std::string generator_text(const GeneratorFormat& format, const Prepared& prepared, const std::string& drive,
+[[nodiscard]] std::string generator_text(const GeneratorFormat& format, const PreparedScene& prepared, const std::string& drive,
                                          const Signal& told, const Sampling& sampling);
 
 /// Tells how the switch closes under the samples of a drive, and warns where it does not as well as under the waveform that they
 /// were taken of; null: that is not there without them.
-void tell_sampled(const Prepared& sampled, const Prepared* drawn, const std::string& drive, const Watch& watch);
+void tell_sampled(const PreparedScene& sampled, const PreparedScene* drawn, const std::string& drive, const Watch& watch);
 
 }  // namespace softland::apps

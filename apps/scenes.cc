@@ -92,7 +92,7 @@ void set_calibration(SceneFile& file, const std::string& given) {
   file.set("calibration.classes=" + given.substr(number, given.size() - after.size() - number));
 }
 
-std::map<std::string, Signal> named_signals(const Prepared& p) {
+std::map<std::string, Signal> named_signals(const PreparedScene& p) {
   std::map<std::string, Signal> all;
   const std::vector<std::string> names = p.drive_names();
   const std::vector<Signal> signals = p.signals();
@@ -102,7 +102,7 @@ std::map<std::string, Signal> named_signals(const Prepared& p) {
   return all;
 }
 
-SentSignals sent_signals(const Prepared& p, const std::vector<Waveform>& waveforms, Sent sent) {
+SentSignals sent_signals(const PreparedScene& p, const std::vector<Waveform>& waveforms, Sent sent) {
   SentSignals all;
   const std::vector<std::string> names = p.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
@@ -114,7 +114,7 @@ SentSignals sent_signals(const Prepared& p, const std::vector<Waveform>& wavefor
   return all;
 }
 
-std::string told_csv(const Prepared& p) {
+std::string told_csv(const PreparedScene& p) {
   const SentSignals sent = sent_signals(p, p.in_drive_order(p.drives.waveforms));
   return csv(sent.signals, p.duration, sent.sample_rates);
 }

@@ -34,7 +34,7 @@ namespace softland::apps {
 void set_calibration(SceneFile& file, const std::string& given);
 
 /// Voltages of the scene as its sources give them: the factor of the dispersion force is none.
-[[nodiscard]] std::map<std::string, Signal> named_signals(const Prepared& prepared);
+[[nodiscard]] std::map<std::string, Signal> named_signals(const PreparedScene& prepared);
 
 /// What goes to generators and simulators of circuits: what sources are told, of those that take samples these, or what they
 /// make of it.
@@ -44,8 +44,9 @@ struct SentSignals {
   std::map<std::string, double> sample_rates = {};  ///< of those that are samples [Hz]
 };
 /// Of one waveform per drive in the order of Switch::drives().
-[[nodiscard]] SentSignals sent_signals(const Prepared& prepared, const std::vector<Waveform>& waveforms, Sent sent = Sent::told);
+[[nodiscard]] SentSignals sent_signals(const PreparedScene& prepared, const std::vector<Waveform>& waveforms,
+                                       Sent sent = Sent::told);
 /// What the sources of the scene are told, as CSV: read back under the same drivers it gives the same closing.
-[[nodiscard]] std::string told_csv(const Prepared& prepared);
+[[nodiscard]] std::string told_csv(const PreparedScene& prepared);
 
 }  // namespace softland::apps

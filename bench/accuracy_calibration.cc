@@ -63,7 +63,7 @@ Figures figures(const Metrics& m) {
   return {m.initial_contact_time, m.impact_velocity, m.major_bounce_height, m.peak_contact_force};
 }
 
-Outcome reference(const Task& task, const Prepared& p, double perturbation, double looser = 1) {
+Outcome reference(const Task& task, const PreparedScene& p, double perturbation, double looser = 1) {
   Device device = p.scene.device;
   device.gap.contact *= 1 + perturbation;
   const Switch perturbed(device, task.reference_quadrature());
@@ -132,7 +132,7 @@ void judge(const Task& task, std::uint64_t index, Result& result) {
     ++result.scenes["rigid"];
     return;
   }
-  const Prepared p = prepare(*file);
+  const PreparedScene p = prepare(*file);
   if (!task.film && p.model.film_states() > 0) {
     ++result.scenes["with a compressible film, judged by themselves"];
     return;
@@ -164,7 +164,7 @@ void judge(const Task& task, std::uint64_t index, Result& result) {
     SceneFile asked = *file;
     asked.erase("simulate.tolerance");
     asked.set(fmt::format("simulate.accuracy={}", accuracies[a]));
-    const Prepared with = prepare(asked);
+    const PreparedScene with = prepare(asked);
     const auto start = std::chrono::steady_clock::now();
     const Closing closing = simulate(with, true);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   }
   fmt::print("{:<32} {:>11} {:>14}\n", "scene", "alone [us]", "ensemble [us]");
   for (const std::string& scene : scenes) {
-    const Prepared p = prepare(SceneFile::load(scene));
+    const PreparedScene p = prepare(SceneFile::load(scene));
     const auto microseconds_like = [&](const Switch* like) {
       return microseconds([&](double factor) {
         Device d = p.scene.device;

@@ -87,7 +87,7 @@ Scene judge(const Options& options, std::uint64_t index) {
       options.film ? test::random_film_scene(options.seed, index) : test::random_scene(options.seed, index);
   if (!file) return scene;
   file->set(fmt::format("simulate.accuracy={:g}", options.accuracy));
-  const Prepared p = prepare(*file);
+  const PreparedScene p = prepare(*file);
   if (!options.film && p.model.film_states() > 0) return scene;  // they have a table of their own
   const Closing plain = simulate(p, true);
   scene.outcome = Outcome::too_long;

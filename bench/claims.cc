@@ -347,7 +347,7 @@ void micro_bounces(const std::filesystem::path& folder) {
                                               "small ones before it", "the highest [nm]", "they last [us]"}};
   std::vector<int> before;
   for (const int modes : {1, 2, 3, 4, 5, 6}) {
-    const Prepared p =
+    const PreparedScene p =
         prepare(with(shipped("mem-gold.toml"), {fmt::format("structure.modes={}", modes), "waveform.main.level=17.771 V",
                                                 "simulate.duration=100 us", "simulate.accuracy=1e-7"}));
     const Trajectory t = simulate_closing(p.model, p.signals(), {.duration = window, .tolerance = p.tolerance});

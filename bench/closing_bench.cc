@@ -66,7 +66,7 @@ struct Row {
 
 double relative(double value, double reference) { return std::abs(value - reference) / std::abs(reference); }
 
-Row measure(const Prepared& prepared, const std::vector<Signal>& signals, Integrator integrator, double tolerance, int runs,
+Row measure(const PreparedScene& prepared, const std::vector<Signal>& signals, Integrator integrator, double tolerance, int runs,
             const Metrics& reference) {
   const ClosingOptions options{.duration = window, .tolerance = tolerance, .integrator = integrator};
   std::vector<double> wall;
@@ -141,7 +141,7 @@ void run(const Options& options) {
   file.set(fmt::format("waveform.main.level={}", drive));
   file.set("driver.main.max_voltage=25 V");
   if (options.accuracy) file.set(fmt::format("simulate.accuracy={}", *options.accuracy));
-  const Prepared prepared = prepare(file);
+  const PreparedScene prepared = prepare(file);
   const std::optional<double> asked = options.accuracy ? prepared.tolerance : options.tolerance;
   const std::vector<Signal> signals = prepared.signals();
 

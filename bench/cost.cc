@@ -60,7 +60,7 @@ struct Cost {
   Eigen::Index points = 0;
 };
 
-Cost measure(const Prepared& prepared, const Case& c) {
+Cost measure(const PreparedScene& prepared, const Case& c) {
   Device device = prepared.scene.device;
   device.structure.modes = c.modes;
   const Switch with(device, {.points_per_length = c.points_per_length});
@@ -86,7 +86,7 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-void print_bound(const Prepared& prepared) {
+void print_bound(const PreparedScene& prepared) {
   const Switch& device = prepared.model;
   const std::vector<Stretch> pads = prepared.scene.device.electrodes[0].pads(prepared.scene.device.structure.length);
   const auto all = static_cast<double>(device.points());
@@ -124,7 +124,7 @@ void print_bound(const Prepared& prepared) {
       100 * bound / measured);
 }
 
-void print_growth(const Prepared& prepared) {
+void print_growth(const PreparedScene& prepared) {
   std::vector<std::vector<std::string>> rows{{"modes", "points", "window", "right-hand sides", "one right-hand side", "closing"}};
   std::vector<std::vector<std::string>> slopes{{"cost against", "right-hand sides", "one right-hand side", "closing"}};
   const auto sweep = [&](const std::string& name, const std::vector<double>& values, auto set) {
@@ -157,7 +157,7 @@ void run() {
   SceneFile file = SceneFile::load(SOFTLAND_SCENES "/mem-gold.toml");
   file.set("waveform.main.level=17.771 V");
   file.set("driver.main.max_voltage=25 V");
-  const Prepared prepared = prepare(file);
+  const PreparedScene prepared = prepare(file);
   fmt::print("# What a closing costs\n\n");
   print_bound(prepared);
   print_growth(prepared);

@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   file.erase("spread");
   for (const std::string key : {"structure.thickness", "structure.youngs_modulus", "gap.electrode"})
     file.set("spread.\"" + key + R"("={distribution="normal",cov="2 %"})");
-  const Prepared nominal = prepare_and_choose(file, true);
+  const PreparedScene nominal = prepare_and_choose(file, true);
   const std::vector<EnsembleDrive> drives{{.waveforms = nominal.in_drive_order(nominal.drives.waveforms)}};
   const Ensemble ensemble(nominal, 10'000);
   const double many =

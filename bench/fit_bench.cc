@@ -50,7 +50,7 @@ struct Case {
 };
 
 // Data of device k of the spread, with errors that are functions of k.
-Bench measured(const Prepared& nominal, const std::vector<double>& truth, std::uint64_t k) {
+Bench measured(const PreparedScene& nominal, const std::vector<double>& truth, std::uint64_t k) {
   DeviceReader reader(nominal);
   Bench bench{.name = "bench.toml", .measurements = {}, .changes = {}};
   if (!reader.move_to(truth)) return bench;
@@ -70,7 +70,7 @@ std::string coverage(std::size_t cases) {
   SceneFile file = SceneFile::load(SOFTLAND_SCENES "/mem-gold.toml");
   file.set("waveform.main.level=18 V");
   file.set("driver.main.max_voltage=30 V");
-  const Prepared nominal = prepare(file);
+  const PreparedScene nominal = prepare(file);
   const Ensemble devices(nominal, cases, 7, PointSet::monte_carlo);
   std::vector<Case> all(cases);
   const auto begin = std::chrono::steady_clock::now();

@@ -33,7 +33,7 @@ struct Fleet {
     build();
     window = std::max(0.6 * 2 * M_PI / nominal.model.angular_frequencies()[0], 2.5 * nominal.model.in_contact_period());
   }
-  static Prepared prepared(const std::string& scene, const std::vector<std::string>& changes) {
+  static PreparedScene prepared(const std::string& scene, const std::vector<std::string>& changes) {
     SceneFile file = SceneFile::load(scene);
     for (const std::string& change : changes) file.set(change);
     return prepare(file);
@@ -58,7 +58,7 @@ struct Fleet {
     return outcomes;
   }
 
-  Prepared nominal;
+  PreparedScene nominal;
   Ensemble ensemble;
   std::vector<Signal> signals;
   std::vector<SampledDevice> devices;

@@ -71,7 +71,7 @@ void measure(const SearchSetting& s, std::size_t levels) {
   });
   const auto gradient = [&](int refinement, bool backward, double tolerance) {
     MetricsObserver observer(s.scale.contact_gap, s.given.scene.metrics);
-    MotionTape tape(observer);
+    RecordedMotion tape(observer);
     ClosingOptions own = run;
     own.tolerance = tolerance;
     const Trajectory end = observe_closing(s.given.model, signals, own, tape);
@@ -115,7 +115,7 @@ constexpr DeviceNumber device_numbers[] = {
     {[](Device& d) -> double& { return d.contact->pad_length; }, false},
 };
 
-SwitchSlopes slopes_by_device(const Prepared& p, std::size_t parameters) {
+SwitchSlopes slopes_by_device(const PreparedScene& p, std::size_t parameters) {
   std::vector<std::optional<SwitchSlopes::Neighbours>> all;
   for (std::size_t k = 0; k < parameters; ++k) {
     Device above = p.model.device(), below = above;
@@ -144,7 +144,7 @@ void measure_device(const SearchSetting& s, std::size_t parameters) {
   SwitchSlopes by = slopes_by_device(s.given, parameters);
   const auto derivatives = [&](int refinement, bool backward, double tolerance) {
     MetricsObserver observer(s.scale.contact_gap, s.given.scene.metrics);
-    MotionTape tape(observer);
+    RecordedMotion tape(observer);
     ClosingOptions own = run;
     own.tolerance = tolerance;
     (void)observe_closing(s.given.model, signals, own, tape);

@@ -22,7 +22,7 @@ int run(long calls, SceneFile file, const std::vector<std::string>& assignments)
       file.set(assignment);
     }
   }
-  const Prepared prepared = prepare(file);
+  const PreparedScene prepared = prepare(file);
   const Switch& model = prepared.model;
   std::vector<double> volts;
   for (const Signal& signal : prepared.signals()) volts.push_back(signal.peak());

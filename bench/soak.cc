@@ -56,7 +56,7 @@ std::string became(const Trajectory& t, const Metrics& m) {
 }
 
 Outcome try_scene(std::uint64_t seed, std::uint64_t index) {
-  const Prepared p = prepare(test::random_scene(seed, index));
+  const PreparedScene p = prepare(test::random_scene(seed, index));
   const std::vector<Signal> drives = p.signals();
   const auto run = [&](double tolerance) {
     return test::checked_run(p.model, drives,

@@ -219,7 +219,8 @@ void shoot(Course& course, Laboratory& lab, Best& best, const std::vector<Wavefo
 }
 
 // All volts times s: one step tells s, touch times the next by a secant towards that of the nominal device.
-Course by_one_knob(const Arguments& a, const Prepared& p, const std::vector<Waveform>& recipe, double limit, Laboratory& lab) {
+Course by_one_knob(const Arguments& a, const PreparedScene& p, const std::vector<Waveform>& recipe, double limit,
+                   Laboratory& lab) {
   Course course;
   const DeviceMeter meter(p, {.closing_time = true});
   std::vector<Waveform> step(recipe.size(), Step{.level = 0});
@@ -249,7 +250,8 @@ Course by_one_knob(const Arguments& a, const Prepared& p, const std::vector<Wave
 }
 
 // The pulse's length by a secant towards the time from the catch to the touch that the nominal device has; one step scales times.
-Course by_secant(const Arguments& a, const Prepared& p, const std::vector<Waveform>& recipe, double hold_step, Laboratory& lab) {
+Course by_secant(const Arguments& a, const PreparedScene& p, const std::vector<Waveform>& recipe, double hold_step,
+                 Laboratory& lab) {
   Course course;
   const std::size_t drive = searched_drive(p.scene.device);
   std::vector<Waveform> step(recipe.size(), Step{.level = 0});
@@ -281,7 +283,7 @@ Course by_secant(const Arguments& a, const Prepared& p, const std::vector<Wavefo
 }
 
 // Nelder and Mead on pulse and coast, by the time that the contact is open.
-Course by_nelder_mead(const Arguments& a, const Prepared& p, const std::vector<Waveform>& recipe, Laboratory& lab) {
+Course by_nelder_mead(const Arguments& a, const PreparedScene& p, const std::vector<Waveform>& recipe, Laboratory& lab) {
   Course course;
   const std::size_t drive = searched_drive(p.scene.device);
   Best best;
@@ -388,7 +390,7 @@ int main(int count, char** words) try {
                                  .laboratory = a.laboratory,
                                  .drift = (n % 2 == 0 ? 1 : -1) * a.drift_of_1000 / 1000,
                                  .model = {.more_modes = a.modes, .gas = a.gas, .stiffness = a.stiffness, .set = a.model_sets}});
-    const Prepared& p = fresh.scene();
+    const PreparedScene& p = fresh.scene();
     const auto volts = [](const Switch& model, std::size_t drive) { return static_pull_in(model, drive).voltage; };
     if (std::isfinite(a.most_volts)) {
       const std::size_t drive = searched_drive(p.scene.device);

@@ -24,7 +24,7 @@ int main(int argc, char** argv) try {
   const SceneFile file = SceneFile::load(argv[1]);
 
   // 2. It is made ready to run: beam modes, forces, pull-in voltages where a unit needs them, every drive in volts.
-  const Prepared prepared = prepare_and_choose(file);
+  const PreparedScene prepared = prepare_and_choose(file);
 
   // 3. One closing. A second, tighter run measures the errors.
   const Closing closing = simulate(prepared, true);

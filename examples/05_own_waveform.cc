@@ -49,7 +49,7 @@ int main(int argc, char** argv) try {
   using namespace softland;
   if (argc != 2) return std::fputs("usage: 05_own_waveform SCENE\n", stderr), 2;
   const SceneFile scene = SceneFile::load(argv[1]);
-  Prepared prepared = prepare_and_choose(scene, true);  // with the limits that drivers have where the scene names none
+  PreparedScene prepared = prepare_and_choose(scene, true);  // with the limits that drivers have where the scene names none
   const double hold = signal(prepared.drives.waveforms.at("main")).hold_level();
   const auto swell = std::make_shared<Swell>(hold, prepared.drives.limits.at("main").max_voltage);
   const auto row = [](const char* what, const Metrics& m) {

@@ -44,7 +44,7 @@ int main(int argc, char** argv) try {
 
   // 1. With the law of the scene.
   SceneFile scene = SceneFile::load(argv[1]);
-  const Prepared given = prepare(scene);
+  const PreparedScene given = prepare(scene);
   row("of softland", simulate(given, false).metrics);
 
   // 2. That law gives way to one with the same numbers: no scene file could say it, so it is added to what was read.
@@ -55,7 +55,7 @@ int main(int argc, char** argv) try {
   scene.erase("contact");
   scene.add_contact(
       {.model = OwnContact{std::make_shared<const RoughContact>(strength, rough.height)}, .pad_length = pad.length});
-  const Prepared own = prepare(scene);
+  const PreparedScene own = prepare(scene);
   row("own", simulate(own, false).metrics);
 
   // 3. On devices that differ.

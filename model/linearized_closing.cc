@@ -133,7 +133,8 @@ std::vector<double> shares_of_parts(int parts, bool after_edge, bool before_edge
 
 // Where a step that is known at its ends is at a time in it.
 template <class Modal>
-void move_to(double t, const MotionTape::Motion& from, const MotionTape::Motion& to, Modal& q, Modal& v, Modal& accelerations) {
+void move_to(double t, const RecordedMotion::Motion& from, const RecordedMotion::Motion& to, Modal& q, Modal& v,
+             Modal& accelerations) {
   for (Index i = 0; i < q.size(); ++i) {
     const Quintic mode(from.time, from.q[i], from.v[i], from.accelerations[i], to.time, to.q[i], to.v[i], to.accelerations[i]);
     q[i] = mode.position(t);
@@ -151,8 +152,8 @@ std::string LinearizedClosing::refusal(const Switch& model) {
   return model.modes() > most_modes ? "a closing has fewer modes" : "";
 }
 
-LinearizedClosing::LinearizedClosing(const Switch& model, std::span<const Signal> signals, const MotionTape& tape, int refinement,
-                                     SwitchSlopes* by_device)
+LinearizedClosing::LinearizedClosing(const Switch& model, std::span<const Signal> signals, const RecordedMotion& tape,
+                                     int refinement, SwitchSlopes* by_device)
     : model_(model),
       signals_(signals),
       tape_(tape),
@@ -205,7 +206,7 @@ void LinearizedClosing::enter_pieces(double t) {
 
 void LinearizedClosing::add_arcs(std::size_t step) {
   using Known = Eigen::Map<const VectorXd>;
-  const MotionTape::Motion from = tape_.begin(step), to = tape_.end(step);
+  const RecordedMotion::Motion from = tape_.begin(step), to = tape_.end(step);
   Arc whole{.begin = from.time,
             .end = to.time,
             .q = Known(to.q, n_),
@@ -245,7 +246,7 @@ void LinearizedClosing::linearize_for(const std::vector<FigureSlope>& figures) {
 }
 
 void LinearizedClosing::linearize_step() {
-  const std::vector<MotionTape::Passage>& passages = tape_.passages();
+  const std::vector<RecordedMotion::PhaseEvent>& passages = tape_.passages();
   const std::size_t step = steps_++;
   const bool after_edge = next_passage_ < passages.size() && passages[next_passage_].arc <= step;
   for (; next_passage_ < passages.size() && passages[next_passage_].arc <= step; ++next_passage_) {
@@ -356,7 +357,7 @@ std::vector<double> LinearizedClosing::ends_of_parts(double t0, double t1, bool 
 }
 
 void LinearizedClosing::add_parts(std::size_t step, bool after_edge, bool before_edge) {
-  const MotionTape::Motion from = tape_.begin(step), to = tape_.end(step);
+  const RecordedMotion::Motion from = tape_.begin(step), to = tape_.end(step);
   const ContactState& contact = tape_.arcs()[step].contact;
   if (!goes_on_) set_node(from_, from.time, from.q, from.v, contact);
   goes_on_ = true;
@@ -386,7 +387,7 @@ void LinearizedClosing::add_parts(std::size_t step, bool after_edge, bool before
 }
 
 // Where drives go on to other pieces, f jumps at times that the waveform decides.
-void LinearizedClosing::jump_at_pieces(const MotionTape::Motion& here, const ContactState& contact, std::size_t entered) {
+void LinearizedClosing::jump_at_pieces(const RecordedMotion::Motion& here, const ContactState& contact, std::size_t entered) {
   if (on_ == entered) return;
   Jump jump{.parts = parts_.size(), .matrix = {}, .moved = {}};
   while (on_ < entered) {
@@ -402,7 +403,7 @@ void LinearizedClosing::jump_at_pieces(const MotionTape::Motion& here, const Con
   if (!parts_.empty()) jumps_.push_back(std::move(jump));
 }
 
-void LinearizedClosing::jump_at(const MotionTape::Passage& passage, const Arc& before) {
+void LinearizedClosing::jump_at(const RecordedMotion::PhaseEvent& passage, const Arc& before) {
   using Kind = PhaseChange::Kind;
   const Kind kind = passage.change.kind;
   if (kind == Kind::leaves) return;
@@ -437,7 +438,7 @@ LinearizedClosing::Jump LinearizedClosing::turned(const Arc& before) const {
 }
 
 // An edge of the contact's phases, or an impact.
-LinearizedClosing::Jump LinearizedClosing::crossed(const MotionTape::Passage& passage, const Arc& before) {
+LinearizedClosing::Jump LinearizedClosing::crossed(const RecordedMotion::PhaseEvent& passage, const Arc& before) {
   const PhaseChange& change = passage.change;
   Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   MatrixXd& matrix = *jump.matrix;

@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-#include "model/motion_tape.h"
+#include "model/recorded_motion.h"
 #include "model/switch.h"
 #include "model/switch_slopes.h"
 #include "waveforms/signal_slopes.h"
@@ -66,7 +66,7 @@ class LinearizedClosing {
     std::size_t pieces_entered = 0;  ///< see pieces()
   };
   /// A passage of the tape after so many arcs.
-  struct Passage {
+  struct PhaseEvent {
     std::size_t arcs = 0;
     PhaseChange change;
   };
@@ -74,7 +74,7 @@ class LinearizedClosing {
   /// Of a closing that was run with restart_at_contact, under these signals. Keeps references to all but the number.
   /// `refinement`: parts of a step, at the least. `by_device`: how the switch changes with the parameters; none: not at all. They
   /// are as many as those of the signals.
-  LinearizedClosing(const Switch& model, std::span<const Signal> signals, const MotionTape& tape, int refinement = 1,
+  LinearizedClosing(const Switch& model, std::span<const Signal> signals, const RecordedMotion& tape, int refinement = 1,
                     SwitchSlopes* by_device = nullptr);
 
   /// Why there is no derivative, in words; empty where there is.
@@ -83,7 +83,7 @@ class LinearizedClosing {
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
   /// Of the drives, all along an arc.
   [[nodiscard]] const std::vector<std::size_t>& pieces(const Arc& arc) const { return pieces_[arc.pieces_entered]; }
-  [[nodiscard]] const std::vector<Passage>& passages() const { return passages_; }
+  [[nodiscard]] const std::vector<PhaseEvent>& passages() const { return passages_; }
   /// Null where the parameters do not change the switch.
   [[nodiscard]] const SwitchSlopes* by_device() const { return by_device_; }
 
@@ -137,11 +137,11 @@ class LinearizedClosing {
   [[nodiscard]] std::vector<double> ends_of_parts(double t0, double t1, bool after_edge, bool before_edge) const;
   void add_parts(std::size_t step, bool after_edge, bool before_edge);
   void add_transition(double begin, double end, std::size_t arc);
-  void jump_at_pieces(const MotionTape::Motion& here, const ContactState& contact, std::size_t entered);
-  void jump_at(const MotionTape::Passage& passage, const Arc& before);
+  void jump_at_pieces(const RecordedMotion::Motion& here, const ContactState& contact, std::size_t entered);
+  void jump_at(const RecordedMotion::PhaseEvent& passage, const Arc& before);
   [[nodiscard]] Jump turned(const Arc& before) const;
   [[nodiscard]] Jump at_rest(const Arc& before) const;
-  [[nodiscard]] Jump crossed(const MotionTape::Passage& passage, const Arc& before);
+  [[nodiscard]] Jump crossed(const RecordedMotion::PhaseEvent& passage, const Arc& before);
   [[nodiscard]] Transition transition(std::size_t part) const;
   // Of the gradient, of a parameter that changes the switch.
   [[nodiscard]] Index column(Index moving) const {
@@ -154,7 +154,7 @@ class LinearizedClosing {
 
   const Switch& model_;
   std::span<const Signal> signals_;
-  const MotionTape& tape_;
+  const RecordedMotion& tape_;
   Index n_, size_;  // modes, unknowns: 2 modes
   Index stride_;    // size_ in whole lanes
   SwitchSlopes* by_device_;
@@ -164,7 +164,7 @@ class LinearizedClosing {
   int refinement_;
   std::vector<std::vector<std::size_t>> pieces_;  // that the drives were on, one set after the other
   std::vector<Arc> arcs_;
-  std::vector<Passage> passages_;
+  std::vector<PhaseEvent> passages_;
 
   std::size_t steps_ = 0;         // of the tape that are linearised,
   std::size_t next_arc_ = 0;      // the arc that follows them,

@@ -67,14 +67,14 @@ MidPlaneStretching stretching_of(const BeamModes& beam, const Structure& s) {
 }  // namespace
 
 // What switches of the same lengths share: where they are looked at, and their normalised modes there.
-struct Switch::Frame {
-  struct Places {
+struct Switch::ModalBasis {
+  struct Quadrature {
     std::vector<double> corners;                         // of the quadrature's panels [m]
     double contact = 0, piezo_begin = 0, piezo_end = 0;  // [m]
     double points_per_length = 0;
     int fewest_points = 0;  // of a panel
 
-    [[nodiscard]] static Places of(const Device& d) {
+    [[nodiscard]] static Quadrature of(const Device& d) {
       std::set<double> corners{0, d.structure.length};
       const double length = d.structure.length, piezo_begin = d.piezo ? d.piezo->begin.on(length) : 0,
                    piezo_end = d.piezo ? d.piezo->end.on(length) : 0;
@@ -90,9 +90,9 @@ struct Switch::Frame {
               .piezo_begin = piezo_begin,
               .piezo_end = piezo_end};
     }
-    [[nodiscard]] bool operator==(const Places&) const = default;
+    [[nodiscard]] bool operator==(const Quadrature&) const = default;
   };
-  Places places;
+  Quadrature quadrature;
   std::vector<GaussRule> rules;                  // of the panels
   std::shared_ptr<const NormalisedModes> modes;  // null of what is no beam
   TabulatedModes::Shapes table = {};             // empty of what is no table
@@ -102,13 +102,14 @@ struct Switch::Frame {
   double pinned_inverse_square = 0;  // of the beam held at its contact
 
   template <class Modes>
-  Frame(const Modes& normalised, double length, Places at, const Frame* near) : places(std::move(at)) {
-    const double end = places.corners.back();
+  ModalBasis(const Modes& normalised, double length, Quadrature at, const ModalBasis* near) : quadrature(std::move(at)) {
+    const double end = quadrature.corners.back();
     std::vector<double> x, w;
-    for (auto corner = places.corners.begin(); std::next(corner) != places.corners.end(); ++corner) {
+    for (auto corner = quadrature.corners.begin(); std::next(corner) != quadrature.corners.end(); ++corner) {
       const double begin = *corner, panel = *std::next(corner) - begin;
       if (panel < 1e-9 * end) continue;  // two names of one place that differ by a rounding
-      const int count = std::max(places.fewest_points, static_cast<int>(std::ceil(panel / end * places.points_per_length)));
+      const int count =
+          std::max(quadrature.fewest_points, static_cast<int>(std::ceil(panel / end * quadrature.points_per_length)));
       const GaussRule* known = near && rules.size() < near->rules.size() ? &near->rules[rules.size()] : nullptr;
       rules.push_back(known && static_cast<int>(known->points.size()) == count ? *known : gauss_rule(count));
       const GaussRule& rule = rules.back();
@@ -119,11 +120,11 @@ struct Switch::Frame {
     }
     positions = Eigen::Map<Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size()));
     weights = Eigen::Map<Eigen::ArrayXd>(w.data(), positions.size());
-    contact_shape = normalised.value(places.contact / length);
-    contact_slope = normalised.slope(places.contact / length);
-    piezo_begin_slope = normalised.slope(places.piezo_begin / length);
-    piezo_end_slope = normalised.slope(places.piezo_end / length);
-    pinned_inverse_square = normalised.pinned_inverse_square(places.contact / length,
+    contact_shape = normalised.value(quadrature.contact / length);
+    contact_slope = normalised.slope(quadrature.contact / length);
+    piezo_begin_slope = normalised.slope(quadrature.piezo_begin / length);
+    piezo_end_slope = normalised.slope(quadrature.piezo_end / length);
+    pinned_inverse_square = normalised.pinned_inverse_square(quadrature.contact / length,
                                                              near ? std::optional(near->pinned_inverse_square) : std::nullopt);
     shapes.resize(positions.size(), contact_shape.size());
     for (Eigen::Index p = 0; p < positions.size(); ++p) shapes.row(p) = normalised.value(positions[p] / length).transpose();
@@ -131,46 +132,46 @@ struct Switch::Frame {
 };
 
 template <class Modes>
-void Switch::move_in(const Modes& structure, double points_per_length, int fewest_points, const Switch* like) {
+void Switch::set_modes(const Modes& structure, double points_per_length, int fewest_points, const Switch* like) {
   const Structure& s = device_.structure;
-  Frame::Places places = Frame::Places::of(device_);
-  places.points_per_length = points_per_length;
-  places.fewest_points = fewest_points;
-  const auto is_in = [&]([[maybe_unused]] const Frame& frame) {
-    if constexpr (std::same_as<Modes, BeamModes>) return frame.modes == structure.normalised();
-    if constexpr (std::same_as<Modes, TabulatedModes>) return frame.table == *structure.normalised();
+  ModalBasis::Quadrature quadrature = ModalBasis::Quadrature::of(device_);
+  quadrature.points_per_length = points_per_length;
+  quadrature.fewest_points = fewest_points;
+  const auto is_in = [&]([[maybe_unused]] const ModalBasis& basis) {
+    if constexpr (std::same_as<Modes, BeamModes>) return basis.modes == structure.normalised();
+    if constexpr (std::same_as<Modes, TabulatedModes>) return basis.table == *structure.normalised();
     return false;
   };
-  if (like != nullptr && is_in(*like->frame_) && like->frame_->places == places) frame_ = like->frame_;
-  if (!frame_) {
-    auto frame = std::make_shared<Frame>(*structure.normalised(), structure.length(), std::move(places),
-                                         like != nullptr ? like->frame_.get() : nullptr);
-    if constexpr (std::same_as<Modes, BeamModes>) frame->modes = structure.normalised();
-    if constexpr (std::same_as<Modes, TabulatedModes>) frame->table = *structure.normalised();
-    frame_ = std::move(frame);
+  if (like != nullptr && is_in(*like->basis_) && like->basis_->quadrature == quadrature) basis_ = like->basis_;
+  if (!basis_) {
+    auto basis = std::make_shared<ModalBasis>(*structure.normalised(), structure.length(), std::move(quadrature),
+                                              like != nullptr ? like->basis_.get() : nullptr);
+    if constexpr (std::same_as<Modes, BeamModes>) basis->modes = structure.normalised();
+    if constexpr (std::same_as<Modes, TabulatedModes>) basis->table = *structure.normalised();
+    basis_ = std::move(basis);
   }
 
   const double scale = structure.scale(), slope_scale = scale / structure.length();
   frequencies_ = structure.angular_frequencies();
   squares_ = frequencies_.cwiseAbs2();
-  contact_shape_ = scale * frame_->contact_shape;
+  contact_shape_ = scale * basis_->contact_shape;
   pad_slope_ = Eigen::VectorXd::Zero(modes());
   if (touches_along_pad(device_)) {
     pad_.emplace(device_.contact->pad_length);
-    pad_slope_ = slope_scale * frame_->contact_slope;
+    pad_slope_ = slope_scale * basis_->contact_slope;
   }
-  in_contact_period_ = 2 * pi / (structure.frequency_scale() / std::sqrt(frame_->pinned_inverse_square));
+  in_contact_period_ = 2 * pi / (structure.frequency_scale() / std::sqrt(basis_->pinned_inverse_square));
   piezo_shape_ = Eigen::VectorXd::Zero(modes());
   if (device_.piezo) {
     piezo_shape_ = piezo_moment_per_volt(s, *device_.piezo) *
-                   (slope_scale * frame_->piezo_end_slope - slope_scale * frame_->piezo_begin_slope);
+                   (slope_scale * basis_->piezo_end_slope - slope_scale * basis_->piezo_begin_slope);
   }
-  positions_ = frame_->positions;
-  weights_ = frame_->weights;
+  positions_ = basis_->positions;
+  weights_ = basis_->weights;
   const Eigen::Index n = positions_.size();
   // Idle points, where no mode moves, fill the last block.
   shapes_ = weighted_shapes_ = Eigen::MatrixXd::Zero((n + block - 1) / block * block, modes());
-  shapes_.topRows(n) = scale * frame_->shapes;
+  shapes_.topRows(n) = scale * basis_->shapes;
   weighted_shapes_.topRows(n) = weights_.matrix().asDiagonal() * shapes_.topRows(n);
 
   const auto in_lanes = [](const Eigen::VectorXd& v) { return padded_to_lanes({v.begin(), v.end()}, 0); };
@@ -198,13 +199,13 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
   }
   const Structure& s = device_.structure;
   if (s.kind == StructureKind::plate) {
-    move_in(RigidPlate(s), 0, 1, nullptr);  // the gap is the same everywhere: one point each says it all
+    set_modes(RigidPlate(s), 0, 1, nullptr);  // the gap is the same everywhere: one point each says it all
   } else if (s.kind == StructureKind::modes) {
-    move_in(TabulatedModes(s.table, s.modes, s.frequency_factor), options.points_per_length, options.points_per_panel, like);
+    set_modes(TabulatedModes(s.table, s.modes, s.frequency_factor), options.points_per_length, options.points_per_panel, like);
   } else {
     const BeamModes beam(beam_sections(device_), s.modes, beam_support(s, device_.surface),
-                         like != nullptr ? like->frame_->modes : nullptr);
-    move_in(beam, options.points_per_length, options.points_per_panel, like);
+                         like != nullptr ? like->basis_->modes : nullptr);
+    set_modes(beam, options.points_per_length, options.points_per_panel, like);
     if (s.kind == StructureKind::clamped_clamped && s.stretching) stretching_ = stretching_of(beam, s);
   }
   const Eigen::Index n = points();

@@ -197,11 +197,11 @@ class Switch {
  private:
   static constexpr Eigen::Index block = lanes;  // points that are handled at once
   using Block = Lane;
-  struct Frame;
+  struct ModalBasis;
 
   /// Takes frequencies, shapes and quadrature from what moves, a beam or a plate.
   template <class Modes>
-  void move_in(const Modes& structure, double points_per_length, int fewest_points, const Switch* like);
+  void set_modes(const Modes& structure, double points_per_length, int fewest_points, const Switch* like);
   /// Calls f(xi, share, interference) for every point at which an active contact acts, xi from x_c towards the clamp [m].
   template <class F>
   void for_contact_points(const double* q, F&& f) const;
@@ -224,7 +224,7 @@ class Switch {
   [[nodiscard]] std::optional<Eigen::VectorXd> equilibrium_from(Eigen::VectorXd q, std::span<const double> values) const;
 
   Device device_;
-  std::shared_ptr<const Frame> frame_;
+  std::shared_ptr<const ModalBasis> basis_;
   std::size_t electrodes_ = 0;
   Eigen::VectorXd frequencies_, squares_, contact_shape_, piezo_shape_;
   std::vector<double> stiffness_lanes_, friction_lanes_, contact_lanes_, piezo_lanes_;  // omega^2, 2 zeta omega, phi(x_c), theta

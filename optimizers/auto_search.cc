@@ -84,7 +84,7 @@ Point best_point(const Ledger& ledger) {
 void sample(Ledger& ledger, std::uint64_t first, std::size_t count) {
   std::vector<Ledger::Task> tasks;
   for (const Point& point : sobol_points(ledger.seed(), ledger.dimension(), first, count)) {
-    tasks.push_back({.budget = 1, .body = [point](Strand& strand) { strand(point); }});
+    tasks.push_back({.budget = 1, .body = [point](BudgetedObjective& budgeted) { budgeted(point); }});
   }
   ledger.run(tasks);
 }
@@ -94,11 +94,11 @@ void advance(Ledger& ledger, std::vector<Search>& searches, long budget) {
   std::vector<Ledger::Task> tasks;
   for (Search& search : searches) {
     if (search.converged) continue;
-    tasks.push_back({.budget = budget, .body = [&search](Strand& strand) {
-                       search.converged = run_method(*search.method, search.run, strand).converged;
-                       if (strand.best_of_task() < search.best) {
-                         search.best = strand.best_of_task();
-                         search.best_point = strand.best_point_of_task();
+    tasks.push_back({.budget = budget, .body = [&search](BudgetedObjective& budgeted) {
+                       search.converged = run_method(*search.method, search.run, budgeted).converged;
+                       if (budgeted.best_of_task() < search.best) {
+                         search.best = budgeted.best_of_task();
+                         search.best_point = budgeted.best_point_of_task();
                        }
                      }});
   }

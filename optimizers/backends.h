@@ -1,4 +1,4 @@
-// The libraries, seen from the search: one run of one method from one point, answered by a Strand.
+// The libraries, seen from the search: one run of one method from one point, answered by a BudgetedObjective.
 #pragma once
 
 #include <cstdint>
@@ -39,9 +39,9 @@ struct RunReport {
 
 /// Both always return, whatever the objective does. A run that is repeated with the same arguments asks for the same points in
 /// the same order, so that a search which ran out of budget is continued by repeating it: its past is answered from memory.
-[[nodiscard]] RunReport run_nlopt(const Method& method, const Run& run, Strand& strand);
-[[nodiscard]] RunReport run_cma_es(const Run& run, Strand& strand);
-[[nodiscard]] RunReport run_ipopt(const Run& run, Strand& strand);
-[[nodiscard]] RunReport run_method(const Method& method, const Run& run, Strand& strand);
+[[nodiscard]] RunReport run_nlopt(const Method& method, const Run& run, BudgetedObjective& budgeted);
+[[nodiscard]] RunReport run_cma_es(const Run& run, BudgetedObjective& budgeted);
+[[nodiscard]] RunReport run_ipopt(const Run& run, BudgetedObjective& budgeted);
+[[nodiscard]] RunReport run_method(const Method& method, const Run& run, BudgetedObjective& budgeted);
 
 }  // namespace softland::internal

@@ -119,15 +119,15 @@ class Distribution {
 
 }  // namespace
 
-RunReport run_cma_es(const Run& run, Strand& strand) {
+RunReport run_cma_es(const Run& run, BudgetedObjective& budgeted) {
   const auto n = static_cast<Eigen::Index>(run.start.size());
   const Strategy strategy(n);
   Distribution points(strategy, VectorXd::Map(run.start.data(), n), run.step);
-  const auto evaluate = [&](const VectorXd& point) { return strand({point.data(), run.start.size()}).value; };
+  const auto evaluate = [&](const VectorXd& point) { return budgeted({point.data(), run.start.size()}).value; };
   std::uint64_t drawn = 0;
   const auto normal = [&] { return random_normal(run.seed, Stream::normals, drawn++); };
   std::vector<Child> children(static_cast<std::size_t>(strategy.lambda));
-  strand.begin_search();
+  budgeted.begin_search();
   try {
     evaluate(points.mean());
     for (long generation = 1;; ++generation) {

@@ -1,6 +1,6 @@
 // Ipopt 3.11.9 as a quasi-Newton method under bounds and conditions. Ipopt answers an objective it cannot evaluate by
-// shortening steps, thousands of times; the Strand counts, and its Cut passes through Ipopt, which catches whatever callbacks
-// throw and returns NonIpopt_Exception_Thrown.
+// shortening steps, thousands of times; the BudgetedObjective counts, and its Cut passes through Ipopt, which catches whatever
+// callbacks throw and returns NonIpopt_Exception_Thrown.
 #include <IpIpoptApplication.hpp>
 #include <IpTNLP.hpp>
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 class StrandProblem final : public Ipopt::TNLP {
  public:
-  StrandProblem(const Point& start, Strand& strand) : start_(start), strand_(strand) {}
+  StrandProblem(const Point& start, BudgetedObjective& budgeted) : start_(start), strand_(budgeted) {}
 
   bool get_nlp_info(Ipopt::Index& n, Ipopt::Index& m, Ipopt::Index& jacobian_entries, Ipopt::Index& hessian_entries,
                     IndexStyleEnum& index_style) override {
@@ -81,7 +81,7 @@ class StrandProblem final : public Ipopt::TNLP {
   }
 
   const Point& start_;
-  Strand& strand_;
+  BudgetedObjective& strand_;
 };
 
 RunReport report_of(Ipopt::ApplicationReturnStatus status) {
@@ -108,10 +108,10 @@ RunReport report_of(Ipopt::ApplicationReturnStatus status) {
 
 }  // namespace
 
-RunReport run_ipopt(const Run& run, Strand& strand) {
-  const auto turn = ipopt_turn([&] { return strand.over(); });
+RunReport run_ipopt(const Run& run, BudgetedObjective& budgeted) {
+  const auto turn = ipopt_turn([&] { return budgeted.over(); });
   if (!turn) return {.converged = false, .message = "Ipopt: stopped by us while waiting for another solve"};
-  strand.begin_search();
+  budgeted.begin_search();
   const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(/*create_console_out=*/false);
   const auto options = application->Options();
   options->SetIntegerValue("print_level", 0);
@@ -126,7 +126,7 @@ RunReport run_ipopt(const Run& run, Strand& strand) {
   options->SetIntegerValue("max_iter", 1000);
   // An empty name: without it Ipopt would read a file ipopt.opt from the working directory.
   if (const auto status = application->Initialize(""); status != Ipopt::Solve_Succeeded) return report_of(status);
-  return report_of(application->OptimizeTNLP(new StrandProblem(run.start, strand)));
+  return report_of(application->OptimizeTNLP(new StrandProblem(run.start, budgeted)));
 }
 
 }  // namespace softland::internal

@@ -24,7 +24,7 @@ double compress(double value) {
   return std::copysign(large_value * (1 + std::log(size / large_value)), value);
 }
 // Above compress(x) for every finite x (the largest is 6.8e14).
-constexpr double penalty_in_the_dark = 1e15;
+constexpr double first_penalty = 1e15;
 
 // Short, because the smooth pieces of an objective may be: those of the cost of a closing are narrower than a thousandth of the
 // box. The noise of about 1e-9 that objectives carry is then 1e-4 of a slope of order 1.
@@ -48,7 +48,7 @@ std::size_t PointHash::operator()(const Point& point) const noexcept {
   return static_cast<std::size_t>(bits);
 }
 
-Strand::Strand(Ledger& ledger, std::size_t task, long budget, long first_index)
+BudgetedObjective::BudgetedObjective(Ledger& ledger, std::size_t task, long budget, long first_index)
     : ledger_(ledger),
       task_(task),
       budget_(budget),
@@ -56,12 +56,12 @@ Strand::Strand(Ledger& ledger, std::size_t task, long budget, long first_index)
       best_seen_(ledger.best_seen_),
       worst_seen_(ledger.worst_seen_) {}
 
-bool Strand::over() const {
+bool BudgetedObjective::over() const {
   const long spent = evaluations() + evaluations_of_gradient * static_cast<long>(gradients_.size());
   return cut_ || spent >= budget_ || ledger_.cut_off(task_);
 }
 
-Answer Strand::operator()(std::span<const double> point) {
+Answer BudgetedObjective::operator()(std::span<const double> point) {
   if (cut_) throw Cut{};
   const Point asked = inside(point);
   const auto recall = [&](const Memory& memory) {
@@ -93,7 +93,7 @@ Answer Strand::operator()(std::span<const double> point) {
   return answer;
 }
 
-Answer Strand::remember(const Point& point, double value) {
+Answer BudgetedObjective::remember(const Point& point, double value) {
   Answer answer{compress(value), std::isfinite(value)};
   if (answer.feasible) {
     if (answer.value < best_of_task_) {
@@ -111,15 +111,15 @@ Answer Strand::remember(const Point& point, double value) {
 }
 
 // Above everything seen, yet of the same size: a wall of 1e15 next to values of order 1 would blind the methods that fit models.
-double Strand::penalty() const {
-  if (worst_seen_ < best_seen_) return penalty_in_the_dark;
+double BudgetedObjective::penalty() const {
+  if (worst_seen_ < best_seen_) return first_penalty;
   const double spread = worst_seen_ - best_seen_;
   return worst_seen_ + (spread > 0 ? std::max(spread, 1e-3 * std::abs(worst_seen_)) : std::max(1.0, std::abs(worst_seen_)));
 }
 
-std::size_t Strand::conditions() const { return ledger_.problem_.conditions.count; }
+std::size_t BudgetedObjective::conditions() const { return ledger_.problem_.conditions.count; }
 
-Values Strand::values(std::span<const double> point) {
+Values BudgetedObjective::values(std::span<const double> point) {
   const Answer answer = (*this)(point);
   if (conditions() == 0) return {{answer.value}, answer.feasible};
   const Point at = inside(point);
@@ -130,7 +130,7 @@ Values Strand::values(std::span<const double> point) {
 }
 
 // False where there are none; they are NaN where they are not known.
-bool Strand::known_gradients(const Point& point, std::span<double> gradients) {
+bool BudgetedObjective::known_gradients(const Point& point, std::span<double> gradients) {
   if (!ledger_.has_gradient()) return false;
   const auto recall = [&](const Numbers& known) {
     const auto found = known.find(point);
@@ -147,7 +147,7 @@ bool Strand::known_gradients(const Point& point, std::span<double> gradients) {
   return recall(gradients_);
 }
 
-void Strand::gradients(std::span<const double> point, std::span<double> gradients) {
+void BudgetedObjective::gradients(std::span<const double> point, std::span<double> gradients) {
   const Values here = values(point);
   Point moved = inside(point);
   const bool are_known = here.feasible && known_gradients(moved, gradients);
@@ -220,11 +220,11 @@ std::vector<double> Ledger::to_user(const Point& point) const {
   return x;
 }
 
-double Ledger::evaluate(Strand& strand, const Point& point) {
+double Ledger::evaluate(BudgetedObjective& budgeted, const Point& point) {
   const std::vector<double> x = to_user(point);
   double value = std::numeric_limits<double>::quiet_NaN();
   const auto keep = [&](const char* what) {
-    if (!strand.first_exception_) strand.first_exception_ = what;
+    if (!budgeted.first_exception_) budgeted.first_exception_ = what;
   };
   try {
     value = problem_.objective(x);
@@ -233,7 +233,7 @@ double Ledger::evaluate(Strand& strand, const Point& point) {
   } catch (...) {
     keep("an exception that is not a std::exception");
   }
-  report(strand.first_index_ + strand.evaluations(), value, x);
+  report(budgeted.first_index_ + budgeted.evaluations(), value, x);
   return value;
 }
 
@@ -276,12 +276,12 @@ bool Ledger::cut_off(std::size_t task) {
 
 long Ledger::run(const std::vector<Task>& tasks) {
   if (over()) return 0;
-  std::vector<Strand> strands;
+  std::vector<BudgetedObjective> strands;
   long left = remaining();
   for (const Task& task : tasks) {
     const long budget = std::min(task.budget, left);
     if (budget <= 0) break;
-    strands.push_back(Strand(*this, strands.size(), budget, next_index_));
+    strands.push_back(BudgetedObjective(*this, strands.size(), budget, next_index_));
     left -= budget;
     next_index_ += budget;
   }
@@ -304,7 +304,7 @@ long Ledger::run(const std::vector<Task>& tasks) {
 }
 
 // With an exception the conditions stand as kept: the value alone tells then.
-std::vector<double> Ledger::values(Strand& strand, const Point& point, const Answer& answer) const {
+std::vector<double> Ledger::values(BudgetedObjective& budgeted, const Point& point, const Answer& answer) const {
   std::vector<double> kept(1 + problem_.conditions.count, 0.0);
   kept[0] = answer.value;
   if (!answer.feasible) return kept;
@@ -314,13 +314,13 @@ std::vector<double> Ledger::values(Strand& strand, const Point& point, const Ans
     for (double& value : found) value = compress(value);
     return found;
   } catch (const std::exception& error) {
-    if (!strand.first_exception_) strand.first_exception_ = error.what();
+    if (!budgeted.first_exception_) budgeted.first_exception_ = error.what();
   }
   return kept;
 }
 
 // By the point of the search. An exception leaves them to differences.
-std::vector<double> Ledger::gradients(Strand& strand, const Point& point) const {
+std::vector<double> Ledger::gradients(BudgetedObjective& budgeted, const Point& point) const {
   std::vector<double> scaled((1 + problem_.conditions.count) * free_.size(), std::numeric_limits<double>::quiet_NaN());
   try {
     const std::vector<double> by_x = gradient_of_problem()(to_user(point));
@@ -330,20 +330,20 @@ std::vector<double> Ledger::gradients(Strand& strand, const Point& point) const 
       scaled[i] = by_x.at(value * problem_.variables.size() + variable) * (of.upper - of.lower);
     }
   } catch (const std::exception& error) {
-    if (!strand.first_exception_) strand.first_exception_ = error.what();
+    if (!budgeted.first_exception_) budgeted.first_exception_ = error.what();
   }
   return scaled;
 }
 
-void Ledger::settle(const std::vector<Strand>& strands) {
+void Ledger::settle(const std::vector<BudgetedObjective>& strands) {
   const std::size_t last = target_task_;
-  for (const Strand& strand : strands) {
-    if (strand.task_ > last) break;
-    if (strand.first_exception_ && best_.first_exception.empty()) best_.first_exception = *strand.first_exception_;
-    values_.insert(strand.values_.begin(), strand.values_.end());
-    gradients_.insert(strand.gradients_.begin(), strand.gradients_.end());
-    for (std::size_t k = 0; k < strand.records_.size(); ++k) {
-      const Strand::Record& record = strand.records_[k];
+  for (const BudgetedObjective& budgeted : strands) {
+    if (budgeted.task_ > last) break;
+    if (budgeted.first_exception_ && best_.first_exception.empty()) best_.first_exception = *budgeted.first_exception_;
+    values_.insert(budgeted.values_.begin(), budgeted.values_.end());
+    gradients_.insert(budgeted.gradients_.begin(), budgeted.gradients_.end());
+    for (std::size_t k = 0; k < budgeted.records_.size(); ++k) {
+      const BudgetedObjective::Record& record = budgeted.records_[k];
       ++evaluations_;
       known_.push_back({record.point, record.answer});
       memory_.emplace(record.point, record.answer);
@@ -353,7 +353,8 @@ void Ledger::settle(const std::vector<Strand>& strands) {
       if (best_.x.empty() || record.value < best_.value) {
         best_.x = to_user(record.point);
         best_.value = record.value;
-        best_.improvements.push_back({.index = strand.first_index_ + static_cast<long>(k), .value = record.value, .x = best_.x});
+        best_.improvements.push_back(
+            {.index = budgeted.first_index_ + static_cast<long>(k), .value = record.value, .x = best_.x});
       }
     }
   }

@@ -24,7 +24,7 @@ namespace softland::internal {
 /// A point of the search: the variables that are free to move, each scaled to [0, 1].
 using Point = std::vector<double>;
 
-/// Thrown out of a Strand to end a library's run; backends translate it to whatever ends theirs.
+/// Thrown out of a BudgetedObjective to end a library's run; backends translate it to whatever ends theirs.
 struct Cut {};
 
 /// What a search is told about a point. For an infeasible one the value is a finite penalty above all values seen before.
@@ -50,7 +50,7 @@ inline constexpr long evaluations_of_gradient = 3;
 class Ledger;
 
 /// The evaluations of one task, made by one thread. Libraries are given nothing but this.
-class Strand {
+class BudgetedObjective {
  public:
   /// Throws Cut when the share of the budget is used up, the minimisation is over, or the search goes in circles (many times only
   /// points it knows). A point that was seen before is answered from memory and costs nothing.
@@ -80,7 +80,7 @@ class Strand {
     Answer answer;
     double value;  ///< as the objective gave it
   };
-  Strand(Ledger& ledger, std::size_t task, long budget, long first_index);
+  BudgetedObjective(Ledger& ledger, std::size_t task, long budget, long first_index);
 
   Answer remember(const Point& point, double value);
   [[nodiscard]] bool known_gradients(const Point& point, std::span<double> gradients);
@@ -107,7 +107,7 @@ class Ledger {
  public:
   struct Task {
     long budget;
-    std::function<void(Strand&)> body;  ///< may leave by Cut; any other exception is a failure
+    std::function<void(BudgetedObjective&)> body;  ///< may leave by Cut; any other exception is a failure
   };
   struct Known {
     Point point;
@@ -138,17 +138,17 @@ class Ledger {
   [[nodiscard]] OptimizerResult result(bool converged, const std::string& message) const;
 
  private:
-  friend class Strand;
-  double evaluate(Strand& strand, const Point& point);
+  friend class BudgetedObjective;
+  double evaluate(BudgetedObjective& budgeted, const Point& point);
   [[nodiscard]] const std::function<std::vector<double>(std::span<const double>)>& gradient_of_problem() const {
     return problem_.conditions.count > 0 ? problem_.conditions.gradients : problem_.gradient;
   }
-  [[nodiscard]] std::vector<double> values(Strand& strand, const Point& point, const Answer& answer) const;
-  [[nodiscard]] std::vector<double> gradients(Strand& strand, const Point& point) const;
+  [[nodiscard]] std::vector<double> values(BudgetedObjective& budgeted, const Point& point, const Answer& answer) const;
+  [[nodiscard]] std::vector<double> gradients(BudgetedObjective& budgeted, const Point& point) const;
   [[nodiscard]] std::vector<double> to_user(const Point& point) const;
   [[nodiscard]] Point to_point(std::span<const double> x) const;
   void report(long index, double value, const std::vector<double>& x);
-  void settle(const std::vector<Strand>& strands);
+  void settle(const std::vector<BudgetedObjective>& strands);
   void end_from_outside(Termination reason);
 
   const Problem& problem_;

@@ -13,9 +13,9 @@
 namespace softland {
 namespace internal {
 
-RunReport run_method(const Method& method, const Run& run, Strand& strand) {
-  if (method.backend == Backend::cma_es) return run_cma_es(run, strand);
-  return method.backend == Backend::ipopt ? run_ipopt(run, strand) : run_nlopt(method, run, strand);
+RunReport run_method(const Method& method, const Run& run, BudgetedObjective& budgeted) {
+  if (method.backend == Backend::cma_es) return run_cma_es(run, budgeted);
+  return method.backend == Backend::ipopt ? run_ipopt(run, budgeted) : run_nlopt(method, run, budgeted);
 }
 
 namespace {
@@ -52,27 +52,27 @@ constexpr int idle_runs_allowed = 20;
 
 RunReport search_single_method(Ledger& ledger, const Method& method, double step) {
   RunReport report;
-  const auto body = [&](Strand& strand) {
+  const auto body = [&](BudgetedObjective& budgeted) {
     int idle_runs = 0;
     std::uint64_t skipped = 0;
     const std::size_t given = ledger.starts().size();
-    for (std::uint64_t k = 0; !strand.over() && idle_runs < idle_runs_allowed; ++k) {
+    for (std::uint64_t k = 0; !budgeted.over() && idle_runs < idle_runs_allowed; ++k) {
       const Run run{
           .start = k < given ? ledger.starts()[k] : sobol_points(ledger.seed(), ledger.dimension(), k - given, 1).front(),
           .step = step,
           .seed = random_bits(ledger.seed(), Stream::library_seed, k)};
-      const long before = strand.evaluations();
+      const long before = budgeted.evaluations();
       if (method.reach == Reach::global) {
-        report = run_method(method, run, strand);
+        report = run_method(method, run, budgeted);
         return;
       }
-      if (!strand(run.start).feasible && skipped < infeasible_starts_skipped) {
+      if (!budgeted(run.start).feasible && skipped < infeasible_starts_skipped) {
         ++skipped;
         continue;
       }
       skipped = 0;
-      report = run_method(method, run, strand);
-      idle_runs = strand.evaluations() == before ? idle_runs + 1 : 0;
+      report = run_method(method, run, budgeted);
+      idle_runs = budgeted.evaluations() == before ? idle_runs + 1 : 0;
     }
   };
   ledger.run({{.budget = ledger.remaining(), .body = body}});
@@ -81,7 +81,8 @@ RunReport search_single_method(Ledger& ledger, const Method& method, double step
 
 void evaluate_starts(Ledger& ledger) {
   std::vector<Ledger::Task> tasks;
-  for (const Point& start : ledger.starts()) tasks.push_back({.budget = 1, .body = [&start](Strand& strand) { strand(start); }});
+  for (const Point& start : ledger.starts())
+    tasks.push_back({.budget = 1, .body = [&start](BudgetedObjective& budgeted) { budgeted(start); }});
   ledger.run(tasks);
 }
 
@@ -117,7 +118,7 @@ OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options
   internal::Ledger ledger(problem, options);
   internal::evaluate_starts(ledger);
   if (ledger.dimension() == 0) {
-    ledger.run({{.budget = 1, .body = [](internal::Strand& strand) { strand(internal::Point{}); }}});
+    ledger.run({{.budget = 1, .body = [](internal::BudgetedObjective& budgeted) { budgeted(internal::Point{}); }}});
     return ledger.result(true, "every variable is held");
   }
   if (method.backend == internal::Backend::search_auto) {

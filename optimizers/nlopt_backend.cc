@@ -1,5 +1,6 @@
 // NLopt 2.7.1. What its methods need that its interface does not say:
-// - Its own limits are not enough: several methods report success on NaN, hang, or swallow exceptions. The Strand counts, keeps
+// - Its own limits are not enough: several methods report success on NaN, hang, or swallow exceptions. The BudgetedObjective
+// counts, keeps
 //   the best point and cuts; nothing that NLopt returns but the words is used.
 // - Random numbers come from a generator of the calling thread, seeded from the clock unless nlopt::srand is called in it.
 // - MLSL is the one that starts from random points: the Sobol sequence of its variant cannot be seeded.
@@ -22,7 +23,7 @@ constexpr double step_tolerance = 1e-7;
 constexpr double step_tolerance_inside_mlsl = 1e-4;
 
 struct Callback {
-  Strand& strand;
+  BudgetedObjective& budgeted;
   bool with_conditions;             ///< those of the problem are followed
   std::vector<double> bent_middle;  ///< where 0.5 goes; empty for a straight scale
 
@@ -42,11 +43,11 @@ double call(const std::vector<double>& x, std::vector<double>& gradient, void* d
   try {
     const Point point = callback.to_point(x);
     if (!gradient.empty()) {
-      std::vector<double> gradients((1 + callback.strand.conditions()) * x.size());
-      callback.strand.gradients(point, gradients);
+      std::vector<double> gradients((1 + callback.budgeted.conditions()) * x.size());
+      callback.budgeted.gradients(point, gradients);
       std::copy_n(gradients.begin(), x.size(), gradient.begin());
     }
-    return callback.with_conditions ? callback.strand.values(point).all[0] : callback.strand(point).value;
+    return callback.with_conditions ? callback.budgeted.values(point).all[0] : callback.budgeted(point).value;
   } catch (const Cut&) {
     throw nlopt::forced_stop();
   }
@@ -54,14 +55,14 @@ double call(const std::vector<double>& x, std::vector<double>& gradient, void* d
 
 // For methods with a gradient, whose scale is straight.
 void call_conditions(unsigned count, double* values, unsigned dimension, const double* x, double* gradient, void* data) {
-  Strand& strand = static_cast<Callback*>(data)->strand;
+  BudgetedObjective& budgeted = static_cast<Callback*>(data)->budgeted;
   const std::span<const double> point(x, dimension);
   try {
-    const std::vector<double> all = strand.values(point).all;
+    const std::vector<double> all = budgeted.values(point).all;
     std::copy_n(all.begin() + 1, count, values);
     if (gradient == nullptr) return;
     std::vector<double> gradients((1 + count) * std::size_t{dimension});
-    strand.gradients(point, gradients);
+    budgeted.gradients(point, gradients);
     std::copy(gradients.begin() + dimension, gradients.end(), gradient);
   } catch (const Cut&) {
     throw nlopt::forced_stop();
@@ -83,11 +84,11 @@ std::string_view name_of(nlopt::result result) {
 
 }  // namespace
 
-RunReport run_nlopt(const Method& method, const Run& run, Strand& strand) {
+RunReport run_nlopt(const Method& method, const Run& run, BudgetedObjective& budgeted) {
   const auto algorithm = static_cast<nlopt::algorithm>(method.nlopt_algorithm);
   const bool is_mlsl = algorithm == nlopt::G_MLSL;
-  const std::size_t conditions = method.uses_gradient ? strand.conditions() : 0;
-  Callback callback{.strand = strand, .with_conditions = conditions > 0, .bent_middle = {}};
+  const std::size_t conditions = method.uses_gradient ? budgeted.conditions() : 0;
+  Callback callback{.budgeted = budgeted, .with_conditions = conditions > 0, .bent_middle = {}};
   std::vector<double> x = run.start;
   if (algorithm == nlopt::GN_DIRECT_L) {
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -95,7 +96,7 @@ RunReport run_nlopt(const Method& method, const Run& run, Strand& strand) {
     }
   }
 
-  strand.begin_search();
+  budgeted.begin_search();
   const auto report = [&](bool converged, std::string_view words) {
     return RunReport{.converged = converged, .message = fmt::format("NLopt {}: {}", method.name, words)};
   };

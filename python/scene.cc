@@ -15,7 +15,7 @@
 #include "config/bench.h"
 #include "config/units.h"
 #include "model/mode_shapes.h"
-#include "model/motion_tape.h"
+#include "model/recorded_motion.h"
 #include "reports/accuracy_report.h"
 #include "reports/effects_report.h"
 #include "reports/files.h"
@@ -44,19 +44,20 @@ namespace softland::python {
 
 namespace py = pybind11;
 
-std::shared_ptr<const Prepared> PyScene::ready(bool default_limits, Run& run) {
-  std::shared_ptr<const Prepared>& kept = default_limits ? limited : plain;
+std::shared_ptr<const PreparedScene> PyScene::ready(bool default_limits, Run& run) {
+  std::shared_ptr<const PreparedScene>& kept = default_limits ? limited : plain;
   if (!kept) {
     const SceneFile copy = file;  // another Python thread may change it meanwhile
-    kept = run(
-        [&](const Watch& watch) { return std::make_shared<const Prepared>(prepare_and_choose(copy, default_limits, watch)); });
+    kept = run([&](const Watch& watch) {
+      return std::make_shared<const PreparedScene>(prepare_and_choose(copy, default_limits, watch));
+    });
   }
   return kept;
 }
 
-std::shared_ptr<const Prepared> driven_by(const std::shared_ptr<const Prepared>& prepared, const Waveforms& waveforms) {
+std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const PreparedScene>& prepared, const Waveforms& waveforms) {
   if (waveforms.empty()) return prepared;
-  auto own = std::make_shared<Prepared>(*prepared);
+  auto own = std::make_shared<PreparedScene>(*prepared);
   const std::vector<std::string> names = own->drive_names();
   for (const auto& [drive, waveform] : waveforms) {
     const auto found = std::find(names.begin(), names.end(), drive);
@@ -131,7 +132,7 @@ py::array_t<double> rebounds_of(const std::vector<Rebound>& rebounds) {
 
 // The run of a closing again, with all its modes.
 struct Motion {
-  MotionTape tape;
+  RecordedMotion tape;
   std::size_t modes = 0;
 };
 Motion motion_of(const PyClosing& c, const Watch& watch) {
@@ -156,7 +157,7 @@ py::tuple arrays_of(const Motion& motion) {
   double* t = times.mutable_data();
   double* x = states.mutable_data();
   for (std::size_t k = 0; k < motion.tape.arcs().size(); ++k) {
-    for (const MotionTape::Motion& side : {motion.tape.begin(k), motion.tape.end(k)}) {
+    for (const RecordedMotion::Motion& side : {motion.tape.begin(k), motion.tape.end(k)}) {
       *t++ = side.time;
       for (const double* part : {side.q, side.v, side.accelerations}) x = std::copy_n(part, motion.modes, x);
     }
@@ -164,7 +165,7 @@ py::tuple arrays_of(const Motion& motion) {
   return py::make_tuple(times, states);
 }
 
-py::tuple shapes_of(const Prepared& p, int places) {
+py::tuple shapes_of(const PreparedScene& p, int places) {
   const ModeShapes all = mode_shapes(p.model, places);
   return py::make_tuple(all.places, all.shapes);
 }
@@ -292,7 +293,7 @@ Outcome opening(PyScene& scene, const std::string& actuator, double band, long b
 }
 
 struct KeptRobustness {
-  std::shared_ptr<const Prepared> nominal;
+  std::shared_ptr<const PreparedScene> nominal;
   Robustness found;
   std::unique_ptr<RobustnessReport> report;
 };
@@ -308,7 +309,7 @@ Outcome judged(PyScene& scene, std::string name, const py::dict& others, std::ui
   Run run(progress);
   const auto kept = std::make_shared<KeptRobustness>();
   kept->nominal = assumed ? spread.ready(true, run) : scene.ready(true, run);
-  const Prepared& nominal = *kept->nominal;
+  const PreparedScene& nominal = *kept->nominal;
   const Calibration& calibration = nominal.scene.calibration;
   std::vector<NamedDrive> drives{{.name = std::move(name), .waveforms = nominal.drives.waveforms, .calibration = calibration}};
   for (const auto& [other, given] : others) {

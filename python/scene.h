@@ -20,12 +20,12 @@ namespace softland::python {
 /// A scene file and what was made of it, which is kept until the scene changes.
 struct PyScene {
   SceneFile file;
-  std::filesystem::path directory;                           ///< from which relative paths in it are taken
-  std::shared_ptr<const Prepared> plain = {}, limited = {};  ///< prepare_and_choose() without and with default limits
+  std::filesystem::path directory;                                ///< from which relative paths in it are taken
+  std::shared_ptr<const PreparedScene> plain = {}, limited = {};  ///< prepare_and_choose() without and with default limits
 
   /// Made ready, when it is first asked for.
-  [[nodiscard]] std::shared_ptr<const Prepared> ready(bool default_limits, Run& run);
-  [[nodiscard]] std::shared_ptr<const Prepared> ready(bool default_limits = false) {
+  [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits, Run& run);
+  [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits = false) {
     Run run;
     return ready(default_limits, run);
   }
@@ -39,7 +39,7 @@ struct Outcome {
 
 /// One closing, with what it is of.
 struct PyClosing {
-  std::shared_ptr<const Prepared> prepared;
+  std::shared_ptr<const PreparedScene> prepared;
   Closing closing;
   std::string command;
 };
@@ -60,7 +60,7 @@ using Waveforms = std::map<std::string, Waveform>;
 [[nodiscard]] Waveforms waveforms_of(const pybind11::dict& given, Run& run);
 
 /// A scene like this one under other waveforms. Throws InvalidInput for a drive that it has not, and beyond its limits.
-[[nodiscard]] std::shared_ptr<const Prepared> driven_by(const std::shared_ptr<const Prepared>& prepared,
-                                                        const Waveforms& waveforms);
+[[nodiscard]] std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const PreparedScene>& prepared,
+                                                             const Waveforms& waveforms);
 
 }  // namespace softland::python

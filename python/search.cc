@@ -113,7 +113,7 @@ std::map<std::string, std::function<std::string()>> files_of(const Result& resul
                                                             {"gap.svg", [kept] { return svg_gap_chart(*kept); }}};
   if (kept->best.figures) files["trajectory.csv"] = [kept] { return trajectory_csv(kept->best.curve); };
   if (found.best_scene) {
-    const auto scene = std::make_shared<const Prepared>(*found.best_scene);
+    const auto scene = std::make_shared<const PreparedScene>(*found.best_scene);
     files["best.toml"] = [scene] { return scene->scene.file.text(); };
   }
   return files;

@@ -229,7 +229,7 @@ std::string reference_keys(const AccuracyStudy& study) {
 }
 
 // What the accuracy takes that is nearest to the one the scene asks for.
-std::pair<std::string, std::string> headline(const Prepared& prepared, const AccuracyStudy& study) {
+std::pair<std::string, std::string> headline(const PreparedScene& prepared, const AccuracyStudy& study) {
   const std::string figures = symbols(study, true);
   if (figures.empty() || study.recommendations.empty()) return {recommendations(study).front(), ""};
   const double asked = std::log(prepared.scene.simulate.accuracy);
@@ -246,7 +246,7 @@ std::pair<std::string, std::string> headline(const Prepared& prepared, const Acc
 
 }  // namespace
 
-std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, const Provenance& provenance) {
+std::string accuracy_html(const PreparedScene& prepared, const AccuracyStudy& study, const Provenance& provenance) {
   const auto integrator = [](const AccuracyRow& row) {
     return std::vector<std::string>{std::string(to_string(row.integrator)), internal::scientific(row.tolerance)};
   };

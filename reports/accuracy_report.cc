@@ -116,7 +116,7 @@ std::string cloud_table(const AccuracyStudy& study) {
 
 }  // namespace
 
-json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const Provenance& provenance) {
+json accuracy_json(const PreparedScene& prepared, const AccuracyStudy& study, const Provenance& provenance) {
   json j = with_origin({{"kind", "accuracy"}, {"status", to_string(study.status)}}, prepared, provenance.command);
   if (!study.message.empty()) j["message"] = study.message;
   if (study.rows.empty()) return j;

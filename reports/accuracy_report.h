@@ -9,10 +9,11 @@
 
 namespace softland {
 
-[[nodiscard]] nlohmann::json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const Provenance& provenance);
+[[nodiscard]] nlohmann::json accuracy_json(const PreparedScene& prepared, const AccuracyStudy& study,
+                                           const Provenance& provenance);
 [[nodiscard]] std::string accuracy_text(const AccuracyStudy& study);
 /// A self-contained page (html.h) of a study that has rows: recommendations, diagrams, tables, clouds.
-[[nodiscard]] std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, const Provenance& provenance);
+[[nodiscard]] std::string accuracy_html(const PreparedScene& prepared, const AccuracyStudy& study, const Provenance& provenance);
 /// Error against time, one curve per integrator; the same with and without a restart at the contact; and error against quadrature
 /// points, one curve per figure.
 [[nodiscard]] std::string accuracy_svg(const std::string& title, const AccuracyStudy& study);

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "reports/course.h"
+#include "reports/closing_clauses.h"
 #include "reports/findings.h"
 #include "reports/quantity.h"
 #include "reports/result_view.h"

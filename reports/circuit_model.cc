@@ -68,7 +68,7 @@ std::string sum_of(const Dialect& d, char letter, const Eigen::VectorXd& factors
 
 class Maker {
  public:
-  Maker(const Prepared& p, const Dialect& dialect) : p_(p), model_(p.model), device_(p.model.device()), d_(dialect) {}
+  Maker(const PreparedScene& p, const Dialect& dialect) : p_(p), model_(p.model), device_(p.model.device()), d_(dialect) {}
 
   Circuit make() {
     const std::string why = why_no_circuit(model_);
@@ -225,7 +225,7 @@ class Maker {
     for (const Formula& pull : pulls) c_.tension.push_back(pull.text());
   }
 
-  const Prepared& p_;
+  const PreparedScene& p_;
   const Switch& model_;
   const Device& device_;
   const Dialect& d_;
@@ -234,7 +234,7 @@ class Maker {
   std::vector<Formula> strengths_;
 };
 
-std::string title(const Prepared& p) {
+std::string title(const PreparedScene& p) {
   return fmt::format("{}: {} modes, {} quadrature points", p.scene.file.name(), p.model.modes(), p.model.points());
 }
 
@@ -300,12 +300,12 @@ std::string why_no_circuit(const Switch& model) {
   return can ? "" : "a contact law other than linear or asperity-uniform";
 }
 
-std::string spice_model(const Prepared& p) {
+std::string spice_model(const PreparedScene& p) {
   return fmt::format("* {}\n* pins: drives, their ground g, contact s and d, y [um], vel [m/s], force [uN]\n{}", title(p),
                      subcircuit(Maker(p, spice).make()));
 }
 
-std::string spice_bench(const Prepared& p) {
+std::string spice_bench(const PreparedScene& p) {
   const Circuit c = Maker(p, spice).make();
   std::map<std::string, Signal> driven;  // as their sources give them
   const std::vector<std::string> names = p.drive_names();
@@ -333,7 +333,7 @@ std::string spice_bench(const Prepared& p) {
   return text + "quit\n.endc\n.end\n";
 }
 
-std::string verilog_a(const Prepared& p) {
+std::string verilog_a(const PreparedScene& p) {
   const Circuit c = Maker(p, verilog).make();
   const std::size_t modes = c.stiffness.size(), points = c.points.size();
   std::string text = fmt::format("// {}\n// y [um], vel [m/s], force [uN] as volts\n`include \"disciplines.vams\"\n\n", title(p));

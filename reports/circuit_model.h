@@ -20,10 +20,10 @@ namespace softland {
 
 /// `.subckt softland_switch` with the drives, their ground g, the contact s and d, and outputs y [um], vel [m/s], force [uN].
 /// Throws InvalidInput where there is no such model.
-[[nodiscard]] std::string spice_model(const Prepared& prepared);
+[[nodiscard]] std::string spice_model(const PreparedScene& prepared);
 /// The same with what the sources of the scene give, the options that it takes, and measurements: a whole file for ngspice.
-[[nodiscard]] std::string spice_bench(const Prepared& prepared);
+[[nodiscard]] std::string spice_bench(const PreparedScene& prepared);
 /// The same switch as a module in Verilog-A.
-[[nodiscard]] std::string verilog_a(const Prepared& prepared);
+[[nodiscard]] std::string verilog_a(const PreparedScene& prepared);
 
 }  // namespace softland

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/printable.h"
-#include "reports/course.h"
+#include "reports/closing_clauses.h"
 #include "reports/escape.h"
 #include "reports/figure_text.h"
 #include "reports/page.h"

@@ -74,7 +74,7 @@ std::string omissions_text(const Effects& effects) {
 
 }  // namespace
 
-json effects_json(const Prepared& prepared, const Effects& effects, const Provenance& provenance) {
+json effects_json(const PreparedScene& prepared, const Effects& effects, const Provenance& provenance) {
   json list = json::array();
   for (const Effect& e : effects.list) {
     list.push_back({{"section", e.section},

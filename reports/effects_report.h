@@ -9,7 +9,7 @@
 
 namespace softland {
 
-[[nodiscard]] nlohmann::json effects_json(const Prepared& prepared, const Effects& effects, const Provenance& provenance);
+[[nodiscard]] nlohmann::json effects_json(const PreparedScene& prepared, const Effects& effects, const Provenance& provenance);
 [[nodiscard]] std::string effects_text(const Effects& effects);
 
 }  // namespace softland

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/course.h"
+#include "reports/closing_clauses.h"
 #include "reports/quantity.h"
 #include "studies/optimize.h"
 

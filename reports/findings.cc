@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "reports/course.h"
+#include "reports/closing_clauses.h"
 #include "reports/devices_report.h"
 #include "reports/figure_text.h"
 #include "reports/quantity.h"

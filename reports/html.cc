@@ -9,7 +9,7 @@
 
 #include "base/printable.h"
 #include "reports/chart.h"
-#include "reports/course.h"
+#include "reports/closing_clauses.h"
 #include "reports/devices_report.h"
 #include "reports/escape.h"
 #include "reports/figure_text.h"

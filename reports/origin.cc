@@ -14,12 +14,12 @@ json with_origin(json record, const std::string& command) {
   return record;
 }
 
-json with_origin(json record, const Prepared& scene, const std::string& command) {
+json with_origin(json record, const PreparedScene& scene, const std::string& command) {
   record["scene"] = scene.resolved().json();
   return with_origin(std::move(record), command);
 }
 
-Result internal::origin(const Prepared& scene, const std::string& command) {
+Result internal::origin(const PreparedScene& scene, const std::string& command) {
   Result result{.command = command, .version = std::string(version), .made_with = made_with()};
   result.scene.text = scene.resolved().text();
   return result;

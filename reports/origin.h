@@ -12,12 +12,12 @@ namespace softland {
 /// The record with version, made_with and command.
 [[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const std::string& command);
 /// With the scene, resolved, besides.
-[[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const Prepared& scene, const std::string& command);
+[[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const PreparedScene& scene, const std::string& command);
 
 namespace internal {
 
 /// What the foot of a page says of it.
-[[nodiscard]] Result origin(const Prepared& scene, const std::string& command);
+[[nodiscard]] Result origin(const PreparedScene& scene, const std::string& command);
 
 }  // namespace internal
 }  // namespace softland

@@ -110,11 +110,11 @@ std::string chaos_words(const OtherWays& ways, Symbol symbol) {
 }
 
 // Of the varying quantities, as robustness_report.h shows them.
-std::vector<double> shown_values_in_box(const BoxDevice& device, const Prepared& nominal) {
+std::vector<double> shown_values_in_box(const BoxDevice& device, const PreparedScene& nominal) {
   return device.values.empty() ? device.values : DeviceDrives(nominal).shown(device.values);
 }
 
-json device_of_box_json(const BoxDevice& device, const Prepared& nominal) {
+json device_of_box_json(const BoxDevice& device, const PreparedScene& nominal) {
   json values = json::object();
   const std::vector<double> shown = shown_values_in_box(device, nominal);
   for (std::size_t i = 0; i < shown.size(); ++i) values[nominal.scene.spread.variables[i].name] = shown[i];
@@ -126,7 +126,7 @@ json device_of_box_json(const BoxDevice& device, const Prepared& nominal) {
 
 }  // namespace
 
-json other_ways_json(const OtherWays& ways, const DriveRobustness& drive, const Prepared& nominal) {
+json other_ways_json(const OtherWays& ways, const DriveRobustness& drive, const PreparedScene& nominal) {
   json ranges = json::object(), chaos = json::object();
   for (const FigureRange& r : ways.ranges) {
     ranges[std::string(r.key)] = {{"least", device_of_box_json(r.least, nominal)},
@@ -156,7 +156,7 @@ json other_ways_json(const OtherWays& ways, const DriveRobustness& drive, const 
   return j;
 }
 
-std::string other_ways_text(const OtherWays& ways, const DriveRobustness& drive, const Prepared& nominal) {
+std::string other_ways_text(const OtherWays& ways, const DriveRobustness& drive, const PreparedScene& nominal) {
   if (ways.ranges.empty()) return {};
   constexpr std::size_t label = 47, width = 16;
   std::string text = "\n" + left_aligned("Other ways, under " + drive.name, label);
@@ -180,7 +180,7 @@ std::string other_ways_text(const OtherWays& ways, const DriveRobustness& drive,
          wrapped(chaos_words(ways, [](std::string_view symbol) { return std::string(symbol); })) + "\n";
 }
 
-std::string other_ways_html(const OtherWays& ways, const DriveRobustness& drive, const Prepared& nominal) {
+std::string other_ways_html(const OtherWays& ways, const DriveRobustness& drive, const PreparedScene& nominal) {
   if (ways.ranges.empty()) return {};
   TableRow head{"Under " + escaped(drive.name)}, device_head{"In the box", "Found"};
   for (const FigureRange& r : ways.ranges) head.emplace_back(symbol_html(figure_of(r.key).symbol));

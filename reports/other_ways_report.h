@@ -9,10 +9,10 @@
 
 namespace softland::internal {
 
-[[nodiscard]] nlohmann::json other_ways_json(const OtherWays& ways, const DriveRobustness& drive, const Prepared& nominal);
+[[nodiscard]] nlohmann::json other_ways_json(const OtherWays& ways, const DriveRobustness& drive, const PreparedScene& nominal);
 /// For a terminal.
-[[nodiscard]] std::string other_ways_text(const OtherWays& ways, const DriveRobustness& drive, const Prepared& nominal);
+[[nodiscard]] std::string other_ways_text(const OtherWays& ways, const DriveRobustness& drive, const PreparedScene& nominal);
 /// A section of the page.
-[[nodiscard]] std::string other_ways_html(const OtherWays& ways, const DriveRobustness& drive, const Prepared& nominal);
+[[nodiscard]] std::string other_ways_html(const OtherWays& ways, const DriveRobustness& drive, const PreparedScene& nominal);
 
 }  // namespace softland::internal

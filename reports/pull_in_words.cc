@@ -18,11 +18,11 @@ namespace softland {
 
 using nlohmann::json;
 
-json pull_in_of(const Prepared& p, std::size_t k, const Watch& watch) {
+json pull_in_of(const PreparedScene& p, std::size_t k, const Watch& watch) {
   return pull_in_json(p, k, electrode_pull_in(p.model, k, bias_of(p.scene, k), watch));
 }
 
-json pull_in_json(const Prepared& p, std::size_t k, const ElectrodePullIn& known) {
+json pull_in_json(const PreparedScene& p, std::size_t k, const ElectrodePullIn& known) {
   const std::vector<double> bias = bias_of(p.scene, k);
   const auto& [s, d] = known;
   const ClosedRange closed = closed_range(p.model, k, bias);
@@ -58,7 +58,7 @@ json pull_in_json(const std::map<std::string, json>& by_name, const std::string&
   return all;
 }
 
-json pull_in_json(const Prepared& p, const Watch& watch) {
+json pull_in_json(const PreparedScene& p, const Watch& watch) {
   const auto& electrodes = p.scene.device.electrodes;
   std::map<std::string, json> by_name;
   std::string status(to_string(Status::done));
@@ -71,7 +71,7 @@ json pull_in_json(const Prepared& p, const Watch& watch) {
   return pull_in_json(by_name, status);
 }
 
-std::string bias_words(const Prepared& p, std::size_t k) {
+std::string bias_words(const PreparedScene& p, std::size_t k) {
   const std::vector<double> bias = bias_of(p.scene, k);
   const std::vector<std::string> names = p.drive_names();
   std::vector<std::string> drives;
@@ -97,7 +97,7 @@ std::string deflection_words(const json& pull_in) {
   return deflection.is_number() ? internal::quantity(deflection.get<double>(), "m", digits) : "none";
 }
 
-std::string dynamic_words(const Prepared& p, std::size_t k, const json& pull_in) {
+std::string dynamic_words(const PreparedScene& p, std::size_t k, const json& pull_in) {
   const json &statically = pull_in["static_V"], &dynamically = pull_in["dynamic_V"];
   const bool equal = statically.is_number() && dynamically.is_number() &&
                      dynamically.get<double>() >= (1 - dynamic_pull_in_precision) * statically.get<double>();

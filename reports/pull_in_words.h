@@ -16,17 +16,17 @@ inline constexpr const char* no_open_state = "no pull-in voltage: the switch has
 /// Pull-in of electrode `k` under the bias of the other drives (bias_of()): {"status", "pull_in": {"static_V", ...}}, and
 /// {"bias_V": {NAME: ...}} of those that do not stand at 0, "bias_factor" of the dispersion force; of a bridge that stretches
 /// "static_excess" (studies/static_excess.h).
-[[nodiscard]] nlohmann::json pull_in_of(const Prepared& prepared, std::size_t k, const Watch& watch);
+[[nodiscard]] nlohmann::json pull_in_of(const PreparedScene& prepared, std::size_t k, const Watch& watch);
 
 /// The same of voltages that are known.
-[[nodiscard]] nlohmann::json pull_in_json(const Prepared& prepared, std::size_t k, const ElectrodePullIn& known);
+[[nodiscard]] nlohmann::json pull_in_json(const PreparedScene& prepared, std::size_t k, const ElectrodePullIn& known);
 
 /// Everything by name; beside it the keys of one electrode, or of several `status` and their voltages as other verbs give them.
 [[nodiscard]] nlohmann::json pull_in_json(const std::map<std::string, nlohmann::json>& by_name, const std::string& status);
 
 /// What all electrodes have come to, as the exit status says it: `done`, or the status of the first one that pulls and has no
 /// voltage.
-[[nodiscard]] nlohmann::json pull_in_json(const Prepared& prepared, const Watch& watch);
+[[nodiscard]] nlohmann::json pull_in_json(const PreparedScene& prepared, const Watch& watch);
 
 /// Whether this, as pull_in_of() has found it, is a switch that closes by itself.
 [[nodiscard]] bool collapsed(const nlohmann::json& pull_in);
@@ -34,13 +34,13 @@ inline constexpr const char* no_open_state = "no pull-in voltage: the switch has
 [[nodiscard]] std::string volts(const nlohmann::json& value);
 
 /// "piezo -1.5 V": the other drives of pull_in_of() that do not stand at 0; empty where all do.
-[[nodiscard]] std::string bias_words(const Prepared& prepared, std::size_t k);
+[[nodiscard]] std::string bias_words(const PreparedScene& prepared, std::size_t k);
 
 /// How far the contact point is deflected at the static pull-in voltage.
 [[nodiscard]] std::string deflection_words(const nlohmann::json& pull_in);
 
 /// The dynamic pull-in voltage, of what pull_in_of() has found of electrode `k`. A step that damping lets not overshoot needs no
 /// less than the static one; nor does one that leaves the switch where it rests.
-[[nodiscard]] std::string dynamic_words(const Prepared& prepared, std::size_t k, const nlohmann::json& pull_in);
+[[nodiscard]] std::string dynamic_words(const PreparedScene& prepared, std::size_t k, const nlohmann::json& pull_in);
 
 }  // namespace softland

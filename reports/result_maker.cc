@@ -41,7 +41,7 @@ Points at_most_rows(Points all) {
 
 // Straight pieces that a reader can draw: exact for steps, pulses and tables of up to most_curve_rows, a thousandth of the swing
 // for sines.
-std::map<std::string, Points> waveforms(const Prepared& p) {
+std::map<std::string, Points> waveforms(const PreparedScene& p) {
   std::map<std::string, Points> all;
   const std::vector<std::string> names = p.drive_names();
   const std::vector<Signal> signals = p.signals();
@@ -56,7 +56,7 @@ std::map<std::string, Points> waveforms(const Prepared& p) {
   return all;
 }
 
-ResultRun run(const Prepared& p, const Closing& closing, const MetricsOptions& options) {
+ResultRun run(const PreparedScene& p, const Closing& closing, const MetricsOptions& options) {
   return {.status = std::string(to_string(closing.metrics.status)),
           .figures = finite(FigureValues(closing.metrics)),
           .errors = finite(closing.errors),
@@ -65,7 +65,7 @@ ResultRun run(const Prepared& p, const Closing& closing, const MetricsOptions& o
           .collapse_time = closing.trajectory.collapse_time};
 }
 
-std::map<std::string, PullInVoltages> pull_in(const Prepared& p) {
+std::map<std::string, PullInVoltages> pull_in(const PreparedScene& p) {
   std::map<std::string, PullInVoltages> all;
   for (const auto& [name, e] : p.pull_in)
     all[name] = {.static_pull_in = e.statically.voltage, .dynamic_pull_in = e.dynamically.voltage};
@@ -73,7 +73,7 @@ std::map<std::string, PullInVoltages> pull_in(const Prepared& p) {
 }
 
 // What is the same for every study: of its scene, and of this program.
-Result started(const Prepared& p, const Provenance& provenance) {
+Result started(const PreparedScene& p, const Provenance& provenance) {
   for (const auto& [drive, waveform] : p.drives.waveforms) {
     if (const Own* own = std::get_if<Own>(&waveform))
       throw InvalidInput(fmt::format("waveform.{}: {} cannot be written into a result", drive, described(*own)));
@@ -159,7 +159,7 @@ Points drawn_evaluations(Points all) {
   return kept;
 }
 
-Result result_of(const Prepared& prepared, const Closing& closing, const Provenance& provenance) {
+Result result_of(const PreparedScene& prepared, const Closing& closing, const Provenance& provenance) {
   Result r = started(prepared, provenance);
   r.status = to_string(closing.metrics.status);
   r.message = closing.trajectory.message;

@@ -27,7 +27,7 @@ struct Provenance {
 [[nodiscard]] Points drawn_evaluations(Points all);
 
 /// The result of simulate. Curves have the resolution of the integration, up to most_curve_rows.
-[[nodiscard]] Result result_of(const Prepared& prepared, const Closing& closing, const Provenance& provenance);
+[[nodiscard]] Result result_of(const PreparedScene& prepared, const Closing& closing, const Provenance& provenance);
 
 /// The result of optimize. Equal for equal seeds but for the time that it took and the command line. Of the evaluations it holds
 /// those that improved.

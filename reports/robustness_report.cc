@@ -61,7 +61,7 @@ json device_json(const Ensemble& ensemble, const DriveRobustness& drive, std::si
   return one;
 }
 
-json waveforms_json(const Prepared& nominal, const DriveRobustness& drive, double duration) {
+json waveforms_json(const PreparedScene& nominal, const DriveRobustness& drive, double duration) {
   json all = json::object();
   const std::vector<std::string> names = nominal.drive_names();
   for (const auto& [name, waveform] : drive.waveforms) {

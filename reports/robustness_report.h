@@ -18,7 +18,7 @@ namespace softland {
 
 /// What is reported; `sensitivity`, `derivatives` and `courses` are of the last drive and may be left out.
 struct RobustnessReport {
-  const Prepared& nominal;
+  const PreparedScene& nominal;
   const Robustness& found;
   RobustnessOptions options;
   std::string command;  ///< the command line

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/printable.h"
-#include "reports/course.h"
+#include "reports/closing_clauses.h"
 #include "reports/devices_report.h"
 #include "reports/figure_text.h"
 #include "reports/findings.h"

@@ -33,7 +33,7 @@ constexpr std::array end_names{"under_way", "done", "closings_used", "stopped", 
 std::string_view name_of(TuningEnd end) { return end_names.at(static_cast<std::size_t>(end)); }
 
 // Of a shot, by drive: rows of time [s] and voltage [V]; a factor of the dispersion force is no voltage.
-std::map<std::string, std::vector<std::pair<double, double>>> rows_of(const Prepared& scene, const TunerShot& shot) {
+std::map<std::string, std::vector<std::pair<double, double>>> rows_of(const PreparedScene& scene, const TunerShot& shot) {
   std::map<std::string, std::vector<std::pair<double, double>>> all;
   const std::vector<std::string> names = scene.drive_names();
   for (std::size_t k = 0; k < names.size() && k < shot.waveforms.size(); ++k) {
@@ -51,7 +51,7 @@ json predicted_json(const PredictedRecord& p) {
           {"rebound_95_m", json_number(p.rebound_high)}};
 }
 
-json shot_report(const Prepared& scene, const TunerShot& shot) {
+json shot_report(const PreparedScene& scene, const TunerShot& shot) {
   return {{"shot", shot.number},
           {"waveforms", rows_of(scene, shot)},
           {"hold_s", json_number(shot.hold_time)},
@@ -59,7 +59,7 @@ json shot_report(const Prepared& scene, const TunerShot& shot) {
           {"predicted", predicted_json(shot.predicted)}};
 }
 
-json closing_json(const Prepared& scene, const TunedClosing& closing) {
+json closing_json(const PreparedScene& scene, const TunedClosing& closing) {
   json one = shot_report(scene, closing.shot);
   one["record"] = record_json(closing.shot.number, closing.record);
   one["bounce_free"] = is_bounce_free(closing.record);
@@ -386,7 +386,7 @@ json tuning_json(const TuningReport& report, const Provenance& provenance) {
   for (const TunedClosing& one : report.closings) closings.push_back(closing_json(report.scene, one));
   json best = shot_report(report.scene, report.kept);
   best["bounce_free"] = report.was_bounce_free(report.kept.number);
-  const Prepared& scene = report.scene;
+  const PreparedScene& scene = report.scene;
   return with_origin({{"kind", "tune"},
                       {"status", name_of(report.end)},
                       {"title", scene.scene.title},

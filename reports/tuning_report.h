@@ -21,7 +21,7 @@ struct TunedClosing {
 
 /// What is reported, as it stands now.
 struct TuningReport {
-  Prepared scene;                      ///< that the belief is about
+  PreparedScene scene;                 ///< that the belief is about
   std::vector<TunedClosing> closings;  ///< in their order, those that failed included
   TunerShot next, kept;
   BeliefSummary belief;

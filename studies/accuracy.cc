@@ -22,7 +22,7 @@ bool touched(const Metrics& m) { return std::isfinite(m.initial_contact_time); }
 
 class Study {
  public:
-  Study(const Prepared& prepared, const AccuracyOptions& options)
+  Study(const PreparedScene& prepared, const AccuracyOptions& options)
       : prepared_(prepared), options_(options), signals_(prepared.signals()) {
     own_modes_ = prepared.model.modes();
     own_integrator_ = automatic_integrator(prepared.model);
@@ -287,7 +287,7 @@ class Study {
     return true;
   }
 
-  const Prepared& prepared_;
+  const PreparedScene& prepared_;
   const AccuracyOptions& options_;
   std::vector<Signal> signals_;
   std::optional<double> own_points_;  // none of a plate
@@ -321,6 +321,8 @@ double AccuracyStudy::worst_error(const AccuracyRow& row) const {
   return worst;
 }
 
-AccuracyStudy study_accuracy(const Prepared& prepared, const AccuracyOptions& options) { return Study(prepared, options).run(); }
+AccuracyStudy study_accuracy(const PreparedScene& prepared, const AccuracyOptions& options) {
+  return Study(prepared, options).run();
+}
 
 }  // namespace softland

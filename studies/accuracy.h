@@ -86,6 +86,6 @@ struct AccuracyStudy {
   [[nodiscard]] double worst_error(const AccuracyRow& row) const;
 };
 
-[[nodiscard]] AccuracyStudy study_accuracy(const Prepared& prepared, const AccuracyOptions& options = {});
+[[nodiscard]] AccuracyStudy study_accuracy(const PreparedScene& prepared, const AccuracyOptions& options = {});
 
 }  // namespace softland

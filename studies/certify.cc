@@ -31,7 +31,7 @@ bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, co
 
 // Figures of the closing with each pull-in voltage that its drives are written in higher, and lower, by the error of that
 // voltage: a multiple of what a finer quadrature changes, and the width of its bracket.
-std::vector<Metrics> at_other_pull_in(const Prepared& prepared, const Switch& fine, const SwitchOptions& quadrature,
+std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switch& fine, const SwitchOptions& quadrature,
                                       const ClosingOptions& options, const Watch& watch) {
   const Scene& written = prepared.effects ? prepared.effects->described : prepared.scene;
   std::vector<Metrics> found;
@@ -51,7 +51,7 @@ std::vector<Metrics> at_other_pull_in(const Prepared& prepared, const Switch& fi
       std::map<std::string, PullInVoltages> units = prepared.voltage_units();
       units[name].static_pull_in += sign * by_static;
       units[name].dynamic_pull_in += sign * by_dynamic;
-      Prepared moved = prepared;
+      PreparedScene moved = prepared;
       try {
         moved.drives = written.drives(units);
       } catch (const InvalidInput&) {  // a drive at a limit of its driver, or no better voltage: the error is not known
@@ -125,7 +125,7 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
   return gentlest(first.rebounds.size());
 }
 
-Closing certify(const Prepared& prepared, const Watch& watch, int jobs) {
+Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
   Closing c = simulate(prepared, true, watch);
   if (!c.judge) return c;
   if (c.judge->status != Status::done) {

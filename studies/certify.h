@@ -44,6 +44,6 @@ inline constexpr double error_safety = 3;
 
 /// Runs the scene's own waveforms with simulate() and certifies the figures; not those of a run, or of a judge, that is not done.
 /// `jobs`: threads for the cloud; does not change the result.
-[[nodiscard]] Closing certify(const Prepared& prepared, const Watch& watch = {}, int jobs = 1);
+[[nodiscard]] Closing certify(const PreparedScene& prepared, const Watch& watch = {}, int jobs = 1);
 
 }  // namespace softland

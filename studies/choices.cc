@@ -27,21 +27,21 @@ std::string left_out_note(const EffectsChoice& choice, double tolerance) {
                      engineering(choice.influence, "", 1));
 }
 
-Prepared with_as_many_modes_as_needed(const Prepared& prepared, bool default_limits, const Watch& watch) {
+PreparedScene with_as_many_modes_as_needed(const PreparedScene& prepared, bool default_limits, const Watch& watch) {
   const AutoModes chosen = choose_modes(prepared.scene.file, watch);
   SceneFile file = prepared.scene.file;
   file.assign("structure.modes", chosen.modes);
-  Prepared p = prepare(file, default_limits, watch);
+  PreparedScene p = prepare(file, default_limits, watch);
   p.scene.warnings.push_back(chosen.note());
   return p;
 }
 
-Prepared without_what_does_not_matter(const Prepared& prepared, const Watch& watch) {
+PreparedScene without_what_does_not_matter(const PreparedScene& prepared, const Watch& watch) {
   const double tolerance = prepared.scene.simulate.effects_tolerance;
   EffectsChoice choice = negligible_effects(prepared, tolerance, watch);
   std::vector<Omissible> effects;
   for (const Omission& o : choice.left_out) effects.push_back(o.what);
-  Prepared chosen = without(prepared, effects);
+  PreparedScene chosen = without(prepared, effects);
   chosen.scene.warnings.push_back(left_out_note(choice, tolerance));
   chosen.effects =
       std::make_shared<const DescribedEffects>(DescribedEffects{.described = prepared.scene, .choice = std::move(choice)});
@@ -50,14 +50,14 @@ Prepared without_what_does_not_matter(const Prepared& prepared, const Watch& wat
 
 }  // namespace
 
-Prepared choose(Prepared prepared, bool default_limits, const Watch& watch) {
+PreparedScene choose(PreparedScene prepared, bool default_limits, const Watch& watch) {
   if (prepared.scene.auto_modes) prepared = with_as_many_modes_as_needed(prepared, default_limits, watch);
   if (prepared.scene.simulate.automatic_effects) prepared = without_what_does_not_matter(prepared, watch);
   return prepared;
 }
 
-Prepared prepare_and_choose(const SceneFile& file, bool default_limits, const Watch& watch) {
-  Prepared prepared = choose(prepare(file, default_limits, watch), default_limits, watch);
+PreparedScene prepare_and_choose(const SceneFile& file, bool default_limits, const Watch& watch) {
+  PreparedScene prepared = choose(prepare(file, default_limits, watch), default_limits, watch);
   for (std::string& warning : static_excess_warnings(prepared)) prepared.scene.warnings.push_back(std::move(warning));
   return prepared;
 }

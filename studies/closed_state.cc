@@ -8,7 +8,7 @@
 
 namespace softland {
 
-ClosedState closed_state(const Prepared& prepared, const std::vector<Signal>& signals) {
+ClosedState closed_state(const PreparedScene& prepared, const std::vector<Signal>& signals) {
   const Switch& model = prepared.model;
   const std::vector<double> levels = hold_levels(signals);
   ClosedState state;

@@ -31,7 +31,7 @@ struct ClosedRange {
 [[nodiscard]] ClosedRange closed_range(const Switch& model, std::size_t electrode, std::vector<double> bias);
 
 /// Under the hold levels of these drives, of a switch that has a contact.
-[[nodiscard]] ClosedState closed_state(const Prepared& prepared, const std::vector<Signal>& signals);
+[[nodiscard]] ClosedState closed_state(const PreparedScene& prepared, const std::vector<Signal>& signals);
 
 /// Whether a switch at rest under the values `before` of its drives stays where it is under these levels: forces that balance
 /// there.

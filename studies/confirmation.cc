@@ -18,7 +18,7 @@ struct Rerun {
   bool keeps_gas_law = true;
 };
 
-Rerun rerun(const Prepared& closing, const OtherWay& way) {
+Rerun rerun(const PreparedScene& closing, const OtherWay& way) {
   const Switch model(way.device, quadrature_of_richer(closing.quadrature, way.device));
   const std::vector<Signal> signals = closing.signals();
   const Hold hold = hold_of(model, signals);
@@ -52,7 +52,7 @@ SwitchOptions quadrature_of_richer(SwitchOptions quadrature, const Device& devic
   return quadrature;
 }
 
-std::vector<OtherWay> other_numerics(const Prepared& closing) {
+std::vector<OtherWay> other_numerics(const PreparedScene& closing) {
   const Device& device = closing.scene.device;
   std::vector<OtherWay> ways{{.name = "tolerance " + engineering(tight_tolerance, ""),
                               .varied = Varied::integrator,
@@ -66,7 +66,7 @@ std::vector<OtherWay> other_numerics(const Prepared& closing) {
   return ways;
 }
 
-std::vector<OtherWay> other_gas_laws(const Prepared& closing) {
+std::vector<OtherWay> other_gas_laws(const PreparedScene& closing) {
   const std::array<Gas, 3> usual{StripGas{}, VeijolaGas{}, GallisTorczynskiGas{}};
   const std::optional<Gas>& own = closing.scene.device.gas;
   std::vector<OtherWay> ways;
@@ -88,9 +88,9 @@ std::vector<OtherWay> other_gas_laws(const Prepared& closing) {
   return ways;
 }
 
-ConfirmingRun simulated(const Prepared& closing, const OtherWay& way) { return rerun(closing, way).run; }
+ConfirmingRun simulated(const PreparedScene& closing, const OtherWay& way) { return rerun(closing, way).run; }
 
-std::vector<ConfirmingRun> confirm(const Prepared& closing) {
+std::vector<ConfirmingRun> confirm(const PreparedScene& closing) {
   std::vector<ConfirmingRun> runs;
   for (const OtherWay& way : other_numerics(closing)) runs.push_back(simulated(closing, way));
   for (const OtherWay& way : other_gas_laws(closing)) {

@@ -36,14 +36,14 @@ struct ConfirmingRun {
 [[nodiscard]] SwitchOptions quadrature_of_richer(SwitchOptions quadrature, const Device& device);
 
 /// A tighter integrator, then every richer beam.
-[[nodiscard]] std::vector<OtherWay> other_numerics(const Prepared& closing);
+[[nodiscard]] std::vector<OtherWay> other_numerics(const PreparedScene& closing);
 /// Those of the laws strip, veijola and gallis-torczynski that the scene does not have and could have; none where its gas is a
 /// damper, or there is none.
-[[nodiscard]] std::vector<OtherWay> other_gas_laws(const Prepared& closing);
+[[nodiscard]] std::vector<OtherWay> other_gas_laws(const PreparedScene& closing);
 
 /// The same closing in another way.
-[[nodiscard]] ConfirmingRun simulated(const Prepared& closing, const OtherWay& way);
+[[nodiscard]] ConfirmingRun simulated(const PreparedScene& closing, const OtherWay& way);
 /// The same closing in every other way; of gas laws only those whose limits it keeps.
-[[nodiscard]] std::vector<ConfirmingRun> confirm(const Prepared& closing);
+[[nodiscard]] std::vector<ConfirmingRun> confirm(const PreparedScene& closing);
 
 }  // namespace softland

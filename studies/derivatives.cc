@@ -21,8 +21,8 @@ constexpr double largest_disagreement = 0.05;  // what derivatives may differ by
 constexpr double no_change = 1e-5;  // of a figure: a derivative that is off by this for a standard deviation is as good as 0
 
 // The edges of every device are drawn anew: the nominal one has none of it.
-Prepared without_jitter(const Prepared& scene) {
-  Prepared own = scene;
+PreparedScene without_jitter(const PreparedScene& scene) {
+  PreparedScene own = scene;
   std::erase_if(own.scene.spread.variables, [](const SpreadVariable& v) { return v.is_drawn_per_edge; });
   own.scene.spread.copula.reset();
   return own;
@@ -60,10 +60,10 @@ struct NominalClosing {
   Eigen::MatrixXd gradient = {};  // a row to each of derived_figures; empty where the device does not close
 };
 
-NominalClosing close_nominal(const Prepared& nominal, const std::vector<Signal>& signals, DeviceChanges& by,
+NominalClosing close_nominal(const PreparedScene& nominal, const std::vector<Signal>& signals, DeviceChanges& by,
                              const DerivativeOptions& options, const Watch& watch) {
   MetricsObserver observer(nominal.model.device().gap.contact, nominal.scene.metrics);
-  MotionTape tape(observer);
+  RecordedMotion tape(observer);
   const Trajectory end = observe_closing(
       nominal.model, signals, {.duration = nominal.duration, .tolerance = options.tolerance, .stop = watch.stop}, tape);
   NominalClosing closing{.outcome = {.metrics = observer.metrics(end)}, .slopes = {}};
@@ -108,7 +108,8 @@ std::vector<Derivatives::Variable> variables_of(const DeviceSpread& spread) {
 
 bool Derivatives::grazes() const { return grazing < grazing_share; }
 
-Derivatives derivatives(const Prepared& scene, const EnsembleDrive& drive, const DerivativeOptions& options, const Watch& watch) {
+Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive, const DerivativeOptions& options,
+                        const Watch& watch) {
   const DeviceSpread& spread = scene.scene.spread;
   Derivatives found{.variables = variables_of(spread), .figures = {}};
   std::vector<std::size_t> places;  // of what is not drawn for every edge
@@ -123,7 +124,7 @@ Derivatives derivatives(const Prepared& scene, const EnsembleDrive& drive, const
   if (places.empty()) found.why_none = "all that varies is drawn anew for every edge";
   if (!found.why_none.empty()) return found;
 
-  const Prepared nominal = without_jitter(scene);
+  const PreparedScene nominal = without_jitter(scene);
   NearbyDevices near(nominal, drive);
   DeviceChanges by = changes_near(near, nominal.model, variables, watch);
   for (const std::size_t k : by.of_signals.kinks()) variables[k]->why_none = NearbyDevices::other_pieces;

@@ -56,7 +56,7 @@ struct DerivativeOptions {
 
 /// Under these waveforms, in the units that are known of each device where these do not err. There are none for a compressible
 /// film, where devices are sorted into classes, where the nominal device does not close, and when asked to stop.
-[[nodiscard]] Derivatives derivatives(const Prepared& scene, const EnsembleDrive& drive, const DerivativeOptions& options = {},
-                                      const Watch& watch = {});
+[[nodiscard]] Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive,
+                                      const DerivativeOptions& options = {}, const Watch& watch = {});
 
 }  // namespace softland

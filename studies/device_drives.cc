@@ -75,7 +75,7 @@ struct DeviceDrives::Driven {
   }
 };
 
-DeviceDrives::DeviceDrives(const Prepared& nominal) : nominal_(&nominal) {
+DeviceDrives::DeviceDrives(const PreparedScene& nominal) : nominal_(&nominal) {
   const std::vector<std::string> names = nominal.drive_names();
   sources_.resize(names.size());
   const std::vector<SpreadVariable>& variables = nominal.scene.spread.variables;

@@ -33,7 +33,7 @@ struct DeviceUnits {
 class DeviceDrives {
  public:
   /// Keeps a reference to `nominal`, whose [spread] says which errors there are.
-  explicit DeviceDrives(const Prepared& nominal);
+  explicit DeviceDrives(const PreparedScene& nominal);
 
   /// Whether a device of these units has other drives than the nominal one.
   [[nodiscard]] bool differ(const DeviceUnits& units) const {
@@ -74,7 +74,7 @@ class DeviceDrives {
   [[nodiscard]] Driven driven(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                               const std::vector<double>& values) const;
 
-  const Prepared* nominal_;
+  const PreparedScene* nominal_;
   std::vector<std::vector<Source>> sources_;  // of each drive
   bool has_errors_ = false;
 };

@@ -23,7 +23,7 @@ std::string refusal(Device device, const Gas& gas) {
   return {};
 }
 
-Effect closing_with(const Prepared& prepared, const std::optional<Gas>& gas, const Watch& watch, double done, double share) {
+Effect closing_with(const PreparedScene& prepared, const std::optional<Gas>& gas, const Watch& watch, double done, double share) {
   Device described = prepared.scene.device;
   described.gas = gas;
   const Switch model(described, prepared.quadrature);
@@ -67,7 +67,7 @@ double Effects::spread(const std::string& section, const Figure& figure) const {
   return (most - least) / figure.value(own(section).metrics);
 }
 
-Effects compare_effects(const Prepared& prepared, const Watch& watch) {
+Effects compare_effects(const PreparedScene& prepared, const Watch& watch) {
   const std::optional<Gas>& own = prepared.scene.device.gas;
   Effects found{.window = prepared.duration};
   std::vector<std::optional<Gas>> laws{std::nullopt};

@@ -49,6 +49,6 @@ struct Effects {
 /// (air at 101325 Pa and 300 K where it describes none), each law without what only others are given. The linear damper and the
 /// film over a slit only where the scene describes them. Throws Interrupted where `watch` asks to stop before the scene's own
 /// closing is complete.
-[[nodiscard]] Effects compare_effects(const Prepared& prepared, const Watch& watch = {});
+[[nodiscard]] Effects compare_effects(const PreparedScene& prepared, const Watch& watch = {});
 
 }  // namespace softland

@@ -60,7 +60,7 @@ std::size_t reference_size(const Calibration& calibration) {
 
 }  // namespace
 
-Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::function<void(std::uint64_t, std::span<double>)> point)
+Ensemble::Ensemble(const PreparedScene& nominal, std::uint64_t size, std::function<void(std::uint64_t, std::span<double>)> point)
     : nominal_(&nominal), size_(size), point_(std::move(point)), resolved_(nominal.resolved()) {
   require(!nominal.scene.spread.empty(), [&] {
     return fmt::format("{}: there is no [spread]: nothing tells how devices differ (see softland new)",
@@ -72,12 +72,12 @@ Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::function<vo
   }
 }
 
-Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::uint64_t seed, PointSet points)
+Ensemble::Ensemble(const PreparedScene& nominal, std::uint64_t size, std::uint64_t seed, PointSet points)
     : Ensemble(nominal, size,
                [all = SamplePoints(points, std::max<std::size_t>(1, nominal.scene.spread.variables.size()), seed, Stream::spread,
                                    size)](std::uint64_t k, std::span<double> u) { all.point(k, u); }) {}
 
-Ensemble::Ensemble(const Prepared& nominal, const SobolDesign& design)
+Ensemble::Ensemble(const PreparedScene& nominal, const SobolDesign& design)
     : Ensemble(nominal, design.evaluations(), [design](std::uint64_t k, std::span<double> u) { design.point(k, u); }) {}
 
 std::vector<double> Ensemble::point(std::uint64_t k) const {
@@ -128,7 +128,7 @@ SampledDevice DeviceBuilder::device(std::vector<double> values) {
 }
 
 void DeviceBuilder::describe(SampledDevice& device) {
-  const Prepared& nominal = ensemble_->nominal();
+  const PreparedScene& nominal = ensemble_->nominal();
   if (!ensemble_->reads_anew()) {
     for (std::size_t i = 0; i < device.values.size(); ++i) {
       const SpreadVariable& variable = nominal.scene.spread.variables[i];
@@ -151,7 +151,7 @@ double closing_time(const Switch& model, std::size_t drive, double step, Bias bi
   return end.touches.empty() ? Metrics::unset : end.touches.front().begin;
 }
 
-DeviceMeter::DeviceMeter(const Prepared& nominal, const Gauges& gauges, double precision)
+DeviceMeter::DeviceMeter(const PreparedScene& nominal, const Gauges& gauges, double precision)
     : nominal_(&nominal), gauges_(gauges), precision_(precision) {
   require(!gauges.piezo || piezo_unit(nominal.model) > 0, [&] {
     return fmt::format("{}: piezo cannot be measured: {}", nominal.scene.file.name(),
@@ -241,7 +241,7 @@ DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& c
 namespace {
 
 // Without error.
-std::vector<DeviceUnits> reference_units(const Prepared& nominal, const Gauges& gauges, std::size_t size, int jobs,
+std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const Gauges& gauges, std::size_t size, int jobs,
                                          const Watch& watch) {
   const DeviceMeter meter(nominal, gauges);
   const Ensemble ensemble(nominal, size, reference_seed);
@@ -308,7 +308,7 @@ KnownUnits KnownUnits::without_errors() const {
   return exact;
 }
 
-std::vector<KnownUnits> known_units(const Prepared& nominal, std::span<const Calibration> calibrations, int jobs,
+std::vector<KnownUnits> known_units(const PreparedScene& nominal, std::span<const Calibration> calibrations, int jobs,
                                     const Watch& watch) {
   // Volts that a closing time tells are others than those of Vdp.
   std::map<bool, std::vector<DeviceUnits>> references;  // whether they are told by it
@@ -327,7 +327,7 @@ std::vector<KnownUnits> known_units(const Prepared& nominal, std::span<const Cal
   return known;
 }
 
-DeviceUnits deviation_of_units(const Prepared& nominal, bool need_pull_in, int jobs, const Watch& watch) {
+DeviceUnits deviation_of_units(const PreparedScene& nominal, bool need_pull_in, int jobs, const Watch& watch) {
   constexpr std::size_t devices = 128;  // a deviation within 6 %
   DeviceUnits squares{.volts = 0, .time = 0, .piezo = 0};
   double known = 0;
@@ -423,7 +423,7 @@ std::vector<DeviceOutcome> close_driven(std::span<const DrivenDevice> devices, c
   return outcomes;
 }
 
-DeviceCloser::DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
+DeviceCloser::DeviceCloser(const PreparedScene& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
                            const std::atomic<bool>* stop)
     : nominal_(&nominal),
       drives_(&drives),

@@ -35,11 +35,11 @@ class Ensemble {
  public:
   /// Devices 0 to size - 1 of this scene, which keep the volts that its waveforms have on the nominal device. Keeps a reference
   /// to `nominal`. Throws InvalidInput where the scene has no [spread], and what SamplePoints throws.
-  Ensemble(const Prepared& nominal, std::uint64_t size, std::uint64_t seed = 1, PointSet points = PointSet::sobol);
+  Ensemble(const PreparedScene& nominal, std::uint64_t size, std::uint64_t seed = 1, PointSet points = PointSet::sobol);
   /// The devices at the points of a design for Sobol' indices.
-  Ensemble(const Prepared& nominal, const SobolDesign& design);
+  Ensemble(const PreparedScene& nominal, const SobolDesign& design);
 
-  [[nodiscard]] const Prepared& nominal() const { return *nominal_; }
+  [[nodiscard]] const PreparedScene& nominal() const { return *nominal_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
   /// Where device k is in the open unit cube: a coordinate for each varying quantity, before any correlation.
   [[nodiscard]] std::vector<double> point(std::uint64_t k) const;
@@ -52,9 +52,9 @@ class Ensemble {
   [[nodiscard]] SceneFile scene(const std::vector<double>& values) const;
 
  private:
-  Ensemble(const Prepared& nominal, std::uint64_t size, std::function<void(std::uint64_t, std::span<double>)> point);
+  Ensemble(const PreparedScene& nominal, std::uint64_t size, std::function<void(std::uint64_t, std::span<double>)> point);
 
-  const Prepared* nominal_;
+  const PreparedScene* nominal_;
   std::uint64_t size_;
   std::function<void(std::uint64_t, std::span<double>)> point_;
   SceneFile resolved_;       // of the nominal device
@@ -120,7 +120,7 @@ class DeviceMeter {
   /// Keeps a reference to `nominal`, of which it measures the electrode that closes the switch. Throws InvalidInput where there
   /// is none, or it has no pull-in voltage, and one of the gauges needs it; and where a piezo is asked for that the switch has
   /// not, or that does not move its contact point. `precision`: of pull-in voltages, relative.
-  DeviceMeter(const Prepared& nominal, const Gauges& gauges, double precision = dynamic_pull_in_precision);
+  DeviceMeter(const PreparedScene& nominal, const Gauges& gauges, double precision = dynamic_pull_in_precision);
   /// Of the nominal device [V], [Hz].
   [[nodiscard]] double pull_in() const { return pull_in_; }
   [[nodiscard]] double frequency() const;
@@ -147,7 +147,7 @@ class DeviceMeter {
     double time, volts;  // [s], over those of the nominal device
   };
 
-  const Prepared* nominal_;
+  const PreparedScene* nominal_;
   Gauges gauges_;
   double precision_;
   std::vector<ToldVolts> told_ = {};  // by time
@@ -183,12 +183,12 @@ class KnownUnits {
 };
 /// For each of these calibrations, their classes made of devices of the spread that depend on nothing but the spread: a device
 /// belongs to the same class in every study. Throws Interrupted where `watch` asks to stop.
-[[nodiscard]] std::vector<KnownUnits> known_units(const Prepared& nominal, std::span<const Calibration> calibrations, int jobs,
-                                                  const Watch& watch = {});
+[[nodiscard]] std::vector<KnownUnits> known_units(const PreparedScene& nominal, std::span<const Calibration> calibrations,
+                                                  int jobs, const Watch& watch = {});
 
 /// Standard deviations of the devices of the spread from the nominal one, in volts, in time and in a piezo's volts, over its own.
 /// Throws Interrupted where `watch` asks to stop.
-[[nodiscard]] DeviceUnits deviation_of_units(const Prepared& nominal, bool need_pull_in, int jobs, const Watch& watch = {});
+[[nodiscard]] DeviceUnits deviation_of_units(const PreparedScene& nominal, bool need_pull_in, int jobs, const Watch& watch = {});
 
 /// The drives that every device gets: the waveforms of the nominal device, or, where devices are calibrated, those in the units
 /// of each one; with the errors of its sources where these vary.
@@ -238,14 +238,14 @@ struct DrivenDevice {
 class DeviceCloser {
  public:
   /// Keeps references to `nominal` and `drives`. Throws what DeviceMeter throws.
-  DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
+  DeviceCloser(const PreparedScene& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
                const std::atomic<bool>* stop = nullptr);
   /// The outcomes of devices `first`, first + 1, ..., by drive; asked to stop, those that were not begun are unset.
   [[nodiscard]] std::vector<std::vector<DeviceOutcome>> operator()(std::span<const SampledDevice> devices,
                                                                    std::uint64_t first) const;
 
  private:
-  const Prepared* nominal_;
+  const PreparedScene* nominal_;
   const std::vector<EnsembleDrive>* drives_;
   ClosingOptions options_;
   std::uint64_t seed_;

@@ -24,10 +24,11 @@ struct EvaluationKey {
 };
 
 struct EvaluationValues {
-  double cost = std::numeric_limits<double>::infinity();     ///< the search's own; infinite where it is infeasible
-  double leading = std::numeric_limits<double>::infinity();  ///< the cost that leads the first stage of a search; see TwoStages
-  bool lands = false;                                        ///< without a significant rebound
-  long closings = 1;                                         ///< that it took
+  double cost = std::numeric_limits<double>::infinity();  ///< the search's own; infinite where it is infeasible
+  double leading =
+      std::numeric_limits<double>::infinity();  ///< the cost that leads the first stage of a search; see GuidedSearch
+  bool lands = false;                           ///< without a significant rebound
+  long closings = 1;                            ///< that it took
 };
 
 /// May be asked on any thread. Neither function throws: what goes wrong with the keeping is for its owner to tell.

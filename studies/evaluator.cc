@@ -164,7 +164,7 @@ void Evaluator::vary_device(const SceneFile& file, const Watch& watch) {
     SceneFile scene = file;
     scene.erase("spread");
     scene.erase("calibration");
-    nominal_ = std::make_unique<Prepared>(prepare_and_choose(scene, false, watch));
+    nominal_ = std::make_unique<PreparedScene>(prepare_and_choose(scene, false, watch));
     for (std::size_t i = 0; i < keys_.size(); ++i) {
       const auto [path, element] = key_and_element(keys_[i]);
       require(!path.starts_with("metrics."),
@@ -182,7 +182,7 @@ void Evaluator::vary_device(const SceneFile& file, const Watch& watch) {
   for (const std::string& key : keys_) {
     if (!waveform_key(key_and_element(key).first)) of_device.push_back(key);
   }
-  nominal_ = std::make_unique<Prepared>(prepare_and_choose(scene_that_varies(file, of_device), false, watch));
+  nominal_ = std::make_unique<PreparedScene>(prepare_and_choose(scene_that_varies(file, of_device), false, watch));
   if (of_device.empty()) return;
   for (const SpreadVariable& variable : nominal_->scene.spread.variables) {
     const auto column = static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), variable.name) - keys_.begin());
@@ -240,7 +240,7 @@ SceneFile Evaluator::scene_of(std::span<const double> values) const {
 }
 
 void Evaluator::build_anew(Row& row, std::span<const double> values) const {
-  Prepared prepared = prepare_and_choose(scene_of(values));
+  PreparedScene prepared = prepare_and_choose(scene_of(values));
   row.signals = prepared.signals();
   row.has_signals = true;
   row.duration = prepared.duration;
@@ -367,7 +367,7 @@ Eigen::MatrixXd Evaluator::jacobian(std::span<const double> row, const Watch& wa
     const VariedKey& key = nominal_->scene.spread.variables[i].keys.front();
     file.assign(key.path, Quantity{.value = row[of_device_[i]], .dimension = key.measured_in}, key.element);
   }
-  const Prepared there = prepare(scene_that_varies(file, keys_), false, watch);
+  const PreparedScene there = prepare(scene_that_varies(file, keys_), false, watch);
   const Derivatives found = derivatives(there, {.waveforms = there.in_drive_order(there.drives.waveforms)}, {}, watch);
   watch.throw_if_stopped();
   require(found.why_none.empty(), [&] { return "jacobian: no derivatives here: " + found.why_none; });

@@ -57,7 +57,7 @@ class Evaluator {
   [[nodiscard]] const std::vector<std::string>& units() const { return units_; }  ///< of the columns, SI
   [[nodiscard]] const std::vector<double>& nominal() const { return values_; }    ///< what the scene itself has [SI unit]
   [[nodiscard]] const std::vector<Figure>& figures() const { return figures_; }
-  [[nodiscard]] const Prepared& scene() const { return *nominal_; }
+  [[nodiscard]] const PreparedScene& scene() const { return *nominal_; }
 
   /// `rows`: row after row, a number for each key [SI unit]; `figures`: row after row, NaN where there is none; `ends`: of the
   /// rows. What is found does not depend on `jobs`, nor on what other rows there are. Throws InvalidInput where the sizes do not
@@ -93,9 +93,9 @@ class Evaluator {
   std::vector<Figure> figures_;
   EvaluatorOptions options_;
   std::vector<WaveformKey> of_waveforms_;
-  std::vector<std::size_t> of_device_;  ///< columns, in the order of the spread's variables
-  std::unique_ptr<Prepared> nominal_;   ///< its spread is that of the columns
-  std::unique_ptr<Ensemble> ensemble_;  ///< none where no column is of the device
+  std::vector<std::size_t> of_device_;      ///< columns, in the order of the spread's variables
+  std::unique_ptr<PreparedScene> nominal_;  ///< its spread is that of the columns
+  std::unique_ptr<Ensemble> ensemble_;      ///< none where no column is of the device
   std::unique_ptr<DeviceDrives> drives_;
   std::vector<Waveform> waveforms_;  ///< of the scene, in the order of the drives
   std::vector<Signal> signals_;      ///< of them

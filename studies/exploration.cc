@@ -84,7 +84,7 @@ std::vector<std::size_t> pulling_drives(const Device& device) {
 }
 
 /// The drives as straight lines: exact for steps and pulses, a thousandth of the swing for sines.
-std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const Prepared& p) {
+std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const PreparedScene& p) {
   std::map<std::string, std::vector<std::pair<double, double>>> all;
   const std::vector<std::string> names = p.drive_names();
   const std::vector<Signal> signals = p.signals();
@@ -232,7 +232,7 @@ void Exploration::list_figures(const Watch& watch) {
       add({"plain_step_cost", "Cost of the plain step", ""});
       for (const Figure& figure : step_figures) add(figure_column(figure, "plain_step_", ", plain step"));
       add({"evaluations", "Evaluations", ""});
-      const Prepared base = prepared(plan_.base(), true, watch);
+      const PreparedScene base = prepared(plan_.base(), true, watch);
       const std::string& families = plan_.options().at("waveform");
       for (const std::string& family : families_of(families)) {
         const SearchSpace space(base, find_named(actuators, plan_.options().at("actuator"))->value, family, base.duration / 2);
@@ -293,13 +293,13 @@ PointRow Exploration::computed(const SceneFile& scene, int jobs, const Watch& wa
   return optimized(scene, jobs, watch);
 }
 
-Prepared Exploration::prepared(const SceneFile& scene, bool default_limits, const Watch& watch) {
+PreparedScene Exploration::prepared(const SceneFile& scene, bool default_limits, const Watch& watch) {
   const PullInFinder finder = shares_switches_ ? pull_in_.finder(scene) : PullInFinder(electrode_pull_in);
   return choose(prepare(scene, default_limits, watch, finder), default_limits, watch);
 }
 
 PointRow Exploration::simulated(const SceneFile& scene, int jobs, const Watch& watch) {
-  const Prepared p = prepared(scene, false, watch);
+  const PreparedScene p = prepared(scene, false, watch);
   const bool certified = plan_.options().contains("certify");
   const Closing closing = certified ? certify(p, watch, jobs) : simulate(p, true, watch);
   PointRow row{.status = std::string(to_string(closing.metrics.status)), .reason = closing.trajectory.message, .figures = {}};
@@ -312,7 +312,7 @@ PointRow Exploration::simulated(const SceneFile& scene, int jobs, const Watch& w
 }
 
 PointRow Exploration::pulled_in(const SceneFile& scene, const Watch& watch) {
-  const Prepared p = prepared(scene, false, watch);
+  const PreparedScene p = prepared(scene, false, watch);
   const Device& device = p.scene.device;
   PointRow row{.status = std::string(to_string(Status::done)), .reason = {}, .figures = {}};
   for (const std::size_t k : pulling_drives(device)) {
@@ -333,7 +333,7 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Watch& watch) {
 }
 
 PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Watch& watch) {
-  const Prepared nominal = prepared(scene, true, watch);
+  const PreparedScene nominal = prepared(scene, true, watch);
   const Robustness found =
       robustness(nominal, {{.name = "scene", .waveforms = nominal.drives.waveforms, .calibration = nominal.scene.calibration}},
                  {.samples = std::stoull(plan_.options().at("samples")), .seed = plan_.seed(), .jobs = jobs}, watch);

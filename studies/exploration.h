@@ -90,7 +90,7 @@ class Exploration {
   [[nodiscard]] PointRow pulled_in(const SceneFile& scene, const Watch& watch);
   [[nodiscard]] PointRow on_devices(const SceneFile& scene, int jobs, const Watch& watch);
   [[nodiscard]] PointRow optimized(const SceneFile& scene, int jobs, const Watch& watch);
-  [[nodiscard]] Prepared prepared(const SceneFile& scene, bool default_limits, const Watch& watch);
+  [[nodiscard]] PreparedScene prepared(const SceneFile& scene, bool default_limits, const Watch& watch);
 
   Plan plan_;
   PointStudy study_;

@@ -23,7 +23,7 @@ FamilySearch::FamilySearch(const SearchSetting& setting, const ParameterBlock& b
       stages_([this](std::span<const double> x) { return price(x); },
               [this, told = std::move(on_evaluation)](const Evaluation& e) { told(among_all(e)); }, slopes()) {}
 
-Prices FamilySearch::price(std::span<const double> own) const {
+SearchCosts FamilySearch::price(std::span<const double> own) const {
   LastClosing& last = last_of_thread();
   if (options_.memory == nullptr) return setting_.price_at(own, nullptr, &last);
   MemoryOfFamily memory(*options_.memory, block_);
@@ -48,7 +48,7 @@ PriceSlopes FamilySearch::slopes() const {
                   .own = of(setting_.target.has_own_cost() ? setting_.target : Aim(Target::bounce))};
   if (!all.leading || !all.own) return all;
   all.conditions = setting_.followed_conditions().size();
-  all.apart = [this](std::span<const double> x) { return setting_.price_at(x).apart.value_or(Prices::Apart()); };
+  all.apart = [this](std::span<const double> x) { return setting_.price_at(x).apart.value_or(SearchCosts::Apart()); };
   return all;
 }
 
@@ -80,8 +80,8 @@ OptimizerResult FamilySearch::run(const OptimizerOptions& share, Costs costs, lo
   return stages_.run(problem_, share, costs, more, first_index);
 }
 
-std::optional<TwoStages::Best> FamilySearch::best(Costs costs) const {
-  std::optional<TwoStages::Best> found = stages_.best(costs);
+std::optional<GuidedSearch::Best> FamilySearch::best(Costs costs) const {
+  std::optional<GuidedSearch::Best> found = stages_.best(costs);
   if (found) found->evaluation = among_all(std::move(found->evaluation));
   return found;
 }

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "optimizers/problem.h"
+#include "studies/guided_search.h"
 #include "studies/optimize.h"
 #include "studies/search_setting.h"
-#include "studies/two_stages.h"
 
 namespace softland {
 
@@ -67,28 +67,28 @@ class FamilySearch {
   void begin_at_point(const std::vector<double>& own);
   /// The family's own parameters of a point of all.
   [[nodiscard]] std::vector<double> own(const Evaluation& e) const;
-  /// See TwoStages::run.
+  /// See GuidedSearch::run.
   [[nodiscard]] OptimizerResult run(const OptimizerOptions& share, Costs costs, long more, long first_index);
-  /// See TwoStages::best.
-  [[nodiscard]] std::optional<TwoStages::Best> best(Costs costs) const;
+  /// See GuidedSearch::best.
+  [[nodiscard]] std::optional<GuidedSearch::Best> best(Costs costs) const;
 
   [[nodiscard]] bool holds(const Evaluation& e) const { return block_.holds(e.x); }
   /// The point of these waveforms; empty where the family has none.
   [[nodiscard]] std::vector<double> point(const std::map<std::string, Waveform>& waveforms) const;
   [[nodiscard]] std::map<std::string, Waveform> waveforms(const Evaluation& e) const;
   /// Ready to run.
-  [[nodiscard]] Prepared prepared(const Evaluation& e) const { return setting_.prepared(waveforms(e)); }
+  [[nodiscard]] PreparedScene prepared(const Evaluation& e) const { return setting_.prepared(waveforms(e)); }
   /// None where a scene cannot hold the waveforms.
   [[nodiscard]] std::optional<SceneFile> scene(const Evaluation& e) const;
   /// The parameters by drive.name.
   [[nodiscard]] std::map<std::string, double> named(const Evaluation& e) const;
   /// Every evaluation, in order.
   [[nodiscard]] std::vector<Evaluation> log() const;
-  /// See TwoStages::surest_below.
+  /// See GuidedSearch::surest_below.
   [[nodiscard]] std::optional<Evaluation> surest_below(double own, const std::vector<std::vector<double>>& others) const;
 
  private:
-  [[nodiscard]] Prices price(std::span<const double> own) const;
+  [[nodiscard]] SearchCosts price(std::span<const double> own) const;
   [[nodiscard]] LastClosing& last_of_thread() const;
   [[nodiscard]] PriceSlopes slopes() const;
   [[nodiscard]] Evaluation among_all(Evaluation e) const;
@@ -99,7 +99,7 @@ class FamilySearch {
   mutable std::mutex last_mutex_;
   mutable std::map<std::thread::id, LastClosing> last_;
   Problem problem_;
-  TwoStages stages_;
+  GuidedSearch stages_;
 };
 
 }  // namespace softland

@@ -353,7 +353,7 @@ class DevicesStudy {
   }
   // The searched drives of a candidate, and the others as in the plain step.
   [[nodiscard]] std::map<std::string, Waveform> all_drives(std::map<std::string, Waveform> searched) const {
-    const Prepared& step = result_->drawing.baseline_scene;
+    const PreparedScene& step = result_->drawing.baseline_scene;
     searched.insert(step.drives.waveforms.begin(), step.drives.waveforms.end());
     return searched;
   }
@@ -367,7 +367,7 @@ class DevicesStudy {
     const std::vector<DriveRobustness>& drives = result_->verdict.drives;
     auto found = std::ranges::find(drives, std::string_view(name), &DriveRobustness::name);
     if (found == drives.end()) {
-      const Prepared& given = first().given;
+      const PreparedScene& given = first().given;
       const std::vector<Signal> own = given.told(given.in_drive_order(all_drives(waveforms)));
       found = std::ranges::find_if(drives, [&](const DriveRobustness& other) {
         return same_drives(own, given.told(given.in_drive_order(other.waveforms)));

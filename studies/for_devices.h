@@ -83,7 +83,7 @@ struct ChosenFrom {
 };
 
 struct ForDevicesResult {
-  Prepared varied;  ///< the scene with the spread that was looked at
+  PreparedScene varied;  ///< the scene with the spread that was looked at
   OptimizeResult drawing;
   /// On the nominal device: the waveform that wins; best_scene is none where the search was interrupted before the choice.
   OptimizeResult best;

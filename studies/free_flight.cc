@@ -23,7 +23,7 @@ using Eigen::VectorXd;
 
 }  // namespace
 
-FreeFlight::FreeFlight(const Prepared& prepared, Actuator actuator, double peak)
+FreeFlight::FreeFlight(const PreparedScene& prepared, Actuator actuator, double peak)
     : model_(prepared.model),
       modes_(prepared.model.modes()),
       gap_(prepared.scene.device.gap.contact),
@@ -70,7 +70,7 @@ FreeFlight::FreeFlight(const Prepared& prepared, Actuator actuator, double peak)
   }
 }
 
-void FreeFlight::add_free(const Prepared& prepared, const std::string& name, double peak, bool brakes) {
+void FreeFlight::add_free(const PreparedScene& prepared, const std::string& name, double peak, bool brakes) {
   const auto limits = prepared.drives.limits.find(name);
   require(limits != prepared.drives.limits.end(),
           fmt::format("the least time needs [driver.{}] with min_voltage and max_voltage", name));

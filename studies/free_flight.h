@@ -29,7 +29,7 @@ class FreeFlight final : public ControlledSystem {
   /// The drives that the actuator shapes are free within their limits, with electrodes up to `peak` volts where that is less than
   /// the driver gives; the others stand at what they hold in the plain step. Keeps a reference. Throws InvalidInput for a scene
   /// that lacks the drive or its limits, whose gas film is compressible, or that does not rest above its contact.
-  FreeFlight(const Prepared& prepared, Actuator actuator, double peak = std::numeric_limits<double>::infinity());
+  FreeFlight(const PreparedScene& prepared, Actuator actuator, double peak = std::numeric_limits<double>::infinity());
 
   [[nodiscard]] Eigen::Index states() const override { return 2 * modes_; }
   [[nodiscard]] Eigen::Index controls() const override { return static_cast<Eigen::Index>(free_.size()); }
@@ -81,7 +81,7 @@ class FreeFlight final : public ControlledSystem {
   [[nodiscard]] double least_closing_share() const;
   [[nodiscard]] double control(const Free& f, double volts) const;
   [[nodiscard]] double strength_slope(const Free& f, double c) const;
-  void add_free(const Prepared& prepared, const std::string& name, double peak, bool brakes);
+  void add_free(const PreparedScene& prepared, const std::string& name, double peak, bool brakes);
 
   const Switch& model_;
   Eigen::Index modes_;

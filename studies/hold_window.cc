@@ -63,7 +63,7 @@ HoldWindow hold_window(std::span<const ClosedRange> devices) {
   return window;
 }
 
-HoldWindows hold_windows(const Prepared& nominal, const RobustnessOptions& options, const Watch& watch) {
+HoldWindows hold_windows(const PreparedScene& nominal, const RobustnessOptions& options, const Watch& watch) {
   constexpr std::size_t together = 8;  // devices of one task
   HoldWindows found;
   const std::vector<Electrode>& electrodes = nominal.scene.device.electrodes;

@@ -37,6 +37,6 @@ struct HoldWindows {
 /// Of the first devices of the spread that robustness() has judged under the same options, in volts, whatever is measured of
 /// them, the other drives standing as for the pull-in voltages. A device that cannot be described is held by nothing. None where
 /// the scene has no contact, or `watch` asks to stop.
-[[nodiscard]] HoldWindows hold_windows(const Prepared& nominal, const RobustnessOptions& options, const Watch& watch = {});
+[[nodiscard]] HoldWindows hold_windows(const PreparedScene& nominal, const RobustnessOptions& options, const Watch& watch = {});
 
 }  // namespace softland

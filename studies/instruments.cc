@@ -8,7 +8,7 @@
 #include "integrators/quintic.h"
 #include "model/constants.h"
 #include "model/linearized_closing.h"
-#include "model/motion_tape.h"
+#include "model/recorded_motion.h"
 #include "model/static_slopes.h"
 #include "objectives/cost_slope.h"
 #include "objectives/rebounds.h"
@@ -210,7 +210,7 @@ DeviceReader::Reading DeviceReader::touch(const Instrument& instrument, bool wit
   const std::vector<Signal> signals = near_.signals();
   const double window = last_breakpoint(signals) + duration();
   EdgeRecorder edges(model_->device().gap.contact);
-  MotionTape tape(edges);
+  RecordedMotion tape(edges);
   const Trajectory run =
       observe_closing(*model_, signals, {.duration = window, .tolerance = tolerance_of_readings, .after_contact = 0}, tape);
   Reading reading{.values = edges.first(1), .slopes = {}};

@@ -71,7 +71,7 @@ struct Instrument {
 class DeviceReader {
  public:
   /// Of a scene whose [spread] has no jitter. Keeps a reference.
-  explicit DeviceReader(const Prepared& nominal) : nominal_(nominal), near_(nominal) {}
+  explicit DeviceReader(const PreparedScene& nominal) : nominal_(nominal), near_(nominal) {}
 
   /// Goes to the device with these values, as DeviceSpread::to_values. False where there is none such.
   [[nodiscard]] bool move_to(const std::vector<double>& values);
@@ -94,7 +94,7 @@ class DeviceReader {
   [[nodiscard]] double duration() const;
   [[nodiscard]] std::vector<Waveform> waveforms_of(const Instrument& instrument) const;
 
-  const Prepared& nominal_;
+  const PreparedScene& nominal_;
   NearbyDevices near_;
   std::optional<Switch> model_;
   std::optional<SwitchSlopes> slopes_;

@@ -19,7 +19,7 @@ struct Levels {
   double pulling = 0, releasing = 0;  // [V]
 };
 
-Levels levels_of(const DriveSearch& s, const Prepared& given, double share) {
+Levels levels_of(const DriveSearch& s, const PreparedScene& given, double share) {
   if (s.brakes) return {.pulling = internal::inside(s, 0), .releasing = share * s.limits.max_voltage};
   if (s.drive != piezo_drive) return {.pulling = s.limits.max_voltage, .releasing = internal::inside(s, 0)};
   const bool high_lifts = internal::lifting_voltage(given, 1) > 0;
@@ -29,7 +29,7 @@ Levels levels_of(const DriveSearch& s, const Prepared& given, double share) {
 
 }  // namespace
 
-std::vector<std::map<std::string, Waveform>> joint_swings(const Prepared& given, const SearchSpace& space) {
+std::vector<std::map<std::string, Waveform>> joint_swings(const PreparedScene& given, const SearchSpace& space) {
   const std::vector<DriveSearch>& drives = space.drives();
   const bool is_one_electrode = drives.size() == 1 && drives.front().drive != piezo_drive;
   if (is_one_electrode || given.model.film_states() > 0 || !given.rest()) return {};

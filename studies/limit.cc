@@ -104,7 +104,7 @@ std::map<std::string, Waveform> with_catch(const FreeFlight& flight, const Least
 }
 
 // The drives under searched waveforms; what is not searched is that of the plain step, else of the scene.
-std::vector<Signal> driven(const Prepared& prepared, std::map<std::string, Waveform> searched,
+std::vector<Signal> driven(const PreparedScene& prepared, std::map<std::string, Waveform> searched,
                            const std::map<std::string, Waveform>& plain) {
   searched.insert(plain.begin(), plain.end());
   searched.insert(prepared.drives.waveforms.begin(), prepared.drives.waveforms.end());
@@ -115,7 +115,8 @@ struct Arrival {
   double time = std::numeric_limits<double>::quiet_NaN(), velocity = time;
 };
 
-Arrival arrival(const Prepared& prepared, const std::map<std::string, Waveform>& searched, Actuator actuator, double window) {
+Arrival arrival(const PreparedScene& prepared, const std::map<std::string, Waveform>& searched, Actuator actuator,
+                double window) {
   const ClosingOptions options{.duration = window, .tolerance = std::min(prepared.tolerance, 1e-8), .after_contact = 0};
   const Trajectory run = simulate_closing(prepared.model, driven(prepared, searched, plain_step(prepared, actuator)), options);
   const Metrics m = metrics(run);
@@ -125,7 +126,7 @@ Arrival arrival(const Prepared& prepared, const std::map<std::string, Waveform>&
 // One search for a least time: the problem, its best course so far, and what is told of it.
 class LeastTimeSearch {
  public:
-  LeastTimeSearch(const Prepared& prepared, const LeastTimeOptions& options)
+  LeastTimeSearch(const PreparedScene& prepared, const LeastTimeOptions& options)
       : prepared_(prepared), options_(options), flight_(prepared, options.actuator, options.peak) {
     result_.permitted = options.impact_velocity;
     if (options.actuator == Actuator::pzt) return;
@@ -280,7 +281,7 @@ class LeastTimeSearch {
     }
   }
 
-  const Prepared& prepared_;
+  const PreparedScene& prepared_;
   const LeastTimeOptions& options_;
   FreeFlight flight_;
   ControlProblem problem_;
@@ -290,7 +291,7 @@ class LeastTimeSearch {
 
 }  // namespace
 
-LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options) {
+LeastTime least_time(const PreparedScene& prepared, const LeastTimeOptions& options) {
   require(options.impact_velocity > 0 && std::isfinite(options.impact_velocity),
           "the permitted impact velocity must be positive");
   LeastTime swung = LeastTimeSearch(prepared, options).from_swing();
@@ -300,8 +301,8 @@ LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options) 
   return better ? started : swung;
 }
 
-std::vector<std::map<std::string, Waveform>> landings_at_rest(const Prepared& prepared, Actuator actuator, double impact_velocity,
-                                                              const Watch& watch) {
+std::vector<std::map<std::string, Waveform>> landings_at_rest(const PreparedScene& prepared, Actuator actuator,
+                                                              double impact_velocity, const Watch& watch) {
   constexpr int most_modes_followed = 4;
   constexpr std::array ramps = {1.0 / 9, 1.0 / 18};  // periods of the first mode from one end of a range to the other
   const double period = 2 * pi / prepared.model.angular_frequencies()[0];
@@ -313,7 +314,7 @@ std::vector<std::map<std::string, Waveform>> landings_at_rest(const Prepared& pr
                       watch.tell(what, (static_cast<double>(k) + part) / ramps.size());
                     }};
     own.tell("landings at rest to begin with", 0);
-    Prepared smooth = prepared;
+    PreparedScene smooth = prepared;
     for (auto& [name, limits] : smooth.drives.limits)
       limits.max_slew = std::min(limits.max_slew, (limits.max_voltage - limits.min_voltage) / (ramp * period));
     try {
@@ -334,7 +335,7 @@ constexpr std::array catch_delays = {0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04};
 // What can follow the touch of a way to it.
 class AfterTouch {
  public:
-  AfterTouch(const Prepared& prepared, const LeastTime& way, Actuator actuator)
+  AfterTouch(const PreparedScene& prepared, const LeastTime& way, Actuator actuator)
       : prepared_(prepared),
         flight_(prepared, actuator, std::isfinite(way.peak) ? way.peak : std::numeric_limits<double>::infinity()),
         plain_(plain_step(prepared, actuator)),
@@ -362,7 +363,7 @@ class AfterTouch {
   [[nodiscard]] LimitLanding landing(const Catch& pulled) const {
     std::map<std::string, Waveform> all = with_catch(flight_, until_touch_, pulled, plain_);
     all.insert(plain_.begin(), plain_.end());
-    Prepared scene = read_back(with_waveforms(prepared_, all), "best.toml", prepared_);
+    PreparedScene scene = read_back(with_waveforms(prepared_, all), "best.toml", prepared_);
     Closing closing = simulate(scene, false);
     const auto soft = [](const Metrics& m) { return m.status == Status::done && m.settled && m.bounce_count == 0; };
     LimitLanding landing{.way = way_,
@@ -378,7 +379,7 @@ class AfterTouch {
   }
 
  private:
-  const Prepared& prepared_;
+  const PreparedScene& prepared_;
   FreeFlight flight_;
   std::map<std::string, Waveform> plain_;
   const LeastTime& way_;
@@ -483,7 +484,7 @@ class LimitStudy {
 namespace {
 
 // An electrode with a face on either side whose far face is the nearer one pushes the switch off its contact at any voltage.
-void refuse_what_pulls_away(const Prepared& given, Actuator actuator) {
+void refuse_what_pulls_away(const PreparedScene& given, Actuator actuator) {
   if (actuator == Actuator::pzt || !has_pulling_electrode(given.scene.device)) return;
   const std::size_t k = searched_drive(given.scene.device);
   if (static_pull_in(given.model, k, bias_of(given.scene, k)).status != Status::no_contact) return;
@@ -493,7 +494,7 @@ void refuse_what_pulls_away(const Prepared& given, Actuator actuator) {
 }  // namespace
 
 Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& watch) {
-  Prepared given = prepare_and_choose(file, true, watch);
+  PreparedScene given = prepare_and_choose(file, true, watch);
   require(given.model.has_contact(), "limit needs a [contact] section: without contact there is nothing to land on");
   refuse_what_pulls_away(given, options.actuator);
   const std::vector<std::string> names = given.drive_names();
@@ -504,7 +505,7 @@ Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& wat
   const std::string elsewhere = begins_elsewhere(options.start, options.before, given);
   require(elsewhere.empty(), [&] { return "the waveform to start with: " + elsewhere; });
   Limit result{.given = std::move(given), .options = options};
-  const Prepared& prepared = result.given;
+  const PreparedScene& prepared = result.given;
   result.closed_state = closed_state(prepared, prepared.signals());
   result.hold_warning = hold_warning(prepared.model, prepared.signals(), result.closed_state);
   result.step =

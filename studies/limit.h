@@ -56,14 +56,14 @@ struct LeastTime {
 };
 
 /// Throws InvalidInput for a scene that the question does not fit (free_flight.h).
-[[nodiscard]] LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options);
+[[nodiscard]] LeastTime least_time(const PreparedScene& prepared, const LeastTimeOptions& options);
 
 /// Waveforms of the drives that are shaped which bring every mode to rest on the contact, in about the least time for drives that
 /// take a ninth, and an eighteenth, of the first mode's period from one end of their range to the other: without the jumps that
 /// ring modes which the model leaves out. Where a search of a piezo, or of several drives, begins. `impact_velocity` as in
 /// LeastTimeOptions. Those that are not found are left out; none where free_flight.h does not follow the switch, and of more
 /// than four modes, which would take minutes.
-[[nodiscard]] std::vector<std::map<std::string, Waveform>> landings_at_rest(const Prepared& prepared, Actuator actuator,
+[[nodiscard]] std::vector<std::map<std::string, Waveform>> landings_at_rest(const PreparedScene& prepared, Actuator actuator,
                                                                             double impact_velocity, const Watch& watch);
 
 /// A landing under a waveform that begins as one of least time does. Then it goes on pulling, to keep the beam on its contact
@@ -72,7 +72,7 @@ struct LimitLanding {
   LeastTime way = {};
   double catch_delay = 0;                  ///< from the touch until the pull, before which all is as at the touch [s]
   double catch_time = 0;                   ///< from the touch until the hold levels [s]; 0: held at once
-  Prepared scene;                          ///< read back from its text
+  PreparedScene scene;                     ///< read back from its text
   Closing closing;                         ///< over the scene's whole window
   std::vector<ConfirmingRun> checks = {};  ///< by a tighter integrator and a richer beam
   bool bounce_free = false;                ///< settled without a significant rebound, in these runs too
@@ -87,7 +87,7 @@ struct LimitOptions {
 };
 
 struct Limit {
-  Prepared given;
+  PreparedScene given;
   LimitOptions options;
   double impact_velocity = std::numeric_limits<double>::quiet_NaN();  ///< permitted [m/s]
   ClosedState closed_state = {};                                      ///< under the hold levels

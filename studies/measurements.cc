@@ -61,7 +61,7 @@ struct Gauge {
   std::function<double(const Switch&)> read;
 };
 
-std::vector<Gauge> instruments(const Prepared& nominal, const DeviceMeter& meter, const MeasurementOptions& options) {
+std::vector<Gauge> instruments(const PreparedScene& nominal, const DeviceMeter& meter, const MeasurementOptions& options) {
   const std::size_t electrode = meter.electrode();
   const std::vector<double> bias = bias_of(nominal.scene, electrode);
   std::vector<Gauge> all{
@@ -306,7 +306,7 @@ MeasurementStudy study_measurements(const SceneFile& file, const MeasurementOpti
   require(device.contact.has_value(), "calibrate needs a [contact] section: without contact there is nothing to land on");
   require(has_pulling_electrode(device), "calibrate needs an electrode that pulls in: its voltage is what devices differ in");
   const SearchSetting setting = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", watch);
-  const Prepared& nominal = setting.given;
+  const PreparedScene& nominal = setting.given;
   const std::vector<Waveform> recipe = nominal.in_drive_order(nominal.drives.waveforms);
   require(!same_drives(nominal.told(recipe), setting.baseline_scene.signals()), [&] {
     return fmt::format(

@@ -23,7 +23,7 @@ double size_of(const SpreadVariable& variable, double value) {
 
 }  // namespace
 
-NearbyDevices::NearbyDevices(const Prepared& nominal, const EnsembleDrive& drive) : NearbyDevices(nominal) {
+NearbyDevices::NearbyDevices(const PreparedScene& nominal, const EnsembleDrive& drive) : NearbyDevices(nominal) {
   drive_ = &drive;
   known_ = drive.known.without_errors();
   const Calibration& calibration = known_.calibration();
@@ -31,7 +31,7 @@ NearbyDevices::NearbyDevices(const Prepared& nominal, const EnsembleDrive& drive
   if (!calibration.is_empty()) meter_.emplace(nominal, Gauges::of(calibration), precision);
 }
 
-NearbyDevices::NearbyDevices(const Prepared& nominal)
+NearbyDevices::NearbyDevices(const PreparedScene& nominal)
     : nominal_(nominal), ensemble_(nominal, 1), builder_(ensemble_), drives_(nominal) {
   std::vector<double> values;
   for (const SpreadVariable& v : variables()) values.push_back(v.nominal());

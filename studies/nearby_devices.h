@@ -25,10 +25,10 @@ class NearbyDevices {
   static constexpr const char* other_pieces = "the waveforms have other pieces on either side of its nominal value";
 
   /// Beside the nominal device of a scene whose [spread] has no jitter, under this drive. Keeps references.
-  NearbyDevices(const Prepared& nominal, const EnsembleDrive& drive);
+  NearbyDevices(const PreparedScene& nominal, const EnsembleDrive& drive);
 
   /// The same under no drive yet: drive_by() is to come before signals are asked for.
-  explicit NearbyDevices(const Prepared& nominal);
+  explicit NearbyDevices(const PreparedScene& nominal);
   NearbyDevices(const NearbyDevices&) = delete;
   NearbyDevices& operator=(const NearbyDevices&) = delete;
   /// Takes another drive, of the same calibration. Keeps a reference.
@@ -66,7 +66,7 @@ class NearbyDevices {
   [[nodiscard]] std::vector<double> beside(std::size_t i, double side) const;
   [[nodiscard]] Switch device_at(std::vector<double> values);
 
-  const Prepared& nominal_;
+  const PreparedScene& nominal_;
   const EnsembleDrive* drive_ = nullptr;
   KnownUnits known_;
   Ensemble ensemble_;

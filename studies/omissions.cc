@@ -29,7 +29,7 @@ double force_at_rest(const Device& described, std::size_t electrode) {
 
 double first_frequency(const Device& device) { return Switch(device).angular_frequencies()[0]; }
 
-Metrics closing(const Prepared& p, const Watch& watch, double done = 0, double share = 1) {
+Metrics closing(const PreparedScene& p, const Watch& watch, double done = 0, double share = 1) {
   return metrics(simulate_closing(p.model, p.signals(),
                                   {.duration = p.duration,
                                    .tolerance = p.tolerance,
@@ -38,7 +38,7 @@ Metrics closing(const Prepared& p, const Watch& watch, double done = 0, double s
                  p.scene.metrics);
 }
 
-void add_omissible_structure(const Prepared& prepared, std::vector<Omissible>& list) {
+void add_omissible_structure(const PreparedScene& prepared, std::vector<Omissible>& list) {
   const Device& d = prepared.scene.device;
   const Structure& s = d.structure;
   if (s.kind != StructureKind::plate && s.modes > 1) {
@@ -80,7 +80,7 @@ void add_omissible_structure(const Prepared& prepared, std::vector<Omissible>& l
   }
 }
 
-void add_omissible_fringing(const Prepared& prepared, std::vector<Omissible>& list) {
+void add_omissible_fringing(const PreparedScene& prepared, std::vector<Omissible>& list) {
   const Device& d = prepared.scene.device;
   for (std::size_t k = 0; k < d.electrodes.size(); ++k) {
     const Electrode& e = d.electrodes[k];
@@ -94,7 +94,7 @@ void add_omissible_fringing(const Prepared& prepared, std::vector<Omissible>& li
   }
 }
 
-void add_omissible_gas(const Prepared& prepared, std::vector<Omissible>& list) {
+void add_omissible_gas(const PreparedScene& prepared, std::vector<Omissible>& list) {
   const Device& d = prepared.scene.device;
   const double width = d.structure.width, closed = d.gap.electrode - d.gap.contact;
   const double omega = prepared.model.angular_frequencies()[0];
@@ -120,7 +120,7 @@ void add_omissible_gas(const Prepared& prepared, std::vector<Omissible>& list) {
   }
 }
 
-void add_omissible_contact(const Prepared& prepared, std::vector<Omissible>& list) {
+void add_omissible_contact(const PreparedScene& prepared, std::vector<Omissible>& list) {
   const Device& d = prepared.scene.device;
   const Contact& contact = *d.contact;
   if (contact.distribution == ContactDistribution::pad) {
@@ -141,7 +141,7 @@ void add_omissible_contact(const Prepared& prepared, std::vector<Omissible>& lis
 
 }  // namespace
 
-std::vector<Omissible> omissible_effects(const Prepared& prepared) {
+std::vector<Omissible> omissible_effects(const PreparedScene& prepared) {
   const Device& d = prepared.scene.device;
   std::vector<Omissible> list;
   add_omissible_structure(prepared, list);
@@ -160,7 +160,7 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
   return list;
 }
 
-Prepared without(const Prepared& prepared, const std::vector<Omissible>& effects) {
+PreparedScene without(const PreparedScene& prepared, const std::vector<Omissible>& effects) {
   const SceneFile frozen = prepared.resolved();
   SceneFile file = frozen.again(prepared.scene.file.name());
   file.assign("simulate.effects", std::string("all"));
@@ -175,7 +175,7 @@ Prepared without(const Prepared& prepared, const std::vector<Omissible>& effects
       file.erase(e.effect);
     }
   }
-  Prepared p = prepare(file);
+  PreparedScene p = prepare(file);
   p.scene.warnings = prepared.scene.warnings;
   p.pull_in = prepared.pull_in;
   p.drives = prepared.drives;
@@ -193,12 +193,12 @@ double influence(const Metrics& own, const Metrics& other, const MetricsOptions&
   return most;
 }
 
-std::vector<Omission> compare_omissions(const Prepared& prepared, const Metrics& own, bool timed, const Watch& watch) {
+std::vector<Omission> compare_omissions(const PreparedScene& prepared, const Metrics& own, bool timed, const Watch& watch) {
   std::vector<Omission> list;
   std::vector<Omissible> effects = omissible_effects(prepared);
   for (Omissible& effect : effects) {
     const double share = 1.0 / static_cast<double>(effects.size());
-    const Prepared p = without(prepared, {effect});
+    const PreparedScene p = without(prepared, {effect});
     Omission o{.what = std::move(effect),
                .metrics = closing(p, watch, static_cast<double>(list.size()) * share, share),
                .influence = 0,
@@ -211,7 +211,7 @@ std::vector<Omission> compare_omissions(const Prepared& prepared, const Metrics&
   return list;
 }
 
-EffectsChoice negligible_effects(const Prepared& prepared, double tolerance, const Watch& watch) {
+EffectsChoice negligible_effects(const PreparedScene& prepared, double tolerance, const Watch& watch) {
   EffectsChoice choice;
   const Metrics own = closing(prepared, watch);
   for (Omission& o : compare_omissions(prepared, own, false, watch)) {

@@ -40,10 +40,10 @@ struct Omission {
 
 /// Everything the scene describes that it could do without, in the order of its sections. Drives are not effects: what a waveform
 /// drives stays.
-[[nodiscard]] std::vector<Omissible> omissible_effects(const Prepared& prepared);
+[[nodiscard]] std::vector<Omissible> omissible_effects(const PreparedScene& prepared);
 
 /// The scene without these effects, its waveforms in volts.
-[[nodiscard]] Prepared without(const Prepared& prepared, const std::vector<Omissible>& effects);
+[[nodiscard]] PreparedScene without(const PreparedScene& prepared, const std::vector<Omissible>& effects);
 
 /// Largest relative difference of t_i, v_i and B_H as they are counted. Infinite where one of them appears or disappears, and
 /// where neither closing touches.
@@ -51,7 +51,7 @@ struct Omission {
 
 /// Leaves out one effect after the other; asked to stop, the list ends with the last closing that was complete. `timed`: also
 /// measures the right-hand side.
-[[nodiscard]] std::vector<Omission> compare_omissions(const Prepared& prepared, const Metrics& own, bool timed,
+[[nodiscard]] std::vector<Omission> compare_omissions(const PreparedScene& prepared, const Metrics& own, bool timed,
                                                       const Watch& watch = {});
 
 /// What effects = "auto" decided.
@@ -67,6 +67,6 @@ struct DescribedEffects {
 
 /// Effects whose influence is at most `tolerance`, alone and together: while together they exceed it the most influential one is
 /// put back. Nothing is left out of a scene whose closing does not touch. Throws Interrupted where `watch` asks to stop.
-[[nodiscard]] EffectsChoice negligible_effects(const Prepared& prepared, double tolerance, const Watch& watch = {});
+[[nodiscard]] EffectsChoice negligible_effects(const PreparedScene& prepared, double tolerance, const Watch& watch = {});
 
 }  // namespace softland

@@ -212,7 +212,7 @@ class Search {
   [[nodiscard]] std::vector<SearchedFamilyResult> families() const {
     std::vector<SearchedFamilyResult> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
-      const std::optional<TwoStages::Best> best = families_[k].best(Costs::own);
+      const std::optional<GuidedSearch::Best> best = families_[k].best(Costs::own);
       all.push_back({.family = names_[k],
                      .evaluations = static_cast<long>(families_[k].log().size()),
                      .cost = best ? best->cost : std::numeric_limits<double>::quiet_NaN()});

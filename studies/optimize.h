@@ -103,10 +103,10 @@ struct TriedWaveform {
 };
 
 struct OptimizeResult {
-  Prepared scene;  ///< as given
-  Prepared baseline_scene;
+  PreparedScene scene;  ///< as given
+  PreparedScene baseline_scene;
   Closing baseline;
-  std::optional<Prepared> best_scene;  ///< what best.toml says
+  std::optional<PreparedScene> best_scene;  ///< what best.toml says
   std::optional<Closing> best;
   std::vector<ConfirmingRun> checks;
   std::vector<SearchedFamilyResult> families = {};  ///< that were searched

@@ -161,7 +161,7 @@ double box_half_width(std::size_t d) {
   return standard_normal_quantile((1 + of_each) / 2);
 }
 
-OtherWays other_ways(const Prepared& nominal, const DriveRobustness& drive, const RobustnessOptions& options,
+OtherWays other_ways(const PreparedScene& nominal, const DriveRobustness& drive, const RobustnessOptions& options,
                      const OtherWaysOptions& effort, const Watch& watch) {
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   const std::size_t d = nominal.scene.spread.variables.size();
@@ -208,7 +208,7 @@ OtherWays other_ways(const Prepared& nominal, const DriveRobustness& drive, cons
   return found;
 }
 
-SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive, const BoxDevice& device,
+SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, const BoxDevice& device,
                           const RobustnessOptions& options) {
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   DriveRobustness exact{.name = drive.name, .waveforms = drive.waveforms};

@@ -77,11 +77,11 @@ struct OtherWays {
 
 /// For explained_figures, under this drive of `found`, which is judged on the devices of `options`. Ranges and polynomials depend
 /// on nothing but their arguments.
-[[nodiscard]] OtherWays other_ways(const Prepared& nominal, const DriveRobustness& drive, const RobustnessOptions& options,
+[[nodiscard]] OtherWays other_ways(const PreparedScene& nominal, const DriveRobustness& drive, const RobustnessOptions& options,
                                    const OtherWaysOptions& effort = {}, const Watch& watch = {});
 
 /// The scene of a device at an end of a range: what `simulate` runs to the same closing.
-[[nodiscard]] SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive, const BoxDevice& device,
+[[nodiscard]] SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, const BoxDevice& device,
                                         const RobustnessOptions& options);
 
 }  // namespace softland

@@ -8,20 +8,20 @@
 namespace softland {
 namespace {
 
-Step step_to(const Prepared& given, const std::string& drive, double level) {
+Step step_to(const PreparedScene& given, const std::string& drive, double level) {
   const auto limits = given.drives.limits.find(drive);
   const double slew = limits == given.drives.limits.end() ? std::numeric_limits<double>::infinity() : limits->second.max_slew;
   return {.level = level, .rise_time = std::abs(level - given.before(drive)) / slew};
 }
 
-Step step_of(const Prepared& given, const std::string& drive) {
+Step step_of(const PreparedScene& given, const std::string& drive) {
   const auto found = given.drives.waveforms.find(drive);
   return step_to(given, drive, found == given.drives.waveforms.end() ? 0.0 : signal(found->second).hold_level());
 }
 
 }  // namespace
 
-std::map<std::string, Waveform> plain_step(const Prepared& prepared, Actuator actuator) {
+std::map<std::string, Waveform> plain_step(const PreparedScene& prepared, Actuator actuator) {
   std::map<std::string, Waveform> plain;
   if (actuator != Actuator::pzt) {
     const std::string electrode = searched_electrode(prepared.scene.device);

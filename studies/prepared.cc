@@ -13,7 +13,7 @@
 
 namespace softland {
 
-std::vector<std::string> Prepared::drive_names() const {
+std::vector<std::string> PreparedScene::drive_names() const {
   std::vector<std::string> names;
   for (const Electrode& e : scene.device.electrodes) names.push_back(e.name);
   if (scene.device.dispersion) names.emplace_back(dispersion_drive);
@@ -21,7 +21,7 @@ std::vector<std::string> Prepared::drive_names() const {
   return names;
 }
 
-std::vector<Waveform> Prepared::in_drive_order(const std::map<std::string, Waveform>& waveforms) const {
+std::vector<Waveform> PreparedScene::in_drive_order(const std::map<std::string, Waveform>& waveforms) const {
   std::vector<Waveform> result;
   for (const std::string& name : drive_names()) {
     const auto found = waveforms.find(name);
@@ -30,35 +30,35 @@ std::vector<Waveform> Prepared::in_drive_order(const std::map<std::string, Wavef
   return result;
 }
 
-double Prepared::before(const std::string& drive) const {
+double PreparedScene::before(const std::string& drive) const {
   const auto found = drives.before.find(drive);
   return found == drives.before.end() ? 0 : found->second;
 }
 
-std::vector<double> Prepared::values_before() const {
+std::vector<double> PreparedScene::values_before() const {
   std::vector<double> values;
   for (const std::string& name : drive_names()) values.push_back(before(name));
   return values;
 }
 
-Signal Prepared::told(std::size_t k, const Waveform& waveform) const { return signal(waveform, values_before()[k]); }
+Signal PreparedScene::told(std::size_t k, const Waveform& waveform) const { return signal(waveform, values_before()[k]); }
 
-std::vector<Signal> Prepared::told(const std::vector<Waveform>& waveforms) const {
+std::vector<Signal> PreparedScene::told(const std::vector<Waveform>& waveforms) const {
   const std::vector<double> before = values_before();
   std::vector<Signal> signals;
   for (std::size_t k = 0; k < before.size(); ++k) signals.push_back(signal(waveforms[k], before[k]));
   return signals;
 }
 
-std::vector<Signal> Prepared::signals() const { return driven(in_drive_order(drives.waveforms)); }
+std::vector<Signal> PreparedScene::signals() const { return driven(in_drive_order(drives.waveforms)); }
 
-SourceErrors Prepared::errors(std::size_t k) const {
+SourceErrors PreparedScene::errors(std::size_t k) const {
   if (drives.errors.empty()) return {};
   const auto found = drives.errors.find(drive_names()[k]);
   return found == drives.errors.end() ? SourceErrors{} : found->second;
 }
 
-DriverModel Prepared::source(std::size_t k) const {
+DriverModel PreparedScene::source(std::size_t k) const {
   if (drives.models.empty()) return {};
   const std::string name = drive_names()[k];
   const auto found = drives.models.find(name);
@@ -68,27 +68,27 @@ DriverModel Prepared::source(std::size_t k) const {
   return source;
 }
 
-DriverLimits Prepared::limits(std::size_t k) const {
+DriverLimits PreparedScene::limits(std::size_t k) const {
   const auto found = drives.limits.find(drive_names()[k]);
   return found == drives.limits.end() ? DriverLimits{} : found->second;
 }
 
-Signal Prepared::told_samples(std::size_t k, const Signal& told) const {
+Signal PreparedScene::told_samples(std::size_t k, const Signal& told) const {
   return softland::told_samples(told, source(k), limits(k), duration);
 }
 
-Signal Prepared::driven(std::size_t k, const Signal& told, const SourceErrors& errors) const {
+Signal PreparedScene::driven(std::size_t k, const Signal& told, const SourceErrors& errors) const {
   const DriverModel own = source(k);
   if (own.is_ideal()) return errors.are_none() ? told : with_errors(told, errors);
   return softland::driven(told, own, limits(k), duration, errors);
 }
 
-std::vector<Signal> Prepared::driven(std::vector<Signal> told) const {
+std::vector<Signal> PreparedScene::driven(std::vector<Signal> told) const {
   for (std::size_t k = 0; k < told.size(); ++k) told[k] = driven(k, told[k]);
   return told;
 }
 
-std::map<std::string, PullInVoltages> Prepared::voltage_units() const {
+std::map<std::string, PullInVoltages> PreparedScene::voltage_units() const {
   std::map<std::string, PullInVoltages> units;
   for (const auto& [name, p] : pull_in) {
     units[name] = {.static_pull_in = p.statically.voltage, .dynamic_pull_in = p.dynamically.voltage};
@@ -97,7 +97,7 @@ std::map<std::string, PullInVoltages> Prepared::voltage_units() const {
 }
 
 std::string begins_elsewhere(const std::map<std::string, Waveform>& waveforms, const std::map<std::string, double>& before,
-                             const Prepared& scene) {
+                             const PreparedScene& scene) {
   for (const auto& [drive, waveform] : waveforms) {
     const auto found = before.find(drive);
     const double own = found == before.end() ? 0 : found->second, due = scene.before(drive);
@@ -149,7 +149,7 @@ double default_window(const Switch& model, const std::vector<Signal>& signals) {
 }
 
 /// The drives but for what sampling and filters make of them.
-std::vector<Signal> without_sources(const Prepared& p) {
+std::vector<Signal> without_sources(const PreparedScene& p) {
   std::vector<Signal> signals = p.told(p.in_drive_order(p.drives.waveforms));
   for (std::size_t k = 0; k < signals.size(); ++k) {
     if (const SourceErrors errors = p.errors(k); !errors.are_none()) signals[k] = with_errors(signals[k], errors);
@@ -158,7 +158,7 @@ std::vector<Signal> without_sources(const Prepared& p) {
 }
 
 /// Windows and waveforms that no computer would see the end of.
-void check_window(const Prepared& p) {
+void check_window(const PreparedScene& p) {
   const SceneFile& file = p.scene.file;
   if (!(p.duration <= longest_window)) {
     file.refuse("structure.kind",
@@ -179,7 +179,7 @@ void check_window(const Prepared& p) {
 }
 
 /// Every source charges its electrode on the open switch.
-void load_sources(Prepared& p) {
+void load_sources(PreparedScene& p) {
   const Switch& model = p.model;
   std::vector<double> open(static_cast<std::size_t>(model.modes()), 0.0);
   if (const auto rest = p.rest()) std::copy_n(rest->data(), open.size(), open.begin());
@@ -193,7 +193,7 @@ void load_sources(Prepared& p) {
 }
 
 /// Sources that take more samples than a run can follow.
-void check_sources(const Prepared& p) {
+void check_sources(const PreparedScene& p) {
   constexpr double most_samples = 1e5;
   for (const auto& [name, model] : p.drives.models) {
     if (!model.sample_rate || *model.sample_rate * p.duration <= most_samples) continue;
@@ -215,7 +215,7 @@ std::vector<double> bias_of(const Scene& scene, std::size_t drive) {
 namespace {
 
 // ", under piezo at 0.3 V": what the other drives stand at, where that is not 0.
-std::string under_bias(const Prepared& p, std::size_t electrode) {
+std::string under_bias(const PreparedScene& p, std::size_t electrode) {
   const std::vector<double> bias = bias_of(p.scene, electrode);
   const std::vector<std::string> names = p.drive_names();
   std::string words;
@@ -238,11 +238,11 @@ ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bi
   return found;
 }
 
-Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch, const PullInFinder& find_pull_in) {
+PreparedScene prepare(const SceneFile& file, bool default_limits, const Watch& watch, const PullInFinder& find_pull_in) {
   const Scene scene = read_scene(file);
   const double accuracy = scene.simulate.tolerance > 0 ? SimulateOptions{}.accuracy : scene.simulate.accuracy;
   const SwitchOptions quadrature = quadrature_for(accuracy, scene.device.structure.modes);
-  Prepared p{.scene = scene, .model = Switch(scene.device, quadrature), .quadrature = quadrature};
+  PreparedScene p{.scene = scene, .model = Switch(scene.device, quadrature), .quadrature = quadrature};
   if (std::string warning = slenderness_warning(scene.device.structure); !warning.empty()) {
     p.scene.warnings.push_back(std::move(warning));
   }

@@ -36,7 +36,7 @@ inline constexpr std::string_view pulls_away = "it pulls away from the contact; 
 
 struct DescribedEffects;
 
-struct Prepared {
+struct PreparedScene {
   Scene scene;
   Switch model;
   std::map<std::string, ElectrodePullIn> pull_in;  ///< electrodes whose pull-in was needed
@@ -87,7 +87,7 @@ struct Prepared {
 /// Why waveforms of a scene whose drives stand at `before` do not begin as those of this one do; empty where they do. `before`:
 /// by drive, what is not there stands at 0 V.
 [[nodiscard]] std::string begins_elsewhere(const std::map<std::string, Waveform>& waveforms,
-                                           const std::map<std::string, double>& before, const Prepared& scene);
+                                           const std::map<std::string, double>& before, const PreparedScene& scene);
 
 /// Integrator tolerance and quadrature that deliver a relative `accuracy` of t_i, v_i, B_H and the peak force.
 [[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: with a compressible film
@@ -103,7 +103,7 @@ using PullInFinder = std::function<ElectrodePullIn(const Switch& model, std::siz
 /// modes = "auto" stands for the usual number, effects = "auto" for all of them.
 /// Throws InvalidInput for a bad scene, or one whose pull-in voltage is needed and does not exist; Interrupted where `watch` asks
 /// to stop.
-[[nodiscard]] Prepared prepare(const SceneFile& file, bool default_limits = false, const Watch& watch = {},
-                               const PullInFinder& find_pull_in = electrode_pull_in);
+[[nodiscard]] PreparedScene prepare(const SceneFile& file, bool default_limits = false, const Watch& watch = {},
+                                    const PullInFinder& find_pull_in = electrode_pull_in);
 
 }  // namespace softland

@@ -63,7 +63,7 @@ struct Brake {
 
 class ReleaseSearch {
  public:
-  ReleaseSearch(const Prepared& given, const ReleaseOptions& options)
+  ReleaseSearch(const PreparedScene& given, const ReleaseOptions& options)
       : given_(given),
         options_(options),
         gap_(given.scene.device.gap.contact),
@@ -254,7 +254,7 @@ class ReleaseSearch {
     return later_part(given_.driven(k, Signal::piecewise_linear(points)), stands);
   }
 
-  const Prepared& given_;
+  const PreparedScene& given_;
   const ReleaseOptions& options_;
   double gap_, period_;
   std::vector<std::string> names_;  // of the drives
@@ -302,7 +302,7 @@ DeviceOpenings summarised(const std::vector<ReleaseFigures>& openings, double ba
 std::optional<ReleaseOnDevices> on_devices(const ReleaseSearch& search, const Release& r, const Watch& watch) {
   SceneFile file = r.given.scene.file;
   ReleaseOnDevices found{.spread_assumed = assume_spread(file), .plain = {}, .best = {}};
-  const Prepared nominal = found.spread_assumed ? prepare(file) : r.given;
+  const PreparedScene nominal = found.spread_assumed ? prepare(file) : r.given;
   found.spread = nominal.scene.spread;
   const Ensemble ensemble(nominal, r.options.devices, r.options.seed);
   std::vector<std::optional<std::pair<ReleaseFigures, ReleaseFigures>>> of_device(ensemble.size());
@@ -341,7 +341,7 @@ std::optional<ReleaseOnDevices> on_devices(const ReleaseSearch& search, const Re
 Release release(const SceneFile& file, const ReleaseOptions& options, const Watch& watch) {
   require(options.band > 0 && options.band < 1, fmt::format("band = {}: must be above 0 and below 1 contact gap", options.band));
   Release r{.given = prepare_and_choose(file, true, watch), .options = options};
-  const Prepared& given = r.given;
+  const PreparedScene& given = r.given;
   require(given.model.has_contact(), "release needs a [contact] section to open from, and the scene has none");
   require(given.model.rest().has_value(), "with every drive at 0 V the switch has no stable open state: it cannot be opened");
   const ReleaseSearch search(given, options);

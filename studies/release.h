@@ -65,7 +65,7 @@ struct ReleaseOnDevices {
 };
 
 struct Release {
-  Prepared given;
+  PreparedScene given;
   ReleaseOptions options;
   double open_position = 0;   ///< of the contact point with all drives at 0 V [m]
   double band = 0;            ///< [m]

@@ -24,8 +24,8 @@ double value_of(const DeviceOutcome& outcome, const Criterion& condition) { retu
 // Candidates are ranked by closings of this accuracy at best; the verdict has that of the scene.
 constexpr double ranking_accuracy = 1e-4;
 
-Prepared for_ranking(const Prepared& given) {
-  Prepared coarse = given;
+PreparedScene for_ranking(const PreparedScene& given) {
+  PreparedScene coarse = given;
   coarse.quadrature.points_per_length = std::min(
       given.quadrature.points_per_length, quadrature_for(ranking_accuracy, given.scene.device.structure.modes).points_per_length);
   coarse.model = Switch(coarse.scene.device, coarse.quadrature);
@@ -108,7 +108,7 @@ BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::
 BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known, std::uint64_t count, std::uint64_t seed,
                           std::uint64_t which, int jobs, const Watch& watch) {
   const std::uint64_t own = random_bits(seed, Stream::fresh, which);
-  const Prepared nominal = for_ranking(setting.given);
+  const PreparedScene nominal = for_ranking(setting.given);
   return build_all(Ensemble(nominal, count, own), known, own, jobs, watch);
 }
 

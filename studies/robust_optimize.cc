@@ -297,7 +297,7 @@ Candidate compared(std::vector<Candidate> candidates, const SearchSetting& setti
 void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& options, const RobustOptions& robust,
            const Watch& watch) {
   OptimizeResult& out = result.found;
-  const Prepared& best = *out.best_scene;
+  const PreparedScene& best = *out.best_scene;
   result.verdict =
       robustness(best, {{.name = "found", .waveforms = best.drives.waveforms, .calibration = best.scene.calibration}},
                  {.samples = robust.verdict,

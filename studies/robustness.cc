@@ -21,7 +21,6 @@
 namespace softland {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t most_worst = 10;
 constexpr std::array worth_of_classes{4, 8, 16};
 
@@ -60,7 +59,7 @@ void summarise(DriveRobustness& drive) {
 }
 
 // In the order of Switch::drives(); what is not driven stays at 0 V.
-std::vector<Waveform> waveforms_of(const Prepared& nominal, const NamedDrive& drive) {
+std::vector<Waveform> waveforms_of(const PreparedScene& nominal, const NamedDrive& drive) {
   const std::vector<std::string> names = nominal.drive_names();
   for (const auto& [name, waveform] : drive.waveforms) {
     require(std::find(names.begin(), names.end(), name) != names.end(),
@@ -163,7 +162,7 @@ Yield yield_of(std::size_t devices, std::size_t all) {
           .interval = wilson_interval(devices, all)};
 }
 
-Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& drives, const RobustnessOptions& options,
+Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive>& drives, const RobustnessOptions& options,
                       const Watch& watch) {
   require(nominal.model.has_contact(), "robustness needs a [contact] section: without contact there is nothing to land on");
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
@@ -204,7 +203,7 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
   return result;
 }
 
-Sensitivity sensitivity(const Prepared& nominal, const DriveRobustness& drive, std::uint64_t rows,
+Sensitivity sensitivity(const PreparedScene& nominal, const DriveRobustness& drive, std::uint64_t rows,
                         const RobustnessOptions& options, const Watch& watch) {
   const DeviceSpread& spread = nominal.scene.spread;
   Sensitivity found;
@@ -227,7 +226,7 @@ Sensitivity sensitivity(const Prepared& nominal, const DriveRobustness& drive, s
   return found;
 }
 
-std::vector<DeviceCourse> device_courses(const Prepared& nominal, const DriveRobustness& drive, const Robustness& found,
+std::vector<DeviceCourse> device_courses(const PreparedScene& nominal, const DriveRobustness& drive, const Robustness& found,
                                          const RobustnessOptions& options) {
   std::vector<std::size_t> order(drive.outcomes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -241,7 +240,7 @@ std::vector<DeviceCourse> device_courses(const Prepared& nominal, const DriveRob
     if (order.empty()) break;
     const std::size_t k = order[static_cast<std::size_t>(std::lround(probability * static_cast<double>(order.size() - 1)))];
     try {
-      const Prepared own = prepare(scene_of_device(nominal, drive, k, options).again("device.toml"));
+      const PreparedScene own = prepare(scene_of_device(nominal, drive, k, options).again("device.toml"));
       courses.push_back(
           {.probability = probability,
            .device = k,
@@ -253,7 +252,7 @@ std::vector<DeviceCourse> device_courses(const Prepared& nominal, const DriveRob
   return courses;
 }
 
-SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive, std::size_t device,
+SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t device,
                           const RobustnessOptions& options) {
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   return internal::scene_of_values(ensemble, drive, ensemble.values(device), options.seed, device);
@@ -270,7 +269,7 @@ DriveRobustness summarised(NamedDrive drive, KnownUnits known, std::vector<Devic
   return all;
 }
 
-EnsembleRun run_of(const Prepared& nominal, const RobustnessOptions& options) {
+EnsembleRun run_of(const PreparedScene& nominal, const RobustnessOptions& options) {
   return {.duration = nominal.duration,
           .tolerance = std::max(nominal.tolerance, EnsembleRun{}.tolerance),
           .seed = options.seed,
@@ -279,14 +278,14 @@ EnsembleRun run_of(const Prepared& nominal, const RobustnessOptions& options) {
           .measures_drive_energy = options.measures_drive_energy};
 }
 
-EnsembleDrive exactly_measured(const Prepared& nominal, const DriveRobustness& drive) {
+EnsembleDrive exactly_measured(const PreparedScene& nominal, const DriveRobustness& drive) {
   return {.waveforms = waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms}),
           .known = drive.known.without_errors()};
 }
 
 SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive, const std::vector<double>& values,
                           std::uint64_t seed, std::size_t device) {
-  const Prepared& nominal = ensemble.nominal();
+  const PreparedScene& nominal = ensemble.nominal();
   SceneFile file = ensemble.scene(values);
   DeviceUnits units;
   if (const Calibration& calibration = drive.known.calibration(); !calibration.is_empty()) {

@@ -108,21 +108,21 @@ struct NamedDrive {
 
 /// The drives on the devices of the spread of `nominal`, and the plain step to the same hold levels before them. Throws
 /// InvalidInput for a scene without [spread] or without contact, and a drive that the scene does not have or beyond its limits.
-[[nodiscard]] Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& drives,
+[[nodiscard]] Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive>& drives,
                                     const RobustnessOptions& options, const Watch& watch = {});
 
 /// Sobol' indices of the figures under this drive, from `rows` rows of a design. There are none where variables are correlated,
 /// since their shares cannot be told apart, nor where there is only one. Measurements count as exact.
-[[nodiscard]] Sensitivity sensitivity(const Prepared& nominal, const DriveRobustness& drive, std::uint64_t rows,
+[[nodiscard]] Sensitivity sensitivity(const PreparedScene& nominal, const DriveRobustness& drive, std::uint64_t rows,
                                       const RobustnessOptions& options, const Watch& watch = {});
 
 /// The devices whose highest rebound is the 5, 50 and 95 % quantile of all, and how they close.
-[[nodiscard]] std::vector<DeviceCourse> device_courses(const Prepared& nominal, const DriveRobustness& drive,
+[[nodiscard]] std::vector<DeviceCourse> device_courses(const PreparedScene& nominal, const DriveRobustness& drive,
                                                        const Robustness& found, const RobustnessOptions& options);
 
 /// The scene of a device of that ensemble under one of its drives, with the errors of its sources written out: what `simulate`
 /// runs to the same closing, as Ensemble::scene(), but for a sine whose times or volts are off (DeviceDrives::waveforms).
-[[nodiscard]] SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive, std::size_t device,
+[[nodiscard]] SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t device,
                                         const RobustnessOptions& options);
 
 namespace internal {
@@ -130,9 +130,9 @@ namespace internal {
 /// The statistics of these outcomes, by device.
 [[nodiscard]] DriveRobustness summarised(NamedDrive drive, KnownUnits known, std::vector<DeviceOutcome> outcomes);
 /// Shared by what looks closer at a drive of a Robustness.
-[[nodiscard]] EnsembleRun run_of(const Prepared& nominal, const RobustnessOptions& options);
+[[nodiscard]] EnsembleRun run_of(const PreparedScene& nominal, const RobustnessOptions& options);
 /// The drive, where measurements have no errors.
-[[nodiscard]] EnsembleDrive exactly_measured(const Prepared& nominal, const DriveRobustness& drive);
+[[nodiscard]] EnsembleDrive exactly_measured(const PreparedScene& nominal, const DriveRobustness& drive);
 /// The scene of the device with these values of the varying quantities; `device` is the number that the errors of its
 /// measurements belong to.
 [[nodiscard]] SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive, const std::vector<double>& values,

@@ -31,7 +31,7 @@ constexpr double hopeless = 0.25;  // by the cost of bounce, about 1 of the plai
 constexpr double golden_ratio = 1.618033988749895;
 
 // A hold level that a plain step does not close with may still close with a throw: what a closing of this beam would be like.
-Metrics imagined_step(const Prepared& given, double period) {
+Metrics imagined_step(const PreparedScene& given, double period) {
   const double gap = given.scene.device.gap.contact;
   Metrics step;
   step.initial_contact_time = period / 2;
@@ -70,7 +70,7 @@ struct RecordedClosing {
 
   std::vector<Signal> signals;
   MetricsObserver observer;
-  MotionTape tape;
+  RecordedMotion tape;
   Metrics metrics;
 };
 
@@ -86,7 +86,7 @@ double last_breakpoint(const std::vector<Signal>& signals) {
   return last;
 }
 
-SceneFile with_waveforms(const Prepared& prepared, const std::map<std::string, Waveform>& waveforms) {
+SceneFile with_waveforms(const PreparedScene& prepared, const std::map<std::string, Waveform>& waveforms) {
   SceneFile file = prepared.resolved();
   for (const auto& [drive, waveform] : waveforms) file.set_waveform(drive, waveform);
   return file;
@@ -96,21 +96,22 @@ bool can_be_written(const std::map<std::string, Waveform>& waveforms) {
   return std::ranges::none_of(waveforms, [](const auto& one) { return std::holds_alternative<Own>(one.second); });
 }
 
-Prepared prepared_with(const Prepared& prepared, std::map<std::string, Waveform> waveforms, const Prepared& given) {
+PreparedScene prepared_with(const PreparedScene& prepared, std::map<std::string, Waveform> waveforms,
+                            const PreparedScene& given) {
   std::map<std::string, Waveform> own;
   for (auto one = waveforms.begin(); one != waveforms.end();) {
     const auto next = std::next(one);
     if (std::holds_alternative<Own>(one->second)) own.insert(waveforms.extract(one));
     one = next;
   }
-  Prepared read = read_back(with_waveforms(prepared, waveforms), "best.toml", given);
+  PreparedScene read = read_back(with_waveforms(prepared, waveforms), "best.toml", given);
   own.merge(std::move(read.drives.waveforms));
   read.drives.waveforms = std::move(own);
   return read;
 }
 
-Prepared read_back(const SceneFile& file, const std::string& name, const Prepared& given) {
-  Prepared p = choose(prepare(file.again(name)));
+PreparedScene read_back(const SceneFile& file, const std::string& name, const PreparedScene& given) {
+  PreparedScene p = choose(prepare(file.again(name)));
   p.scene.warnings = given.scene.warnings;
   p.scene.standing = given.scene.standing;  // of the file in volts all hold levels would count
   return p;
@@ -120,7 +121,7 @@ SceneFile SearchSetting::scene(const std::map<std::string, Waveform>& searched) 
   return with_waveforms(baseline_scene, searched);
 }
 
-Prepared SearchSetting::prepared(const std::map<std::string, Waveform>& searched) const {
+PreparedScene SearchSetting::prepared(const std::map<std::string, Waveform>& searched) const {
   return prepared_with(baseline_scene, searched, given);
 }
 
@@ -148,12 +149,14 @@ ClosingOptions SearchSetting::run_of(const std::vector<Signal>& signals) const {
   return own;
 }
 
-Prices SearchSetting::price(const std::vector<Signal>& signals) const { return worst_price(RecordedClosing(*this, signals)); }
+SearchCosts SearchSetting::price(const std::vector<Signal>& signals) const {
+  return worst_price(RecordedClosing(*this, signals));
+}
 
-Prices SearchSetting::worst_price(const RecordedClosing& closing) const {
-  Prices worst = price_of(closing);
+SearchCosts SearchSetting::worst_price(const RecordedClosing& closing) const {
+  SearchCosts worst = price_of(closing);
   if (richer.empty()) return worst;
-  const auto with_speed = [this](Prices prices, const RecordedClosing& run) {
+  const auto with_speed = [this](SearchCosts prices, const RecordedClosing& run) {
     if (target.has_own_cost() || target.from_the_start() != nullptr) return prices;
     prices.own = prices.leading += weight_of_speed * run.metrics.largest_impact_velocity / scale.step.largest_impact_velocity;
     return prices;
@@ -162,7 +165,7 @@ Prices SearchSetting::worst_price(const RecordedClosing& closing) const {
   for (const RicherBeam& beam : richer) {
     if (!(worst.leading < hopeless)) break;
     const RecordedClosing run(*this, closing.signals, beam.model, beam.closed_potential);
-    const Prices other = with_speed(price_of(run), run);
+    const SearchCosts other = with_speed(price_of(run), run);
     worst.leading = std::max(worst.leading, other.leading);
     worst.own = std::max(worst.own, other.own);
     worst.lands = worst.lands && other.lands;
@@ -177,11 +180,11 @@ Metrics SearchSetting::with_rest_and_drives(Metrics metrics, const std::vector<S
   return metrics;
 }
 
-Prices SearchSetting::price_of(const RecordedClosing& closing) const {
+SearchCosts SearchSetting::price_of(const RecordedClosing& closing) const {
   const bool needs_all = !conditions.empty() || target.has_own_objective();
   const Metrics figures = needs_all ? with_rest_and_drives(closing.metrics, closing.signals) : closing.metrics;
   const auto by = [&](const Aim& one) { return cost(one, figures, scale, given.scene.metrics); };
-  Prices prices{.leading = by(target.has_own_cost() ? Target::bounce : target)};
+  SearchCosts prices{.leading = by(target.has_own_cost() ? Target::bounce : target)};
   prices.own = target.has_own_cost() ? by(target) : prices.leading;
   prices.lands = prices.leading < never_touched && figures.major_bounce_height <= given.scene.metrics.significant_rebound;
   if (conditions.empty()) return prices;
@@ -201,7 +204,7 @@ Prices SearchSetting::price_of(const RecordedClosing& closing) const {
   return prices;
 }
 
-Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memory, LastClosing* last) const {
+SearchCosts SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memory, LastClosing* last) const {
   const std::map<std::string, Waveform> searched = space.waveforms(x);
   if (!is_allowed(searched)) return {};
   const EvaluationKey key{.x = {x.begin(), x.end()}};
@@ -209,7 +212,7 @@ Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memo
     if (const auto known = memory->recall(key)) return {.leading = known->leading, .own = known->cost, .lands = known->lands};
   }
   auto closing = std::make_shared<const RecordedClosing>(*this, given.driven(drives(searched)));
-  Prices found = worst_price(*closing);
+  SearchCosts found = worst_price(*closing);
   if (last != nullptr) *last = {.x = key.x, .closing = std::move(closing)};
   found.leading += 0.0, found.own += 0.0;  // of zeros a memory need not keep the sign
   if (memory != nullptr) memory->note(key, {.cost = found.own, .leading = found.leading, .lands = found.lands});
@@ -296,8 +299,8 @@ void SearchSetting::check_starts(const std::vector<StartingWaveforms>& starts) c
 
 bool SearchSetting::begins_plainly() const { return same_drives(given.signals(), baseline_scene.signals()); }
 
-Prepared SearchSetting::within_limits() const {
-  Prepared limited = given;
+PreparedScene SearchSetting::within_limits() const {
+  PreparedScene limited = given;
   limited.drives.limits = limits;
   return limited;
 }
@@ -308,12 +311,12 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
     require_request(one.figure.conditioning != Conditioning::open, [&] {
       return fmt::format("{} \"{}\": a switch that closes has no such figure", requested("constrain"), one.text);
     });
-  Prepared given = prepare_and_choose(file, true, watch);
+  PreparedScene given = prepare_and_choose(file, true, watch);
   require(given.model.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
   require_request(!(target.is_about(Target::force) && given.model.rigid_contact() != nullptr), [] {
     return requested("target") + " force: an impact on a rigid contact has an impulse, and no force to lower";
   });
-  Prepared baseline_scene = read_back(with_waveforms(given, plain_step(given, actuator)), "baseline.toml", given);
+  PreparedScene baseline_scene = read_back(with_waveforms(given, plain_step(given, actuator)), "baseline.toml", given);
   Closing baseline = simulate(baseline_scene, true, watch);
   watch.throw_if_stopped();
 

@@ -17,9 +17,9 @@
 #include "config/criterion.h"
 #include "objectives/cost.h"
 #include "studies/evaluation_memory.h"
+#include "studies/guided_search.h"
 #include "studies/search_space.h"
 #include "studies/simulate.h"
-#include "studies/two_stages.h"
 #include "waveforms/signal_slopes.h"
 
 namespace softland {
@@ -43,8 +43,8 @@ struct RicherBeam {
 struct SearchSetting {
   Aim target;
   std::vector<Criterion> conditions;  ///< that a landing has to fulfil, on conditioned_figures
-  Prepared given;                     ///< the scene
-  Prepared baseline_scene;            ///< under the plain step
+  PreparedScene given;                ///< the scene
+  PreparedScene baseline_scene;       ///< under the plain step
   Closing baseline;
   CostScale scale;
   double baseline_cost = 0;
@@ -58,17 +58,18 @@ struct SearchSetting {
   /// cannot be written into a scene.
   [[nodiscard]] SceneFile scene(const std::map<std::string, Waveform>& searched) const;
   /// The same ready to run: prepared_with().
-  [[nodiscard]] Prepared prepared(const std::map<std::string, Waveform>& searched) const;
+  [[nodiscard]] PreparedScene prepared(const std::map<std::string, Waveform>& searched) const;
   /// One waveform per drive of the switch, in its order.
   [[nodiscard]] std::vector<Waveform> drives(const std::map<std::string, Waveform>& searched) const;
   /// Whether the searched drives stay inside their limits.
   [[nodiscard]] bool is_allowed(const std::map<std::string, Waveform>& searched) const;
   /// How a candidate under these signals is run.
   [[nodiscard]] ClosingOptions run_of(const std::vector<Signal>& signals) const;
-  [[nodiscard]] Prices price(const std::vector<Signal>& signals) const;
+  [[nodiscard]] SearchCosts price(const std::vector<Signal>& signals) const;
   /// Of a point of the search space, on the nominal device; infinite where it leaves the limits of a driver. What `memory` holds
   /// is not simulated again; what is, becomes `last`.
-  [[nodiscard]] Prices price_at(std::span<const double> x, EvaluationMemory* memory = nullptr, LastClosing* last = nullptr) const;
+  [[nodiscard]] SearchCosts price_at(std::span<const double> x, EvaluationMemory* memory = nullptr,
+                                     LastClosing* last = nullptr) const;
   /// The gradient of a cost at a point of the search space, by the parameters, and after it that of each of
   /// followed_conditions(), as Conditions::gradients: of the nominal device, exact but where touches graze. NaN where there is
   /// none. The same numbers, sooner, with `groups`, which hold for all points or are not used, and where `last` is of this point.
@@ -89,13 +90,13 @@ struct SearchSetting {
   /// Whether the scene holds no waveform but the plain step.
   [[nodiscard]] bool begins_plainly() const;
   /// The scene, whose drivers have the limits that searched waveforms keep.
-  [[nodiscard]] Prepared within_limits() const;
+  [[nodiscard]] PreparedScene within_limits() const;
 
  private:
   /// With the figures that a run of a search does not measure.
   [[nodiscard]] Metrics with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const;
-  [[nodiscard]] Prices price_of(const RecordedClosing& closing) const;
-  [[nodiscard]] Prices worst_price(const RecordedClosing& closing) const;
+  [[nodiscard]] SearchCosts price_of(const RecordedClosing& closing) const;
+  [[nodiscard]] SearchCosts worst_price(const RecordedClosing& closing) const;
 };
 
 /// Throws InvalidInput for a scene or a family that cannot be searched; Interrupted where `watch` asks to stop.
@@ -117,14 +118,15 @@ struct SearchSetting {
 [[nodiscard]] double last_breakpoint(const std::vector<Signal>& signals);
 
 /// The scene of `prepared` in volts, with other waveforms on some drives.
-[[nodiscard]] SceneFile with_waveforms(const Prepared& prepared, const std::map<std::string, Waveform>& waveforms);
+[[nodiscard]] SceneFile with_waveforms(const PreparedScene& prepared, const std::map<std::string, Waveform>& waveforms);
 /// Whether a scene file can hold them all: none is a user's own.
 [[nodiscard]] bool can_be_written(const std::map<std::string, Waveform>& waveforms);
 /// The scene of `prepared` with other waveforms on some drives, ready to run: read_back() of its text, with what no text can hold
 /// put in beside it.
-[[nodiscard]] Prepared prepared_with(const Prepared& prepared, std::map<std::string, Waveform> waveforms, const Prepared& given);
+[[nodiscard]] PreparedScene prepared_with(const PreparedScene& prepared, std::map<std::string, Waveform> waveforms,
+                                          const PreparedScene& given);
 /// Text of the scene, read back: what a user's `simulate best.toml` will run. Warnings stay those about the file that the user
 /// wrote.
-[[nodiscard]] Prepared read_back(const SceneFile& file, const std::string& name, const Prepared& given);
+[[nodiscard]] PreparedScene read_back(const SceneFile& file, const std::string& name, const PreparedScene& given);
 
 }  // namespace softland

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 constexpr double rounding = 1e-9;  // of the distance of two bounds: a scene file writes rounded numbers
 
-double hold_level(const Prepared& p, const std::string& drive) {
+double hold_level(const PreparedScene& p, const std::string& drive) {
   const auto found = p.drives.waveforms.find(drive);
   return found == p.drives.waveforms.end() ? 0 : signal(found->second).hold_level();
 }
@@ -189,7 +189,7 @@ std::size_t searched_drive(const Device& device) {
   return static_cast<std::size_t>(at - device.electrodes.begin());
 }
 
-std::vector<std::string> braking_electrodes(const Prepared& prepared) {
+std::vector<std::string> braking_electrodes(const PreparedScene& prepared) {
   std::vector<std::string> names;
   for (const Electrode& e : prepared.scene.device.electrodes) {
     if (e.side == Side::far && prepared.drives.limits.contains(e.name)) names.push_back(e.name);
@@ -308,7 +308,7 @@ void add_own(DriveSearch& s) {
 
 }  // namespace
 
-SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch,
+SearchSpace::SearchSpace(const PreparedScene& prepared, Actuator actuator, const std::string& family, double first_touch,
                          const OwnWaveforms& own) {
   FamilyOfDrives families(family);
   const auto add = [&](const std::string& drive, bool brakes) {

@@ -106,7 +106,7 @@ class SearchSpace {
   /// `family` names that of all drives ("pulse", "knots:8") or of each ("main=step,pzt=pulse"; pulse where it says nothing);
   /// `first_touch` of the plain step [s]; `own` may be named too. Throws InvalidInput when the scene lacks the drive, a piezo
   /// limit, or the family cannot be searched; of an own waveform where it does not end on the hold level at its start.
-  SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch,
+  SearchSpace(const PreparedScene& prepared, Actuator actuator, const std::string& family, double first_touch,
               const OwnWaveforms& own = {});
 
   [[nodiscard]] const std::vector<DriveSearch>& drives() const { return drives_; }
@@ -137,6 +137,6 @@ class SearchSpace {
 /// Its number among the drives.
 [[nodiscard]] std::size_t searched_drive(const Device& device);
 /// Electrodes on the far side whose driver has limits: a search brakes with them. The others keep the scene's waveform.
-[[nodiscard]] std::vector<std::string> braking_electrodes(const Prepared& prepared);
+[[nodiscard]] std::vector<std::string> braking_electrodes(const PreparedScene& prepared);
 
 }  // namespace softland

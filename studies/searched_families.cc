@@ -18,7 +18,7 @@ namespace {
 
 using internal::first_period, internal::lifting_voltage, internal::Parameters, internal::pulse_of;
 
-void add_pulse(DriveSearch& s, const Prepared& p, double t0) {
+void add_pulse(DriveSearch& s, const PreparedScene& p, double t0) {
   const double period = 2 * pi / p.model.angular_frequencies()[0];
   s.variables = {{"level_1_V", s.limits.min_voltage, s.limits.max_voltage},
                  {"level_2_V", s.limits.min_voltage, s.limits.max_voltage},
@@ -47,12 +47,12 @@ void add_pulse(DriveSearch& s, const Prepared& p, double t0) {
     s.starts.push_back({landing->pulling, landing->coasting, landing->driven_time, landing->coasting_time, 0.005 * period});
 }
 
-void add_harmonic(DriveSearch& s, const Prepared& p, double t0) {
+void add_harmonic(DriveSearch& s, const PreparedScene& p, double t0) {
   const double upper = internal::add_dither_variables(s, p, t0), room = s.variables[0].upper;
   for (const double frequency : {0.15, 0.45}) s.starts.push_back({room / 2, frequency * upper, pi, 0, 1.5 * t0, 0.2});
 }
 
-void add_step(DriveSearch& s, const Prepared&, double t0) {
+void add_step(DriveSearch& s, const PreparedScene&, double t0) {
   s.variables = {{"rise_time_s", 0, 2.5 * t0}};
   s.starts = {{0.5 * t0}};
 }
@@ -69,7 +69,7 @@ void add_levels(DriveSearch& s, const std::vector<double>& longest, double longe
   s.variables.push_back({"edge_s", 0.005 * period, longest_edge * period});
 }
 
-void add_catch(DriveSearch& s, const Prepared& p, double t0) {
+void add_catch(DriveSearch& s, const PreparedScene& p, double t0) {
   const double period = first_period(p), low = s.limits.min_voltage, high = s.limits.max_voltage;
   add_levels(s, {1.6, 1.6, 4}, 0.1, t0, period);
   const auto inside = [&](double v) { return std::clamp(v, low, high); };
@@ -91,7 +91,7 @@ void add_catch(DriveSearch& s, const Prepared& p, double t0) {
   }
 }
 
-void add_staircase(DriveSearch& s, const Prepared& p, double t0) {
+void add_staircase(DriveSearch& s, const PreparedScene& p, double t0) {
   const double period = first_period(p);
   const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
   add_levels(s, std::vector<double>(s.count, 3), 1, t0, period);
@@ -114,7 +114,7 @@ void add_staircase(DriveSearch& s, const Prepared& p, double t0) {
 }
 
 // A broken line: the voltages at its knots, the time of the whole and the parts of it between them.
-void add_knots(DriveSearch& s, const Prepared& p, double t0) {
+void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
   const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
   for (std::size_t k = 0; k < s.count; ++k)
     s.variables.push_back({fmt::format("level_{}_V", k + 1), s.limits.min_voltage, s.limits.max_voltage});
@@ -142,7 +142,7 @@ void add_knots(DriveSearch& s, const Prepared& p, double t0) {
   }
 }
 
-void add_ramp(DriveSearch& s, const Prepared& p, double t0) {
+void add_ramp(DriveSearch& s, const PreparedScene& p, double t0) {
   const double period = first_period(p);
   const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
   s.variables = {{"level_1_V", s.limits.min_voltage, s.limits.max_voltage},

@@ -18,7 +18,7 @@ struct SearchedFamily {
   std::string_view name;
   std::string_view waveform;  ///< the family of a scene that it makes
   std::size_t count;          ///< of levels, knots, pulses or sines, where there is a choice, if it is not given
-  void (*add)(DriveSearch&, const Prepared&, double first_touch);
+  void (*add)(DriveSearch&, const PreparedScene&, double first_touch);
   Waveform (*at)(const DriveSearch&, std::span<const double> x);
   std::optional<std::vector<double>> (*parameters)(const DriveSearch&, const Waveform&);
 };

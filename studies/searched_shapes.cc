@@ -69,13 +69,13 @@ std::size_t pauses_of(const DriveSearch& s, std::size_t count) { return s.brakes
 
 double inside(const DriveSearch& s, double voltage) { return std::clamp(voltage, s.limits.min_voltage, s.limits.max_voltage); }
 
-double lifting_voltage(const Prepared& p, double lift) {
+double lifting_voltage(const PreparedScene& p, double lift) {
   const Eigen::VectorXd squares = p.model.angular_frequencies().cwiseAbs2();
   const double per_volt = p.model.contact_shape().dot(p.model.piezo_shape().cwiseQuotient(squares));
   return -lift / per_volt;
 }
 
-double first_period(const Prepared& p) { return 2 * pi / p.model.angular_frequencies()[0]; }
+double first_period(const PreparedScene& p) { return 2 * pi / p.model.angular_frequencies()[0]; }
 
 Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations, double edge) {
   Pulse pulse{.levels = {levels.begin(), levels.end()}, .times = {}, .edge = edge};
@@ -88,7 +88,7 @@ Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::spa
   return pulse;
 }
 
-std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const Prepared& p) {
+std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const PreparedScene& p) {
   if (s.brakes) return std::nullopt;
   const std::vector<std::string> names = p.drive_names();
   std::vector<double> driven = hold_levels(p.signals());
@@ -116,7 +116,7 @@ std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const Prepare
   return found;
 }
 
-void add_coast(DriveSearch& s, const Prepared& p, double t0) {
+void add_coast(DriveSearch& s, const PreparedScene& p, double t0) {
   const double period = first_period(p);
   s.variables = {{"level_1_V", s.limits.min_voltage, s.limits.max_voltage},
                  {"duration_1_s", 0.05 * t0, 1.6 * t0},
@@ -143,7 +143,7 @@ Waveform coast_at(const DriveSearch& s, std::span<const double> x) {
 
 Parameters of_coast(const DriveSearch& s, const Waveform& waveform) { return of_train(s, waveform, 1, 1); }
 
-void add_pulses(DriveSearch& s, const Prepared& p, double t0) {
+void add_pulses(DriveSearch& s, const PreparedScene& p, double t0) {
   const double period = first_period(p);
   const std::size_t pauses = pauses_of(s, s.count);
   add_variables(s, "level", "_V", s.count, s.limits.min_voltage, s.limits.max_voltage);
@@ -179,7 +179,7 @@ void add_pulses(DriveSearch& s, const Prepared& p, double t0) {
   }
 }
 
-void add_dual_pulse(DriveSearch& s, const Prepared& p, double t0) {
+void add_dual_pulse(DriveSearch& s, const PreparedScene& p, double t0) {
   s.count = 2;
   add_pulses(s, p, t0);
 }
@@ -197,7 +197,7 @@ Parameters of_pulses(const DriveSearch& s, const Waveform& waveform) {
   return of_train(s, waveform, s.count, pauses_of(s, s.count));
 }
 
-void add_s_curve(DriveSearch& s, const Prepared& p, double t0) {
+void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0) {
   const double period = first_period(p);
   s.variables = {
       {"level_1_V", s.limits.min_voltage, s.limits.max_voltage}, {"dwell_1_s", 0.01 * t0, 3 * t0}, {"edge_s", 0.01 * t0, 3 * t0}};
@@ -224,7 +224,7 @@ Parameters of_s_curve(const DriveSearch&, const Waveform& waveform) {
   return std::vector<double>{curve.levels[0], curve.times[0] - curve.edge, curve.edge};
 }
 
-double add_dither_variables(DriveSearch& s, const Prepared& p, double t0) {
+double add_dither_variables(DriveSearch& s, const PreparedScene& p, double t0) {
   const double room = std::min(s.limits.max_voltage - s.hold, s.hold - s.limits.min_voltage);
   require(room > 0, fmt::format("driver.{}: the hold level {} stands at the driver's limit, which leaves no room for a dither",
                                 s.drive, engineering(s.hold, "V", 5)));
@@ -249,7 +249,7 @@ SlewedDither slewed_dither(const DriveSearch& s, double amplitude, double omega,
   return {.rise_time = rise, .start = std::max(start, rise), .fade = longer, .amplitude = std::min(amplitude, slew / steepest)};
 }
 
-void add_dither(DriveSearch& s, const Prepared& p, double t0) {
+void add_dither(DriveSearch& s, const PreparedScene& p, double t0) {
   const double upper = add_dither_variables(s, p, t0), room = s.variables[0].upper;
   s.variables.push_back({"decay_time_s", 0.05 * t0, 5 * t0});
   for (const double frequency : {0.15, 0.45}) s.starts.push_back({room / 2, frequency * upper, pi, 0, 1.5 * t0, 0.2, t0});
@@ -275,7 +275,7 @@ Parameters of_dither(const DriveSearch&, const Waveform& waveform) {
   return std::vector<double>{c.amplitude, c.angular_frequency, c.phase, c.start, duration, c.fade / duration, c.decay_time};
 }
 
-void add_chirp(DriveSearch& s, const Prepared& p, double t0) {
+void add_chirp(DriveSearch& s, const PreparedScene& p, double t0) {
   const double upper = add_dither_variables(s, p, t0), room = s.variables[0].upper;
   s.variables.push_back({"frequency_ratio", 0.25, 4});
   for (const double ratio : {0.5, 2.0}) s.starts.push_back({room / 2, 0.3 * upper, pi, 0, 1.5 * t0, 0.2, ratio});
@@ -301,7 +301,7 @@ Parameters of_chirp(const DriveSearch&, const Waveform& waveform) {
   return std::vector<double>{c.amplitude, c.angular_frequency, c.phase, c.start, duration, c.fade / duration, c.frequency_ratio};
 }
 
-void add_bspline(DriveSearch& s, const Prepared& p, double t0) {
+void add_bspline(DriveSearch& s, const PreparedScene& p, double t0) {
   add_variables(s, "level", "_V", s.count, s.limits.min_voltage, s.limits.max_voltage);
   s.variables.push_back({"duration_s", 0.5 * t0, 10 * t0});
   const auto curve = [&](const auto& voltage, double duration) {
@@ -353,7 +353,7 @@ Parameters of_bspline(const DriveSearch& s, const Waveform& waveform) {
   return x;
 }
 
-void add_sines(DriveSearch& s, const Prepared& p, double t0) {
+void add_sines(DriveSearch& s, const PreparedScene& p, double t0) {
   const double range = s.limits.max_voltage - s.limits.min_voltage;
   add_variables(s, "amplitude", "_V", s.count, -range, range);
   s.variables.push_back({"duration_s", 0.5 * t0, 4 * t0});

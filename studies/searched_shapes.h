@@ -16,9 +16,9 @@ using Parameters = std::optional<std::vector<double>>;
 /// The voltage within the limits of the drive.
 [[nodiscard]] double inside(const DriveSearch& s, double voltage);
 /// Voltage [V] whose static effect on the contact point alone is `lift` away from the contact [m]: of the piezo.
-[[nodiscard]] double lifting_voltage(const Prepared& p, double lift);
+[[nodiscard]] double lifting_voltage(const PreparedScene& p, double lift);
 /// [s]
-[[nodiscard]] double first_period(const Prepared& p);
+[[nodiscard]] double first_period(const PreparedScene& p);
 /// A pulse of these levels and then the hold level, whose durations are at least those of its edges, as long as the driver asks
 /// for.
 [[nodiscard]] Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations,
@@ -34,24 +34,24 @@ struct ThrowAndCoast {
 /// plain step.
 inline constexpr std::array pushes = {0.5, 1.0, 2.0, 3.5};
 /// Nothing where there is no such landing, and for a drive that pulls away from the contact.
-[[nodiscard]] std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const Prepared& p);
+[[nodiscard]] std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const PreparedScene& p);
 
 /// A single pulse, coasting without voltage, the hold level. A drive that brakes waits before its pulse instead.
-void add_coast(DriveSearch& s, const Prepared& p, double t0);
+void add_coast(DriveSearch& s, const PreparedScene& p, double t0);
 /// s.count pulses between which the switch coasts; the hold level follows the last one. A drive that brakes waits before the
 /// first.
-void add_pulses(DriveSearch& s, const Prepared& p, double t0);
-void add_dual_pulse(DriveSearch& s, const Prepared& p, double t0);
+void add_pulses(DriveSearch& s, const PreparedScene& p, double t0);
+void add_dual_pulse(DriveSearch& s, const PreparedScene& p, double t0);
 [[nodiscard]] Waveform coast_at(const DriveSearch& s, std::span<const double> x);
 [[nodiscard]] Waveform pulses_at(const DriveSearch& s, std::span<const double> x);
 [[nodiscard]] Parameters of_coast(const DriveSearch& s, const Waveform& waveform);
 [[nodiscard]] Parameters of_pulses(const DriveSearch& s, const Waveform& waveform);
 
-void add_s_curve(DriveSearch& s, const Prepared& p, double t0);
-void add_dither(DriveSearch& s, const Prepared& p, double t0);
-void add_chirp(DriveSearch& s, const Prepared& p, double t0);
-void add_bspline(DriveSearch& s, const Prepared& p, double t0);
-void add_sines(DriveSearch& s, const Prepared& p, double t0);
+void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0);
+void add_dither(DriveSearch& s, const PreparedScene& p, double t0);
+void add_chirp(DriveSearch& s, const PreparedScene& p, double t0);
+void add_bspline(DriveSearch& s, const PreparedScene& p, double t0);
+void add_sines(DriveSearch& s, const PreparedScene& p, double t0);
 [[nodiscard]] Waveform s_curve_at(const DriveSearch& s, std::span<const double> x);
 [[nodiscard]] Waveform dither_at(const DriveSearch& s, std::span<const double> x);
 [[nodiscard]] Waveform chirp_at(const DriveSearch& s, std::span<const double> x);
@@ -65,7 +65,7 @@ void add_sines(DriveSearch& s, const Prepared& p, double t0);
 
 /// Amplitude, frequency, phase and start of a dither about the hold level: variables and their bounds. Throws InvalidInput where
 /// the limits leave it no room. The highest frequency [rad/s] is returned.
-double add_dither_variables(DriveSearch& s, const Prepared& p, double t0);
+double add_dither_variables(DriveSearch& s, const PreparedScene& p, double t0);
 /// How a slew limit changes a dither of this amplitude, whose angle turns by at most `omega` [rad/s] and which decays in `decay`
 /// [s]: the duration of its fades, and its amplitude.
 struct SlewedDither {

@@ -104,7 +104,7 @@ void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& ot
 }
 
 // The largest relative difference of the figures that `accuracy` is about.
-double error(const Run& run, const Run& other, const Prepared& prepared) {
+double error(const Run& run, const Run& other, const PreparedScene& prepared) {
   FigureValues least;
   least[&Metrics::major_bounce_height] = prepared.scene.metrics.significant_rebound;
   least[&Metrics::peak_contact_force] = least_peak_force(prepared);
@@ -130,7 +130,8 @@ bool can_tighten(const Run& r) { return r.tolerance / tighter_by >= least_tolera
 // Runs of a scene's closing, each told to the watch.
 class ClosingRuns {
  public:
-  ClosingRuns(const Prepared& prepared, const Watch& watch) : prepared_(prepared), watch_(watch), signals_(prepared.signals()) {}
+  ClosingRuns(const PreparedScene& prepared, const Watch& watch)
+      : prepared_(prepared), watch_(watch), signals_(prepared.signals()) {}
 
   [[nodiscard]] const std::vector<Signal>& signals() const { return signals_; }
   [[nodiscard]] bool was_interrupted() const { return was_interrupted_; }
@@ -182,7 +183,7 @@ class ClosingRuns {
     return r;
   }
 
-  const Prepared& prepared_;
+  const PreparedScene& prepared_;
   const Watch& watch_;
   std::vector<Signal> signals_;
   int count_ = 0;
@@ -197,7 +198,7 @@ struct JudgedRun {
 
 // Finds the judge of a run. Where runs may be tightened the judge takes the place of the run, and has one of its own, until the
 // error is within the accuracy asked for or that no longer helps.
-JudgedRun with_judge(Run own, ClosingRuns& runs, const Prepared& prepared, bool may_tighten) {
+JudgedRun with_judge(Run own, ClosingRuns& runs, const PreparedScene& prepared, bool may_tighten) {
   Run judge = runs.judge_of(own);
   double e = error(own, judge, prepared);
   for (int vain = 0; may_tighten && e > prepared.scene.simulate.accuracy && vain < most_in_vain &&
@@ -223,7 +224,7 @@ std::string in_telling_digits(double above, double bound) {
 }
 
 // The errors that a judge finds, and what is to be warned of.
-void add_errors(Closing& c, const JudgedRun& run, const Prepared& prepared, bool may_tighten) {
+void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared, bool may_tighten) {
   const Run &own = run.own, &judge = run.judge;
   const bool is_tighter = judge.tolerance < own.tolerance;
   c.errors = difference(own.metrics, judge.metrics, own.tolerance, prepared.scene.device.gap.contact);
@@ -272,12 +273,12 @@ void allow_for_residual(FigureValues& errors, const Trajectory& run) {
   if (drive_energy < run.energy_error) drive_energy = run.energy_error;
 }
 
-double least_peak_force(const Prepared& prepared) {
+double least_peak_force(const PreparedScene& prepared) {
   constexpr double share = 0.01;
   return share * 2 * prepared.model.bending_energy() / prepared.scene.device.gap.contact;
 }
 
-Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& watch) {
+Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watch& watch) {
   ClosingRuns runs(prepared, watch);
   Run best = runs.as_asked();
   const SimulateOptions& asked = prepared.scene.simulate;
@@ -367,7 +368,7 @@ void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Sig
   trajectory.hold_capacitance = model.capacitance(searched_drive(model.device()), q->data(), work);
 }
 
-void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals) {
+void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const std::vector<Signal>& signals) {
   metrics.peak_voltage = metrics.peak_slew = 0;
   const bool piezo_only = prepared.scene.device.electrodes.empty();
   for (std::size_t k = 0; k < signals.size(); ++k) {

@@ -55,7 +55,7 @@ inline constexpr double stated_safety = 2;
 void allow_for_residual(FigureValues& errors, const Trajectory& run);
 
 /// Below this a peak contact force is as good as none [N]: a hundredth of what bends the beam by the contact gap.
-[[nodiscard]] double least_peak_force(const Prepared& prepared);
+[[nodiscard]] double least_peak_force(const PreparedScene& prepared);
 
 /// What is to be warned of where a trajectory is not held.
 inline constexpr std::string_view not_held =
@@ -85,7 +85,7 @@ void set_hold(Trajectory& trajectory, const Hold& hold);
 void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold);
 
 /// Peak voltage and peak slew of these drives in the window.
-void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals);
+void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const std::vector<Signal>& signals);
 
 /// Runs the scene's own waveforms. With `estimate_errors` a second, tighter run measures the error of each figure; where a scene
 /// asks for an accuracy that t_i, v_i, B_H or the peak force do not have (relative; B_H to at least the significant rebound, the
@@ -94,6 +94,6 @@ void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::ve
 /// the last run that was complete, without errors, or of the part of the first one that was run. A switch that is not held (see
 /// set_hold()) has not settled, however quiet it is at the end of the window. One that has not touched, and was not meant to (see
 /// stays_open()), has the status `open`.
-[[nodiscard]] Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& watch = {});
+[[nodiscard]] Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watch& watch = {});
 
 }  // namespace softland

@@ -35,7 +35,7 @@ double static_excess(const Scene& scene, std::size_t electrode, double voltage) 
   return voltage / resolved_pull_in(scene, electrode) - 1;
 }
 
-std::vector<std::string> static_excess_warnings(const Prepared& prepared) {
+std::vector<std::string> static_excess_warnings(const PreparedScene& prepared) {
   const Scene& scene = prepared.scene;
   if (!stretches(scene.device.structure)) return {};
   std::vector<std::string> warnings;

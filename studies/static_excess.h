@@ -25,6 +25,6 @@ inline constexpr double static_excess_worth_telling = 0.01;
 [[nodiscard]] double static_excess(const Scene& scene, std::size_t electrode, double voltage);
 
 /// Sentences for the electrodes for which it is worth telling.
-[[nodiscard]] std::vector<std::string> static_excess_warnings(const Prepared& prepared);
+[[nodiscard]] std::vector<std::string> static_excess_warnings(const PreparedScene& prepared);
 
 }  // namespace softland

@@ -39,7 +39,7 @@ bool Verification::Verified::better_than(const Verified& other) const {
          std::tuple(-static_cast<int>(other.belief), other.broken, other.figure, other.cost);
 }
 
-std::optional<Varied> Verification::undone_by(const Prepared& scene) const {
+std::optional<Varied> Verification::undone_by(const PreparedScene& scene) const {
   for (const OtherWay& way : other_numerics(scene)) {
     if (!met(simulated(scene, way).metrics)) return way.varied;
   }

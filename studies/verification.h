@@ -14,7 +14,7 @@ namespace softland {
 
 /// What a search came upon.
 struct FoundWaveform {
-  Prepared scene;  ///< as its file says
+  PreparedScene scene;  ///< as its file says
   double cost = 0;
   std::string family;
   std::vector<Variable> variables;           ///< of the family
@@ -57,11 +57,11 @@ class Verification {
   };
 
   [[nodiscard]] bool met(const Metrics& m) const;
-  [[nodiscard]] std::optional<Varied> undone_by(const Prepared& scene) const;
+  [[nodiscard]] std::optional<Varied> undone_by(const PreparedScene& scene) const;
   [[nodiscard]] std::vector<Criterion> known(const Metrics& m) const;
 
   const SearchSetting worst_;  // prices candidates by the worst of beams
-  const Prepared& given_;
+  const PreparedScene& given_;
   const Metrics& baseline_;
   Aim target_;
   std::vector<Criterion> conditions_;

@@ -20,7 +20,7 @@ namespace {
 
 int accuracy_verb(const Common& c) {
   const SceneFile file = load_scene(c);
-  const Prepared p = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
+  const PreparedScene p = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
   std::optional<ResultFolder> folder = claim_places(c, {"report.html", "accuracy.svg", "accuracy.json"});
   Bar bar(c.quiet);
   AccuracyOptions options{.stop = c.stop};

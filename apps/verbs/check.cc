@@ -39,7 +39,7 @@ using internal::quantity;
 using internal::scientific;
 
 // At which factor the dispersion force closes the switch.
-std::string dispersion_words(const Prepared& p, const Watch& watch) {
+std::string dispersion_words(const PreparedScene& p, const Watch& watch) {
   const std::size_t k = p.scene.device.electrodes.size();
   const std::vector<double> bias = bias_of(p.scene, k);
   const StaticPullIn statically = static_pull_in(p.model, k, bias);
@@ -73,7 +73,7 @@ std::string closed_state_words(const ClosedState& state) {
 }
 
 // How many of the summits touch under the hold levels; empty where they are not of one height distribution to a closed form.
-std::string summits_words(const Prepared& p, const ClosedState& state) {
+std::string summits_words(const PreparedScene& p, const ClosedState& state) {
   const std::optional<Contact>& contact = p.scene.device.contact;
   const auto* const rough = contact ? std::get_if<UniformAsperities>(&contact->model) : nullptr;
   if (rough == nullptr) return {};
@@ -115,13 +115,13 @@ nlohmann::json by_electrode(std::map<std::string, nlohmann::json> of) {
   return of.size() == 1 ? std::move(of.begin()->second) : nlohmann::json(std::move(of));
 }
 
-DriverModel source_of(const Prepared& p, const std::string& drive) {
+DriverModel source_of(const PreparedScene& p, const std::string& drive) {
   const std::vector<std::string> names = p.drive_names();
   return p.source(static_cast<std::size_t>(std::find(names.begin(), names.end(), drive) - names.begin()));
 }
 
 // What --json gives, besides the state of the closed switch.
-nlohmann::json check_json(const Prepared& p, const std::map<std::string, nlohmann::json>& pull_in,
+nlohmann::json check_json(const PreparedScene& p, const std::map<std::string, nlohmann::json>& pull_in,
                           const std::vector<std::string>& warnings, const std::string& command) {
   const Eigen::VectorXd& frequencies = p.model.angular_frequencies();
   std::map<std::string, nlohmann::json> windows;
@@ -146,7 +146,7 @@ int check_verb(const Common& c) {
   const SceneFile file = load_scene(c);
   static_cast<void>(claim_places(c, {}));
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Prepared p = choose(prepare(file, false, work->watch(), quick_pull_in), false, work->watch());
+  const PreparedScene p = choose(prepare(file, false, work->watch(), quick_pull_in), false, work->watch());
   const Structure& s = p.scene.device.structure;
   const std::string title = shortened(printable_line(p.scene.title));
   std::string text = fmt::format("{}: valid{}\n\n", printable_line(c.scene), title.empty() ? "" : " (" + title + ")");

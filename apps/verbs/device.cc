@@ -73,14 +73,14 @@ PracticeModel model_of(const std::string& text) {
   return model;
 }
 
-std::vector<std::string> told_names(const Prepared& nominal) {
+std::vector<std::string> told_names(const PreparedScene& nominal) {
   std::vector<std::string> names = nominal.drive_names();
   std::erase(names, std::string(dispersion_drive));
   return names;
 }
 
 // One per drive of the device; a factor of the dispersion force, which is no voltage, stays that of the scene.
-std::vector<Waveform> waveforms_of(const Prepared& nominal, const ToldShot& shot) {
+std::vector<Waveform> waveforms_of(const PreparedScene& nominal, const ToldShot& shot) {
   std::map<std::string, Waveform> all;
   const std::vector<std::string> names = told_names(nominal);
   for (const auto& [name, table] : shot.drives) {

@@ -17,7 +17,7 @@ namespace {
 int effects_verb(const Common& c) {
   const SceneFile file = load_scene(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Prepared p = prepare_and_choose(file, false, work->watch());
+  const PreparedScene p = prepare_and_choose(file, false, work->watch());
   static_cast<void>(claim_places(c, {}));
   const Effects effects = compare_effects(p, work->watch());
   work.reset();

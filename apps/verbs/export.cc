@@ -141,13 +141,13 @@ void warn_if_strange(const Measured& measured, double ratio, double deviation, c
 }
 
 // The scene, whose devices differ in the usual way where it does not say how.
-Prepared with_spread(const Prepared& p) {
+PreparedScene with_spread(const PreparedScene& p) {
   SceneFile file = p.scene.file;
   return assume_spread(file) ? prepare(file) : p;
 }
 
 // The units of the device on which this was measured.
-DeviceUnits units_of(const Prepared& p, const Measurements& measured, const Watch& watch) {
+DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, const Watch& watch) {
   const DeviceMeter meter(p, {.pull_in = measured.pull_in.value.has_value(),
                               .closing_time = measured.time.value.has_value(),
                               .piezo = measured.piezo.value.has_value()});
@@ -174,7 +174,7 @@ DeviceUnits units_of(const Prepared& p, const Measurements& measured, const Watc
 }
 
 // The waveforms of that device. Throws InvalidInput where a source cannot give them.
-std::vector<Waveform> waveforms_of(const Prepared& p, const Measurements& measured, const Watch& watch) {
+std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& measured, const Watch& watch) {
   const std::vector<Waveform> own = in_units(p.in_drive_order(p.drives.waveforms), p.scene.device, units_of(p, measured, watch));
   const std::vector<std::string> names = p.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
@@ -188,7 +188,7 @@ std::vector<Waveform> waveforms_of(const Prepared& p, const Measurements& measur
 }
 
 // Of the drives that are samples of so many bits; tells which are not.
-std::map<std::string, Coded> coded(const Prepared& p, const SentSignals& sent) {
+std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& sent) {
   std::map<std::string, Coded> all;
   const std::vector<std::string> names = p.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
@@ -218,12 +218,12 @@ double last_breakpoint(const std::map<std::string, Signal>& signals) {
 
 // What is exported of the scene, with the samples that are asked for.
 struct Exported {
-  Prepared sampled;
-  std::optional<Prepared> drawn;  // where the samples are not those of the scene
+  PreparedScene sampled;
+  std::optional<PreparedScene> drawn;  // where the samples are not those of the scene
   std::vector<std::string> drives;
 };
 Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_in, const Watch& watch) {
-  Prepared drawn = prepare_and_choose(file, need_pull_in, watch);
+  PreparedScene drawn = prepare_and_choose(file, need_pull_in, watch);
   std::vector<std::string> drives = exported_drives(drawn, request.sampling.drive);
   if (!request.sampling.rate && !request.sampling.bits) return {std::move(drawn), std::nullopt, std::move(drives)};
   set_sampling(file, drives, request.sampling);
@@ -241,7 +241,7 @@ std::string for_generator(const GeneratorFormat& format, const Exported& what, c
 }
 
 // The switch itself, where that is asked for. Throws InvalidInput for what has no such model.
-std::optional<std::string> circuit(const std::string& format, const Prepared& p) {
+std::optional<std::string> circuit(const std::string& format, const PreparedScene& p) {
   if (format == "spice-model") return spice_model(p);
   if (format == "spice-bench") return spice_bench(p);
   if (format == "verilog-a") return verilog_a(p);
@@ -263,7 +263,7 @@ int export_verb(const Common& c, const ExportRequest& request) {
   const Measurements measured(request);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const Exported what = exported(file, request, !measured.are_none(), work->watch());
-  const Prepared& p = what.sampled;
+  const PreparedScene& p = what.sampled;
   if (const std::optional<std::string> model = circuit(request.format, p)) {
     require(measured.are_none(),
             [&] { return fmt::format("--format {}: is of the drawing, and of no device that was measured", request.format); });

@@ -37,7 +37,7 @@ struct ModesRequest {
 
 int frequencies_of_scene(const Common& c) {
   const SceneFile file = load_scene(c);
-  const Prepared prepared = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
+  const PreparedScene prepared = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
   static_cast<void>(claim_places(c, {}));
   nlohmann::json list = nlohmann::json::array();
   constexpr int digits = 6;

@@ -48,7 +48,7 @@ using nlohmann::json;
 
 // How a winner does on devices of its scene's spread, beside the plain step, in a sentence; empty where nothing varies, or when
 // asked to stop.
-std::string on_devices(const Common& c, const Prepared& winner, int jobs, const fs::path& place) {
+std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, const fs::path& place) {
   if (winner.scene.spread.empty()) return {};
   constexpr std::uint64_t devices = 200;
   try {
@@ -206,7 +206,7 @@ int run_nominal(const Asked& asked) {
   return status_of(result);
 }
 
-void write_scene(ResultFolder& folder, const std::string& name, const Prepared& scene, std::vector<std::string>& left) {
+void write_scene(ResultFolder& folder, const std::string& name, const PreparedScene& scene, std::vector<std::string>& left) {
   folder.write(name + ".toml", scene.scene.file.text());
   folder.write(name + ".csv", csv(named_signals(scene), scene.duration));
   left.push_back(name + ".toml");

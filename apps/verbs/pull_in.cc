@@ -71,7 +71,7 @@ SweepRange sweep_range(const std::string& text) {
 }
 
 // --bias NAME=V: takes the place of what the drive stands at in the scene.
-void set_bias(Prepared& p, const std::string& assignment) {
+void set_bias(PreparedScene& p, const std::string& assignment) {
   const auto refuse = [&](std::string_view rule) { throw InvalidInput(fmt::format("--bias {}: {}", shown(assignment), rule)); };
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos) refuse("not of the form NAME=VOLTAGE, such as \"piezo=-1.5 V\"");
@@ -102,7 +102,7 @@ std::string kind_words(const nlohmann::json& found) {
 }
 
 // What pull_in_of() has found of an electrode, in words.
-std::string words_of(const Prepared& p, std::size_t k, const nlohmann::json& one) {
+std::string words_of(const PreparedScene& p, std::size_t k, const nlohmann::json& one) {
   std::string text = fmt::format("electrode {}\n", p.scene.device.electrodes[k].name);
   if (!pulls_in(p.scene.device, k)) return text + "  on the far side: pulls away from the contact\n";
   if (const std::string bias = bias_words(p, k); !bias.empty()) text += fmt::format("  under            {}\n", bias);
@@ -126,7 +126,7 @@ std::string words_of(const Prepared& p, std::size_t k, const nlohmann::json& one
 }
 
 // The sweep of the electrode that closes the switch.
-void write_sweep(ResultFolder& folder, const Prepared& p, const SweepRange& range, const Watch& watch) {
+void write_sweep(ResultFolder& folder, const PreparedScene& p, const SweepRange& range, const Watch& watch) {
   require(has_pulling_electrode(p.scene.device), "--sweep: there is no electrode that pulls towards the contact");
   const std::size_t drive = searched_drive(p.scene.device);
   const std::vector<double> bias = bias_of(p.scene, drive);
@@ -142,7 +142,7 @@ int pull_in_verb(const Common& c, const PullInRequest& request) {
   require(range.has_value() == !c.out.empty(), "--sweep and --out belong together: the sweep is written into that folder");
   const SceneFile file = load_scene(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  Prepared prepared = prepare_and_choose(file, false, work->watch());
+  PreparedScene prepared = prepare_and_choose(file, false, work->watch());
   for (const std::string& assignment : request.bias) set_bias(prepared, assignment);
   std::optional<ResultFolder> folder = claim_places(c, {"sweep.csv", "sweep.svg"});
   const auto& electrodes = prepared.scene.device.electrodes;

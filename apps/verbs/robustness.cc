@@ -48,11 +48,11 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
   set_calibration(file, request.calibration);
   options.worth_of_measuring = true;
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Prepared nominal = prepare_and_choose(file, true, work->watch());
+  const PreparedScene nominal = prepare_and_choose(file, true, work->watch());
   const Calibration& calibration = nominal.scene.calibration;
   std::vector<NamedDrive> drives{{.name = c.scene, .waveforms = nominal.drives.waveforms, .calibration = calibration}};
   for (const std::string& result : request.results) {
-    const Prepared other = prepare(scene_of_result(result), false, work->watch());
+    const PreparedScene other = prepare(scene_of_result(result), false, work->watch());
     const std::string elsewhere = begins_elsewhere(other.drives.waveforms, other.drives.before, nominal);
     require(elsewhere.empty(), [&] { return result + ": " + elsewhere; });
     drives.push_back({.name = result, .waveforms = other.drives.waveforms, .calibration = calibration});

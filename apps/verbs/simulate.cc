@@ -30,11 +30,11 @@ using internal::percent;
 using internal::quantity;
 
 // effects = "auto": what leaving effects out has saved.
-void log_time_saved(const Prepared& chosen) {
-  Prepared whole = chosen;
+void log_time_saved(const PreparedScene& chosen) {
+  PreparedScene whole = chosen;
   whole.scene.device = chosen.effects->described.device;
   whole.model = Switch(whole.scene.device, whole.quadrature);
-  const auto seconds = [](const Prepared& p) { return right_hand_side_seconds(p.model, p.signals(), p.duration); };
+  const auto seconds = [](const PreparedScene& p) { return right_hand_side_seconds(p.model, p.signals(), p.duration); };
   const double with = seconds(whole), without = seconds(chosen);
   say(fmt::format("effects = \"auto\": a right-hand side takes {} instead of {}, {} less", quantity(without, "s"),
                   quantity(with, "s"), percent(std::max(0.0, 1 - without / with))));
@@ -49,7 +49,7 @@ int simulate_verb(const Common& c, const SimulateRequest& request) {
   const int jobs = job_count(request.jobs);
   const SceneFile file = load_scene(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Prepared prepared = prepare_and_choose(file, false, work->watch());
+  const PreparedScene prepared = prepare_and_choose(file, false, work->watch());
   const std::vector<std::string> files{"report.html", "gap.svg", "result.json", "trajectory.csv"};
   std::optional<ResultFolder> folder = claim_places(c, files);
   const Closing closing = request.certified ? certify(prepared, work->watch(), jobs) : simulate(prepared, true, work->watch());

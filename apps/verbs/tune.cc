@@ -214,7 +214,7 @@ json Tuning::told_json(const TuningReport& report) const {
 
 void Tuning::write(TuningEnd end) {
   const TuningReport now = report(end);
-  const Prepared& scene = tuner_->scene();
+  const PreparedScene& scene = tuner_->scene();
   const SentSignals kept = sent(now.kept);
   std::map<std::string, Waveform> waveforms;
   const std::vector<std::string> names = scene.drive_names();

@@ -43,7 +43,7 @@
 #include "studies/for_devices.h"      // optimize: for the drawing, and for devices that differ
 #include "studies/limit.h"            // limit
 #include "studies/optimize.h"         // optimize --robust none
-#include "studies/prepared.h"         // Prepared
+#include "studies/prepared.h"         // PreparedScene
 #include "studies/release.h"          // release
 #include "studies/robust_optimize.h"  // optimize --robust MEASURE
 #include "studies/robustness.h"       // robustness

@@ -45,7 +45,7 @@ struct Datum {
 
 struct FitDevice {
   std::string name;
-  Prepared nominal;
+  PreparedScene nominal;
   std::vector<Instrument> instruments = {};
 };
 
@@ -83,7 +83,8 @@ std::string entry_of(const DeviceSpread& spread, const std::string& name) {
 }
 
 // The scene in volts, with a spread of the unknowns alone; those that had none get one, which is no prior.
-Prepared with_unknowns(const Prepared& given, std::vector<std::string>& unknowns, std::vector<std::string>& without_prior) {
+PreparedScene with_unknowns(const PreparedScene& given, std::vector<std::string>& unknowns,
+                            std::vector<std::string>& without_prior) {
   const DeviceSpread& spread = given.scene.spread;
   SceneFile file = given.resolved();
   if (unknowns.empty()) {
@@ -111,7 +112,7 @@ Prepared with_unknowns(const Prepared& given, std::vector<std::string>& unknowns
     }
     without_prior.push_back(name);
   }
-  Prepared p = prepare(file);
+  PreparedScene p = prepare(file);
   DeviceSpread& own = p.scene.spread;
   for (std::size_t i = own.variables.size(); i-- > 0;) {
     require_request(!(own.variables[i].is_drawn_per_edge && has(unknowns, own.variables[i].name)), [&] {
@@ -131,7 +132,7 @@ class Instruments {
 
   // The instrument that reads row `i` of a measurement, or all of its rows.
   [[nodiscard]] Instrument of(const BenchMeasurement& m, std::size_t i) const {
-    const Prepared& p = device_.nominal;
+    const PreparedScene& p = device_.nominal;
     Instrument one{.what = quantity_of(m), .drive = drive_of(m), .mode = static_cast<std::size_t>(m.mode - 1)};
     require(m.mode <= p.model.modes(), [&] { return wrong(m, fmt::format("the scene has {} modes", p.model.modes())); });
     if (m.waveform) one.waveforms = waveforms_of(m);
@@ -156,7 +157,7 @@ class Instruments {
     return found->value;
   }
   [[nodiscard]] std::size_t drive_of(const BenchMeasurement& m) const {
-    const Prepared& p = device_.nominal;
+    const PreparedScene& p = device_.nominal;
     const std::vector<std::string> names = p.drive_names();
     if (!m.drive.empty()) {
       const auto found = std::find(names.begin(), names.end(), m.drive);
@@ -172,7 +173,7 @@ class Instruments {
     return has_pulling_electrode(p.scene.device) ? searched_drive(p.scene.device) : 0;
   }
   [[nodiscard]] std::vector<Waveform> waveforms_of(const BenchMeasurement& m) const {
-    const Prepared& p = device_.nominal;
+    const PreparedScene& p = device_.nominal;
     if (*m.waveform == "scene") return p.in_drive_order(p.drives.waveforms);
     std::map<std::string, Waveform> all;
     std::string first_fault;
@@ -475,7 +476,7 @@ struct Candidate {
   double relative_error = 0;  // over the value
 };
 
-std::vector<Candidate> candidates(const Prepared& p) {
+std::vector<Candidate> candidates(const PreparedScene& p) {
   constexpr double of_volts = 0.005, of_frequency = 1e-3, of_capacitance = 0.01;
   std::vector<Candidate> all;
   const auto add = [&](std::string name, const Instrument& instrument, double error, double relative) {
@@ -584,15 +585,15 @@ Setup setup_of(const SceneFile& file, const Bench& bench, const FitOptions& opti
   require(names.size() == 1 || !has(names, ""),
           [&] { return fmt::format("{}: some measurements say of which device they are, and some do not", bench.name); });
   std::vector<std::string> without_prior;
-  std::optional<Prepared> plain;
+  std::optional<PreparedScene> plain;
   for (const std::string& name : names) {
     const auto changes = bench.changes.find(name);
     const bool differs = changes != bench.changes.end();
     std::vector<std::string> unknowns = options.unknowns;
     without_prior.clear();
     if (differs || !plain) {
-      Prepared own = with_unknowns(prepare_and_choose(differs ? with_changes(file, name, changes->second) : file, false, watch),
-                                   unknowns, without_prior);
+      PreparedScene own = with_unknowns(
+          prepare_and_choose(differs ? with_changes(file, name, changes->second) : file, false, watch), unknowns, without_prior);
       if (!differs) plain = own;
       setup.devices.push_back({.name = name, .nominal = std::move(own)});
     } else {

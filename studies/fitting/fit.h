@@ -78,7 +78,7 @@ struct FittedPopulation {
 };
 
 struct Fit {
-  Prepared scene;  ///< before, with the [spread] of the unknowns
+  PreparedScene scene;  ///< before, with the [spread] of the unknowns
   bool spread_assumed = false;
   std::vector<std::string> devices;
   std::vector<FittedUnknown> unknowns;

@@ -18,15 +18,15 @@ namespace softland {
 namespace {
 
 // Only a contact tells a lab that a switch has closed.
-void require_contact(const Prepared& nominal) {
+void require_contact(const PreparedScene& nominal) {
   require(nominal.scene.device.contact.has_value(), [&] {
     return fmt::format("{}: there is no [contact]: a lab would see nothing of a closing", nominal.scene.file.name());
   });
 }
 
-Prepared prepared(SceneFile file) {
+PreparedScene prepared(SceneFile file) {
   assume_spread(file);
-  Prepared nominal = prepare_and_choose(file, true);
+  PreparedScene nominal = prepare_and_choose(file, true);
   require_contact(nominal);
   return nominal;
 }
@@ -60,19 +60,19 @@ void stiffen(SceneFile& file, const Scene& scene, double factor) {
 }
 
 // In volts, so that a waveform means the same whatever the model does to the pull-in voltage.
-Prepared with_model(const Prepared& nominal, const PracticeModel& model) {
+PreparedScene with_model(const PreparedScene& nominal, const PracticeModel& model) {
   SceneFile file = nominal.resolved();
   if (model.more_modes != 0) add_modes(file, nominal.scene, model.more_modes);
   if (!model.gas.empty()) change_gas(file, nominal.scene, model.gas);
   if (model.stiffness != 1) stiffen(file, nominal.scene, model.stiffness);
   for (const std::string& assignment : model.set) file.set(assignment);
-  Prepared own = prepare(file);
+  PreparedScene own = prepare(file);
   require_contact(own);
   return own;
 }
 
 // The first device of this seed that can be described.
-SampledDevice drawn(const Prepared& own, std::uint64_t seed) {
+SampledDevice drawn(const PreparedScene& own, std::uint64_t seed) {
   constexpr std::uint64_t most = 100;
   const Ensemble ensemble(own, 1);
   DeviceBuilder builder(ensemble);

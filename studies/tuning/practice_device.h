@@ -53,7 +53,7 @@ class PracticeDevice {
   explicit PracticeDevice(SceneFile file, const PracticeOptions& options = {});
 
   /// The scene, with the limits of its drivers in volts: what is known of the device.
-  [[nodiscard]] const Prepared& nominal() const { return nominal_; }
+  [[nodiscard]] const PreparedScene& nominal() const { return nominal_; }
   /// What no lab sees: the device, and the values of the quantities that vary.
   [[nodiscard]] const SampledDevice& device() const { return device_; }
 
@@ -67,7 +67,7 @@ class PracticeDevice {
   [[nodiscard]] std::vector<ContactEdge> seen_edges(const Trajectory& closing, std::uint64_t shot) const;
 
   PracticeOptions options_;
-  Prepared nominal_, own_;  // the scene, and that of the device's model
+  PreparedScene nominal_, own_;  // the scene, and that of the device's model
   SampledDevice device_;
 };
 

@@ -28,7 +28,7 @@ LandingCost landing_cost(const ImaginedClosing& closing, const TuningScales& s) 
 namespace {
 
 std::string families_for(const TunedScene& scene) {
-  const Prepared& p = scene.nominal();
+  const PreparedScene& p = scene.nominal();
   const Actuator actuator = scene.options().actuator;
   std::string text = "catch";
   if (actuator == Actuator::pzt) return text;
@@ -42,7 +42,7 @@ bool ends_with(const std::string& name, std::string_view ending) { return name.e
 }  // namespace
 
 Shapes::Shapes(const TunedScene& scene) : scene_(&scene) {
-  const Prepared& p = scene.nominal();
+  const PreparedScene& p = scene.nominal();
   const SearchSpace space(p, scene.options().actuator, families_for(scene), scene.scales().closing_time);
   drives_ = space.drives();
   starts_ = space.starts();

@@ -39,7 +39,7 @@ void vary(SceneFile& file, const std::string& name, const std::vector<std::strin
       fmt::format("spread.\"{}\"={{keys=[\"{}\"],distribution=\"{}\",cov={}}}", name, fmt::join(keys, "\",\""), kind, deviation));
 }
 
-std::vector<std::string> shaped_drives_of(const Prepared& prepared, Actuator actuator) {
+std::vector<std::string> shaped_drives_of(const PreparedScene& prepared, Actuator actuator) {
   std::vector<std::string> names;
   for (const auto& [name, waveform] : plain_step(prepared, actuator)) {
     if (prepared.drives.limits.contains(name)) names.push_back(name);
@@ -48,7 +48,7 @@ std::vector<std::string> shaped_drives_of(const Prepared& prepared, Actuator act
 }
 
 // The scene in volts, with every default written out, and what the belief varies beside the spread.
-SceneFile with_nuisances(const Prepared& prepared, const TunerOptions& options) {
+SceneFile with_nuisances(const PreparedScene& prepared, const TunerOptions& options) {
   SceneFile file = prepared.resolved();
   const DeviceSpread& spread = prepared.scene.spread;
   for (const std::string& drive : shaped_drives_of(prepared, options.actuator)) {
@@ -137,13 +137,13 @@ void TunedScene::loosen_contact_gap(DeviceSpread& spread) {
   }
 }
 
-Prepared TunedScene::prepared(const SceneFile& given, const Watch& watch) {
+PreparedScene TunedScene::prepared(const SceneFile& given, const Watch& watch) {
   SceneFile file = given;
   spread_is_assumed_ = assume_spread(file);
-  const Prepared chosen = prepare_and_choose(file, true, watch);
+  const PreparedScene chosen = prepare_and_choose(file, true, watch);
   require(chosen.model.has_contact(),
           [&] { return fmt::format("{}: without [contact] there is no record to tune by", given.name()); });
-  Prepared p = prepare(with_nuisances(chosen, options_), true, watch);
+  PreparedScene p = prepare(with_nuisances(chosen, options_), true, watch);
   DeviceSpread& spread = p.scene.spread;
   for (std::size_t i = spread.variables.size(); i-- > 0;) {
     if (spread.variables[i].is_drawn_per_edge) spread.leave_out(i);
@@ -313,7 +313,7 @@ double gain_of(const DeviceSpread& spread, const std::string& drive, const std::
 }  // namespace
 
 void TunedScene::find_units(const Watch& watch) {
-  const Prepared& p = nominal_;
+  const PreparedScene& p = nominal_;
   volts_slope_ = time_slope_ = pulled_through_slope_ = Eigen::VectorXd::Zero(size());
   if (options_.actuator != Actuator::pzt && has_pulling_electrode(p.scene.device)) electrode_ = searched_drive(p.scene.device);
   constexpr double apart = 0.5;  // standard deviations

@@ -74,7 +74,7 @@ class TunedScene {
 
   [[nodiscard]] const TunerOptions& options() const { return options_; }
   /// With the spread of all quantities but the delay of the edges, prepared for closings of an accuracy of 1e-4.
-  [[nodiscard]] const Prepared& nominal() const { return nominal_; }
+  [[nodiscard]] const PreparedScene& nominal() const { return nominal_; }
   [[nodiscard]] const TuningScales& scales() const { return scales_; }
   [[nodiscard]] bool spread_is_assumed() const { return spread_is_assumed_; }
   /// Whether closings go in lanes.
@@ -122,7 +122,7 @@ class TunedScene {
   [[nodiscard]] double safe_level(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance) const;
 
  private:
-  [[nodiscard]] Prepared prepared(const SceneFile& given, const Watch& watch);
+  [[nodiscard]] PreparedScene prepared(const SceneFile& given, const Watch& watch);
   void loosen_contact_gap(DeviceSpread& spread);
   void find_units(const Watch& watch);
   [[nodiscard]] Eigen::VectorXd spread_point(const Eigen::VectorXd& z) const {
@@ -136,7 +136,7 @@ class TunedScene {
     std::optional<std::size_t> shared;  // of the other gaps, where it moves with them
   };
   std::optional<GapRatio> gap_ratio_;
-  Prepared nominal_;
+  PreparedScene nominal_;
   std::vector<bool> nuisances_;
   std::unique_ptr<const Ensemble> ensemble_;
   std::unique_ptr<const DeviceDrives> drives_;

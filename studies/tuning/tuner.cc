@@ -282,7 +282,7 @@ Tuner& Tuner::operator=(Tuner&&) noexcept = default;
 
 Tuner Tuner::restarted() const { return Tuner(state_->setting, {}); }
 
-const Prepared& Tuner::scene() const { return state_->scene.nominal(); }
+const PreparedScene& Tuner::scene() const { return state_->scene.nominal(); }
 const std::vector<Recipe>& Tuner::recipes() const { return state_->recipes; }
 double Tuner::step_closing_time() const { return state_->scene.scales().closing_time; }
 bool Tuner::spread_is_assumed() const { return state_->scene.spread_is_assumed(); }

@@ -123,7 +123,7 @@ class Tuner {
   [[nodiscard]] Tuner restarted() const;
 
   /// The scene that the belief is about: nominal device, drives and limits.
-  [[nodiscard]] const Prepared& scene() const;
+  [[nodiscard]] const PreparedScene& scene() const;
   /// That of the nominal device first.
   [[nodiscard]] const std::vector<Recipe>& recipes() const;
   /// The first touch of the plain step on the nominal device [s].

@@ -16,14 +16,14 @@ namespace {
 constexpr std::uint64_t seed = 7;
 
 /// A prepared random scene without a compressible film, whose closings take a hundred times longer.
-Prepared random_closing() {
+PreparedScene random_closing() {
   while (true) {
-    Prepared p = prepare(test::random_scene(seed, *rc::gen::inRange<std::uint64_t>(0, 1'000'000)));
+    PreparedScene p = prepare(test::random_scene(seed, *rc::gen::inRange<std::uint64_t>(0, 1'000'000)));
     if (p.model.film_states() == 0) return p;
   }
 }
 
-test::CheckedRun closing(const Prepared& p, Integrator integrator, double tolerance) {
+test::CheckedRun closing(const PreparedScene& p, Integrator integrator, double tolerance) {
   return test::checked_run(p.model, p.signals(),
                            {.duration = p.duration, .tolerance = tolerance, .integrator = integrator, .max_steps = 20'000}, 1e-3,
                            p.scene.metrics);
@@ -31,7 +31,7 @@ test::CheckedRun closing(const Prepared& p, Integrator integrator, double tolera
 
 TEST(EveryScene, KeepsTheInvariants) {
   EXPECT_TRUE(rc::check([] {
-    const Prepared p = random_closing();
+    const PreparedScene p = random_closing();
     const test::CheckedRun run = closing(p, Integrator::automatic, 1e-8);
     RC_LOG() << p.scene.file.text();
     RC_ASSERT(run.violations == std::vector<std::string>{});
@@ -45,7 +45,7 @@ TEST(EveryScene, ThatOnceBrokeAnInvariantKeepsItNow) {
     double tolerance;
   };
   for (const Found& f : {Found{3, 50, 1e-5}}) {  // a step that began beyond its edge, by rounding, ended before it began
-    const Prepared p = prepare(test::random_scene(f.seed, f.index));
+    const PreparedScene p = prepare(test::random_scene(f.seed, f.index));
     EXPECT_EQ(closing(p, Integrator::automatic, f.tolerance).violations, std::vector<std::string>{}) << f.seed << " " << f.index;
   }
 }
@@ -55,7 +55,7 @@ TEST(EveryScene, ThatOnceBrokeAnInvariantKeepsItNow) {
 TEST(EveryScene, ThatCreepsInAThickFilmIsClosedInBoundedWork) {
   for (const std::uint64_t index : {844U, 3916U, 4490U}) {
     SCOPED_TRACE(index);
-    const Prepared p = prepare(test::random_scene(2, index));
+    const PreparedScene p = prepare(test::random_scene(2, index));
     const auto run = [&](Integrator integrator, double tolerance) {
       const test::CheckedRun c = closing(p, integrator, tolerance);  // within 20 000 steps
       EXPECT_EQ(c.violations, std::vector<std::string>{});
@@ -76,7 +76,7 @@ TEST(EveryScene, ThatCreepsInAThickFilmIsClosedInBoundedWork) {
 // right: the dissipation must be added up as well as that.
 TEST(EveryScene, KeepsBooksAsGoodAsItsMotion) {
   const auto error = [](std::uint64_t index, Integrator integrator) {
-    const Prepared p = prepare(test::random_scene(2, index));
+    const PreparedScene p = prepare(test::random_scene(2, index));
     const Trajectory t =
         simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-7, .integrator = integrator});
     return t.energy_error / p.model.bending_energy();
@@ -90,7 +90,7 @@ TEST(EveryScene, KeepsBooksAsGoodAsItsMotion) {
 TEST(EveryScene, KeepsTheBooksOfACompressibleFilm) {
   for (const std::uint64_t index : {37U, 42U}) {
     SCOPED_TRACE(index);
-    const Prepared p = prepare(test::random_film_scene(2, index).value());
+    const PreparedScene p = prepare(test::random_film_scene(2, index).value());
     const Trajectory t = simulate_closing(
         p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-3, .integrator = Integrator::lawson, .max_steps = 4000});
     EXPECT_EQ(t.status, Status::done) << t.message;
@@ -100,7 +100,7 @@ TEST(EveryScene, KeepsTheBooksOfACompressibleFilm) {
 
 TEST(EveryScene, LandsAlikeFromTwoIntegrators_slow) {
   EXPECT_TRUE(rc::check([] {
-    const Prepared p = random_closing();
+    const PreparedScene p = random_closing();
     const test::CheckedRun one = closing(p, Integrator::lawson, 1e-9), other = closing(p, Integrator::bdf, 1e-8);
     if (one.trajectory.status != Status::done || other.trajectory.status != Status::done) return;
     const test::Landing a = test::landing(one.trajectory), b = test::landing(other.trajectory);

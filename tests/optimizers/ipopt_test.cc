@@ -35,7 +35,8 @@ TEST(Ipopt, SolvesFromTwoThreadsAtOnce) {
 
 OptimizerResult solve_alone(const Problem& problem, const OptimizerOptions& options) {
   internal::Ledger ledger(problem, options);
-  ledger.run({{.budget = 100, .body = [](internal::Strand& strand) { (void)internal::run_ipopt({.start = {0.5}}, strand); }}});
+  ledger.run({{.budget = 100,
+               .body = [](internal::BudgetedObjective& budgeted) { (void)internal::run_ipopt({.start = {0.5}}, budgeted); }}});
   return ledger.result(false, "");
 }
 

@@ -89,7 +89,7 @@ TEST(AccuracyText, OfAPlateSaysThatPointsDoNotMatterAndListsNone) {
   plate.reference.modes = 1;
   plate.modes.clear();
   plate.recommendations = {{.accuracy = 1e-3, .row = 0}};
-  const Prepared prepared = prepare(SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/two-electrodes.toml"));
+  const PreparedScene prepared = prepare(SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/two-electrodes.toml"));
   const std::string page = accuracy_html(prepared, plate, {}), text = accuracy_text(plate), svg = accuracy_svg("", plate);
   EXPECT_THAT(text, HasSubstr("tolerance 1e-8, 1 mode: "));
   for (const std::string& shown : {page, text, svg}) {
@@ -116,7 +116,7 @@ TEST(AccuracyText, OfNoStudySaysWhy) {
 }
 
 TEST(AccuracyPage, HoldsRecommendationsDiagramsTablesAndClouds) {
-  Prepared gold = prepare(SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml"));
+  PreparedScene gold = prepare(SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml"));
   gold.scene.simulate.accuracy = 1e-8;
   const std::string own(to_string(all_integrators[0]));
   AccuracyStudy study = sample();

@@ -39,13 +39,13 @@ void expect_the_same_reports(const Result& made) {
 TEST(ResultOf, AClosingIsReportedLikeItsJson) {
   for (const char* name : {"mem-gold.toml", "mem-gold-pzt.toml", "two-electrodes.toml", "purdue-nickel.toml"}) {
     SCOPED_TRACE(name);
-    const Prepared prepared = prepare(shipped(name, {}));
+    const PreparedScene prepared = prepare(shipped(name, {}));
     expect_the_same_reports(result_of(prepared, simulate(prepared, true), provenance));
   }
 }
 
 TEST(ResultOf, ACertifiedClosingIsReportedLikeItsJson) {
-  const Prepared prepared = prepare(shipped("mem-gold.toml", {}));
+  const PreparedScene prepared = prepare(shipped("mem-gold.toml", {}));
   const Result made = result_of(prepared, certify(prepared), provenance);
   ASSERT_TRUE(made.certificate);
   EXPECT_FALSE(made.certificate->ill_conditioned.empty());
@@ -59,7 +59,7 @@ TEST(ResultOf, AClosingUnderAWaveformThatNoSceneHoldsIsRefusedByItsName) {
     [[nodiscard]] std::vector<double> breakpoints(std::span<const double>) const override { return {}; }
     [[nodiscard]] double voltage(double, std::span<const double>) const override { return 20; }
   };
-  Prepared prepared = prepare(shipped("mem-gold.toml", {"simulate.duration=50 us"}));
+  PreparedScene prepared = prepare(shipped("mem-gold.toml", {"simulate.duration=50 us"}));
   prepared.drives.waveforms["main"] = own(std::make_shared<Mine>());
   const Closing closing = simulate(prepared, false);
   EXPECT_TRUE(closing.metrics.touched());
@@ -73,7 +73,7 @@ TEST(ResultOf, AClosingUnderAWaveformThatNoSceneHoldsIsRefusedByItsName) {
 
 TEST(ResultOf, ARunWithoutContactIsReportedLikeItsJson) {
   const auto made = [](const char* change) {
-    const Prepared prepared = prepare(shipped("mem-gold.toml", {change}));
+    const PreparedScene prepared = prepare(shipped("mem-gold.toml", {change}));
     return result_of(prepared, simulate(prepared, true), provenance);
   };
   const Result open = made("waveform.main.level=3 V"), late = made("simulate.duration=5 us");
@@ -94,7 +94,7 @@ TEST(ResultOf, ASearchIsReportedLikeItsJson) {
 }
 
 TEST(ResultJson, HasEveryFigureOfTheTableAndNoOther) {
-  const Prepared prepared = prepare(shipped("mem-gold.toml", {"simulate.duration=60 us"}));
+  const PreparedScene prepared = prepare(shipped("mem-gold.toml", {"simulate.duration=60 us"}));
   const json written = result_json(result_of(prepared, simulate(prepared, true), provenance));
   std::set<std::string> keys, errors;
   for (const Figure& figure : all_figures) {

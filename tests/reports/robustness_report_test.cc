@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 struct Study {
-  Prepared nominal;
+  PreparedScene nominal;
   RobustnessOptions options;
   Robustness found;
   Sensitivity sensitivity;

@@ -15,7 +15,7 @@ namespace softland {
 namespace {
 
 // The reference closing up to its highest rebound.
-Prepared first_bounces() {
+PreparedScene first_bounces() {
   return prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=60 us"}));
 }
 
@@ -199,7 +199,7 @@ TEST(Accuracy, OfAPlateKnowsNoOtherModesAndWithoutContactNoRebounds) {
 
 // The pressures of its film are states: a reference at 1e-13 takes many seconds.
 TEST(Accuracy, OfASlowSceneHasTheReferenceThatItsTimeAllows) {
-  const Prepared p = prepare(scene("hung-senturia.toml", {"structure.modes=1", "simulate.accuracy=1e-2"}));
+  const PreparedScene p = prepare(scene("hung-senturia.toml", {"structure.modes=1", "simulate.accuracy=1e-2"}));
   // A clock that counts how often it is looked at, which is once in 64 steps: what is in time does not depend on the machine.
   double looks = 0;
   const AccuracyStudy study = study_accuracy(p, {.tolerances = {1e-3, 1e-6, 1e-9},
@@ -237,7 +237,7 @@ TEST(Accuracy, CallsIllConditionedWhatImperceptibleChangesMove) {
   double below = 14, above = 14.5;
   while (above / below - 1 > 1e-9) {
     const double middle = (below + above) / 2;
-    const Prepared p = at(middle);
+    const PreparedScene p = at(middle);
     const Trajectory t = simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-5, .after_contact = 0});
     (t.touches.empty() ? below : above) = middle;
   }
@@ -252,7 +252,7 @@ TEST(Accuracy, CallsIllConditionedWhatImperceptibleChangesMove) {
 
 // Long after the first large rebound the closing is chaotic: see docs/figures.md.
 TEST(Accuracy, ShowsTheEndOfAChaoticClosingAsACloud) {
-  const Prepared p = prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V"}));
+  const PreparedScene p = prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V"}));
   AccuracyOptions options = few_settings();
   options.tolerances = {1e-5};
   const AccuracyStudy study = study_accuracy(p, options);

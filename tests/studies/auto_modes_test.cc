@@ -45,7 +45,7 @@ TEST(AutoModes, SayWhenNoClosingCouldBeJudged) {
 }
 
 TEST(AutoModes, StandInThePreparedSceneAndItsWarnings) {
-  const Prepared p = prepare_and_choose(gold_with_modes("auto"));
+  const PreparedScene p = prepare_and_choose(gold_with_modes("auto"));
   const int modes = p.scene.device.structure.modes;
   EXPECT_EQ(p.model.modes(), modes);
   EXPECT_FALSE(p.scene.auto_modes);
@@ -61,7 +61,7 @@ TEST(AutoModes, AreChosenBeforeTheEffects) {
   SceneFile file = gold_with_modes("auto");
   file.set("structure.damping_ratio=1e-9");
   file.set("simulate.effects=auto");
-  const Prepared p = prepare_and_choose(file);
+  const PreparedScene p = prepare_and_choose(file);
   EXPECT_EQ(p.scene.device.structure.modes, choose_modes(gold_with_modes("auto")).modes);
   ASSERT_TRUE(p.effects);
   ASSERT_EQ(p.effects->choice.left_out.size(), 1u);

@@ -19,7 +19,7 @@ TEST(Before, IsTheEquilibriumThatARunStartsAndStaysIn) {
   for (const char* volts : {"-2 V", "3 V"}) {
     const SceneFile file = small_beam({fmt::format(R"(waveform.piezo={{family="step", level="{0}", before="{0}"}})", volts),
                                        "waveform.main={family=\"step\", level=\"8 V\", before=\"8 V\"}"});
-    const Prepared p = prepare(file);
+    const PreparedScene p = prepare(file);
     const Trajectory t = simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-9});
     ASSERT_EQ(t.status, Status::done);
     ASSERT_TRUE(p.rest().has_value());
@@ -34,7 +34,7 @@ TEST(Before, BalancesTheEnergyOfARunFromIt) {
   const SceneFile file =
       small_beam({R"(waveform.piezo={family="pulse", levels=["-2 V", "1 V"], times=["2 us"], edge="1 us", before="3 V"})",
                   R"(waveform.main={family="step", level="1.2 Vdp", before="9 V"})"});
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   const Trajectory t = simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-9, .after_contact = 0});
   ASSERT_FALSE(t.touches.empty());
   EXPECT_LT(t.energy_error, 1e-6 * p.model.bending_energy());
@@ -51,7 +51,7 @@ TEST(Before, OfAStretchingBeamIsFoundAsTheLoadGrows) {
   // Softer than its stretching by far: Newton's method from the straight beam overshoots the gap.
   const SceneFile file =
       scene("hung-senturia.toml", {"structure.stretching=true", "structure.residual_stress=0 MPa", "structure.thickness=0.3 um"});
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   const double fold = static_pull_in(p.model, 0).voltage;
   const std::vector<double> volts{0.99 * fold};
   const auto rest = p.model.open_equilibrium(volts);
@@ -63,7 +63,7 @@ TEST(Before, OfAStretchingBeamIsFoundAsTheLoadGrows) {
 TEST(Before, IsTheSameInLanes) {
   const SceneFile file = gold_pzt({R"(waveform.piezo={family="step", level="0.5 V", before="0.5 V"})", "waveform.main.before=3 V",
                                    "simulate.duration=100 us"});
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   const Ensemble ensemble(p, 8);
   DeviceBuilder builder(ensemble);
   std::vector<SampledDevice> devices;
@@ -85,10 +85,10 @@ TEST(Before, IsTheSameInLanes) {
 TEST(Before, OfTheResolvedSceneGivesTheSameDigits) {
   const SceneFile file = small_beam({R"(waveform.piezo={family="s-curve", levels=["-1 V"], edge="3 us", before="2 V"})",
                                      R"(waveform.main={family="step", level="1.2 Vdp", before="0.3 Vdp", rise_time="1 us"})"});
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   EXPECT_EQ(p.before("main"), 0.3 * p.pull_in.at("main").dynamically.voltage);
   const SceneFile written = p.resolved();
-  const Prepared again = prepare(SceneFile::parse(written.text(), "again.toml"));
+  const PreparedScene again = prepare(SceneFile::parse(written.text(), "again.toml"));
   EXPECT_TRUE(again.pull_in.empty());
   EXPECT_EQ(again.values_before(), p.values_before());
   EXPECT_EQ(simulate(again, false).metrics.initial_contact_time, simulate(p, false).metrics.initial_contact_time);

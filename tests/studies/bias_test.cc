@@ -77,7 +77,7 @@ TEST(Bias, OfAnElectrodeInPullInVoltagesDoesNotCount) {
 TEST(Bias, OfAPiezoMovesTheVoltagesOneWay) {
   double last_static = 0, last_dynamic = 0, last_release = 0;
   for (const double volts : {-2.0, -1.0, 0.0, 1.0, 2.0}) {  // d31 < 0: a positive voltage lifts the tip
-    const Prepared p = prepare(small_beam({fmt::format(R"(waveform.piezo={{family="step", level="{} V"}})", volts)}));
+    const PreparedScene p = prepare(small_beam({fmt::format(R"(waveform.piezo={{family="step", level="{} V"}})", volts)}));
     const ElectrodePullIn& found = p.pull_in.at("main");
     const double release = release_voltage(p.model, 0, bias_of(p.scene, 0));
     EXPECT_GT(found.statically.voltage, last_static) << volts;
@@ -122,7 +122,7 @@ TEST(Bias, ThatClosesTheSwitchLeavesNoPullInVoltage) {
 TEST(Bias, CountsForDevicesMeasuredByIt) {
   const SceneFile file = small_beam(
       {R"(waveform.piezo={family="step", level="-1.5 V"})", R"(spread."piezo.d31"={distribution="normal", cov="10 %"})"});
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   const DeviceMeter meter(p, {.pull_in = true});
   EXPECT_NEAR(meter.pull_in(), p.pull_in.at("main").dynamically.voltage, 1e-6 * meter.pull_in());
   // A layer that does more pulls in at less, and only because it is driven.

@@ -22,7 +22,7 @@ using testing::Contains;
 using testing::IsEmpty;
 using testing::Not;
 
-Prepared prepared_gold(std::string_view duration, std::string_view accuracy = "1e-6") {
+PreparedScene prepared_gold(std::string_view duration, std::string_view accuracy = "1e-6") {
   return prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V",
                        fmt::format("simulate.duration={}", duration), fmt::format("simulate.accuracy={}", accuracy)}));
 }
@@ -34,7 +34,7 @@ std::vector<std::string_view> ill_conditioned(const Closing& c) {
 }
 
 // Covered and not covered, of the figures that are not ill-conditioned.
-std::pair<int, int> coverage(const Prepared& p, const Closing& c) {
+std::pair<int, int> coverage(const PreparedScene& p, const Closing& c) {
   const Switch fine(p.scene.device, {.points_per_length = std::max(96.0, 4 * c.quadrature.points_per_length)});
   const ClosingOptions options{.duration = p.duration, .tolerance = std::max(1e-13, 1e-4 * c.tolerance)};
   const Trajectory best_run = simulate_closing(fine, p.signals(), options);
@@ -58,7 +58,7 @@ std::pair<int, int> coverage(const Prepared& p, const Closing& c) {
 // Also where simulate() has to tighten its run to reach the accuracy.
 TEST(Certify, LeavesTheFiguresThemselvesAsTheyAre) {
   int tightened = 0;
-  const auto expect_same = [&](const Prepared& p) {
+  const auto expect_same = [&](const PreparedScene& p) {
     const Closing plain = simulate(p, true), certified = certify(p);
     EXPECT_EQ(plain.certificate, nullptr);
     ASSERT_NE(certified.certificate, nullptr);
@@ -80,7 +80,7 @@ TEST(Certify, LeavesTheFiguresThemselvesAsTheyAre) {
 
 TEST(Certify, CoversTheTrueErrorsOfAWellConditionedClosing) {
   for (const char* accuracy : {"1e-2", "1e-4", "1e-6"}) {
-    const Prepared p = prepared_gold("60 us", accuracy);
+    const PreparedScene p = prepared_gold("60 us", accuracy);
     const Closing c = certify(p);
     EXPECT_THAT(ill_conditioned(c), IsEmpty()) << accuracy << ": a loose tolerance is an error, not a condition";
     EXPECT_FALSE(c.certificate->grazing);
@@ -98,7 +98,7 @@ TEST(Certify, CoversTheTrueErrorsOfRandomScenes) {
   for (std::uint64_t i = 0; i < 24; ++i) {
     SceneFile file = test::random_scene(3, i);
     file.set("simulate.accuracy=1e-4");
-    const Prepared p = prepare(file);
+    const PreparedScene p = prepare(file);
     constexpr long most_steps = 1000;  // long ones are left to the bench
     const ClosingOptions options{.duration = p.duration, .tolerance = p.tolerance, .max_steps = most_steps};
     if (p.model.film_states() > 0 || simulate_closing(p.model, p.signals(), options).work.steps >= most_steps) continue;
@@ -117,7 +117,7 @@ TEST(Certify, NoErrorOfADriveEnergyIsBelowTheResidualOfTheEnergies) {
   for (std::uint64_t i = 0; i < 12; ++i) {
     SceneFile file = test::random_scene(3, i);
     file.set("simulate.accuracy=1e-3");
-    const Prepared p = prepare(file);
+    const PreparedScene p = prepare(file);
     constexpr long most_steps = 1000;
     const ClosingOptions options{.duration = p.duration, .tolerance = p.tolerance, .max_steps = most_steps};
     if (p.model.film_states() > 0 || simulate_closing(p.model, p.signals(), options).work.steps >= most_steps) continue;
@@ -132,7 +132,7 @@ TEST(Certify, NoErrorOfADriveEnergyIsBelowTheResidualOfTheEnergies) {
 }
 
 TEST(Certify, GivesChaoticFiguresAsACloudAndSaysWhereItParts) {
-  const Prepared p = prepared_gold("600 us", "1e-3");
+  const PreparedScene p = prepared_gold("600 us", "1e-3");
   const Closing c = certify(p);
   EXPECT_THAT(ill_conditioned(c), Contains("permanent_contact_time_s"));
   EXPECT_THAT(ill_conditioned(c), Not(Contains("major_bounce_height_m"))) << "the first large rebound";
@@ -152,7 +152,7 @@ TEST(Certify, GivesChaoticFiguresAsACloudAndSaysWhereItParts) {
 }
 
 // Vdp by bisection of its own, a hundred thousand times closer than dynamic_pull_in().
-double tight_pull_in(const Prepared& p) {
+double tight_pull_in(const PreparedScene& p) {
   const Switch fine(p.scene.device, {.points_per_length = 48});
   const double known = p.pull_in.at("main").dynamically.voltage;
   const ClosingOptions options{.duration = 100 * 2 * pi / fine.angular_frequencies()[0], .tolerance = 1e-12, .after_contact = 0};
@@ -207,7 +207,7 @@ TEST(Simulate, TakesNoQuietEndForRestWhereTheHoldLevelsDoNotKeepTheSwitchClosed)
   EXPECT_TRUE(std::isnan(c.metrics.permanent_contact_time));
   EXPECT_THAT(c.warnings, Contains(testing::HasSubstr("do not keep the switch closed")));
   const auto is_held = [](const SceneFile& file) {
-    const Prepared p = prepare(file);
+    const PreparedScene p = prepare(file);
     const Hold hold = hold_of(p.model, p.signals());
     EXPECT_EQ(std::isfinite(hold.force), hold.is_held);
     return hold.is_held;
@@ -217,7 +217,7 @@ TEST(Simulate, TakesNoQuietEndForRestWhereTheHoldLevelsDoNotKeepTheSwitchClosed)
   EXPECT_FALSE(is_held(gold({"gap.contact=0.3 um", "waveform.main.level=1.02 Vdp"})));
 }
 
-Prepared far_electrode(std::string_view setting) {
+PreparedScene far_electrode(std::string_view setting) {
   SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/tests/studies/far_electrode.toml");
   file.set(std::string(setting));
   return prepare(file);
@@ -272,7 +272,7 @@ TEST(Certify, GivesTheRangeOfAChaoticCount_optimized) {
 }
 
 TEST(Certify, SaysNothingOfARunThatIsNotDone) {
-  const Prepared p = prepared_gold("60 us");
+  const PreparedScene p = prepared_gold("60 us");
   const std::atomic<bool> stop{true};
   const Closing c = certify(p, {.stop = &stop});
   EXPECT_EQ(c.certificate, nullptr);
@@ -280,7 +280,7 @@ TEST(Certify, SaysNothingOfARunThatIsNotDone) {
 }
 
 TEST(Simulate, AskedToStopWhileItEstimatesErrorsKeepsTheFiguresWithoutThem) {
-  const Prepared p = prepared_gold("60 us");
+  const PreparedScene p = prepared_gold("60 us");
   std::atomic<bool> stop{false};
   const Watch watch{.stop = &stop, .progress = [&](std::string_view what, double part) {
                       EXPECT_TRUE(part >= 0 && part <= 1) << what;

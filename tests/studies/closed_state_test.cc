@@ -59,7 +59,7 @@ max_voltage = "200 V"
 }
 
 ClosedState state_at(const SceneFile& file) {
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   return closed_state(p, p.signals());
 }
 
@@ -81,7 +81,7 @@ TEST(ClosedState, OfAPlateEndsAtItsFold) {
   }
   const double fold = std::sqrt(2 * most / (vacuum_permittivity * area));
   const SceneFile file = spring_plate({"contact.stiffness=312.4 N/m", "driver.main.max_voltage=200 V"});
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   const double found = pull_through_voltage(p.model, 0, std::array{0.9 * fold});
   EXPECT_NEAR(found, fold, 1e-5 * fold);
   for (const double share : {0.99, 0.999, 0.9999})
@@ -92,7 +92,7 @@ TEST(ClosedState, OfAPlateEndsAtItsFold) {
 TEST(ClosedState, SmallestEigenvalueIsThatOfDifferences) {
   for (const SceneFile& file :
        {bridge({level(40)}), gold({"waveform.main.level=20 V"}), gold_pzt({"waveform.main.level=25 V"})}) {
-    const Prepared p = prepare(file);
+    const PreparedScene p = prepare(file);
     const std::vector<double> volts = hold_levels(p.signals());
     const auto closed = closed_equilibrium(p.model, volts);
     ASSERT_TRUE(closed);
@@ -123,8 +123,8 @@ TEST(ClosedState, BelowThePullThroughVoltageAPushedBeamComesBack) {
   ASSERT_TRUE(std::isfinite(pulled_through()));
   // An electrode that is moved by a hundredth of its length pushes the beam to one side.
   for (const double share : {0.98, 1.03}) {
-    const Prepared p = prepare(bridge({level(share * pulled_through()), "electrode.main.span=[\"42 um\", \"260 um\"]",
-                                       "simulate.duration=3 ms", "simulate.tolerance=1e-7"}));
+    const PreparedScene p = prepare(bridge({level(share * pulled_through()), "electrode.main.span=[\"42 um\", \"260 um\"]",
+                                            "simulate.duration=3 ms", "simulate.tolerance=1e-7"}));
     const Closing c = simulate(p, false);
     EXPECT_EQ(c.metrics.status, share < 1 ? Status::done : Status::collapsed_onto_electrode) << share;
     EXPECT_EQ(std::isfinite(c.trajectory.collapse_time), share > 1) << share;
@@ -132,11 +132,11 @@ TEST(ClosedState, BelowThePullThroughVoltageAPushedBeamComesBack) {
 }
 
 TEST(ClosedState, ThatIsUnstableHasNotSettledAndHoldsNothing) {
-  const Prepared stable = prepare(bridge({level(0.97 * pulled_through())}));
+  const PreparedScene stable = prepare(bridge({level(0.97 * pulled_through())}));
   const Closing stays = simulate(stable, true);
   EXPECT_TRUE(stays.metrics.settled);
   EXPECT_GT(stays.metrics.hold_force, 0);
-  const Prepared unstable = prepare(bridge({level(1.03 * pulled_through())}));
+  const PreparedScene unstable = prepare(bridge({level(1.03 * pulled_through())}));
   const ClosedState state = closed_state(unstable, unstable.signals());
   EXPECT_TRUE(state.exists);
   EXPECT_EQ(state.stable, false);
@@ -159,7 +159,7 @@ TEST(ClosedState, DevicesThatAreNotHeldHaveNotSettled) {
   // Softer devices are pulled through at a lower voltage.
   SceneFile file = bridge({level(0.99 * pulled_through())});
   file.set("spread.\"structure.residual_stress\"={ distribution = \"normal\", standard_deviation = \"5 MPa\" }");
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   const Ensemble ensemble(p, 40, 3);
   const EnsembleRun run{.duration = p.duration, .tolerance = 1e-6, .jobs = 2};
   std::size_t settled = 0, left = 0;
@@ -180,7 +180,7 @@ TEST(ClosedState, DevicesThatAreNotHeldHaveNotSettled) {
 }
 
 // Of the devices of a scene, from the closed equilibrium of the nominal one: the same as by the walk from the contact plane.
-void expect_the_same_near(const Prepared& p, const std::vector<double>& volts, std::uint64_t devices) {
+void expect_the_same_near(const PreparedScene& p, const std::vector<double>& volts, std::uint64_t devices) {
   const auto nominal = closed_equilibrium(p.model, volts);
   if (!nominal) return;
   constexpr double same = 1e-9;  // of the contact force: both are solved to rounding
@@ -198,7 +198,7 @@ void expect_the_same_near(const Prepared& p, const std::vector<double>& volts, s
 
 TEST(ClosedState, OfADeviceIsFoundFromThatOfTheNominalOne) {
   for (const std::string& name : shipped_scenes()) {
-    const Prepared p = prepare(scene(name.c_str()));
+    const PreparedScene p = prepare(scene(name.c_str()));
     if (p.scene.spread.empty() || !p.model.has_contact()) continue;
     for (const double share : {0.8, 1.0, 1.3}) {
       std::vector<double> volts = hold_levels(p.signals());
@@ -210,7 +210,7 @@ TEST(ClosedState, OfADeviceIsFoundFromThatOfTheNominalOne) {
 
 TEST(ClosedState, IsFoundByTheWalkWhereNewtonsMethodEndsNowhere) {
   for (const SceneFile& file : {gold(), bridge({level(40)})}) {
-    const Prepared p = prepare(file);
+    const PreparedScene p = prepare(file);
     const std::vector<double> volts = hold_levels(p.signals());
     const ClosedEquilibrium nowhere{.q = Eigen::VectorXd::Constant(p.model.modes(), std::nan(""))};
     const auto walked = closed_equilibrium(p.model, volts), found = closed_equilibrium_near(p.model, volts, nowhere);
@@ -222,14 +222,14 @@ TEST(ClosedState, IsFoundByTheWalkWhereNewtonsMethodEndsNowhere) {
 TEST(ClosedState, OfADeviceThatIsPulledThroughIsNotFoundFromOneThatHolds) {
   SceneFile file = bridge({level(0.99 * pulled_through())});
   file.set("spread.\"structure.residual_stress\"={ distribution = \"normal\", standard_deviation = \"5 MPa\" }");
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   expect_the_same_near(p, hold_levels(p.signals()), 40);
 }
 
 TEST(ClosedState, OfEveryShippedSceneIsStableBelowWhereItIsPulledThrough_optimized) {
   for (const auto& entry : std::filesystem::directory_iterator(std::string(SOFTLAND_SOURCE_DIR) + "/scenes")) {
     if (entry.path().extension() != ".toml") continue;
-    const Prepared p = prepare(SceneFile::load(entry.path().string()));
+    const PreparedScene p = prepare(SceneFile::load(entry.path().string()));
     if (!p.model.has_contact()) continue;
     const ClosedState state = closed_state(p, p.signals());
     if (!state.exists) continue;
@@ -266,7 +266,7 @@ duration = "1 ms"
 )",
                                                         volts),
                                             "plate.toml");
-    const Prepared p = prepare(file);
+    const PreparedScene p = prepare(file);
     const Closing c = simulate(p, false);
     EXPECT_EQ(c.metrics.status, volts > 17.1 ? Status::no_contact : Status::open);
     const auto warned = testing::Contains(HasSubstr("unstable equilibrium"));

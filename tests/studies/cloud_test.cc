@@ -14,7 +14,8 @@ namespace softland {
 namespace {
 
 std::vector<double> first_touches(const CloudOptions& options) {
-  const Prepared p = prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=40 us"}));
+  const PreparedScene p =
+      prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=40 us"}));
   std::vector<double> times;
   for (const Trajectory& t : perturbed_closings(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-10}, options))
     times.push_back(t.touches.at(0).begin);
@@ -35,7 +36,8 @@ TEST(Cloud, IsTheSameForAnyNumberOfJobs) {
 }
 
 TEST(Cloud, AskedToStopKeepsTheRunsThatAreComplete) {
-  const Prepared p = prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=40 us"}));
+  const PreparedScene p =
+      prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=40 us"}));
   const auto runs = [&](int jobs, std::atomic<bool>& stop, const Watch& watch) {
     return perturbed_closings(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-10, .stop = &stop}, {.jobs = jobs},
                               watch);
@@ -59,7 +61,8 @@ TEST(Cloud, AskedToStopKeepsTheRunsThatAreComplete) {
 
 // A higher step closes sooner: d ln t_i / d ln V is -1.6 at this level.
 TEST(Cloud, PerturbsTheDrivesByWhatWasAsked) {
-  const Prepared p = prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=40 us"}));
+  const PreparedScene p =
+      prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=40 us"}));
   const double own = simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-10}).touches.at(0).begin;
   bool sooner = false, later = false;
   for (const double size : {1e-6, 1e-4}) {

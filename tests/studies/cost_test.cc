@@ -186,7 +186,7 @@ TEST(Cost, OfTheSameLandingLaterIsNotLower) {
 TEST(MetricsObserver, GathersWhatCostsAreMadeOfAsATrajectoryHasIt) {
   for (const char* level : {"17.771 V", "21 V", "13 V", "5 V"}) {
     for (const char* window : {"600 us", "60 us"}) {  // the short one ends in a rebound
-      const Prepared p =
+      const PreparedScene p =
           prepare(gold({fmt::format("waveform.main.level={}", level), fmt::format("simulate.duration={}", window)}));
       const ClosingOptions run{.duration = p.duration, .tolerance = 1e-4, .closed_potential = -1e-12};
       const Trajectory t = simulate_closing(p.model, p.signals(), run);

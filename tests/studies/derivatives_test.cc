@@ -47,7 +47,7 @@ SceneFile random_switch(const Scenes& of, std::mt19937_64& random) {
   SceneFile file = scene(of.scene);
   for (const std::string& change : of.changes) file.set(change);
   file.set(spread_of(of.keys));
-  const Prepared drawn = prepare(file);
+  const PreparedScene drawn = prepare(file);
   std::uniform_real_distribution<double> factor(0.9, 1.1);
   for (const SpreadVariable& v : drawn.scene.spread.variables) {
     for (const VariedKey& key : v.keys) {
@@ -62,7 +62,7 @@ SceneFile random_switch(const Scenes& of, std::mt19937_64& random) {
 // The figures of derivatives() under the waveforms of a drive, for the device with these values, built from nothing.
 class Devices {
  public:
-  Devices(const Prepared& nominal, const EnsembleDrive& drive)
+  Devices(const PreparedScene& nominal, const EnsembleDrive& drive)
       : nominal_(nominal), drive_(drive), ensemble_(nominal, 1), builder_(ensemble_), drives_(nominal) {
     if (!drive.known.calibration().is_empty()) meter_.emplace(nominal, Gauges::of(drive.known.calibration()), 1e-11);
   }
@@ -91,7 +91,7 @@ class Devices {
   }
 
  private:
-  const Prepared& nominal_;
+  const PreparedScene& nominal_;
   const EnsembleDrive& drive_;
   Ensemble ensemble_;
   DeviceBuilder builder_;
@@ -110,7 +110,7 @@ std::size_t place_of(std::string_view key) {
 }
 
 // A case is a switch, a waveform and a parameter.
-void compare(const Prepared& nominal, const EnsembleDrive& drive, int arcs, Compared& all) {
+void compare(const PreparedScene& nominal, const EnsembleDrive& drive, int arcs, Compared& all) {
   const Derivatives found = derivatives(nominal, drive, {.tolerance = tight, .refinement = arcs});
   ASSERT_EQ(found.why_none, "");
   if (found.grazes()) {
@@ -310,7 +310,7 @@ TEST(Derivatives, OfDevicesInTheirOwnUnits_optimized) {
   expect_agreement({"mem-gold.toml", Actuator::electrostatic, "pulse", {in_100_us}, beam, "Vdp,frequency"}, 1);
 }
 
-EnsembleDrive own_drive(const Prepared& p) { return {.waveforms = p.in_drive_order(p.drives.waveforms)}; }
+EnsembleDrive own_drive(const PreparedScene& p) { return {.waveforms = p.in_drive_order(p.drives.waveforms)}; }
 
 const FigureDerivatives& figure(const Derivatives& of, std::string_view key) {
   return *std::find_if(of.figures.begin(), of.figures.end(), [&](const FigureDerivatives& f) { return f.key == key; });
@@ -320,7 +320,7 @@ const FigureDerivatives& figure(const Derivatives& of, std::string_view key) {
 TEST(Derivatives, TimesGrowWithTheRootOfTheDensity_optimized) {
   SceneFile file = gold_at_17_volts({spread_of({"structure.density"})});
   file.erase("gas");
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   const Derivatives found = derivatives(p, own_drive(p), {.tolerance = tight, .refinement = 16});
   constexpr double exact = 1e-7;  // SwitchSlopes
   const auto elasticity = [&](std::string_view key) { return figure(found, key).by_variable[0] / figure(found, key).value; };
@@ -334,7 +334,7 @@ TEST(Derivatives, TimesGrowWithTheRootOfTheDensity_optimized) {
 // Correlated quantities that are one quantity spread a figure as one.
 TEST(Derivatives, AddUpAsCorrelated_optimized) {
   const auto found_with = [](const std::string& correlation) {
-    const Prepared p = prepare(gold_at_17_volts(
+    const PreparedScene p = prepare(gold_at_17_volts(
         {fmt::format(R"(spread={{"structure.width"={{distribution="normal",cov="1 %"}},"gap.contact"={{distribution="normal",)"
                      R"(cov="2 %"}},correlation=[["structure.width","gap.contact",{}]]}})",
                      correlation)}));
@@ -351,7 +351,7 @@ TEST(Derivatives, ForwardAreThoseBackward_optimized) {
   for (const char* model : {"contact.model=asperity-uniform", "contact.model=elastic-plastic"}) {
     SceneFile file = gold_at_17_volts({model});
     if (std::string(model).find("plastic") != std::string::npos) file.set("contact.hardness=1 GPa");
-    const Prepared p = prepare(file);
+    const PreparedScene p = prepare(file);
     std::vector<std::optional<SwitchSlopes::Neighbours>> neighbours(4);
     const auto set = [&](std::size_t k, auto&& member) {
       Device above = p.model.device(), below = above;
@@ -374,7 +374,7 @@ TEST(Derivatives, ForwardAreThoseBackward_optimized) {
     const std::vector<Signal> signals = p.signals();
     const std::vector<double> none(4, 0.0);
     const SignalSlopes fixed([&](std::span<const double>) { return signals; }, none, none, none);
-    MotionTape tape;
+    RecordedMotion tape;
     (void)observe_closing(p.model, signals, {.duration = p.duration, .tolerance = 1e-8}, tape);
     LinearizedClosing motion(p.model, signals, tape, 1, &by);
     const CostSlopes slopes = cost_slopes(p.model, signals, motion, p.scene.metrics);
@@ -393,7 +393,7 @@ TEST(Derivatives, ForwardAreThoseBackward_optimized) {
 
 // In the whole window the reference closing is chaotic: its permanent contact is decided by changes that no one sees.
 TEST(Derivatives, TellWhatIsIllConditioned_optimized) {
-  const Prepared p = prepare(gold());
+  const PreparedScene p = prepare(gold());
   const Derivatives found = derivatives(p, own_drive(p));
   EXPECT_TRUE(found.grazes());
   EXPECT_FALSE(figure(found, "permanent_contact_time_s").is_known());
@@ -406,7 +406,7 @@ TEST(Derivatives, TellWhatIsIllConditioned_optimized) {
 
 TEST(Derivatives, SayWhyThereAreNone_optimized) {
   const auto found = [](std::initializer_list<std::string_view> changes, const Calibration& calibration = {}) {
-    const Prepared p = prepare(gold_at_17_volts(changes));
+    const PreparedScene p = prepare(gold_at_17_volts(changes));
     EnsembleDrive drive = own_drive(p);
     if (!calibration.is_empty()) drive.known = known_units(p, std::array{calibration}, 1).front();
     return derivatives(p, drive);

@@ -33,12 +33,12 @@ bool same(const DeviceOutcome& a, const Metrics& b) {
 
 // The closing of a scene as `simulate` reads it, in the window and with the tolerance of an ensemble.
 Metrics alone(const SceneFile& file) {
-  const Prepared own = prepare(SceneFile::parse(file.text(), "alone.toml"));
+  const PreparedScene own = prepare(SceneFile::parse(file.text(), "alone.toml"));
   return metrics(simulate_closing(own.model, own.signals(), {.duration = own.duration, .tolerance = EnsembleRun{}.tolerance}),
                  own.scene.metrics);
 }
 
-std::vector<DeviceOutcome> closings(const Prepared& nominal, const Ensemble& ensemble, int jobs = 1) {
+std::vector<DeviceOutcome> closings(const PreparedScene& nominal, const Ensemble& ensemble, int jobs = 1) {
   // One at a time, as simulate_closing() does it: to the bit.
   return close_all(ensemble, {{.waveforms = nominal.in_drive_order(nominal.drives.waveforms)}},
                    {.duration = nominal.duration, .jobs = jobs, .vectors = Vectors::none})[0];
@@ -47,7 +47,7 @@ std::vector<DeviceOutcome> closings(const Prepared& nominal, const Ensemble& ens
 constexpr double figures_of_bits = 1e-9;  // relative: what another clock does to the figures of one closing
 
 TEST(DeviceDrives, AGainMultipliesTheLevels) {
-  const Prepared nominal = prepare(gold_at_17_volts({throw_and_catch, normal("gain", "2 %")}));
+  const PreparedScene nominal = prepare(gold_at_17_volts({throw_and_catch, normal("gain", "2 %")}));
   const Ensemble ensemble(nominal, 4);
   const std::vector<DeviceOutcome> found = closings(nominal, ensemble);
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -60,7 +60,7 @@ TEST(DeviceDrives, AGainMultipliesTheLevels) {
 }
 
 TEST(DeviceDrives, ADelayMovesTheClosingAndNothingElse) {
-  const Prepared nominal = prepare(gold_at_17_volts({throw_and_catch, normal("delay", "200 ns")}));
+  const PreparedScene nominal = prepare(gold_at_17_volts({throw_and_catch, normal("delay", "200 ns")}));
   const Ensemble ensemble(nominal, 8);
   const std::vector<DeviceOutcome> found = closings(nominal, ensemble);
   const Metrics in_time = alone(gold_at_17_volts({throw_and_catch}));
@@ -79,9 +79,10 @@ TEST(DeviceDrives, ADelayMovesTheClosingAndNothingElse) {
 }
 
 TEST(DeviceDrives, OfOneDeviceHaveOneClock) {
-  const Prepared nominal = prepare(gold_pzt({"waveform.piezo={family=\"pulse\", levels=[\"0.5 V\", \"0 V\"], times=[\"9 us\"]}",
-                                             "spread={\"driver.piezo.delay\"={distribution=\"empirical\", values=[\"-40 ns\", "
-                                             "\"-40 ns\"]}, \"driver.piezo.gain\"={distribution=\"normal\", cov=\"1 %\"}}"}));
+  const PreparedScene nominal =
+      prepare(gold_pzt({"waveform.piezo={family=\"pulse\", levels=[\"0.5 V\", \"0 V\"], times=[\"9 us\"]}",
+                        "spread={\"driver.piezo.delay\"={distribution=\"empirical\", values=[\"-40 ns\", "
+                        "\"-40 ns\"]}, \"driver.piezo.gain\"={distribution=\"normal\", cov=\"1 %\"}}"}));
   const DeviceDrives drives(nominal);
   const std::vector<Waveform> waveforms = nominal.in_drive_order(nominal.drives.waveforms);
   const std::vector<Signal> own = drives.signals(waveforms, {}, {-40e-9, 1.02});
@@ -97,7 +98,7 @@ TEST(DeviceDrives, OfOneDeviceHaveOneClock) {
 }
 
 TEST(DeviceDrives, GiveAPiezoVoltsOfItsOwnUnit) {
-  const Prepared nominal =
+  const PreparedScene nominal =
       prepare(gold_pzt({"waveform.piezo={family=\"pulse\", levels=[\"0.5 V\", \"0 V\"], times=[\"9 us\"]}"}));
   const std::vector<Waveform> waveforms = nominal.in_drive_order(nominal.drives.waveforms);
   const DeviceUnits units{.volts = 1.1, .time = 0.9, .piezo = 0.8};
@@ -111,7 +112,7 @@ TEST(DeviceDrives, GiveAPiezoVoltsOfItsOwnUnit) {
 }
 
 TEST(DeviceDrives, JitterOfEdgesIsAsWideAsItIsSaid) {
-  const Prepared nominal = prepare(gold_at_17_volts({throw_and_catch, normal("jitter", "50 ns")}));
+  const PreparedScene nominal = prepare(gold_at_17_volts({throw_and_catch, normal("jitter", "50 ns")}));
   const Ensemble ensemble(nominal, 4096);
   const DeviceDrives drives(nominal);
   const std::vector<Waveform> waveforms{nominal.drives.waveforms.at("main")};
@@ -138,7 +139,7 @@ TEST(DeviceDrives, JitterOfEdgesIsAsWideAsItIsSaid) {
 }
 
 TEST(DeviceDrives, JitterOnTheirOwnWhereTheyShareAnEntry) {
-  const Prepared nominal =
+  const PreparedScene nominal =
       prepare(gold_pzt({"spread={edges={keys=[\"driver.main.jitter\", \"driver.piezo.jitter\"], "
                         "distribution=\"uniform\", half_width=\"50 ns\"}}"}));
   const std::vector<Signal> own =
@@ -147,7 +148,7 @@ TEST(DeviceDrives, JitterOnTheirOwnWhereTheyShareAnEntry) {
 }
 
 TEST(DeviceDrives, AreThoseOfTheNominalDeviceWithoutErrors) {
-  const Prepared nominal = prepare(gold_at_17_volts({throw_and_catch}));
+  const PreparedScene nominal = prepare(gold_at_17_volts({throw_and_catch}));
   const DeviceDrives drives(nominal);
   EXPECT_FALSE(drives.differ({}));
   EXPECT_TRUE(drives.differ({.volts = 1.01, .time = 1}));
@@ -155,7 +156,7 @@ TEST(DeviceDrives, AreThoseOfTheNominalDeviceWithoutErrors) {
 }
 
 TEST(DeviceDrives, DoNotDependOnThreads) {
-  const Prepared nominal = prepare(gold_at_17_volts(
+  const PreparedScene nominal = prepare(gold_at_17_volts(
       {throw_and_catch, "spread.\"driver.main.jitter\"={distribution=\"normal\", standard_deviation=\"50 ns\"}"}));
   const Ensemble ensemble(nominal, 300);
   const std::vector<DeviceOutcome> one = closings(nominal, ensemble, 1), three = closings(nominal, ensemble, 3);
@@ -179,7 +180,7 @@ TEST(DeviceDrives, AreWrittenIntoTheScenesOfDevices) {
         gold_at_17_volts({normal("gain", "2 %"),
                           "waveform.main={family=\"harmonic\", base=\"17.7 V\", amplitude=\"1 V\", "
                           "angular_frequency=\"180543 rad/s\"}"})}) {
-    const Prepared nominal = prepare(file);
+    const PreparedScene nominal = prepare(file);
     const NamedDrive drive{.name = "own", .waveforms = nominal.drives.waveforms, .calibration = nominal.scene.calibration};
     const RobustnessOptions options{.samples = 12, .vectors = Vectors::none};
     const Robustness found = robustness(nominal, {drive}, options);
@@ -192,7 +193,7 @@ TEST(DeviceDrives, AreWrittenIntoTheScenesOfDevices) {
 }
 
 TEST(DeviceDrives, StayInTheirFamilyWhereItCanExpressThem) {
-  const Prepared nominal = prepare(gold_at_17_volts({normal("jitter", "50 ns")}));
+  const PreparedScene nominal = prepare(gold_at_17_volts({normal("jitter", "50 ns")}));
   const DeviceDrives drives(nominal);
   const Ensemble ensemble(nominal, 16);
   int early = 0;
@@ -208,7 +209,7 @@ TEST(DeviceDrives, StayInTheirFamilyWhereItCanExpressThem) {
 }
 
 TEST(DeviceDrives, OfASineAreWrittenAsCloseLines) {
-  const Prepared nominal = prepare(gold_at_17_volts(
+  const PreparedScene nominal = prepare(gold_at_17_volts(
       {normal("delay", "300 ns"),
        "waveform.main={family=\"harmonic\", base=\"17.7 V\", amplitude=\"1 V\", angular_frequency=\"180543 rad/s\"}"}));
   const DeviceDrives drives(nominal);
@@ -222,7 +223,7 @@ TEST(DeviceDrives, OfASineAreWrittenAsCloseLines) {
 }
 
 TEST(DeviceDrives, AnOffsetIsThereOnADriveThatIsNotDriven) {
-  const Prepared nominal =
+  const PreparedScene nominal =
       prepare(gold_pzt({"waveform.piezo={family=\"step\", level=\"0 V\"}", "simulate.duration=60 us", "simulate.accuracy=1e-4",
                         "spread={\"driver.piezo.offset\"={distribution=\"uniform\", half_width=\"0.3 V\"}}"}));
   const RobustnessOptions options{.samples = 4, .vectors = Vectors::none};
@@ -232,7 +233,7 @@ TEST(DeviceDrives, AnOffsetIsThereOnADriveThatIsNotDriven) {
   ASSERT_EQ(found.drives.back().name, "own");
   const Ensemble ensemble(nominal, 4);
   for (std::size_t k = 0; k < 4; ++k) {
-    const Prepared own =
+    const PreparedScene own =
         prepare(SceneFile::parse(scene_of_device(nominal, found.drives.back(), k, options).text(), "alone.toml"));
     EXPECT_EQ(signal(own.drives.waveforms.at("piezo")).hold_level(), ensemble.values(k)[0]);
     EXPECT_TRUE(same(found.drives.back().outcomes[k], alone(own.scene.file))) << k;
@@ -283,7 +284,7 @@ TEST(SourceKeys, AreWhatVaries) {
       if (!samples.empty()) file.set(samples);
       return file;
     };
-    const Prepared nominal = prepare(scene({gain_key, offset_key, delay_key, spread("gain", "\"normal\", cov=\"1 %\"")}));
+    const PreparedScene nominal = prepare(scene({gain_key, offset_key, delay_key, spread("gain", "\"normal\", cov=\"1 %\"")}));
     const Ensemble ensemble(nominal, 4);
     const std::vector<DeviceOutcome> found = closings(nominal, ensemble);
     for (std::size_t k = 0; k < found.size(); ++k) {
@@ -309,7 +310,7 @@ TEST(SourceKeys, StandInTheScenesOfDevices) {
         gold_at_17_volts({throw_and_catch, both, samples}), gold_at_17_volts({throw_and_catch, gain_key, samples})}) {
     SceneFile varied = file;
     if (!varied.written("spread")) varied.set("spread={\"structure.thickness\"={distribution=\"normal\", cov=\"2 %\"}}");
-    const Prepared nominal = prepare(varied);
+    const PreparedScene nominal = prepare(varied);
     const NamedDrive drive{.name = "own", .waveforms = nominal.drives.waveforms};
     const RobustnessOptions options{.samples = 6, .vectors = Vectors::none};
     const Robustness found = robustness(nominal, {drive}, options);
@@ -322,7 +323,7 @@ TEST(SourceKeys, StandInTheScenesOfDevices) {
 
 // First contact under a step is that of its volts, and how late it is on top.
 TEST(DeviceDrives, HaveSharesOfTheVariance) {
-  const Prepared nominal =
+  const PreparedScene nominal =
       prepare(gold_at_17_volts({"spread={\"driver.main.gain\"={distribution=\"normal\", cov=\"0.03 %\"}, \"driver.main.delay\"="
                                 "{distribution=\"uniform\", half_width=\"20 ns\"}, \"driver.main.jitter\"="
                                 "{distribution=\"uniform\", half_width=\"20 ns\"}}"}));

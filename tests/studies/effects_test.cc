@@ -37,7 +37,7 @@ const Effect& find(const Effects& effects, const std::string& choice) {
 }
 
 TEST(Effects, CompareEveryGasLawWithTheScenesOwn) {
-  const Prepared p = prepare(gold_at_17_volts());
+  const PreparedScene p = prepare(gold_at_17_volts());
   const Effects effects = compare_effects(p);
   EXPECT_EQ(choices(effects), compared_laws());
   const Effect& own = effects.own("gas");
@@ -132,7 +132,7 @@ TEST(Effects, GiveEveryLawWhatASceneMayGiveIt) {
 
 // The open ends of the film belong to the laws that can have them, and so does a second film on the far side.
 TEST(Effects, OfFilmsWithOpenEndsDoNotWeakenLawsWithoutThem) {
-  const Prepared p = prepare(scene("gap-closing-actuator.toml", {"simulate.accuracy=1e-3"}));
+  const PreparedScene p = prepare(scene("gap-closing-actuator.toml", {"simulate.accuracy=1e-3"}));
   const Effects effects = compare_effects(p);
   EXPECT_TRUE(effects.not_compared.empty()) << effects.not_compared.front().reason;
   const double kept = end_flow(40 / 76.1);

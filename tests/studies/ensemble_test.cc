@@ -31,14 +31,14 @@ TEST(Ensemble, HasTheDevicesThatItsScenesDescribe) {
             {"structure.width=\"100 um\"", "spread={\"structure.width\"={distribution=\"normal\", cov=\"3 %\"}}"}),
       gold_pzt({"spread.\"piezo.d31\"={distribution=\"normal\", cov=\"3 %\"}"})};
   for (std::size_t i = 0; i < scenes.size(); ++i) {
-    const Prepared nominal = prepare(scenes[i]);
+    const PreparedScene nominal = prepare(scenes[i]);
     const Ensemble ensemble(nominal, 8, 3);
     DeviceBuilder builder(ensemble);
     for (std::uint64_t k = 0; k < ensemble.size(); ++k) {
       SCOPED_TRACE(fmt::format("scene {} device {}", i, k));
       const SampledDevice device = builder.device(k);
       ASSERT_TRUE(device.model) << device.refusal;
-      const Prepared alone = prepare(SceneFile::parse(ensemble.scene(device.values).text(), "alone.toml"));
+      const PreparedScene alone = prepare(SceneFile::parse(ensemble.scene(device.values).text(), "alone.toml"));
       EXPECT_TRUE(alone.scene.spread.empty());
       const Switch own(alone.scene.device, nominal.quadrature);
       // The modes of a beam of two sections are found from those of the nominal one, and closings agree to their tolerance.
@@ -60,7 +60,7 @@ bool same(const DeviceOutcome& a, const DeviceOutcome& b) {
 }
 
 TEST(Ensemble, DoesNotDependOnThreadsOrderOrSize) {
-  const Prepared nominal = prepare(gold_at_17_volts());
+  const PreparedScene nominal = prepare(gold_at_17_volts());
   const std::vector<EnsembleDrive> drives{{.waveforms = {nominal.drives.waveforms.at("main")}}};
   const EnsembleRun run{.duration = nominal.duration};
   const std::vector<DeviceOutcome> all = close_all(Ensemble(nominal, 600), drives, run)[0];
@@ -83,7 +83,7 @@ TEST(Ensemble, DoesNotDependOnThreadsOrderOrSize) {
 
 TEST(Ensemble, CountsImpossibleDevicesAsTheWorst) {
   // Electrodes at 0.5 um to 6.5 um, a contact at 2 um: a quarter cannot be built, and the farthest do not pull enough.
-  const Prepared nominal =
+  const PreparedScene nominal =
       prepare(gold_at_17_volts({"spread={\"gap.electrode\"={distribution=\"uniform\", half_width=\"3 um\"}}"}));
   const Robustness found = robustness(nominal, {}, {.samples = 256});
   ASSERT_EQ(found.drives.size(), 1U);
@@ -109,7 +109,7 @@ TEST(Ensemble, CountsImpossibleDevicesAsTheWorst) {
 }
 
 TEST(Ensemble, NeedsASpread) {
-  const Prepared nominal = prepare(without(gold_at_17_volts(), "spread"));
+  const PreparedScene nominal = prepare(without(gold_at_17_volts(), "spread"));
   EXPECT_NE(refusal([&] { static_cast<void>(Ensemble(nominal, 10)); }).find("there is no [spread]"), std::string::npos);
 }
 
@@ -125,7 +125,7 @@ double pull_in_by_bisection(const Switch& model, double low, double high) {
 }
 
 TEST(Calibration, GivesEveryDeviceTheWaveformInItsOwnUnits) {
-  const Prepared nominal = prepare(gold_at_17_volts(
+  const PreparedScene nominal = prepare(gold_at_17_volts(
       {"waveform.main={family=\"pulse\", levels=[\"20 V\", \"5 V\", \"17 V\"], times=[\"22 us\", \"30 us\"], edge=\"1 us\"}"}));
   const Ensemble ensemble(nominal, 6);
   const Calibration exact{.pull_in_error = 0, .frequency_error = 0};
@@ -176,7 +176,7 @@ double touch_under(const Switch& model, double volts) {
 }
 
 TEST(Calibration, TellsTheVoltsByAClosingTime) {
-  const Prepared nominal = prepare(gold_at_17_volts());
+  const PreparedScene nominal = prepare(gold_at_17_volts());
   const DeviceMeter meter(nominal, {.closing_time = true});
   const double step = closing_step * meter.pull_in();
   EXPECT_NEAR(meter.closing_time(), touch_under(nominal.model, step), 1e-4 * meter.closing_time());
@@ -206,7 +206,7 @@ TEST(Calibration, ByATimeErrsAsMuchAsTheClock) {
 
 // What a volt does is a static deflection: under 1 mV, and -1 mV, from rest.
 TEST(Calibration, OfAPiezoIsByWhatAVoltDeflects) {
-  const Prepared nominal = prepare(gold_pzt());
+  const PreparedScene nominal = prepare(gold_pzt());
   const DeviceMeter meter(nominal, {.piezo = true});
   const auto unit_of = [](const Switch& model) {
     const auto deflection = [&](double volts) {
@@ -227,13 +227,13 @@ TEST(Calibration, OfAPiezoIsByWhatAVoltDeflects) {
   EXPECT_EQ(DeviceMeter::piezo_unit(prepare(gold()).model), 0);
   EXPECT_NE(refusal([] { DeviceMeter(prepare(gold()), {.piezo = true}); }).find("piezo cannot be measured: there is no [piezo]"),
             std::string::npos);
-  const Prepared still = prepare(gold_pzt({"piezo.d31=0 m/V"}));
+  const PreparedScene still = prepare(gold_pzt({"piezo.d31=0 m/V"}));
   EXPECT_NE(refusal([&] { DeviceMeter(still, {.piezo = true}); }).find("it does not move the contact point"), std::string::npos);
 }
 
 // Devices that differ in their layer alone close alike once they are driven in its unit.
 TEST(Calibration, OfAPiezoUndoesWhatItsLayerDoes) {
-  const Prepared nominal = prepare(gold_pzt(
+  const PreparedScene nominal = prepare(gold_pzt(
       {"waveform.piezo={family=\"pulse\", levels=[\"1 V\", \"-1 V\", \"0 V\"], times=[\"9 us\", \"40 us\"], edge=\"1 us\"}",
        "spread={\"piezo.d31\"={distribution=\"normal\", cov=\"5 %\"}}", "simulate.duration=60 us"}));
   const Ensemble ensemble(nominal, 6);
@@ -324,7 +324,7 @@ TEST(KnownUnits, SortWhatIsMeasuredWithItsErrors) {
 }
 
 TEST(Calibration, DrivesADeviceWithTheWaveformOfItsClass) {
-  const Prepared nominal = prepare(gold_at_17_volts({"simulate.accuracy=1e-3"}));
+  const PreparedScene nominal = prepare(gold_at_17_volts({"simulate.accuracy=1e-3"}));
   const DeviceMeter meter(nominal, {});  // a frequency costs no closings
   const Calibration sorted{.frequency_error = 0, .classes = 3};
   const KnownUnits known = known_units(nominal, std::array{sorted}, 1).front();
@@ -349,7 +349,7 @@ TEST(Calibration, DrivesADeviceWithTheWaveformOfItsClass) {
 }
 
 TEST(Robustness, SaysWhatAPiezosUnitIsWorthBesideTheOthers_slow) {
-  const Prepared nominal = prepare(gold_pzt({"simulate.duration=60 us"}));
+  const PreparedScene nominal = prepare(gold_pzt({"simulate.duration=60 us"}));
   const Calibration all{.pull_in_error = 0.01, .frequency_error = 0.005, .piezo_error = 0.01};
   const Robustness found = robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms, .calibration = all}},
                                       {.samples = 4, .jobs = 2, .worth_of_measuring = true});
@@ -363,7 +363,7 @@ TEST(Robustness, SaysWhatAPiezosUnitIsWorthBesideTheOthers_slow) {
 }
 
 TEST(Robustness, SaysWhatEachMeasurementIsWorth_optimized) {
-  const Prepared nominal = prepare(gold_at_17_volts({"waveform.main.rise_time=30 us"}));
+  const PreparedScene nominal = prepare(gold_at_17_volts({"waveform.main.rise_time=30 us"}));
   const Calibration errors{.pull_in_error = 0.01, .frequency_error = 0.01};
   RobustnessOptions options{.samples = 24, .jobs = 2, .vectors = Vectors::none, .worth_of_measuring = true};
   const Robustness found =
@@ -398,7 +398,8 @@ TEST(Robustness, SaysWhatEachMeasurementIsWorth_optimized) {
     EXPECT_LT(spread_of_first_contact(found.by_knowledge[i + 1]), spread_of_first_contact(found.by_knowledge[i])) << names[i];
   // A device of it is a scene of its own, with its own volts.
   const std::size_t k = 5;
-  const Prepared alone = prepare(SceneFile::parse(scene_of_device(nominal, found.drives[1], k, options).text(), "worst.toml"));
+  const PreparedScene alone =
+      prepare(SceneFile::parse(scene_of_device(nominal, found.drives[1], k, options).text(), "worst.toml"));
   EXPECT_TRUE(alone.scene.calibration.is_empty());
   const Metrics own =
       metrics(simulate_closing(alone.model, alone.signals(), {.duration = found.duration, .tolerance = found.tolerance}),
@@ -408,7 +409,7 @@ TEST(Robustness, SaysWhatEachMeasurementIsWorth_optimized) {
 }
 
 TEST(Robustness, JudgesEveryDriveOnTheSameDevicesBesideThePlainStep) {
-  const Prepared nominal = prepare(gold_at_17_volts({"waveform.main.rise_time=40 us"}));
+  const PreparedScene nominal = prepare(gold_at_17_volts({"waveform.main.rise_time=40 us"}));
   const Robustness found = robustness(nominal, {{.name = "slow", .waveforms = nominal.drives.waveforms}}, {.samples = 128});
   ASSERT_EQ(found.drives.size(), 2U);
   EXPECT_EQ(found.drives[0].name, "plain step");
@@ -435,16 +436,17 @@ TEST(Robustness, JudgesEveryDriveOnTheSameDevicesBesideThePlainStep) {
   EXPECT_LE(s.quantiles[1].value, heights[64]);
   EXPECT_EQ(found.drives[0].outcomes[found.drives[0].worst[0]].metrics.major_bounce_height, heights.back());
   // A drive that is the plain step is not judged twice.
-  const Prepared step = prepare(gold_at_17_volts());
+  const PreparedScene step = prepare(gold_at_17_volts());
   EXPECT_EQ(robustness(step, {{.name = "step", .waveforms = step.drives.waveforms}}, {.samples = 2}).drives.size(), 1U);
 }
 
 TEST(Robustness, GivesTheSceneOfEveryDevice) {
-  const Prepared nominal = prepare(gold_at_17_volts());
+  const PreparedScene nominal = prepare(gold_at_17_volts());
   const RobustnessOptions options{.samples = 16, .vectors = Vectors::none};  // one at a time, as `simulate` closes it
   const Robustness found = robustness(nominal, {}, options);
   for (const std::size_t k : {found.drives[0].worst[0], std::size_t{3}}) {
-    const Prepared alone = prepare(SceneFile::parse(scene_of_device(nominal, found.drives[0], k, options).text(), "worst.toml"));
+    const PreparedScene alone =
+        prepare(SceneFile::parse(scene_of_device(nominal, found.drives[0], k, options).text(), "worst.toml"));
     const Metrics own =
         metrics(simulate_closing(alone.model, alone.signals(), {.duration = found.duration, .tolerance = found.tolerance}),
                 alone.scene.metrics);
@@ -454,7 +456,7 @@ TEST(Robustness, GivesTheSceneOfEveryDevice) {
 }
 
 TEST(Robustness, RefusesDrivesThatTheSceneDoesNotAllow) {
-  const Prepared nominal = prepare(gold_at_17_volts());
+  const PreparedScene nominal = prepare(gold_at_17_volts());
   const auto refused = [&](const std::string& drive, const Waveform& waveform) {
     return refusal([&] {
       static_cast<void>(robustness(nominal, {{.name = "x.toml", .waveforms = {{drive, waveform}}}}, {.samples = 1}));
@@ -468,7 +470,7 @@ TEST(Robustness, RefusesDrivesThatTheSceneDoesNotAllow) {
 TEST(Ensemble, KeepsTheUnitOfWhatVaries) {
   const SceneFile file = spring_plate({"structure.width=100 um", "gas.model=linear", "gas.damping=2e-5 N s/m",
                                        R"(spread."gas.damping"={ distribution = "normal", cov = "5 %" })"});
-  const Prepared nominal = prepare(file);
+  const PreparedScene nominal = prepare(file);
   const Ensemble ensemble(nominal, 3, 1);
   for (std::uint64_t k = 0; k < 3; ++k) {
     const double given = ensemble.values(k)[0] * number_of(*nominal.scene.device.gas, "damping", 0);

@@ -22,7 +22,7 @@ TEST(Evaluator, RowsHaveTheBitsOfTheDevicesOfASpread) {
   SceneFile file = gold();
   file.erase("spread");
   file.set(R"(spread."gap.contact"={distribution="normal",standard_deviation="40 nm"})");
-  const Prepared nominal = prepare_and_choose(file);
+  const PreparedScene nominal = prepare_and_choose(file);
   const Ensemble ensemble(nominal, 5);
   const auto closed =
       close_all(ensemble, {{.waveforms = nominal.in_drive_order(nominal.drives.waveforms)}}, {.duration = nominal.duration});

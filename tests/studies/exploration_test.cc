@@ -103,10 +103,10 @@ TEST(Exploration, FindsThePullInOfASwitchOnceAndOfEveryOtherOne_optimized) {
 
 TEST(PullInMemory, TellsScenesOfOneSwitchFromThoseOfAnother) {
   // The switch that is handed over with a scene is another one: what comes back tells whether it was looked at.
-  const Prepared ours = prepare(short_gold());
+  const PreparedScene ours = prepare(short_gold());
   SceneFile deep = short_gold();
   deep.assign("gap.contact", 2.1e-6);
-  const Prepared other = prepare(deep);
+  const PreparedScene other = prepare(deep);
   const double own = ours.pull_in.at("main").dynamically.voltage, of_other = other.pull_in.at("main").dynamically.voltage;
   ASSERT_NE(own, of_other);
   PullInMemory memory;
@@ -139,7 +139,7 @@ TEST(Exploration, WithErrorsGivesThoseOfCertify_optimized) {
 TEST(Exploration, OfPullInGivesTheVoltages) {
   Exploration e = exploration(request("pull-in", {"gap.contact=1.8 um,2 um"}));
   ASSERT_EQ(e.figures().size(), 4U);
-  const Prepared p = prepare(short_gold());
+  const PreparedScene p = prepare(short_gold());
   SceneFile other = short_gold();
   other.assign("gap.contact", 1.8e-6);
   EXPECT_EQ(row_of(e, 1).figures[1], p.pull_in.at("main").dynamically.voltage);
@@ -167,7 +167,7 @@ TEST(Exploration, OfDevicesGivesTheYieldsOfRobustness_optimized) {
   const PointRow row = row_of(e, 0);
   SceneFile scene = short_gold();
   scene.set("waveform.main.level=\"1.2 Vdp\"");
-  const Prepared nominal = prepare_and_choose(scene, true);
+  const PreparedScene nominal = prepare_and_choose(scene, true);
   const Robustness found =
       robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms}}, {.samples = 24, .seed = 5});
   EXPECT_EQ(row.figures[0], found.drives.back().closing.value);

@@ -31,7 +31,7 @@ struct Truth {
   double stiffness = 1.03, mass = 0.98, gaps = 1.015;
 };
 double exact(const Instrument& instrument, const Truth& truth) {
-  const Prepared p = prepare(plate());
+  const PreparedScene p = prepare(plate());
   DeviceReader reader(p);
   std::vector<double> values;
   for (const SpreadVariable& v : p.scene.spread.variables)
@@ -93,7 +93,7 @@ TEST(Fit, FindsOneAmountThatIsAddedToSeveralKeys) {
   SceneFile file = spring_plate();
   file.set(R"(spread={"structure.stiffness"={distribution="normal",cov="4 %"},)"
            R"(undercut={keys=["gap.electrode","gap.contact"],weights=[1,1],distribution="normal",standard_deviation="100 nm"}})");
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   constexpr double stiffness = 1.03, undercut = 80e-9, sharp = 1e-7;
   DeviceReader reader(p);
   ASSERT_TRUE(reader.move_to({stiffness, undercut}));

@@ -54,7 +54,7 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
     for (const Variable& v : variables) x.push_back(std::lerp(v.lower, v.upper, uniform(random)));
     if (!s.is_allowed(s.space.waveforms(x))) continue;
     const std::vector<Signal> signals = signals_at(x);
-    MotionTape tape;
+    RecordedMotion tape;
     ClosingOptions run = s.run_of(signals);
     run.tolerance = 1e-11;
     const Trajectory end = observe_closing(s.given.model, signals, run, tape);
@@ -138,7 +138,7 @@ TEST(Gradient, OfOneFigureIsThatOfAll) {
   std::vector<double> x;
   for (const Variable& v : s.space.variables()) x.push_back(std::lerp(v.lower, v.upper, 0.4));
   const std::vector<Signal> signals = s.given.driven(signals_of(s.drives(s.space.waveforms(x))));
-  MotionTape tape;
+  RecordedMotion tape;
   (void)observe_closing(s.given.model, signals, s.run_of(signals), tape);
   LinearizedClosing motion(s.given.model, signals, tape);
   const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
@@ -198,7 +198,7 @@ TEST(Gradient, OfConditionsIsThatOfTheirFigures) {
       const double h = 1e-6 * (variables[k].upper - variables[k].lower);
       std::vector<double> up = x, down = x;
       up[k] += h, down[k] -= h;
-      const Prices above = s.price_at(up), below = s.price_at(down);
+      const SearchCosts above = s.price_at(up), below = s.price_at(down);
       for (std::size_t c = 0; c < 3; ++c) {  // rebounds of such waveforms, and what all touches add up to, are chaotic
         const double difference = (above.apart->excess[c] - below.apart->excess[c]) / (2 * h);
         double largest = 0;

@@ -44,14 +44,14 @@ TEST(HoldWindow, IsOpenWhereNoneIsPulledThroughAndNoneWhereTooManyCannotBeHeld) 
 // Of what pull-in gives for each of the devices, read from their scenes.
 TEST(HoldWindow, OfDevicesIsThatOfEachByItself) {
   constexpr double precision = 1e-4;  // of a pull-through, that the window is found to
-  const Prepared nominal = prepare(gold({"structure.modes=2", "simulate.duration=100 us"}));
+  const PreparedScene nominal = prepare(gold({"structure.modes=2", "simulate.duration=100 us"}));
   const RobustnessOptions options{.samples = 12, .seed = 5, .jobs = 2};
   const HoldWindows found = hold_windows(nominal, options);
   EXPECT_EQ(found.devices, 12U);
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   double lower = 0, upper = std::numeric_limits<double>::infinity();
   for (std::uint64_t k = 0; k < options.samples; ++k) {
-    const Prepared own = prepare(SceneFile::parse(ensemble.scene(ensemble.values(k)).text(), "device.toml"));
+    const PreparedScene own = prepare(SceneFile::parse(ensemble.scene(ensemble.values(k)).text(), "device.toml"));
     const ClosedRange range = closed_range(own.model, 0, bias_of(own.scene, 0));
     lower = std::max(lower, range.release);
     upper = std::min(upper, range.pulled_through);

@@ -20,7 +20,7 @@ namespace {
 // Of a slope, over the largest by any quantity that varies by a factor: what differences of this width leave open.
 constexpr double half_width = 1e-4, agreement = 2e-5;
 
-Prepared prepared(SceneFile file, const std::vector<std::string>& keys) {
+PreparedScene prepared(SceneFile file, const std::vector<std::string>& keys) {
   std::string entries;
   for (const std::string& key : keys)
     entries += fmt::format(R"({}"{}"={{distribution="normal",cov="2 %"}})", entries.empty() ? "" : ",", key);
@@ -28,7 +28,7 @@ Prepared prepared(SceneFile file, const std::vector<std::string>& keys) {
   return prepare(file);
 }
 
-std::vector<double> nominal_values(const Prepared& p) {
+std::vector<double> nominal_values(const PreparedScene& p) {
   std::vector<double> values;
   for (const SpreadVariable& v : p.scene.spread.variables) values.push_back(v.nominal());
   return values;
@@ -40,7 +40,7 @@ Eigen::VectorXd read_at(DeviceReader& reader, const std::vector<double>& values,
 }
 
 // By Richardson's extrapolation from differences of two widths.
-void expect_slopes(const Prepared& p, const Instrument& instrument, double within = agreement) {
+void expect_slopes(const PreparedScene& p, const Instrument& instrument, double within = agreement) {
   DeviceReader reader(p);
   std::vector<double> values = nominal_values(p);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] *= i % 2 == 0 ? 1.01 : 0.985;  // not the nominal device
@@ -75,7 +75,7 @@ std::vector<std::string> with(std::vector<std::string> keys, std::initializer_li
 constexpr auto at_rest = {Measurable::pull_in, Measurable::release};
 
 TEST(Instruments, ReadWhatTheModelSays) {
-  const Prepared p = prepared(gold(), {"structure.thickness"});
+  const PreparedScene p = prepared(gold(), {"structure.thickness"});
   DeviceReader reader(p);
   ASSERT_TRUE(reader.move_to({1}));
   const auto value = [&](const Instrument& instrument) { return reader.read(instrument, false).values[0]; };
@@ -91,7 +91,7 @@ TEST(Instruments, ReadWhatTheModelSays) {
               1, looser);
 }
 TEST(Instruments, SeeTheResonanceSoftenAndTheCapacitanceGrowWithTheVoltage) {
-  const Prepared p = prepared(gold(), {"structure.thickness"});
+  const PreparedScene p = prepared(gold(), {"structure.thickness"});
   DeviceReader reader(p);
   ASSERT_TRUE(reader.move_to({1}));
   const auto value = [&](Measurable what, double level) { return reader.read({.what = what, .level = level}, false).values[0]; };
@@ -100,7 +100,7 @@ TEST(Instruments, SeeTheResonanceSoftenAndTheCapacitanceGrowWithTheVoltage) {
   EXPECT_TRUE(std::isnan(value(Measurable::capacitance, 40))) << "it does not rest open there";
 }
 TEST(Instruments, DivideVoltagesByTheGainOfTheSource) {
-  const Prepared p = prepared(gold({"driver.main.offset=0.2 V"}), {"driver.main.gain"});
+  const PreparedScene p = prepared(gold({"driver.main.offset=0.2 V"}), {"driver.main.gain"});
   DeviceReader reader(p);
   const double bare = static_pull_in(p.model, 0).voltage;
   EXPECT_NEAR(read_at(reader, {1.05}, {.what = Measurable::pull_in})[0], (bare - 0.2) / 1.05, 1e-9 * bare);
@@ -114,7 +114,7 @@ TEST(Instruments, HaveExactSlopesOfStaticVoltages) {
   }
 }
 TEST(Instruments, HaveExactSlopesOfResonancesAndCapacitances) {
-  const Prepared p =
+  const PreparedScene p =
       prepared(gold({"structure.modes=2", "driver.main.offset=0.1 V"}), with(beam, {"driver.main.gain", "driver.main.offset"}));
   for (const double level : {0.0, 12.0}) {
     expect_slopes(p, {.what = Measurable::frequency, .level = level});
@@ -123,13 +123,13 @@ TEST(Instruments, HaveExactSlopesOfResonancesAndCapacitances) {
   }
 }
 TEST(Instruments, HaveExactSlopesOfClosingTimes) {
-  const Prepared p = prepared(gold({"structure.modes=2", "driver.main.delay=1 us"}),
-                              with(beam, {"gas.viscosity", "driver.main.gain", "driver.main.delay"}));
+  const PreparedScene p = prepared(gold({"structure.modes=2", "driver.main.delay=1 us"}),
+                                   with(beam, {"gas.viscosity", "driver.main.gain", "driver.main.delay"}));
   expect_slopes(p, {.what = Measurable::closing_time, .level = 20});
   expect_slopes(p, {.what = Measurable::closing_time, .waveforms = p.in_drive_order(p.drives.waveforms)});
 }
 TEST(Instruments, HaveSlopesOfMotionsAndContactRecords) {
-  const Prepared p = prepared(gold({"structure.modes=2"}), {"structure.thickness", "gap.electrode", "driver.main.gain"});
+  const PreparedScene p = prepared(gold({"structure.modes=2"}), {"structure.thickness", "gap.electrode", "driver.main.gain"});
   constexpr double of_differences = 1e-3;  // of differences of closings a hundredth as wide
   expect_slopes(p, {.what = Measurable::position, .level = 20, .times = {5e-6, 12e-6, 20e-6}}, of_differences);
   expect_slopes(p, {.what = Measurable::velocity, .level = 20, .times = {5e-6, 12e-6, 20e-6}}, of_differences);

@@ -26,7 +26,7 @@ std::vector<Vectors> vectors_here() {
 }
 
 struct Fleet {
-  Prepared nominal;
+  PreparedScene nominal;
   std::vector<SampledDevice> devices;
 
   Fleet(const SceneFile& file, std::uint64_t count) : nominal(prepare(file)) {

@@ -39,7 +39,7 @@ double bang_bang(const Structure& s, const Gap& gap, double volts, double v) {
 }
 
 TEST(LeastTime, OfAnUndampedPlateIsThatOfBangAndBang) {
-  const Prepared p = prepare_and_choose(spring_plate(), true);
+  const PreparedScene p = prepare_and_choose(spring_plate(), true);
   for (const double v : {1e-3, 0.05}) {
     const LeastTime found = least_time(p, {.impact_velocity = v});
     ASSERT_EQ(found.status, Status::done) << found.message;
@@ -49,7 +49,7 @@ TEST(LeastTime, OfAnUndampedPlateIsThatOfBangAndBang) {
 }
 
 TEST(LeastTime, OfTheGoldCantileverIsThatOfAnIndependentCalculation_slow) {
-  const Prepared p = prepare_and_choose(gold(), true);
+  const PreparedScene p = prepare_and_choose(gold(), true);
   // A free-form calculation by another program: 31.85, 31.66 and 31.06 us.
   for (const auto& [velocity, known] : {std::pair{1e-3, 31.85e-6}, {3e-3, 31.66e-6}, {10e-3, 31.06e-6}}) {
     const LeastTime found = least_time(p, {.impact_velocity = velocity});
@@ -61,7 +61,7 @@ TEST(LeastTime, OfTheGoldCantileverIsThatOfAnIndependentCalculation_slow) {
 }
 
 // A waveform that touches as softly as the tighter bound permits does so under the looser one.
-void expect_no_longer_where_more_speed_is_permitted(const Prepared& p, bool at_rest, std::initializer_list<double> speeds) {
+void expect_no_longer_where_more_speed_is_permitted(const PreparedScene& p, bool at_rest, std::initializer_list<double> speeds) {
   constexpr double same = 1e-3;
   double before = std::numeric_limits<double>::infinity();
   for (const double speed : speeds) {
@@ -74,19 +74,19 @@ void expect_no_longer_where_more_speed_is_permitted(const Prepared& p, bool at_r
 }
 
 TEST(LeastTime, DoesNotGrowWithThePermittedSpeed) {
-  const Prepared p = prepare_and_choose(spring_plate(), true);
+  const PreparedScene p = prepare_and_choose(spring_plate(), true);
   for (const bool at_rest : {false, true}) expect_no_longer_where_more_speed_is_permitted(p, at_rest, {2e-3, 0.02, 0.2});
 }
 
 TEST(LeastTime, OfTheGoldCantileverDoesNotGrowWithThePermittedSpeed_slow) {
-  const Prepared p = prepare_and_choose(gold(), true);
+  const PreparedScene p = prepare_and_choose(gold(), true);
   for (const bool at_rest : {false, true})
     expect_no_longer_where_more_speed_is_permitted(p, at_rest, {0.5e-3, 1e-3, 2e-3, 5e-3, 10e-3, 30e-3});
 }
 
 // Modes that differ by decades: of four the least time is 11.85 us.
 TEST(LeastTime, OfAPiezoIsFoundAndShorterWithSixModes_slow) {
-  const Prepared p = prepare_and_choose(gold_pzt({"structure.modes=6"}), true);
+  const PreparedScene p = prepare_and_choose(gold_pzt({"structure.modes=6"}), true);
   const LeastTime found = least_time(p, {.actuator = Actuator::pzt, .impact_velocity = 1.33e-3});
   ASSERT_EQ(found.status, Status::done) << found.message;
   EXPECT_NEAR(found.time, 11.67e-6, 0.02e-6);
@@ -119,7 +119,7 @@ double two_swings(const Structure& s, const Gap& gap, double volts, double v) {
 TEST(LeastTime, OfASwitchThatOnePullDoesNotCloseIsFoundFromASwingThatDoes) {
   SceneFile file = spring_plate();
   for (const char* change : {"driver.main.max_voltage=70 V", "waveform.main.level=70 V"}) file.set(change);
-  const Prepared p = prepare_and_choose(file, true);
+  const PreparedScene p = prepare_and_choose(file, true);
   const LeastTime alone = least_time(p, {.impact_velocity = 0.01});
   EXPECT_EQ(alone.status, Status::no_contact);
   const Pulse swing{.levels = {70, 0, 70}, .times = {24e-6, 47.5e-6}, .edge = 1e-8};
@@ -131,7 +131,7 @@ TEST(LeastTime, OfASwitchThatOnePullDoesNotCloseIsFoundFromASwingThatDoes) {
   EXPECT_GT(found.time, 0.97 * known);
   EXPECT_NEAR(found.simulated_time / found.time, 1, 1e-4);
   // Where one swing is quicker it stays the answer.
-  const Prepared strong = prepare_and_choose(spring_plate(), true);
+  const PreparedScene strong = prepare_and_choose(spring_plate(), true);
   const LeastTime quick = least_time(strong, {.impact_velocity = 0.01}),
                   both = least_time(strong, {.impact_velocity = 0.01, .start = {{"main", swing}}});
   EXPECT_LE(both.time, quick.time);
@@ -141,7 +141,7 @@ TEST(LeastTime, OfASwitchThatOnePullDoesNotCloseIsFoundFromASwingThatDoes) {
 }
 
 TEST(LeastTime, GrowsWhereThereIsLessToPullWith) {
-  const Prepared p = prepare_and_choose(spring_plate(), true);
+  const PreparedScene p = prepare_and_choose(spring_plate(), true);
   double last = 0;
   for (const double peak : {120.0, 110.0, 100.0}) {
     const LeastTime found = least_time(p, {.impact_velocity = 0.01, .peak = peak});
@@ -159,7 +159,7 @@ TEST(LeastTime, PullsWithTheSignThatTheDriverHas) {
   SceneFile file = spring_plate();
   for (const char* change : {"driver.main.min_voltage=-120 V", "driver.main.max_voltage=5 V", "waveform.main.level=-100 V"})
     file.set(change);
-  const Prepared negative = prepare_and_choose(file, true);
+  const PreparedScene negative = prepare_and_choose(file, true);
   const LeastTime found = least_time(negative, {.impact_velocity = 0.01});
   const LeastTime usual = least_time(prepare_and_choose(spring_plate(), true), {.impact_velocity = 0.01});
   ASSERT_EQ(found.status, Status::done) << found.message;
@@ -168,11 +168,11 @@ TEST(LeastTime, PullsWithTheSignThatTheDriverHas) {
 }
 
 TEST(LeastTime, KeepsTheSlewOfTheDriver) {
-  const Prepared jumps = prepare_and_choose(spring_plate(), true);
+  const PreparedScene jumps = prepare_and_choose(spring_plate(), true);
   SceneFile file = spring_plate();
   file.set("driver.main.max_slew=40 V/us");
   file.set("waveform.main.rise_time=5 us");
-  const Prepared ramps = prepare_and_choose(file, true);
+  const PreparedScene ramps = prepare_and_choose(file, true);
   const LeastTime fast = least_time(jumps, {.impact_velocity = 0.01}), slow = least_time(ramps, {.impact_velocity = 0.01});
   ASSERT_EQ(fast.status, Status::done) << fast.message;
   ASSERT_EQ(slow.status, Status::done) << slow.message;
@@ -184,7 +184,7 @@ TEST(LeastTime, KeepsTheSlewOfTheDriver) {
 // The nearer to rest all modes are when the contact point touches, the less it rebounds.
 TEST(LandingsAtRest, BringAPiezoToRestWithoutJumps_slow) {
   const SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold-pzt.toml");
-  const Prepared p = prepare_and_choose(file, true);
+  const PreparedScene p = prepare_and_choose(file, true);
   const auto found = landings_at_rest(p, Actuator::pzt, 1.3e-3, {});
   ASSERT_GE(found.size(), 4U);
   const DriverLimits& limits = p.drives.limits.at("piezo");
@@ -199,7 +199,7 @@ TEST(LandingsAtRest, BringAPiezoToRestWithoutJumps_slow) {
     EXPECT_EQ(piezo.hold_level(), 0);
     std::map<std::string, Waveform> all = plain_step(p, Actuator::pzt);
     all["piezo"] = landing.at("piezo");
-    const Prepared scene = read_back(with_waveforms(p, all), "landing.toml", p);
+    const PreparedScene scene = read_back(with_waveforms(p, all), "landing.toml", p);
     heights.push_back(
         metrics(simulate_closing(scene.model, scene.signals(), {.duration = 100e-6, .tolerance = 1e-8})).major_bounce_height);
   }
@@ -217,7 +217,7 @@ TEST(LandingsAtRest, AreNoneWhereTheFlightIsNotFollowed) {
   EXPECT_EQ(of({"driver.piezo.bandwidth=2 MHz"}), 0U);
 }
 
-Prepared ramped_plate(const std::string& level) {
+PreparedScene ramped_plate(const std::string& level) {
   SceneFile file = spring_plate();
   for (const std::string& setting :
        {"waveform.main.level=" + level, std::string("waveform.main.rise_time=6 us"), std::string("driver.main.max_slew=20 V/us")})
@@ -227,7 +227,7 @@ Prepared ramped_plate(const std::string& level) {
 
 // Pull and spring are equal at the contact: no more than that may act on a plate that comes to rest there without a push.
 TEST(FreeFlight, LandsUnderTheVoltageThatHoldsWithoutPressing) {
-  const Prepared p = ramped_plate("100 V");
+  const PreparedScene p = ramped_plate("100 V");
   const auto landing = FreeFlight(p, Actuator::electrostatic).landing();
   ASSERT_TRUE(landing.has_value());
   const Structure& s = p.scene.device.structure;
@@ -240,7 +240,7 @@ TEST(FreeFlight, LandsUnderTheVoltageThatHoldsWithoutPressing) {
 
 TEST(Limit, LandsAPlateAtRestWhereTheSlewIsLimited_optimized) {
   for (const char* level : {"80 V", "115 V"}) {
-    const Prepared p = ramped_plate(level);
+    const PreparedScene p = ramped_plate(level);
     const LeastTime touch = least_time(p, {.impact_velocity = 5e-3});
     const LeastTime rest = least_time(p, {.impact_velocity = 5e-3, .at_rest = true});
     ASSERT_EQ(rest.status, Status::done) << level << ": " << rest.message;

@@ -32,7 +32,7 @@ std::vector<std::string> names(const std::vector<Omission>& effects) {
   return list;
 }
 
-Metrics own(const Prepared& p) { return simulate(p, false).metrics; }
+Metrics own(const PreparedScene& p) { return simulate(p, false).metrics; }
 
 TEST(Omissible, IsWhatTheSceneDescribes) {
   EXPECT_THAT(names(omissible_effects(prepare(gold()))), ElementsAre("structure.modes", "electrode.main.fringing", "gas"));
@@ -64,7 +64,7 @@ TEST(Omissible, KnowsItsSize) {
 }
 
 TEST(Omissible, ContactAlongThePadGoesBackToItsCentreWhenTold) {
-  const Prepared p = prepare(gold_at_17_volts({"contact.distribution=pad"}));
+  const PreparedScene p = prepare(gold_at_17_volts({"contact.distribution=pad"}));
   const Omissible along = omissible_effects(p).back();
   ASSERT_EQ(along.effect, "contact.distribution");
   EXPECT_EQ(along.choice, "pad");
@@ -75,17 +75,17 @@ TEST(Omissible, ContactAlongThePadGoesBackToItsCentreWhenTold) {
 }
 
 TEST(Without, IsTheSceneWithoutTheSectionUnderTheSameVolts) {
-  const Prepared p = prepare(gold_at_17_volts());
+  const PreparedScene p = prepare(gold_at_17_volts());
   const std::vector<Omissible> all = omissible_effects(p);
-  const Prepared vacuum = without(p, {all[2]});
+  const PreparedScene vacuum = without(p, {all[2]});
   EXPECT_FALSE(vacuum.scene.device.gas);
   EXPECT_EQ(own(vacuum).initial_contact_time, own(prepare(without(gold_at_17_volts(), "gas"))).initial_contact_time);
-  const Prepared bare = without(p, all);
+  const PreparedScene bare = without(p, all);
   EXPECT_EQ(bare.scene.device.electrodes[0].fringing, Fringing::none);
   EXPECT_EQ(bare.model.modes(), 1);
   EXPECT_EQ(bare.signals()[0].hold_level(), 17.771);
   // A level in Vdp keeps the volts of the whole scene.
-  const Prepared relative = prepare(gold());
+  const PreparedScene relative = prepare(gold());
   EXPECT_EQ(without(relative, {omissible_effects(relative)[1]}).signals()[0].hold_level(), relative.signals()[0].hold_level());
 }
 
@@ -109,7 +109,7 @@ TEST(Influence, IsTheLargestRelativeChange) {
 
 TEST(AutomaticEffects, LeaveOutWhatChangesNothing) {
   const SceneFile file = gold_at_17_volts({"structure.damping_ratio=1e-9", weak_dispersion, "simulate.effects=auto"});
-  const Prepared p = prepare_and_choose(file);
+  const PreparedScene p = prepare_and_choose(file);
   ASSERT_TRUE(p.effects);
   EXPECT_THAT(names(p.effects->choice.left_out), testing::UnorderedElementsAre("structure.damping_ratio", "dispersion"));
   EXPECT_LE(p.effects->choice.influence, 1e-3);
@@ -120,21 +120,21 @@ TEST(AutomaticEffects, LeaveOutWhatChangesNothing) {
   EXPECT_THAT(p.scene.warnings.back(), HasSubstr("dispersion ("));
   EXPECT_EQ(own(p).initial_contact_time, own(prepare(gold_at_17_volts())).initial_contact_time);
   // What is written runs to the same figures without choosing again.
-  const Prepared again = prepare(p.resolved());
+  const PreparedScene again = prepare(p.resolved());
   EXPECT_FALSE(again.effects);
   EXPECT_EQ(own(again).major_bounce_height, own(p).major_bounce_height);
 }
 
 TEST(AutomaticEffects, KeepWhatMattersByTheTolerance) {
   EXPECT_THAT(prepare_and_choose(gold_at_17_volts({"simulate.effects=auto"})).effects->choice.left_out, IsEmpty());
-  const Prepared loose = prepare_and_choose(gold_at_17_volts({"simulate.effects=auto", "simulate.effects_tolerance=0.099"}));
+  const PreparedScene loose = prepare_and_choose(gold_at_17_volts({"simulate.effects=auto", "simulate.effects_tolerance=0.099"}));
   EXPECT_THAT(names(loose.effects->choice.left_out), IsEmpty()) << "B_H changes by a third without the film";
   EXPECT_THAT(loose.scene.warnings.back(), HasSubstr("nothing is left out"));
 }
 
 TEST(AutomaticEffects, CountTogether) {
   const SceneFile file = gold_at_17_volts({"structure.damping_ratio=1e-4", "gas={ model = \"linear\", quality_factor = 5000 }"});
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   std::vector<double> alone;
   for (const Omission& o : compare_omissions(p, own(p), false)) {
     if (o.what.effect == "gas" || o.what.effect == "structure.damping_ratio") alone.push_back(o.influence);
@@ -147,7 +147,8 @@ TEST(AutomaticEffects, CountTogether) {
 }
 
 TEST(AutomaticEffects, LeaveNothingOutWhereNothingTouches) {
-  const Prepared p = prepare_and_choose(gold_at_17_volts({"waveform.main.level=3 V", weak_dispersion, "simulate.effects=auto"}));
+  const PreparedScene p =
+      prepare_and_choose(gold_at_17_volts({"waveform.main.level=3 V", weak_dispersion, "simulate.effects=auto"}));
   EXPECT_THAT(p.effects->choice.left_out, IsEmpty());
 }
 

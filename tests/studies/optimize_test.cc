@@ -82,7 +82,7 @@ TEST(Optimize, ComparesWithAPlainStepToTheSameHoldLevel) {
   const Log log = search(gold_pzt({"simulate.duration=150 us", "waveform.piezo.family=step", "waveform.piezo.level=0.4 V",
                                    "waveform.main.rise_time=30 us"}),
                          {.actuator = Actuator::electrostatic}, 12);
-  const Prepared& baseline = log.result.baseline_scene;
+  const PreparedScene& baseline = log.result.baseline_scene;
   const auto& main = std::get<Step>(baseline.drives.waveforms.at("main"));
   EXPECT_EQ(main.rise_time, 0);
   EXPECT_DOUBLE_EQ(main.level, signal(log.result.scene.drives.waveforms.at("main")).hold_level());

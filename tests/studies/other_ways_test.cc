@@ -18,7 +18,7 @@ constexpr std::string_view two_normal =
     R"(spread={"structure.thickness"={distribution="normal", cov="2 %"}, "structure.youngs_modulus"={distribution="normal", cov="3 %"}})";
 
 struct Judged {
-  Prepared nominal;
+  PreparedScene nominal;
   RobustnessOptions options;
   Robustness found;
   [[nodiscard]] const DriveRobustness& drive() const { return found.drives.back(); }
@@ -33,7 +33,7 @@ Judged judged(const SceneFile& file, std::uint64_t samples, const Calibration& c
   return all;
 }
 Metrics alone(const Judged& all, const SceneFile& device) {
-  const Prepared own = prepare(SceneFile::parse(device.text(), "alone.toml"));
+  const PreparedScene own = prepare(SceneFile::parse(device.text(), "alone.toml"));
   EXPECT_TRUE(own.scene.calibration.is_empty());
   return metrics(simulate_closing(own.model, own.signals(), {.duration = all.found.duration, .tolerance = all.found.tolerance}),
                  own.scene.metrics);

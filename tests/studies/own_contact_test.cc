@@ -45,7 +45,7 @@ TEST(OwnContactOfAScene, IsSearchedForLikeTheLawOfTheSameFormula) {
 }
 
 TEST(OwnContactOfAScene, IsRefusedByNameWhereAFileWouldHaveToSayIt) {
-  const Prepared own = prepare(own_gold());
+  const PreparedScene own = prepare(own_gold());
   for (const SceneFile& file : {own.scene.file, own.resolved()}) {
     try {
       (void)file.text();
@@ -61,7 +61,7 @@ TEST(OwnContactOfAScene, IsRefusedByNameWhereAFileWouldHaveToSayIt) {
 }
 
 TEST(OwnContactOfAScene, HasNoExactDerivatives) {
-  const Prepared own = prepare(own_gold());
+  const PreparedScene own = prepare(own_gold());
   const Derivatives none = derivatives(own, {.waveforms = own.in_drive_order(own.drives.waveforms)});
   EXPECT_THAT(none.why_none, testing::HasSubstr("contact law of one's own"));
 }

@@ -88,7 +88,7 @@ TEST(OwnObjective, OfAFigureIsTheTargetOfThatFigure) {
   SearchSetting own = built_in;
   own.target = by(share_of_drive);
   for (const std::vector<double>& x : built_in.space.starts()) {
-    const Prices a = built_in.price_at(x), b = own.price_at(x);
+    const SearchCosts a = built_in.price_at(x), b = own.price_at(x);
     EXPECT_EQ(a.own, b.own);
     EXPECT_EQ(a.leading, b.leading);
   }
@@ -125,7 +125,7 @@ TEST(OwnObjective, ThatDoesNotAskForALandingIsAllThatCounts) {
         return 3.0;
       },
       false);
-  const Prices prices = own.price_at(plain.space.starts().front());
+  const SearchCosts prices = own.price_at(plain.space.starts().front());
   EXPECT_EQ(prices.own, 0.75);
   EXPECT_EQ(prices.leading, prices.own);
   for (const double known : {seen.initial_contact_time, seen.hold_force, seen.capacitance, seen.peak_voltage, seen.peak_slew,
@@ -204,7 +204,7 @@ TEST(OwnObjective, ForDevicesIsRacedAsTheTargetOfItsFigure_slow) {
 }
 
 TEST(OwnWaveform, ClosesASwitchAsTheFamilyOfItsVoltages) {
-  const Prepared given = prepare(gold_at_17_volts());
+  const PreparedScene given = prepare(gold_at_17_volts());
   const SCurve curve{.levels = {20, 17.771}, .times = {25e-6}, .edge = 6e-6};
   const Signal of_curve = signal(Waveform(curve));
   class Copy final : public OwnWaveform {
@@ -221,7 +221,7 @@ TEST(OwnWaveform, ClosesASwitchAsTheFamilyOfItsVoltages) {
    private:
     Signal signal_;
   };
-  Prepared built_in = given, own_one = given;
+  PreparedScene built_in = given, own_one = given;
   built_in.drives.waveforms["main"] = curve;
   own_one.drives.waveforms["main"] = own(std::make_shared<Copy>(of_curve));
   const Metrics a = simulate(built_in, false).metrics, b = simulate(own_one, false).metrics;
@@ -300,7 +300,7 @@ class Swell final : public OwnWaveform {
 
 TEST(OwnWaveform, DrivesDevicesAsTheFamilyOfItsVoltagesAndInLanesAsOneByOne) {
   const SameRamp same;
-  const Prepared nominal = prepare(quick_gold(), true);
+  const PreparedScene nominal = prepare(quick_gold(), true);
   const auto figures = [&](const Waveform& waveform, Vectors vectors = vectors_in_use(), const Calibration& known = {}) {
     return robustness(nominal, {{.name = "judged", .waveforms = {{"main", waveform}}, .calibration = known}},
                       {.samples = 32, .vectors = vectors})

@@ -30,7 +30,7 @@ TEST(Accuracy, TakesATenthForTheToleranceAndFourPointsADigit) {
 
 TEST(Prepare, ComputesPullInOnlyWhereAUnitNeedsIt) {
   EXPECT_THAT(prepare(gold({"waveform.main.level=30 V", "driver.main.max_voltage=90 V"})).pull_in, IsEmpty());
-  const Prepared needed = prepare(gold());
+  const PreparedScene needed = prepare(gold());
   ASSERT_EQ(needed.pull_in.count("main"), 1U);
   const ElectrodePullIn& p = needed.pull_in.at("main");
   EXPECT_GT(p.dynamically.voltage, 0);
@@ -43,13 +43,13 @@ TEST(Prepare, ComputesPullInOnlyWhereAUnitNeedsIt) {
 TEST(Prepare, ComputesPullInForDefaultLimitsWhenAsked) {
   const SceneFile file = without(gold({"waveform.main.level=15 V"}), "driver.main");
   EXPECT_THAT(prepare(file).drives.limits, IsEmpty());
-  const Prepared limited = prepare(file, true);
+  const PreparedScene limited = prepare(file, true);
   EXPECT_DOUBLE_EQ(limited.drives.limits.at("main").min_voltage, 0);
   EXPECT_DOUBLE_EQ(limited.drives.limits.at("main").max_voltage, 1.5 * limited.pull_in.at("main").dynamically.voltage);
 }
 
 TEST(Prepare, OrdersSignalsAsTheSwitchDoesAndLeavesUndrivenDrivesAtZero) {
-  const Prepared p = prepare(gold_pzt({"waveform.main.level=30 V", "driver.main.max_voltage=90 V"}));
+  const PreparedScene p = prepare(gold_pzt({"waveform.main.level=30 V", "driver.main.max_voltage=90 V"}));
   EXPECT_THAT(p.drive_names(), ElementsAre("main", "piezo"));
   const std::vector<Signal> signals = p.signals();
   ASSERT_EQ(signals.size(), p.model.drives());
@@ -58,9 +58,9 @@ TEST(Prepare, OrdersSignalsAsTheSwitchDoesAndLeavesUndrivenDrivesAtZero) {
 }
 
 TEST(Prepare, GivesEveryElectrodeItsOwnSignal) {
-  const Prepared p = prepare(gold_pzt({R"(electrode.main.span=["60 um", "150 um"])", R"(electrode.tip.span=["160 um", "240 um"])",
-                                       "waveform.main.level=30 V", "driver.main.max_voltage=90 V", "waveform.piezo.family=step",
-                                       "waveform.piezo.level=0.5 V"}));
+  const PreparedScene p = prepare(gold_pzt(
+      {R"(electrode.main.span=["60 um", "150 um"])", R"(electrode.tip.span=["160 um", "240 um"])", "waveform.main.level=30 V",
+       "driver.main.max_voltage=90 V", "waveform.piezo.family=step", "waveform.piezo.level=0.5 V"}));
   EXPECT_THAT(p.drive_names(), ElementsAre("main", "tip", "piezo"));
   const std::vector<Signal> signals = p.signals();
   ASSERT_EQ(signals.size(), 3U);
@@ -83,7 +83,7 @@ TEST(Prepare, WaitsForASlowClosingWhereNoOtherEndIsPossible) {
   plate.set("gas={model=\"linear\", quality_factor=0.05}");
   plate.erase("simulate.duration");
   plate.set("waveform.main.level=1.005 Vsp");
-  const Prepared p = prepare(plate);
+  const PreparedScene p = prepare(plate);
   const Trajectory run = simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = p.tolerance});
   ASSERT_FALSE(run.touches.empty());
   const double period = 2 * pi / p.model.angular_frequencies()[0];
@@ -97,7 +97,7 @@ TEST(Prepare, LoadsASourceWithTheCapacitanceOfTheOpenSwitch) {
   // Of two plates without fringing: eps A / d.
   const SceneFile file = gold({"waveform.main.level=30 V", "driver.main.max_voltage=90 V",
                                "driver.main.source_resistance=10 Mohm", "electrode.main.fringing=none"});
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   const Device& device = p.scene.device;
   const double area = (device.electrodes[0].end.value - device.electrodes[0].begin.value) * device.structure.width;
   const double capacitance = 8.8541878128e-12 * area / device.gap.electrode;
@@ -107,7 +107,7 @@ TEST(Prepare, LoadsASourceWithTheCapacitanceOfTheOpenSwitch) {
 
   SceneFile with_cable = file;
   with_cable.set("driver.main.parallel_capacitance=0.2 pF");
-  const Prepared cabled = prepare(with_cable);
+  const PreparedScene cabled = prepare(with_cable);
   EXPECT_EQ(cabled.loads.at("main"), p.loads.at("main"));
   EXPECT_NEAR(cabled.signals()[0].voltage(10e6 * (capacitance + 0.2e-12)), 30 * (1 - std::exp(-1.0)), 1e-6);
 }
@@ -120,20 +120,20 @@ TEST(Prepare, RefusesMoreSamplesThanARunCanFollow) {
 }
 
 TEST(Prepare, TakesWindowAndToleranceFromTheScene) {
-  const Prepared p = prepare(gold({"simulate.accuracy=1e-4", "simulate.duration=123 us"}));
+  const PreparedScene p = prepare(gold({"simulate.accuracy=1e-4", "simulate.duration=123 us"}));
   EXPECT_DOUBLE_EQ(p.tolerance, 1e-5);
   EXPECT_DOUBLE_EQ(p.duration, 123e-6);
   EXPECT_DOUBLE_EQ(prepare(gold({"simulate.tolerance=3e-7"})).tolerance, 3e-7);
 }
 
 TEST(Prepare, ChoosesAWindowOfSixPeriodsWhereTheSceneHasNone) {
-  const Prepared p = prepare(without(gold(), "simulate"));
+  const PreparedScene p = prepare(without(gold(), "simulate"));
   EXPECT_NEAR(p.duration * p.model.angular_frequencies()[0], 6 * 2 * 3.14159265358979, 1e-9);
 }
 
 TEST(Prepare, ChoosesAWindowThatShowsASlowClosing) {
   SceneFile slow = without(gold({"gas.viscosity=1e-3 Pa s", "waveform.main.level=1.1 Vdp"}), "simulate");
-  const Prepared p = prepare(slow);
+  const PreparedScene p = prepare(slow);
   const Trajectory closing = simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-8});
   ASSERT_FALSE(closing.touches.empty());
   const double first = closing.touches.front().begin, six_periods = 6 * 2 * 3.14159265358979 / p.model.angular_frequencies()[0];

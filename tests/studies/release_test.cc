@@ -47,7 +47,7 @@ ExactOpening exact_opening(const Structure& s, const Gap& gap, double contact_st
 }
 
 TEST(Release, OfAnUndampedPlateIsThatOfItsClosedForm) {
-  const Prepared p = prepare(spring_plate({"driver.main.max_voltage=100 V"}));
+  const PreparedScene p = prepare(spring_plate({"driver.main.max_voltage=100 V"}));
   const ExactOpening exact = exact_opening(p.scene.device.structure, p.scene.device.gap, 1e5, 100);
   const std::vector<double> holds{100};
   const auto closed = closed_equilibrium(p.model, holds);
@@ -129,7 +129,7 @@ TEST(Release, OnDevicesThatHardlyDifferIsThatOfTheNominalOne) {
 
 TEST(Release, LeavesASceneOfWhatItsDrivesAreTold) {
   const Release r = release(gold(), {.max_evaluations = 300, .devices = 0});
-  const Prepared told = prepare(r.scene.value());
+  const PreparedScene told = prepare(r.scene.value());
   const Signal signal = told.signals().front();
   for (const SignalPiece& piece : r.best->signals[0].pieces()) {
     for (const double part : {0.0, 0.5}) {

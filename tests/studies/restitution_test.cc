@@ -36,7 +36,7 @@ struct Speeds {
 Speeds speeds(double damping) {
   SceneFile file = spring_plate({"contact.stiffness=1e9 N/m", "simulate.duration=300 us"});
   if (damping > 0) file.assign("contact.damping", damping);
-  const Prepared p = prepare(file);
+  const PreparedScene p = prepare(file);
   const Trajectory t = simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-10});
   if (t.touches.size() < 2) return {.first = 0, .second = 0};
   return {.first = t.touches[0].impact_velocity, .second = t.touches[1].impact_velocity};

@@ -36,20 +36,20 @@ std::vector<std::string> names(const SearchSpace& space) {
   return all;
 }
 
-const Prepared& plain() {
-  static const Prepared p = prepare(gold_pzt(), true);
+const PreparedScene& plain() {
+  static const PreparedScene p = prepare(gold_pzt(), true);
   return p;
 }
 
-const Prepared& slow_drivers() {
-  static const Prepared p = prepare(gold_pzt({"waveform.main.rise_time=100 us", "driver.main.max_slew=2 V/us",
-                                              "driver.piezo.max_slew=0.05 V/us", "driver.piezo.min_voltage=-0.4 V"}),
-                                    true);
+const PreparedScene& slow_drivers() {
+  static const PreparedScene p = prepare(gold_pzt({"waveform.main.rise_time=100 us", "driver.main.max_slew=2 V/us",
+                                                   "driver.piezo.max_slew=0.05 V/us", "driver.piezo.min_voltage=-0.4 V"}),
+                                         true);
   return p;
 }
 
 // Every corner-ish and inner point drawn here decodes to a signal inside the limits.
-void expect_within_limits(const Prepared& prepared, Actuator actuator, const std::string& family) {
+void expect_within_limits(const PreparedScene& prepared, Actuator actuator, const std::string& family) {
   const SearchSpace space(prepared, actuator, family, first_touch);
   const std::vector<Variable> variables = space.variables();
   std::mt19937_64 random(1);
@@ -73,7 +73,7 @@ void expect_within_limits(const Prepared& prepared, Actuator actuator, const std
 
 // At random points of every family, some of them on bounds: parameters that share differences give what each gives by itself.
 // Returns how often they shared.
-int expect_shared_slopes(const Prepared& prepared, const char* family) {
+int expect_shared_slopes(const PreparedScene& prepared, const char* family) {
   const SearchSpace space(prepared, Actuator::both, family, first_touch);
   const auto signals_at = [&](std::span<const double> x) {
     return prepared.driven(signals_of(prepared.in_drive_order(space.waveforms(x))));
@@ -126,11 +126,11 @@ TEST(SearchSpace, HasTheSameSlopesUnderSlewLimits) {
   EXPECT_GT(shared, 0);
 }
 TEST(SearchSpace, HasTheSameSlopesThroughDrivers_optimized) {
-  const Prepared filtered = prepare(gold_pzt({"driver.main.bandwidth=1 MHz", "driver.piezo.bandwidth=0.3 MHz"}), true);
-  const Prepared sampled = prepare(gold_pzt({"driver.main.sample_rate=2 MHz", "driver.piezo.sample_rate=3 MHz"}), true);
-  const Prepared rounded = prepare(gold_pzt({"driver.main.sample_rate=2 MHz", "driver.main.bits=8"}), true);
+  const PreparedScene filtered = prepare(gold_pzt({"driver.main.bandwidth=1 MHz", "driver.piezo.bandwidth=0.3 MHz"}), true);
+  const PreparedScene sampled = prepare(gold_pzt({"driver.main.sample_rate=2 MHz", "driver.piezo.sample_rate=3 MHz"}), true);
+  const PreparedScene rounded = prepare(gold_pzt({"driver.main.sample_rate=2 MHz", "driver.main.bits=8"}), true);
   for (const char* family : every_family) {
-    for (const Prepared* drivers : {&filtered, &sampled, &rounded}) expect_shared_slopes(*drivers, family);
+    for (const PreparedScene* drivers : {&filtered, &sampled, &rounded}) expect_shared_slopes(*drivers, family);
   }
 }
 
@@ -148,11 +148,11 @@ TEST(SearchSpace, OfBothDrivesListsTheElectrodeFirst) {
 }
 
 TEST(SearchSpace, BrakesWithTheElectrodeOnTheFarSide) {
-  const Prepared p = prepare(scene("two-electrodes.toml"), true);
+  const PreparedScene p = prepare(scene("two-electrodes.toml"), true);
   const SearchSpace space(p, Actuator::electrostatic, "step", first_touch);
   EXPECT_THAT(names(space), ElementsAre("main.rise_time_s", "upper.rise_time_s"));
   EXPECT_EQ(SearchSpace(p, Actuator::electrostatic, "pulse", first_touch).variables().size(), 10u);
-  const Prepared unlimited = prepare(without(scene("two-electrodes.toml"), "driver.upper"), true);
+  const PreparedScene unlimited = prepare(without(scene("two-electrodes.toml"), "driver.upper"), true);
   EXPECT_THAT(names(SearchSpace(unlimited, Actuator::electrostatic, "step", first_touch)), ElementsAre("main.rise_time_s"));
 }
 
@@ -243,7 +243,7 @@ TEST_P(CurvesAndTrains, ObeyASlewLimit) {
   expect_within_limits(slow_drivers(), is_dither ? Actuator::pzt : Actuator::both, GetParam());
 }
 TEST_P(CurvesAndTrains, BrakeInsideTheLimits) {
-  static const Prepared p = prepare(scene("two-electrodes.toml"), true);
+  static const PreparedScene p = prepare(scene("two-electrodes.toml"), true);
   const bool is_dither = std::string(GetParam()) == "dither" || std::string(GetParam()) == "chirp";
   if (!is_dither) expect_within_limits(p, Actuator::electrostatic, GetParam());
 }
@@ -272,7 +272,7 @@ TEST(SearchSpace, OfACoastEndsItsOnlyPulseBeforeTheHoldLevel) {
 }
 
 TEST(SearchSpace, WaitsBeforeAPulseThatBrakes) {
-  const Prepared p = prepare(scene("two-electrodes.toml"), true);
+  const PreparedScene p = prepare(scene("two-electrodes.toml"), true);
   const SearchSpace space(p, Actuator::electrostatic, "coast", first_touch);
   std::vector<double> x = space.starts().front();
   ASSERT_EQ(x.size(), 8U);
@@ -310,7 +310,7 @@ TEST(SearchSpace, BeginsWithTheQuickestSwing) {
 }
 
 TEST(SearchSpace, OfACompressibleFilmBeginsWithTheLandingOfItsFirstModeWithoutDamping) {
-  const Prepared p = prepare(gold({"gas.model=reynolds"}), true);
+  const PreparedScene p = prepare(gold({"gas.model=reynolds"}), true);
   const double high = p.drives.limits.at("main").max_voltage;
   const auto landing = bang_bang(p.model, {high}, {0});
   ASSERT_TRUE(landing);
@@ -411,13 +411,13 @@ TEST(SearchSpace, DithersOfTheElectrodeObeyASlewLimit) {
 }
 
 TEST(SearchSpace, RefusesAPiezoWithoutLimits) {
-  const Prepared p = prepare(without(gold_pzt(), "driver.piezo"), true);
+  const PreparedScene p = prepare(without(gold_pzt(), "driver.piezo"), true);
   EXPECT_EQ(refusal([&] { SearchSpace(p, Actuator::pzt, "pulse", first_touch); }),
             "optimize needs [driver.piezo] with min_voltage and max_voltage: it never searches an unlimited drive");
 }
 
 TEST(SearchSpace, RefusesThePiezoOfASceneThatHasNone) {
-  const Prepared p = prepare(gold(), true);
+  const PreparedScene p = prepare(gold(), true);
   for (const Actuator actuator : {Actuator::pzt, Actuator::both})
     EXPECT_EQ(refusal([&] { SearchSpace(p, actuator, "pulse", first_touch); }),
               "optimize actuator pzt|both needs a [piezo] section, and the scene has none");
@@ -438,7 +438,7 @@ TEST(SearchSpace, RefusesFamiliesWithoutParameters) {
 }
 
 TEST(SearchSpace, RefusesADitherWithoutRoomAboutTheHoldLevel) {
-  const Prepared p = prepare(gold({"waveform.main.level=30 V", "driver.main.max_voltage=30 V"}), true);
+  const PreparedScene p = prepare(gold({"waveform.main.level=30 V", "driver.main.max_voltage=30 V"}), true);
   EXPECT_EQ(refusal([&] { SearchSpace(p, Actuator::electrostatic, "harmonic", first_touch); }),
             "driver.main: the hold level 30 V stands at the driver's limit, which leaves no room for a dither");
   EXPECT_EQ(refusal([&] { SearchSpace(p, Actuator::electrostatic, "pulse", first_touch); }), "");

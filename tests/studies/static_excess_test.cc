@@ -123,7 +123,7 @@ double true_pull_in(const Device& device) {
 TEST(StaticExcess, OfABridgeBentByManyThicknessesIsThatAboveFiniteDifferences) {
   constexpr double resolved = 3e-3;  // relative: forty modes at a gap of 33 thicknesses
   for (const int gap : {3, 10, 33}) {
-    const Prepared p = prepare(bridge(gap, "4"));
+    const PreparedScene p = prepare(bridge(gap, "4"));
     const double own = static_pull_in(p.model, 0).voltage, truth = true_pull_in(p.scene.device);
     EXPECT_NEAR(static_excess(p.scene, 0, own), own / truth - 1, resolved) << gap;
     EXPECT_GT(own / truth - 1, gap == 3 ? 0.009 : 0.055) << gap;
@@ -145,7 +145,7 @@ TEST(StaticExcess, IsSaidFromOnePercentOn) {
 TEST(StaticExcess, IsWithinTheToleranceOfAutomaticModes) {
   const AutoModes chosen = choose_modes(bridge(20, "auto"));
   EXPECT_TRUE(chosen.settled());
-  const Prepared p = prepare(bridge(20, std::to_string(chosen.modes)));
+  const PreparedScene p = prepare(bridge(20, std::to_string(chosen.modes)));
   EXPECT_LE(static_pull_in(p.model, 0).voltage, (1 + auto_modes_tolerance + 2e-3) * true_pull_in(p.scene.device));
 }
 

@@ -58,7 +58,7 @@ TEST(StaticSweep, IsThatOfAPlate) {
 }
 
 TEST(StaticSweep, KnowsTheBiasOfTheOtherDrives) {
-  const Prepared p = prepare(small_beam({R"(waveform.piezo={family="step", level="-1 V"})"}));
+  const PreparedScene p = prepare(small_beam({R"(waveform.piezo={family="step", level="-1 V"})"}));
   const auto points = static_sweep(p.model, 0, bias_of(p.scene, 0), {.first = 0, .last = 5, .points = 2});
   EXPECT_NEAR(points.front().deflection, p.model.contact_deflection(p.model.open_equilibrium(std::vector<double>{0, -1})->data()),
               1e-15);

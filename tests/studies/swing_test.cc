@@ -19,9 +19,9 @@
 namespace softland {
 namespace {
 
-double longest(const Prepared& p) { return 3 * 2 * pi / p.model.angular_frequencies()[0]; }
+double longest(const PreparedScene& p) { return 3 * 2 * pi / p.model.angular_frequencies()[0]; }
 
-std::vector<double> full_pull(const Prepared& p) {
+std::vector<double> full_pull(const PreparedScene& p) {
   std::vector<double> values(p.model.drives(), 0.0);
   values[0] = p.drives.limits.at(p.scene.device.electrodes[0].name).max_voltage;
   return values;
@@ -29,7 +29,7 @@ std::vector<double> full_pull(const Prepared& p) {
 
 TEST(Swing, OfOneUndampedModeIsTheBangBangLanding) {
   for (const std::string name : {"mem-gold.toml", "gap-closing-actuator.toml"}) {
-    const Prepared p = prepare(undamped_with_one_mode(name), true);
+    const PreparedScene p = prepare(undamped_with_one_mode(name), true);
     const std::vector<double> none(p.model.drives(), 0.0);
     const auto closed_form = bang_bang(p.model, full_pull(p), none);
     const auto swing = quickest_swing(p.model, full_pull(p), none, longest(p));
@@ -40,7 +40,7 @@ TEST(Swing, OfOneUndampedModeIsTheBangBangLanding) {
 }
 
 TEST(Swing, BringsEveryModeOfTheGoldSwitchThroughItsFilmToASlowTouch) {
-  const Prepared p = prepare(gold(), true);
+  const PreparedScene p = prepare(gold(), true);
   const std::vector<double> pull = full_pull(p), none(p.model.drives(), 0.0);
   const auto swing = quickest_swing(p.model, pull, none, longest(p));
   ASSERT_TRUE(swing);
@@ -66,7 +66,7 @@ std::map<std::string, Waveform> without_edges(std::map<std::string, Waveform> sw
 }
 
 // Each touches far more slowly than the step that goes to the same hold levels.
-void expect_soft_touches(const Prepared& p, const SearchSpace& space, std::size_t least) {
+void expect_soft_touches(const PreparedScene& p, const SearchSpace& space, std::size_t least) {
   const auto landing = [&](std::map<std::string, Waveform> searched) {
     searched.insert(p.drives.waveforms.begin(), p.drives.waveforms.end());
     return metrics(simulate_closing(p.model, signals_of(p.in_drive_order(searched)),
@@ -86,29 +86,29 @@ void expect_soft_touches(const Prepared& p, const SearchSpace& space, std::size_
 }
 
 TEST(JointSwings, OfAnElectrodeAndAPiezoTouchSoftly) {
-  const Prepared p = prepare(gold_pzt(), true);
+  const PreparedScene p = prepare(gold_pzt(), true);
   expect_soft_touches(p, SearchSpace(p, Actuator::both, "catch", 23.2e-6), 8);
 }
 
 TEST(JointSwings, OfElectrodesOnBothSidesTouchSoftly) {
-  const Prepared p = prepare(scene("two-electrodes.toml"), true);
+  const PreparedScene p = prepare(scene("two-electrodes.toml"), true);
   expect_soft_touches(p, SearchSpace(p, Actuator::electrostatic, "catch", 29.6e-6), 8);
 }
 
 TEST(JointSwings, AreNoneOfAnElectrodeAlone) {
-  const Prepared p = prepare(gold(), true);
+  const PreparedScene p = prepare(gold(), true);
   EXPECT_TRUE(joint_swings(p, SearchSpace(p, Actuator::electrostatic, "catch", 34.3e-6)).empty());
 }
 
 TEST(Swing, IsNoneWhereThePullDoesNotReachTheContact) {
-  const Prepared p = prepare(gold(), true);
+  const PreparedScene p = prepare(gold(), true);
   std::vector<double> weak = full_pull(p);
   weak[0] /= 4;
   EXPECT_FALSE(quickest_swing(p.model, weak, std::vector<double>(p.model.drives(), 0.0), longest(p)));
 }
 
 TEST(Swing, IsRefusedWhereTheGasFilmHasStatesOfItsOwn) {
-  const Prepared p = prepare(gold({"gas.model=reynolds"}), true);
+  const PreparedScene p = prepare(gold({"gas.model=reynolds"}), true);
   EXPECT_EQ(refusal([&] { static_cast<void>(quickest_swing(p.model, full_pull(p), full_pull(p), longest(p))); }),
             "the quickest swing is not known where the gas film is compressible");
 }

@@ -41,7 +41,7 @@ std::vector<std::uint64_t> bits(const TunerShot& shot) {
 }
 
 void expect_within_limits(const Tuner& tuner, const std::vector<Waveform>& waveforms) {
-  const Prepared& p = tuner.scene();
+  const PreparedScene& p = tuner.scene();
   for (std::size_t k = 0; k < waveforms.size(); ++k)
     EXPECT_EQ(violation(signal(waveforms[k]), p.limits(k)), "") << tuner.closings();
 }

@@ -37,7 +37,7 @@ TEST(MissedTouch, IsFoundInEitherRunAsLongAsTheyAgree) {
 }
 
 TEST(MissedTouch, IsNoneWhereRunsPartLittleByLittle) {
-  const Prepared p = prepare(random_scene(2, 2368));  // lands softly and rattles two hundred times
+  const PreparedScene p = prepare(random_scene(2, 2368));  // lands softly and rattles two hundred times
   const auto run = [&](double tolerance) {
     return simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = tolerance});
   };

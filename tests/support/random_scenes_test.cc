@@ -19,7 +19,7 @@ TEST(RandomScenes, CanBePreparedAndSayEverythingThatAScenePossiblyCan) {
   for (std::uint64_t i = 0; i < scenes; ++i) {
     SCOPED_TRACE(i);
     const SceneFile file = random_scene(seed, i);
-    const Prepared p = prepare(file);
+    const PreparedScene p = prepare(file);
     EXPECT_GT(p.duration, 0);
     const nlohmann::json scene = file.json();
     seen["structure"].insert(scene["structure"]["kind"]);

@@ -1,4 +1,4 @@
-#include "reports/course.h"
+#include "reports/closing_clauses.h"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,7 @@
 namespace softland {
 
 /// Records the motion, and passes everything on to another observer.
-class MotionTape final : public ClosingObserver {
+class RecordedMotion final : public ClosingObserver {
  public:
   struct Arc {
     double begin = 0, end = 0;  ///< [s]
@@ -21,15 +21,15 @@ class MotionTape final : public ClosingObserver {
     const double *q, *v, *accelerations;
   };
   /// Before the arc of this number.
-  struct Passage {
+  struct PhaseEvent {
     std::size_t arc = 0;
     double time = 0;  ///< [s]
     PhaseChange change;
   };
 
-  MotionTape() = default;
+  RecordedMotion() = default;
   /// Keeps a reference.
-  explicit MotionTape(ClosingObserver& next) : next_(&next) {}
+  explicit RecordedMotion(ClosingObserver& next) : next_(&next) {}
 
   void knot(const TrajectoryPoint& point) override {
     if (next_ != nullptr) next_->knot(point);
@@ -51,7 +51,7 @@ class MotionTape final : public ClosingObserver {
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
   [[nodiscard]] Motion begin(std::size_t arc) const { return motion(arcs_[arc].begin, 2 * arc); }
   [[nodiscard]] Motion end(std::size_t arc) const { return motion(arcs_[arc].end, 2 * arc + 1); }
-  [[nodiscard]] const std::vector<Passage>& passages() const { return passages_; }
+  [[nodiscard]] const std::vector<PhaseEvent>& passages() const { return passages_; }
 
  private:
   [[nodiscard]] Motion motion(double time, std::size_t k) const {
@@ -63,7 +63,7 @@ class MotionTape final : public ClosingObserver {
   std::vector<Arc> arcs_;
   std::vector<double> numbers_;  // q, v and accelerations at the begin of an arc, then at its end
   std::size_t modes_ = 0;
-  std::vector<Passage> passages_;
+  std::vector<PhaseEvent> passages_;
 };
 
 }  // namespace softland

@@ -1,5 +1,5 @@
 // A search led by one cost and finished by another, on functions.
-#include "studies/two_stages.h"
+#include "studies/guided_search.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace softland {
 namespace {
 
 // Two valleys by the own cost, at -0.6 and 0.6; the leading cost knows the right one alone, which is shallower by own digits.
-Prices prices(std::span<const double> x) {
+SearchCosts prices(std::span<const double> x) {
   const double u = x[0] - 0.6, v = x[1] - 0.2;
   const double leading = u * u + v * v;
   const double own = leading < 0.04 ? std::abs(x[0] - 0.65) + std::abs(x[1] - 0.2) - 1 : 1 + std::abs(x[0] + 0.6);
@@ -23,20 +23,20 @@ struct StagesLog {
 };
 
 StagesLog search_in_stages(OptimizerOptions options, Costs costs = Costs::both,
-                           const std::function<Prices(std::span<const double>)>& f = prices) {
+                           const std::function<SearchCosts(std::span<const double>)>& f = prices) {
   StagesLog log;
-  TwoStages stages(f, [&](const Evaluation& e) { EXPECT_TRUE(log.evaluations.emplace(e.index, e).second) << e.index; });
+  GuidedSearch stages(f, [&](const Evaluation& e) { EXPECT_TRUE(log.evaluations.emplace(e.index, e).second) << e.index; });
   log.result = stages.run({.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}}, options, costs);
   return log;
 }
 
-TEST(TwoStages, FollowTheLeadingCostFirstAndTheirOwnToItsMinimum) {
+TEST(GuidedSearch, FollowTheLeadingCostFirstAndTheirOwnToItsMinimum) {
   const StagesLog log = search_in_stages({.max_evaluations = 1500});
   EXPECT_NEAR(log.result.value, -1, 1e-3);
   EXPECT_NEAR(log.result.x[0], 0.65, 1e-3);
 }
 
-TEST(TwoStages, LogTheOwnCostOfEveryEvaluation) {
+TEST(GuidedSearch, LogTheOwnCostOfEveryEvaluation) {
   const StagesLog log = search_in_stages({.max_evaluations = 100});
   EXPECT_EQ(log.result.evaluations, 100);
   EXPECT_EQ(log.evaluations.size(), 100U);
@@ -53,7 +53,7 @@ TEST(TwoStages, LogTheOwnCostOfEveryEvaluation) {
   EXPECT_EQ(log.result.value, best);
 }
 
-TEST(TwoStages, AreTheSameWhateverTheNumberOfJobs_optimized) {
+TEST(GuidedSearch, AreTheSameWhateverTheNumberOfJobs_optimized) {
   const StagesLog one = search_in_stages({.max_evaluations = 200}), three = search_in_stages({.max_evaluations = 200, .jobs = 3});
   ASSERT_EQ(one.evaluations.size(), three.evaluations.size());
   for (const auto& [index, e] : one.evaluations) {
@@ -63,8 +63,10 @@ TEST(TwoStages, AreTheSameWhateverTheNumberOfJobs_optimized) {
   EXPECT_EQ(one.result.x, three.result.x);
 }
 
-TEST(TwoStages, AreOneWhereTheCostsAreTheSame) {
-  const auto bowl = [](std::span<const double> x) { return Prices{.leading = x[0] * x[0] + x[1], .own = x[0] * x[0] + x[1]}; };
+TEST(GuidedSearch, AreOneWhereTheCostsAreTheSame) {
+  const auto bowl = [](std::span<const double> x) {
+    return SearchCosts{.leading = x[0] * x[0] + x[1], .own = x[0] * x[0] + x[1]};
+  };
   const StagesLog log = search_in_stages({.max_evaluations = 80}, Costs::same, bowl);
   const OptimizerResult alone = minimize({.variables = {{"a", -1, 1}, {"b", -1, 1}},
                                           .objective = [&](std::span<const double> x) { return bowl(x).own; },
@@ -76,14 +78,14 @@ TEST(TwoStages, AreOneWhereTheCostsAreTheSame) {
   EXPECT_EQ(log.result.improvements.size(), alone.improvements.size());
 }
 
-TEST(TwoStages, GoOnFromTheBestPointsWhereNoneHasLandedAndMoreIsGranted) {
+TEST(GuidedSearch, GoOnFromTheBestPointsWhereNoneHasLandedAndMoreIsGranted) {
   for (const bool lands : {true, false}) {
     const auto bowl = [&](std::span<const double> x) {
       const double cost = x[0] * x[0] + x[1] * x[1];
-      return Prices{.leading = cost, .own = cost, .lands = lands};
+      return SearchCosts{.leading = cost, .own = cost, .lands = lands};
     };
     std::map<long, Evaluation> seen;
-    TwoStages stages(bowl, [&](const Evaluation& e) { seen.emplace(e.index, e); });
+    GuidedSearch stages(bowl, [&](const Evaluation& e) { seen.emplace(e.index, e); });
     const OptimizerResult result = stages.run({.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}},
                                               {.max_evaluations = 40}, Costs::same, 25);
     EXPECT_EQ(result.evaluations, lands ? 40 : 65);
@@ -91,8 +93,8 @@ TEST(TwoStages, GoOnFromTheBestPointsWhereNoneHasLandedAndMoreIsGranted) {
   }
 }
 
-TEST(TwoStages, KnowTheSurestOfThePromisingPoints) {
-  TwoStages stages(prices, [](const Evaluation&) {});
+TEST(GuidedSearch, KnowTheSurestOfThePromisingPoints) {
+  GuidedSearch stages(prices, [](const Evaluation&) {});
   const OptimizerResult result =
       stages.run({.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}}, {.max_evaluations = 300}, Costs::both);
   const double below = result.value + 0.3;
@@ -106,13 +108,13 @@ TEST(TwoStages, KnowTheSurestOfThePromisingPoints) {
   EXPECT_FALSE(stages.surest_below(result.value, {}));
 }
 
-TEST(TwoStages, GoOnFromTheBestPointsInAFurtherRun) {
+TEST(GuidedSearch, GoOnFromTheBestPointsInAFurtherRun) {
   std::map<long, Evaluation> seen;
   const auto bowl = [](std::span<const double> x) {
     const double cost = x[0] * x[0] + x[1] * x[1];
-    return Prices{.leading = cost, .own = cost};
+    return SearchCosts{.leading = cost, .own = cost};
   };
-  TwoStages stages(bowl, [&](const Evaluation& e) { seen.emplace(e.index, e); });
+  GuidedSearch stages(bowl, [&](const Evaluation& e) { seen.emplace(e.index, e); });
   const Problem problem{.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}};
   const OptimizerResult first = stages.run(problem, {.max_evaluations = 40}, Costs::same);
   const long next = 1000;
@@ -123,8 +125,8 @@ TEST(TwoStages, GoOnFromTheBestPointsInAFurtherRun) {
   EXPECT_EQ(all.improvements.front().index, 0) << "of both runs";
 }
 
-TEST(TwoStages, FollowOneCostAloneWhereTold) {
-  TwoStages stages(prices, [](const Evaluation&) {});
+TEST(GuidedSearch, FollowOneCostAloneWhereTold) {
+  GuidedSearch stages(prices, [](const Evaluation&) {});
   const Problem problem{.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}};
   const OptimizerResult first = stages.run(problem, {.max_evaluations = 400}, Costs::leading);
   EXPECT_EQ(first.evaluations, 400);
@@ -140,7 +142,7 @@ TEST(TwoStages, FollowOneCostAloneWhereTold) {
   EXPECT_LT(own->cost, prices(leading->evaluation.x).own);
 }
 
-TEST(TwoStages, EndWithTheFirstWhenToldToStop) {
+TEST(GuidedSearch, EndWithTheFirstWhenToldToStop) {
   std::atomic<bool> stop = false;
   std::atomic<long> calls = 0;
   const auto counting = [&](std::span<const double> x) {
@@ -152,8 +154,8 @@ TEST(TwoStages, EndWithTheFirstWhenToldToStop) {
   EXPECT_EQ(log.result.evaluations, 12);
 }
 
-TEST(TwoStages, KeepAnInfeasiblePointAndOneThatThrows) {
-  const auto failing = [](std::span<const double> x) -> Prices {
+TEST(GuidedSearch, KeepAnInfeasiblePointAndOneThatThrows) {
+  const auto failing = [](std::span<const double> x) -> SearchCosts {
     if (x[0] > 0.5) throw std::runtime_error("too far");
     if (x[0] > 0.2) return {};
     return {.leading = x[0] * x[0], .own = x[1] * x[1]};
@@ -164,8 +166,9 @@ TEST(TwoStages, KeepAnInfeasiblePointAndOneThatThrows) {
   for (const auto& [index, e] : log.evaluations) EXPECT_EQ(std::isfinite(e.value), e.x[0] <= 0.2) << index;
 }
 
-TEST(TwoStages, WithoutAFeasiblePointSaySo) {
-  const StagesLog log = search_in_stages({.max_evaluations = 20}, Costs::both, [](std::span<const double>) { return Prices{}; });
+TEST(GuidedSearch, WithoutAFeasiblePointSaySo) {
+  const StagesLog log =
+      search_in_stages({.max_evaluations = 20}, Costs::both, [](std::span<const double>) { return SearchCosts{}; });
   EXPECT_EQ(log.result.termination, Termination::no_feasible_point);
   EXPECT_TRUE(log.result.x.empty());
 }

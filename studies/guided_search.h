@@ -17,7 +17,7 @@
 namespace softland {
 
 /// Two costs of one point; infinite where it is infeasible.
-struct Prices {
+struct SearchCosts {
   double leading = std::numeric_limits<double>::infinity();
   double own = std::numeric_limits<double>::infinity();
   bool lands = false;  ///< without a significant rebound
@@ -34,7 +34,7 @@ struct PriceSlopes {
   std::function<std::vector<double>(std::span<const double>)> leading, own;
   std::size_t conditions = 0;
   /// Of a point, whatever is remembered.
-  std::function<Prices::Apart(std::span<const double>)> apart = {};
+  std::function<SearchCosts::Apart(std::span<const double>)> apart = {};
 };
 
 /// What a run minimises: the two costs are the same, the leading one, the own one, or two thirds of the budget the leading one
@@ -44,11 +44,11 @@ enum class Costs { same, leading, own, both };
 /// The budget of a target with a cost of its own is divided by this: so much of it goes to that cost.
 inline constexpr long own_share = 3;
 
-class TwoStages {
+class GuidedSearch {
  public:
   /// `price` as Problem::objective; `on_evaluation` as OptimizerOptions::on_evaluation, with the own cost as value.
-  TwoStages(std::function<Prices(std::span<const double>)> price, std::function<void(const Evaluation&)> on_evaluation,
-            PriceSlopes slopes = {})
+  GuidedSearch(std::function<SearchCosts(std::span<const double>)> price, std::function<void(const Evaluation&)> on_evaluation,
+               PriceSlopes slopes = {})
       : price_(std::move(price)), on_evaluation_(std::move(on_evaluation)), slopes_(std::move(slopes)) {}
 
   /// Minimises over the variables of `problem` from its starts; its objective is not used, nor are the callbacks of `options`.
@@ -73,11 +73,11 @@ class TwoStages {
   [[nodiscard]] std::vector<std::vector<double>> promising_points(const std::vector<Variable>& variables, Costs costs) const;
   [[nodiscard]] double cost_of(const Evaluation& e, Costs costs) const;
 
-  std::function<Prices(std::span<const double>)> price_;
+  std::function<SearchCosts(std::span<const double>)> price_;
   std::function<void(const Evaluation&)> on_evaluation_;
   PriceSlopes slopes_;
   std::mutex mutex_;
-  std::map<std::vector<double>, Prices> known_;
+  std::map<std::vector<double>, SearchCosts> known_;
   std::map<long, Evaluation> log_;  ///< by index
   long first_index_ = 0;            ///< of the stage
 };

@@ -1,4 +1,4 @@
-#include "studies/two_stages.h"
+#include "studies/guided_search.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ constexpr double separation = 0.05;  // of two such starts in some variable, as 
 
 }  // namespace
 
-OptimizerResult TwoStages::stage(Problem problem, OptimizerOptions options, bool leading) {
+OptimizerResult GuidedSearch::stage(Problem problem, OptimizerOptions options, bool leading) {
   problem.objective = [this, leading](std::span<const double> x) {
     const std::vector<double> point(x.begin(), x.end());
     {
@@ -23,7 +23,7 @@ OptimizerResult TwoStages::stage(Problem problem, OptimizerOptions options, bool
       if (const auto found = known_.find(point); found != known_.end())
         return leading ? found->second.leading : found->second.own;
     }
-    const Prices prices = price_(x);
+    const SearchCosts prices = price_(x);
     const std::scoped_lock lock(mutex_);
     known_.emplace(point, prices);
     return leading ? prices.leading : prices.own;
@@ -50,8 +50,8 @@ OptimizerResult TwoStages::stage(Problem problem, OptimizerOptions options, bool
   return minimize(problem, options);
 }
 
-std::vector<double> TwoStages::values_apart(std::span<const double> x, bool leading) {
-  std::optional<Prices::Apart> apart;
+std::vector<double> GuidedSearch::values_apart(std::span<const double> x, bool leading) {
+  std::optional<SearchCosts::Apart> apart;
   {
     const std::scoped_lock lock(mutex_);
     if (const auto found = known_.find({x.begin(), x.end()}); found != known_.end()) apart = found->second.apart;
@@ -62,11 +62,11 @@ std::vector<double> TwoStages::values_apart(std::span<const double> x, bool lead
   return values;
 }
 
-double TwoStages::cost_of(const Evaluation& e, Costs costs) const {
+double GuidedSearch::cost_of(const Evaluation& e, Costs costs) const {
   return costs == Costs::leading && std::isfinite(e.value) ? known_.at(e.x).leading : e.value;
 }
 
-std::optional<TwoStages::Best> TwoStages::best(Costs costs) const {
+std::optional<GuidedSearch::Best> GuidedSearch::best(Costs costs) const {
   const Evaluation* best = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [index, e] : log_) {
@@ -75,7 +75,7 @@ std::optional<TwoStages::Best> TwoStages::best(Costs costs) const {
   return best ? std::optional<Best>({.evaluation = *best, .cost = least}) : std::nullopt;
 }
 
-std::vector<std::vector<double>> TwoStages::promising_points(const std::vector<Variable>& variables, Costs costs) const {
+std::vector<std::vector<double>> GuidedSearch::promising_points(const std::vector<Variable>& variables, Costs costs) const {
   std::vector<std::pair<double, const Evaluation*>> by_cost;
   for (const auto& [index, e] : log_) {
     if (std::isfinite(e.value)) by_cost.emplace_back(cost_of(e, costs), &e);
@@ -97,7 +97,7 @@ std::vector<std::vector<double>> TwoStages::promising_points(const std::vector<V
   return chosen;
 }
 
-std::optional<Evaluation> TwoStages::surest_below(double own, const std::vector<std::vector<double>>& others) const {
+std::optional<Evaluation> GuidedSearch::surest_below(double own, const std::vector<std::vector<double>>& others) const {
   const Evaluation* surest = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [index, e] : log_) {
@@ -108,7 +108,7 @@ std::optional<Evaluation> TwoStages::surest_below(double own, const std::vector<
   return surest ? std::optional(*surest) : std::nullopt;
 }
 
-OptimizerResult TwoStages::run(Problem problem, OptimizerOptions options, Costs costs, long more, long first_index) {
+OptimizerResult GuidedSearch::run(Problem problem, OptimizerOptions options, Costs costs, long more, long first_index) {
   const auto begin = std::chrono::steady_clock::now();
   options.on_improvement = {};
   first_index_ = first_index;
