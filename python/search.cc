@@ -72,26 +72,19 @@ OptimizeOptions options_of(const Request& request, const SceneFile& file, Run& r
   return options;
 }
 
-// The callbacks: what Python is told, and how it ends a search.
+// The callbacks: what Python is told, and how it ends a search. Once candidates are tried they throw nothing, which a search
+// would take for a bad candidate: run.stop() ends it.
 void listen(OptimizeOptions& options, const Request& request, Run& run) {
-  const auto check = [&request, &run] {
-    const auto raise = [&](FirstError& error) {
-      if (error.is_there()) run.throw_if_given_up();
-    };
-    if (request.objective) raise(request.objective->first_error());
+  options.on_preparation = [&run](std::string_view what, double part) {
     run.throw_if_given_up();
-  };
-  options.on_preparation = [&run, check](std::string_view what, double part) {
-    check();
     run.watch().tell(what, part);
   };
-  options.on_evaluation = [&request, &run, check, budget = options.max_evaluations](const Evaluation& evaluation,
-                                                                                    const OptimizeProgress& progress) {
+  options.on_evaluation = [&request, &run, budget = options.max_evaluations](const Evaluation& evaluation,
+                                                                             const OptimizeProgress& progress) {
     const bool failed = (request.objective && request.objective->first_error().is_there()) ||
                         std::any_of(request.own_waveforms.begin(), request.own_waveforms.end(),
                                     [](const auto& one) { return one->first_error().is_there(); });
     if (failed) run.keep(std::make_exception_ptr(Interrupted()));
-    check();
     run.watch().tell("search", static_cast<double>(progress.evaluations) / static_cast<double>(std::max(1L, budget)));
     if (request.callback.is_none()) return;
     run.call([&] {
@@ -100,8 +93,7 @@ void listen(OptimizeOptions& options, const Request& request, Run& run) {
       if (!wish.is_none() && wish.cast<bool>()) run.end_by_wish();
     });
   };
-  options.on_progress = [&run, check](const OptimizeProgress& progress) {
-    check();
+  options.on_progress = [&run](const OptimizeProgress& progress) {
     run.watch().tell(fmt::format("search, {} evaluations", progress.evaluations), 0);
   };
 }
