@@ -12,10 +12,10 @@
 #include "apps/failure.h"
 #include "apps/interrupt.h"
 #include "apps/output.h"
-#include "apps/shell_word.h"
 #include "apps/streams.h"
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
+#include "base/shell_word.h"
 #include "version.h"
 
 namespace {

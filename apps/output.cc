@@ -55,17 +55,6 @@ std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std:
   return folder;
 }
 
-void write_report(ResultFolder& folder, const Result& result) {
-  folder.write("report.html", html_report(result));
-  folder.write("gap.svg", svg_gap_chart(result));
-}
-
-void write_result(ResultFolder& folder, const Result& result) {
-  folder.write("result.json", json_text(result_json(result)));
-  write_report(folder, result);
-  if (result.best.figures) folder.write("trajectory.csv", trajectory_csv(result.best.curve));
-}
-
 void print_result(const Common& c, const Result& result, const std::string& left) {
   print_json_or(c, summary_json(result_json(result)), text_report(result) + left);
 }

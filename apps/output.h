@@ -10,6 +10,7 @@
 #include "apps/options.h"
 #include "apps/result_folder.h"
 #include "model/status.h"
+#include "reports/report_files.h"
 #include "reports/result.h"
 #include "reports/result_json.h"
 
@@ -22,9 +23,11 @@ namespace softland::apps {
 [[nodiscard]] std::optional<ResultFolder> claim_places(const Common& common, const std::vector<std::string>& files,
                                                        const std::vector<std::string>& kept = {});
 
-/// The files of a result: result.json, report.html, gap.svg, trajectory.csv where there is a trajectory.
-void write_result(ResultFolder& folder, const Result& result);
-void write_report(ResultFolder& folder, const Result& result);
+/// The files of a report (reports/report_files.h).
+template <class Report>
+void write_files(ResultFolder& folder, const Report& report) {
+  for (const ReportFile<Report>& file : files_of(report)) folder.write(file.name, file.text(report));
+}
 
 /// The whole result as --json asks for, or else as text on standard output, with what `left` says about files.
 void print_result(const Common& common, const Result& result, const std::string& left);

@@ -8,10 +8,10 @@
 #include <cstdint>
 #include <utility>
 
-#include "apps/robustness_files.h"
 #include "apps/stores.h"
 #include "apps/streams.h"
 #include "base/require.h"
+#include "reports/report_files.h"
 #include "studies/search_space.h"
 
 namespace softland::apps {
@@ -27,7 +27,7 @@ json plan_in(const fs::path& store) {
 }
 
 // Evaluations that a search may ask for: of a robust one each takes eight devices at least, but for those of its scouting.
-std::int64_t most_evaluations(const PlannedSearch& search) {
+std::int64_t most_evaluations(const KeptSearch& search) {
   constexpr std::int64_t most = std::int64_t{1} << 24, scouting = 4096;
   const std::int64_t budget = std::min<std::int64_t>(search.options.max_evaluations + search.options.more_evaluations, most);
   const std::int64_t of_race = search.for_devices ? std::min<std::int64_t>(2 * search.for_devices->closings / 8, most) : 0;
@@ -36,7 +36,7 @@ std::int64_t most_evaluations(const PlannedSearch& search) {
   return each > most / seeds ? most : each * seeds;
 }
 
-std::vector<std::string> files_of(const PlannedSearch& search) {
+std::vector<std::string> files_of(const KeptSearch& search) {
   std::vector<std::string> files{"best.toml",      "best.csv",        "report.html",    "gap.svg", "result.json",
                                  "trajectory.csv", "evaluations.csv", evaluations_file, seeds_file};
   if (search.robust || search.for_devices) files.insert(files.end(), robustness_files.begin(), robustness_files.end());
@@ -49,7 +49,7 @@ std::optional<fs::path> kept_stores(const Common& c, const std::optional<KnownSe
   return known && fs::equivalent(known->place, c.out, ignored) ? std::optional(known->place) : std::nullopt;
 }
 
-ResultFolder claimed(const Common& c, const PlannedSearch& search, const std::optional<KnownSearch>& known) {
+ResultFolder claimed(const Common& c, const KeptSearch& search, const std::optional<KnownSearch>& known) {
   const bool stays = kept_stores(c, known).has_value();
   std::vector<std::string> kept;
   if (stays) kept = {evaluations_file};
@@ -83,13 +83,13 @@ std::vector<std::string> shaped_in(const std::vector<std::string>& variables) {
 
 }  // namespace
 
-PlannedSearch planned_or_known(const Common& c, const OptimizeRequest& request, std::optional<KnownSearch>& known) {
-  if (!request.resume) return planned(c, request, {});
+KeptSearch kept_or_known(const Common& c, const OptimizeRequest& request, std::optional<KnownSearch>& known) {
+  if (!request.resume) return kept_search(c, request, {});
   std::string refusal;
   for (const fs::path& store : ResultFolder::places(c.out, evaluations_file)) {
     const json plan = plan_in(store);
     try {
-      PlannedSearch search = planned(c, request, plan);
+      KeptSearch search = kept_search(c, request, plan);
       const std::string other = difference(plan, search.plan);
       if (other.empty()) {
         known = KnownSearch{.place = store.parent_path(), .plan = plan, .command = StudyReader(store).sessions().front().command};
@@ -102,10 +102,10 @@ PlannedSearch planned_or_known(const Common& c, const OptimizeRequest& request, 
   }
   require(refusal.empty(), refusal);
   require(!c.scene.empty(), [&] { return fmt::format("--resume: {} holds no search to go on with", c.out); });
-  return planned(c, request, {});
+  return kept_search(c, request, {});
 }
 
-SearchPlaces::SearchPlaces(const Common& c, const PlannedSearch& search, const std::optional<KnownSearch>& known,
+SearchPlaces::SearchPlaces(const Common& c, const KeptSearch& search, const std::optional<KnownSearch>& known,
                            const std::vector<std::string>& variables)
     : kept_(kept_stores(c, known)),
       folder_(claimed(c, search, known)),
@@ -114,7 +114,7 @@ SearchPlaces::SearchPlaces(const Common& c, const PlannedSearch& search, const s
 
 fs::path SearchPlaces::store(const std::string& name) { return kept_ ? *kept_ / name : folder_.place(name); }
 
-SearchRun::SearchRun(const Common& c, PlannedSearch& search, const std::optional<KnownSearch>& known, SearchPlaces* places)
+SearchRun::SearchRun(const Common& c, KeptSearch& search, const std::optional<KnownSearch>& known, SearchPlaces* places)
     : common_(c),
       search_(search),
       known_(known),
@@ -159,7 +159,7 @@ std::vector<std::string> SearchRun::commands() const {
   return {known_->command, common_.command};
 }
 
-std::string search_words(const Common& c, const PlannedSearch& search) {
+std::string search_words(const Common& c, const KeptSearch& search) {
   const OptimizeOptions& o = search.options;
   const std::string devices = search.robust ? fmt::format(", over devices of the spread ({})", search.robust->aim.measure.text)
                               : search.for_devices ? std::string(", then one for devices that differ")

@@ -1,7 +1,6 @@
 // One search on its way: the folder it fills, the store of its evaluations, its progress and its log.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,18 +9,15 @@
 #include <vector>
 
 #include "apps/evaluation_store.h"
+#include "apps/kept_search.h"
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/search_log.h"
-#include "apps/search_request.h"
 
 namespace softland::apps {
 
 /// In the folder of searches from several seeds.
 inline constexpr const char* seeds_file = "seeds.sqlite";
-
-/// What a search for devices leaves besides.
-inline constexpr std::array for_devices_files{"drawing.toml", "drawing.csv", "calibrated.toml", "calibrated.csv"};
 
 /// The search that is gone on with.
 struct KnownSearch {
@@ -31,16 +27,15 @@ struct KnownSearch {
 };
 
 /// What the command line asks for, as a search that goes on with one in the folder of --out where it says --resume and there is
-/// one, which is then `known`. Throws InvalidInput as planned() does, and where no search in the folder is the one that is asked
-/// for, with what differs.
-[[nodiscard]] PlannedSearch planned_or_known(const Common& common, const OptimizeRequest& request,
-                                             std::optional<KnownSearch>& known);
+/// one, which is then `known`. Throws InvalidInput as kept_search() does, and where no search in the folder is the one that is
+/// asked for, with what differs.
+[[nodiscard]] KeptSearch kept_or_known(const Common& common, const OptimizeRequest& request, std::optional<KnownSearch>& known);
 
 /// Where a search keeps what it finds.
 class SearchPlaces {
  public:
   /// Takes the folder of --out and opens the store of evaluations, for a search of these parameters.
-  SearchPlaces(const Common& common, const PlannedSearch& search, const std::optional<KnownSearch>& known,
+  SearchPlaces(const Common& common, const KeptSearch& search, const std::optional<KnownSearch>& known,
                const std::vector<std::string>& variables);
 
   [[nodiscard]] ResultFolder& folder() { return folder_; }
@@ -61,7 +56,7 @@ class SearchRun {
  public:
   /// `places`: those of a study that it is part of; null: it takes its own when it begins. Sets the callbacks of search.options,
   /// which must outlive it.
-  SearchRun(const Common& common, PlannedSearch& search, const std::optional<KnownSearch>& known, SearchPlaces* places = nullptr);
+  SearchRun(const Common& common, KeptSearch& search, const std::optional<KnownSearch>& known, SearchPlaces* places = nullptr);
 
   /// When the search has ended: says so, and lets the store go.
   void close();
@@ -75,7 +70,7 @@ class SearchRun {
   void begin(const std::vector<std::string>& variables);
 
   const Common& common_;
-  PlannedSearch& search_;
+  KeptSearch& search_;
   const std::optional<KnownSearch>& known_;
   std::optional<WatchedWork> preparation_;
   SearchProgress progress_;
@@ -85,6 +80,6 @@ class SearchRun {
 };
 
 /// "gold.toml: searching a pulse waveform, actuator electrostatic, target bounce"
-[[nodiscard]] std::string search_words(const Common& common, const PlannedSearch& search);
+[[nodiscard]] std::string search_words(const Common& common, const KeptSearch& search);
 
 }  // namespace softland::apps

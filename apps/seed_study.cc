@@ -33,7 +33,7 @@ StoredColumn column_of(const PointFigure& figure) {
   return {.key = column_key(figure.quantity, figure.unit), .name = figure.name, .unit = figure.unit, .kind = ColumnKind::figure};
 }
 
-StoredPlan seed_plan(const PlannedSearch& search, const std::vector<std::string>& variables) {
+StoredPlan seed_plan(const KeptSearch& search, const std::vector<std::string>& variables) {
   StoredPlan plan{.text = search.plan.dump(1),
                   .points = static_cast<std::int64_t>(search.seeds),
                   .columns = {{.key = "seed", .name = "seed", .unit = {}, .kind = ColumnKind::variable}},
@@ -62,13 +62,13 @@ ResultSeeds::Search search_of(const StoredRow& row, std::uint64_t seed) {
   return one;
 }
 
-ContentKey content_of(const PlannedSearch& search, std::uint64_t k) {
+ContentKey content_of(const KeptSearch& search, std::uint64_t k) {
   return content_key(plan_of_seed(search.plan, search.seed(k)).dump());
 }
 
 }  // namespace
 
-SeedStudy::SeedStudy(const Common& c, const PlannedSearch& search, SearchPlaces& places, std::vector<std::string> variables)
+SeedStudy::SeedStudy(const Common& c, const KeptSearch& search, SearchPlaces& places, std::vector<std::string> variables)
     : common_(c),
       search_(search),
       places_(places),

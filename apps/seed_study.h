@@ -18,7 +18,7 @@ namespace softland::apps {
 class SeedStudy {
  public:
   /// `variables`: the searched parameters. Opens the store of the seeds, whose rows are not computed again.
-  SeedStudy(const Common& common, const PlannedSearch& search, SearchPlaces& places, std::vector<std::string> variables);
+  SeedStudy(const Common& common, const KeptSearch& search, SearchPlaces& places, std::vector<std::string> variables);
 
   /// Runs the searches that are missing, several at once where there are as many as threads. A search is the same on any number
   /// of them. Ends early when it is asked to stop.
@@ -40,7 +40,7 @@ class SeedStudy {
   [[nodiscard]] std::pair<double, std::string> state(double elapsed) const;
 
   const Common& common_;
-  const PlannedSearch& search_;
+  const KeptSearch& search_;
   SearchPlaces& places_;
   std::vector<std::string> variables_;
   std::filesystem::path file_;

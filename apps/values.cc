@@ -40,13 +40,4 @@ double quantity_of(const char* option, const std::string& text, const Dimension&
   return given.value;
 }
 
-std::vector<std::string> parts_of(const std::string& list) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
-    end = list.find(',', begin);
-    parts.push_back(list.substr(begin, end - begin));
-  }
-  return parts;
-}
-
 }  // namespace softland::apps

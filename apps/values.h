@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 #include <system_error>
-#include <vector>
 
 #include "base/require.h"
 #include "config/units.h"
@@ -45,8 +44,5 @@ template <class Number>
 
 /// A quantity of this dimension, at least 0 [SI unit].
 [[nodiscard]] double quantity_of(const char* option, const std::string& text, const Dimension& due);
-
-/// "a,b,c"
-[[nodiscard]] std::vector<std::string> parts_of(const std::string& list);
 
 }  // namespace softland::apps

@@ -12,6 +12,8 @@
 #include "base/read_file.h"
 #include "base/require.h"
 #include "base/shortened.h"
+#include "base/split.h"
+#include "base/trimmed.h"
 #include "config/drives.h"
 #include "config/scene_file_impl.h"
 #include "config/schema.h"
@@ -134,14 +136,8 @@ class MeasurementReader {
       std::string line(content.substr(0, end));
       content.remove_prefix(std::min(end + 1, content.size()));
       if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-      std::vector<std::string> names;
-      for (std::size_t begin = 0; begin <= line.size();) {
-        const std::size_t comma = std::min(line.find(',', begin), line.size());
-        const std::string cell = line.substr(begin, comma - begin);
-        const std::size_t first = cell.find_first_not_of(" \t\r"), last = cell.find_last_not_of(" \t\r");
-        names.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
-        begin = comma + 1;
-      }
+      std::vector<std::string> names = split(line, ',');
+      for (std::string& name : names) name = std::string(trimmed(name));
       if (!names.front().starts_with('#') && !(names.size() == 1 && names.front().empty())) return names;
     }
     return {};

@@ -17,6 +17,7 @@
 #include "base/read_file.h"
 #include "base/require.h"
 #include "base/shortened.h"
+#include "base/split.h"
 #include "base/trimmed.h"
 #include "config/scene_file_impl.h"
 #include "config/section_reader.h"
@@ -32,14 +33,10 @@ constexpr std::string_view plan_section = "plan";
 constexpr std::uint64_t most_values = 10'000'000;  // of one variable, or rows of a list
 constexpr std::uint64_t most_searched = 10'000'000;
 
-std::vector<std::string> split(std::string_view text, char at) {
-  std::vector<std::string> parts;
-  for (;;) {
-    const std::size_t end = text.find(at);
-    parts.emplace_back(trimmed(text.substr(0, end)));
-    if (end == std::string_view::npos) return parts;
-    text.remove_prefix(end + 1);
-  }
+std::vector<std::string> split_trimmed(std::string_view text, char at) {
+  std::vector<std::string> parts = split(text, at);
+  for (std::string& part : parts) part = std::string(trimmed(part));
+  return parts;
 }
 
 /// Digits alone.
@@ -158,9 +155,9 @@ class EntryReader {
  public:
   EntryReader(const KeyFinder& finder, const std::string& name) {
     variable_.name = name;
-    for (const std::string& key : split(name, '*')) keys_.push_back(finder.find(key));
+    for (const std::string& key : split_trimmed(name, '*')) keys_.push_back(finder.find(key));
     std::set<std::string> names;
-    for (const std::string& key : split(name, '*'))
+    for (const std::string& key : split_trimmed(name, '*'))
       require(names.insert(key).second, [&] { return fmt::format("names {} twice", key); });
     const KeyType type = keys_.front().schema->type;
     if (type == KeyType::choice || type == KeyType::flag)
@@ -326,7 +323,8 @@ std::pair<std::string, std::string> name_and_values(const std::string& entry) {
   require(equals != std::string::npos && equals > 0,
           "must be KEY=LOW:HIGH:N, KEY=LOW:HIGH:N:log or KEY=A,B,C, or KEY*KEY=... of one factor");
   std::string name;
-  for (const std::string& key : split(std::string_view(entry).substr(0, equals), '*')) name += (name.empty() ? "" : "*") + key;
+  for (const std::string& key : split_trimmed(std::string_view(entry).substr(0, equals), '*'))
+    name += (name.empty() ? "" : "*") + key;
   return {name, entry.substr(equals + 1)};
 }
 
@@ -365,7 +363,7 @@ Plan::Plan(const PlanRequest& request)
 }
 
 void Plan::read_sample(const PlanRequest& request) {
-  const std::vector<std::string> parts = split(request.sample, ':');
+  const std::vector<std::string> parts = split_trimmed(request.sample, ':');
   const bool is_latin = parts.front() == "lhs";
   is_search_ = parts.front() == "nsga2";
   const Named<PointSet>* kind = find_named(point_sets, is_latin ? "latin_hypercube" : is_search_ ? "sobol" : parts.front());
@@ -384,12 +382,12 @@ void Plan::read_variables(const PlanRequest& request) {
     at_place(request, "vary", i, [&] {
       const auto [name, values] = name_and_values(request.vary[i]);
       EntryReader reader(finder, name);
-      std::vector<std::string> range = split(values, ':');
+      std::vector<std::string> range = split_trimmed(values, ':');
       if (range.size() > 1) {
         variables_.push_back(std::move(reader).of_range(std::move(range), sample_.has_value()));
       } else {
         require(!sample_, "must be KEY=LOW:HIGH where points are sampled");
-        variables_.push_back(std::move(reader).of_list(split(values, ',')));
+        variables_.push_back(std::move(reader).of_list(split_trimmed(values, ',')));
       }
     });
   }
@@ -547,7 +545,7 @@ void read_list(PlanRequest& request, const std::string& path) {
     header = trimmed(rest.substr(0, end));
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
   }
-  request.columns = split(header, ',');
+  request.columns = split_trimmed(header, ',');
   read_csv(content, path, request.columns, "keys of the scene with their units, \"structure.length [um]\"",
            [&](std::span<const double> row, const CsvPlace& place) {
              require(request.rows.size() < most_values,

@@ -3,26 +3,14 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
-#include <optional>
 #include <utility>
 
-#include "config/aim.h"
-#include "config/assumed_spread.h"
-#include "config/criterion.h"
 #include "python/own.h"
 #include "python/scene.h"
-#include "reports/files.h"
-#include "reports/html.h"
+#include "reports/report_files.h"
 #include "reports/result_json.h"
-#include "reports/result_maker.h"
-#include "reports/robustness_report.h"
-#include "reports/svg.h"
-#include "studies/for_devices.h"
-#include "studies/optimize.h"
-#include "studies/robust_optimize.h"
-#include "waveforms/export.h"
+#include "reports/search_report.h"
 
 namespace softland::python {
 
@@ -32,44 +20,29 @@ namespace {
 
 // What a search is asked for, as Python has it; what is not given is as in the program.
 struct Request {
-  std::string target = "bounce", actuator = "electrostatic", waveform, robust = "auto";
+  SearchRequest words;
   std::shared_ptr<PythonObjective> objective;
   std::vector<std::shared_ptr<PythonWaveform>> own_waveforms;
-  std::vector<std::string> conditions;
   std::vector<py::dict> starts;
-  std::optional<long> budget;
-  std::optional<std::uint64_t> samples;
-  std::uint64_t seed = 1;
   int jobs = 1;
   py::object callback, progress;
   std::string command;
 };
 
-std::vector<Criterion> conditions_of(const Request& request, std::span<const Figure> figures) {
-  std::vector<Criterion> all;
-  for (const std::string& text : request.conditions) all.push_back(parse_criterion(text, figures));
-  return all;
-}
-
-OptimizeOptions options_of(const Request& request, const SceneFile& file, Run& run) {
-  const Named<Actuator>* actuator = find_named(actuators, request.actuator);
-  require(actuator != nullptr, [&] { return fmt::format("actuator {}: must be {}", request.actuator, listed(actuators)); });
-  const Aim aim = request.objective ? Aim(request.objective) : parse_aim(request.target);
-  OptimizeOptions options = usual_options(file, aim, actuator->value);
-  if (!request.waveform.empty()) options.family = request.waveform;
-  options.own_waveforms.assign(request.own_waveforms.begin(), request.own_waveforms.end());
-  options.seed = request.seed;
-  options.jobs = request.jobs;
-  options.stop = run.stop();
-  if (request.budget) {
-    require(*request.budget >= 1, "budget: must be at least 1");
-    options.max_evaluations = *request.budget;
-    options.more_evaluations = 0;
-  }
+PlannedSearch planned_search(const Request& request, const SceneFile& file, Run& run) {
+  PlannedSearch search =
+      planned(completed(request.words, file), file, request.words.waveform,
+              {.objective = request.objective, .waveforms = {request.own_waveforms.begin(), request.own_waveforms.end()}});
+  require(
+      !search.for_devices || request.own_waveforms.empty(),
+      "own_waveforms: a search for devices works on scene files, which cannot hold one: ask for robust=\"none\" or a measure");
+  search.options.jobs = request.jobs;
+  search.options.stop = run.stop();
   for (const py::dict& start : request.starts) {
-    options.starts.push_back({.name = fmt::format("start {}", options.starts.size() + 1), .waveforms = waveforms_of(start, run)});
+    search.options.starts.push_back(
+        {.name = fmt::format("start {}", search.options.starts.size() + 1), .waveforms = waveforms_of(start, run)});
   }
-  return options;
+  return search;
 }
 
 // The callbacks: what Python is told, and how it ends a search. Once candidates are tried they throw nothing, which a search
@@ -98,16 +71,10 @@ void listen(OptimizeOptions& options, const Request& request, Run& run) {
   };
 }
 
-std::map<std::string, std::function<std::string()>> files_of(const Result& result, const OptimizeResult& found) {
-  const auto kept = std::make_shared<const Result>(result);
-  std::map<std::string, std::function<std::string()>> files{{"result.json", [kept] { return json_text(result_json(*kept)); }},
-                                                            {"report.html", [kept] { return html_report(*kept); }},
-                                                            {"gap.svg", [kept] { return svg_gap_chart(*kept); }}};
-  if (kept->best.figures) files["trajectory.csv"] = [kept] { return trajectory_csv(kept->best.curve); };
-  if (found.best_scene) {
-    const auto scene = std::make_shared<const PreparedScene>(*found.best_scene);
-    files["best.toml"] = [scene] { return scene->scene.file.text(); };
-  }
+std::map<std::string, std::function<std::string()>> files_of(const std::shared_ptr<const SearchReport>& report) {
+  std::map<std::string, std::function<std::string()>> files;
+  for (ReportFile<SearchReport>& file : softland::files_of(*report))
+    files[file.name] = [report, text = std::move(file.text)] { return text(*report); };
   return files;
 }
 
@@ -132,8 +99,7 @@ auto searched(const Request& request, Run& run, Work&& work) {
 }
 
 // A result of a waveform that no file can hold: the keys of a result.json that are left.
-Outcome outcome_of(const Result* result, const OptimizeResult& found) {
-  if (result != nullptr) return {.json = json_text(result_json(*result)), .files = files_of(*result, found)};
+Outcome outcome_of_own(const OptimizeResult& found) {
   nlohmann::json parameters = nlohmann::json::object();
   for (const auto& [name, value] : found.parameters) parameters[name] = value;
   return {.json = json_text({{"kind", "optimize"},
@@ -155,57 +121,17 @@ bool is_own(const OptimizeResult& found) {
 }
 
 Outcome search(PyScene& scene, const Request& request) {
-  Run run(request.progress);
-  SceneFile file = scene.file;
-  if (request.robust == "none") {
-    OptimizeOptions options = options_of(request, file, run);
-    options.conditions = conditions_of(request, conditioned_figures);
-    options.begins_with_half = request.budget.has_value();  // as the program does
-    listen(options, request, run);
-    return searched(request, run, [&](const Watch&) {
-      const OptimizeResult found = optimize(file, options);
-      run.throw_if_given_up();
-      if (is_own(found)) return outcome_of(nullptr, found);
-      const Result result = result_of(found, options, {.command = request.command});
-      return outcome_of(&result, found);
-    });
-  }
-  assume_spread(file);
-  if (request.robust == "auto") {
-    require(
-        request.own_waveforms.empty(),
-        "own_waveforms: a search for devices works on scene files, which cannot hold one: ask for robust=\"none\" or a measure");
-    OptimizeOptions options = options_of(request, scene.file, run);
-    ForDevicesOptions devices{.conditions = conditions_of(request, device_figures), .families = request.waveform};
-    if (request.samples) devices.verdict = *request.samples;
-    if (request.budget) share_budget(options, devices);
-    listen(options, request, run);
-    return searched(request, run, [&](const Watch&) {
-      const auto found = std::make_shared<const ForDevicesResult>(optimize_for_devices(scene.file, options, devices));
-      run.throw_if_given_up();
-      const Result result = result_of(*found, options, "", {.command = request.command});
-      Outcome outcome{.json = json_text(result_json(result)), .files = files_of(result, found->best)};
-      if (found->drawing.best_scene)
-        outcome.files["drawing.toml"] = [found] { return found->drawing.best_scene->scene.file.text(); };
-      if (found->calibrated) outcome.files["calibrated.toml"] = [found] { return found->calibrated->text(); };
-      return outcome;
-    });
-  }
-  RobustOptions robust{.aim = {.measure = parse_robust_measure(request.robust, device_figures),
-                               .conditions = conditions_of(request, device_figures)}};
-  if (request.samples) robust.samples = *request.samples;
-  OptimizeOptions options = options_of(request, file, run);
-  if (!request.budget) options.max_evaluations = default_closings;
-  options.more_evaluations = 0;
-  if (request.waveform.empty())
-    options.family = read_scene(file).calibration.is_empty() ? default_robust_family : default_calibrated_family;
-  listen(options, request, run);
-  return searched(request, run, [&](const Watch&) {
-    const RobustResult found = robust_optimize(file, options, robust);
-    run.throw_if_given_up();
-    if (is_own(found.found)) return outcome_of(nullptr, found.found);
-    const Result result = result_of(found, options, robust, {.command = request.command});
-    return outcome_of(&result, found.found);
+  Run running(request.progress);
+  PlannedSearch search = planned_search(request, scene.file, running);
+  listen(search.options, request, running);
+  return searched(request, running, [&](const Watch& watch) {
+    const auto report = std::make_shared<SearchReport>(run(search));
+    running.throw_if_given_up();
+    if (is_own(report->found.best())) return outcome_of_own(report->found.best());
+    add_devices(*report, search, request.command, watch);
+    running.throw_if_given_up();
+    add_result(*report, search, "", {.command = request.command});
+    return Outcome{.json = json_text(result_json(report->result)), .files = files_of(report)};
   });
 }
 
@@ -213,22 +139,20 @@ Outcome search(PyScene& scene, const Request& request) {
 
 void bind_search(py::module_& m) {
   m.def("optimize", [](PyScene& scene, const py::dict& given) {
-    const auto text = [&](const char* key) { return given[key].cast<std::string>(); };
-    Request request{.target = text("target"),
-                    .actuator = text("actuator"),
-                    .waveform = text("waveform"),
-                    .robust = text("robust"),
-                    .objective = given["objective"].cast<std::shared_ptr<PythonObjective>>(),
+    Request request{.objective = given["objective"].cast<std::shared_ptr<PythonObjective>>(),
                     .own_waveforms = given["own_waveforms"].cast<std::vector<std::shared_ptr<PythonWaveform>>>(),
-                    .conditions = given["constrain"].cast<std::vector<std::string>>(),
                     .starts = given["starts"].cast<std::vector<py::dict>>(),
-                    .budget = given["budget"].cast<std::optional<long>>(),
-                    .samples = given["samples"].cast<std::optional<std::uint64_t>>(),
-                    .seed = given["seed"].cast<std::uint64_t>(),
                     .jobs = given["jobs"].cast<int>(),
                     .callback = given["callback"],
                     .progress = given["progress"],
-                    .command = text("command")};
+                    .command = given["command"].cast<std::string>()};
+    visit_words(
+        [&](std::string_view name, auto& word) {
+          const py::str key{std::string(name)};
+          if (given.contains(key) && !given[key].is_none()) word = py::str(given[key]).cast<std::string>();
+        },
+        request.words);
+    request.words.constrain = given["constrain"].cast<std::vector<std::string>>();
     return search(scene, request);
   });
 }

@@ -9,6 +9,7 @@
 
 #include "base/printable.h"
 #include "base/require.h"
+#include "base/split.h"
 #include "optimizers/pareto.h"
 #include "reports/escape.h"
 #include "reports/exploration_view.h"
@@ -210,10 +211,7 @@ bool goes_by(const ExploredColumn& column, const std::string& name) {
 std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& columns, const std::string& list,
                                        std::string_view option) {
   std::vector<ExploredAim> aims;
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    std::string name = list.substr(begin, end - begin);
-    begin = end + 1;
+  for (std::string name : split(list, ',')) {
     ExploredAim aim{.is_largest = name.starts_with(largest_mark)};
     if (aim.is_largest) name.erase(0, largest_mark.size());
     const auto found =

@@ -19,6 +19,7 @@
 #include "studies/choices.h"
 #include "studies/optimize.h"
 #include "studies/robustness.h"
+#include "studies/search_request.h"
 #include "studies/search_space.h"
 #include "waveforms/export.h"
 
@@ -48,17 +49,28 @@ std::uint64_t whole_number(const std::string& text, std::uint64_t least, std::ui
   return value;
 }
 
+SearchRequest request_of(const std::map<std::string, std::string>& given) {
+  SearchRequest request{.robust = std::string(nominal_alone)};
+  visit_words(
+      [&](std::string_view name, auto& word) {
+        if (const auto found = given.find(std::string(name)); found != given.end()) word = found->second;
+      },
+      request);
+  return request;
+}
+
 /// Options of a search with their defaults.
 void complete_search(std::map<std::string, std::string>& given, const SceneFile& scene, const auto& checked) {
-  given.try_emplace("target", name_of(targets, Target::bounce));
-  given.try_emplace("actuator", name_of(actuators, Actuator::electrostatic));
-  given.try_emplace("optimizer", "auto");
+  const SearchRequest request = completed(request_of(given), scene);
+  given.try_emplace("target", request.target);
+  given.try_emplace("actuator", request.actuator);
+  given.try_emplace("optimizer", request.optimizer);
   Aim target = Target::bounce;
   checked("target", [&] { target = parse_aim(given["target"]); });
   const auto* actuator = find_named(actuators, given["actuator"]);
   checked("actuator", [&] { require(actuator != nullptr, [] { return fmt::format("must be {}", listed(actuators)); }); });
   const Shaped drives = shaped_drives(scene, actuator->value);
-  given.try_emplace("waveform", default_families(drives));
+  given.try_emplace("waveform", request.waveform);
   checked("optimizer", [&] { static_cast<void>(optimizer_description(given["optimizer"])); });
   given.try_emplace("budget", std::to_string(default_budget(target, drives)));
   checked("budget", [&] {
@@ -351,17 +363,13 @@ PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Watch& 
 }
 
 PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Watch& watch) {
-  const std::map<std::string, std::string>& asked = plan_.options();
-  OptimizeOptions search{.target = parse_aim(asked.at("target")),
-                         .actuator = find_named(actuators, asked.at("actuator"))->value,
-                         .family = asked.at("waveform"),
-                         .optimizer = asked.at("optimizer"),
-                         .max_evaluations = std::stol(asked.at("budget")),
-                         .seed = plan_.seed(),
-                         .jobs = jobs,
-                         .stop = watch.stop,
-                         // A search that was asked to stop would still verify what it has found, for a row that is not kept.
-                         .on_preparation = [&watch](std::string_view, double) { watch.throw_if_stopped(); }};
+  OptimizeOptions search = planned(request_of(plan_.options()), scene, {}).options;
+  search.begins_with_half = false;  // the rows of a plan have one budget
+  search.seed = plan_.seed();
+  search.jobs = jobs;
+  search.stop = watch.stop;
+  // A search that was asked to stop would still verify what it has found, for a row that is not kept.
+  search.on_preparation = [&watch](std::string_view, double) { watch.throw_if_stopped(); };
   const OptimizeResult found = optimize(scene, search);
   if (found.search.termination == Termination::interrupted) throw Interrupted();
   PointRow row{.status = {}, .reason = {}, .figures = {}};

@@ -7,8 +7,8 @@
 //               dispersion force
 //   robustness  yields and quantiles of the figures over `samples` devices that differ as [spread] says, under the scene's own
 //               waveforms
-//   optimize    a whole search: the figures of the waveform found, its parameters, the goal, and the plain step's figures beside
-//               them
+//   optimize    a whole search on the nominal device, which does not begin with half its budget as that of the verb: the figures
+//               of the waveform found, its parameters, the goal, and the plain step's figures beside them
 //
 // A point is never an exception: one whose scene cannot be has the status `infeasible` and the reason, numerical trouble its own.
 #pragma once

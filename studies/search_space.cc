@@ -9,6 +9,7 @@
 #include "base/decompositions.h"
 #include "base/engineering.h"
 #include "base/require.h"
+#include "base/split.h"
 #include "studies/searched_families.h"
 
 namespace softland {
@@ -32,9 +33,7 @@ class FamilyOfDrives {
       for_others_ = text;
       return;
     }
-    for (std::size_t begin = 0; begin <= text.size();) {
-      const std::size_t end = std::min(text.find(',', begin), text.size());
-      const std::string part = text.substr(begin, end - begin);
+    for (const std::string& part : split(text, ',')) {
       const std::size_t equals = part.find('=');
       if (equals == std::string::npos) {
         require_request(for_others_.empty() && !part.empty(), [&] {
@@ -47,7 +46,6 @@ class FamilyOfDrives {
         require_request(named_.emplace(drive, part.substr(equals + 1)).second,
                         [&] { return fmt::format("{} {}: drive '{}' has two families", requested("waveform"), text, drive); });
       }
-      begin = end + 1;
     }
     if (for_others_.empty()) for_others_ = "pulse";
   }
@@ -143,15 +141,12 @@ std::string_view default_families(Shaped drives) {
 
 std::vector<std::string> families_of(const std::string& text) {
   std::vector<std::string> all;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find('+', begin), text.size());
-    const std::string family = text.substr(begin, end - begin);
+  for (const std::string& family : split(text, '+')) {
     require_request(!family.empty() || text.empty(),
                     [&] { return fmt::format("{} {}: a family before or after '+' is missing", requested("waveform"), text); });
     require_request(std::find(all.begin(), all.end(), family) == all.end(),
                     [&] { return fmt::format("{} {}: '{}' is named twice", requested("waveform"), text, family); });
     all.push_back(family);
-    begin = end + 1;
   }
   return all;
 }

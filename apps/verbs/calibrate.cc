@@ -21,6 +21,7 @@
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
+#include "base/split.h"
 #include "config/assumed_spread.h"
 #include "config/units.h"
 #include "reports/measurement_report.h"
@@ -46,7 +47,7 @@ void read_errors(const std::string& list, MeasurementOptions& options) {
                                                                     {"piezo", &options.piezo_error},
                                                                     {"time", &options.time_error}}};
   std::set<std::string_view> seen;
-  for (const std::string& one : parts_of(list)) {
+  for (const std::string& one : split(list, ',')) {
     const std::size_t colon = one.find(':');
     const auto row = std::find_if(errors.begin(), errors.end(), [&](const auto& e) { return e.first == one.substr(0, colon); });
     constexpr double most = 0.5;
@@ -69,7 +70,7 @@ void read_errors(const std::string& list, MeasurementOptions& options) {
 // "1.1,1.25"
 std::vector<double> read_steps(const std::string& list) {
   std::vector<double> steps;
-  for (const std::string& one : parts_of(list)) {
+  for (const std::string& one : split(list, ',')) {
     constexpr double most = 10;
     double value = 0;
     const auto [end, error] = std::from_chars(one.data(), one.data() + one.size(), value);

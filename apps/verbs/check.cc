@@ -28,6 +28,7 @@
 #include "reports/text.h"
 #include "studies/choices.h"
 #include "studies/closed_state.h"
+#include "studies/sent_signals.h"
 #include "studies/simulate.h"
 
 namespace softland::apps {

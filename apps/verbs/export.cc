@@ -21,12 +21,14 @@
 #include "apps/verbs/verbs.h"
 #include "base/choice.h"
 #include "base/require.h"
+#include "base/split.h"
 #include "config/assumed_spread.h"
 #include "config/units.h"
 #include "reports/circuit_model.h"
 #include "reports/quantity.h"
 #include "studies/choices.h"
 #include "studies/ensemble.h"
+#include "studies/sent_signals.h"
 
 namespace softland::apps {
 namespace {
@@ -97,7 +99,7 @@ struct Measurements {
     if (request.device_pull_in) pull_in.read("--device-vdp", *request.device_pull_in);
     if (request.device_frequency) frequency.read("--device-frequency", *request.device_frequency);
     if (request.measured.empty()) return;
-    for (const std::string& one : parts_of(request.measured)) {
+    for (const std::string& one : split(request.measured, ',')) {
       const std::size_t sign = one.find('=');
       const std::string name = one.substr(0, sign);
       Measured* const known = sign == std::string::npos ? nullptr

@@ -13,12 +13,13 @@
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/scenes.h"
-#include "apps/shell_word.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
+#include "base/shell_word.h"
 #include "config/units.h"
 #include "reports/limit_report.h"
+#include "studies/sent_signals.h"
 #include "waveforms/export.h"
 
 namespace softland::apps {

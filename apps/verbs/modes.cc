@@ -11,11 +11,12 @@
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/scenes.h"
-#include "apps/shell_word.h"
 #include "apps/streams.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
+#include "base/shell_word.h"
+#include "base/split.h"
 #include "config/units.h"
 #include "exchange/mode_table.h"
 #include "model/constants.h"
@@ -75,7 +76,7 @@ ModeKeys keys_of(const ModesRequest& r) {
     keys.clamp = quantity_of("--clamp", is_negative ? r.clamp.substr(1) : r.clamp, dimension::length) * (is_negative ? -1 : 1);
   }
   if (!r.frequencies.empty()) {
-    for (const std::string& one : parts_of(r.frequencies))
+    for (const std::string& one : split(r.frequencies, ','))
       keys.frequencies.push_back(quantity_of("--frequencies", one, dimension::frequency));
   }
   return keys;

@@ -15,23 +15,24 @@
 #include <vector>
 
 #include "apps/exit_status.h"
+#include "apps/kept_search.h"
 #include "apps/output.h"
 #include "apps/progress.h"
-#include "apps/robustness_files.h"
 #include "apps/scenes.h"
-#include "apps/search_request.h"
 #include "apps/search_run.h"
 #include "apps/seed_study.h"
-#include "apps/shell_word.h"
 #include "apps/stores.h"
 #include "apps/streams.h"
 #include "apps/verbs/verbs.h"
+#include "base/shell_word.h"
 #include "config/assumed_spread.h"
 #include "optimizers/problem.h"
 #include "reports/origin.h"
 #include "reports/quantity.h"
+#include "reports/report_files.h"
 #include "reports/result_maker.h"
 #include "reports/robustness_words.h"
+#include "reports/search_report.h"
 #include "reports/seeds_report.h"
 #include "reports/text.h"
 #include "studies/limit.h"
@@ -79,38 +80,31 @@ std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, c
   }
 }
 
-// Writes what a search has found, and names the files it leaves.
-std::vector<std::string> write_found(SearchRun& run, const OptimizeResult& result, Result& found, const fs::path& place) {
-  for (const auto& [index, e] : run.log().evaluations())
-    found.search.evaluations.push_back({static_cast<double>(index), e.value});
-  found.search.evaluations = drawn_evaluations(std::move(found.search.evaluations));
-  found.reproduce = run.commands();
-  found.reproduce.push_back("softland simulate " + shell_word((place / "best.toml").string()));
-  std::vector<std::string> left{"report.html", "gap.svg", "result.json"};
-  ResultFolder& folder = run.folder();
-  if (result.best_scene) {
-    folder.write("best.toml", result.best_scene->scene.file.text());
-    folder.write("best.csv", told_csv(*result.best_scene));
-    left.insert(left.end(), {"trajectory.csv", "best.toml (run it with `softland simulate`)", "best.csv"});
-  }
-  left.emplace_back("evaluations.csv");
+// Writes the files of a search, and names them with those that it has kept on its way.
+std::vector<std::string> write_found(SearchRun& run, const SearchReport& report, const fs::path& place) {
+  std::vector<std::string> left, kept{"evaluations.csv"};
   if (run.places().stores_go_to(place)) {
-    left.emplace_back(evaluations_file);
-    if (found.seeds) left.emplace_back(seeds_file);
+    kept.emplace_back(evaluations_file);
+    if (report.result.seeds) kept.emplace_back(seeds_file);
   }
-  write_result(folder, found);
+  const std::string last = report.found.best().best_scene ? "best.csv" : "result.json";
+  for (const ReportFile<SearchReport>& file : files_of(report)) {
+    run.folder().write(file.name, file.text(report));
+    left.push_back(file.name == "best.toml" ? file.name + " (run it with `softland simulate`)" : file.name);
+    if (file.name == last) left.insert(left.end(), kept.begin(), kept.end());
+  }
   return left;
 }
 
-int status_of(const OptimizeResult& result) {
-  if (result.search.termination == Termination::interrupted) return exit_interrupted;
-  return result.is_success() ? exit_done : exit_no_success;
+int status_of(const FoundSearch& found) {
+  if (found.interrupted()) return exit_interrupted;
+  return found.is_success() ? exit_done : exit_no_success;
 }
 
 // A search on its way to the result that is reported; of several the best.
 struct Asked {
   const Common& c;
-  PlannedSearch& search;
+  KeptSearch& search;
   const std::optional<KnownSearch>& known;
   SearchPlaces* places = nullptr;         // of a study of seeds
   std::optional<ResultSeeds> seeds = {};  // that are done
@@ -149,112 +143,43 @@ std::optional<ResultLimit> limit_of(const Asked& asked, const OptimizeResult& re
   }
 }
 
-int run_robust(const Asked& asked) {
-  const Common& c = asked.c;
-  OptimizeOptions& options = asked.search.options;
-  const RobustOptions& robust = *asked.search.robust;
-  SearchRun run(c, asked.search, asked.known, asked.places);
-  if (assume_spread(asked.search.scene) && !c.quiet) say(std::string(assumed_words));
-  RobustResult result = robust_optimize(asked.search.scene, options, robust);
-  std::optional<RobustnessReport> report;
-  if (result.verdict) {
-    report.emplace(RobustnessReport{.nominal = *result.found.best_scene,
-                                    .found = *result.verdict,
-                                    .options = {.samples = robust.verdict, .seed = options.seed, .jobs = options.jobs},
-                                    .command = c.command});
-    add_details(*report, false, {.stop = c.stop, .progress = options.on_preparation});
-    if (report->interrupted) result.found.search.termination = Termination::interrupted;
-  }
-  run.close();
-
-  Result found = result_of(result, options, robust, {.command = c.command});
-  found.limit = limit_of(asked, result.found);
-  found.seeds = asked.seeds;
-  const bool interrupted = result.found.search.termination == Termination::interrupted;
-  const fs::path place = run.folder().destination(interrupted);
-  std::vector<std::string> left = write_found(run, result.found, found, place);
-  std::string text;
-  if (report) {
-    write_robustness(run.folder(), *report);
-    left.insert(left.end(), robustness_files.begin(), robustness_files.end());
-    text = "\n" + robustness_text(*report);
-  }
-  run.folder().publish(interrupted);
-  print_result(c, found, text + left_in(place, left));
-  return status_of(result.found);
-}
-
-int run_nominal(const Asked& asked) {
-  const Common& c = asked.c;
-  OptimizeOptions& options = asked.search.options;
-  SearchRun run(c, asked.search, asked.known, asked.places);
-  const OptimizeResult result = optimize(asked.search.scene, options);
-  run.close();
-
-  Result found = result_of(result, options, {.command = c.command});
-  found.limit = limit_of(asked, result);
-  found.seeds = asked.seeds;
-  const bool interrupted = result.search.termination == Termination::interrupted;
-  const fs::path place = run.folder().destination(interrupted);
-  const std::vector<std::string> left = write_found(run, result, found, place);
-  run.folder().publish(interrupted);
-  if (!c.quiet) {
-    for (const std::string& broken : result.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
-  }
-  const bool judged = result.best_scene && !interrupted && c.json != "-";
-  print_result(c, found, (judged ? on_devices(c, result.best_scene.value(), options.jobs, place) : "") + left_in(place, left));
-  return status_of(result);
-}
-
-void write_scene(ResultFolder& folder, const std::string& name, const PreparedScene& scene, std::vector<std::string>& left) {
-  folder.write(name + ".toml", scene.scene.file.text());
-  folder.write(name + ".csv", csv(named_signals(scene), scene.duration));
-  left.push_back(name + ".toml");
-  left.push_back(name + ".csv");
-}
-
-// How a device that was measured gets its waveform; empty where there is none for it.
-std::string next_command(const ForDevicesResult& result, const fs::path& place) {
-  if (!result.calibrated) return {};
-  const bool by_time = result.calibrated->written("calibration.time").has_value();
-  return fmt::format("softland export {} --measured \"{}\"", shell_word((place / "calibrated.toml").string()),
-                     by_time ? fmt::format("{}={:.4g} us", measured_time, 1e6 * result.closing_time)
-                             : fmt::format("{}={:.4g} V", measured_pull_in, result.pull_in));
-}
-
-int run_for_devices(const Asked& asked) {
-  const Common& c = asked.c;
-  OptimizeOptions& options = asked.search.options;
-  SearchRun run(c, asked.search, asked.known, asked.places);
-  ForDevicesResult result = optimize_for_devices(asked.search.scene, options, *asked.search.for_devices);
-  if (result.interrupted) result.best.search.termination = Termination::interrupted;
-  run.close();
-
-  const fs::path place = run.folder().destination(result.interrupted);
-  Result found = result_of(result, options, next_command(result, place), {.command = c.command});
-  found.limit = limit_of(asked, result.best);
-  std::vector<std::string> left = write_found(run, result.best, found, place);
-  if (result.drawing.best_scene) write_scene(run.folder(), "drawing", *result.drawing.best_scene, left);
-  if (result.calibrated)
-    write_scene(run.folder(), "calibrated", read_back(*result.calibrated, "calibrated.toml", result.drawing.scene), left);
-  if (!result.rows.empty()) {
-    const RobustnessReport report{
-        .nominal = result.varied,
-        .found = result.verdict,
-        .options = {.samples = asked.search.for_devices->verdict, .seed = options.seed, .jobs = options.jobs},
-        .command = c.command,
-        .windows = result.windows};
-    write_robustness(run.folder(), report);
-    left.insert(left.end(), robustness_files.begin(), robustness_files.end());
-  }
-  run.folder().publish(result.interrupted);
-  print_result(c, found, left_in(place, left));
-  const int status = status_of(result.best);
-  return result.plain_step_wins && status == exit_done ? exit_no_success : status;
+// What follows the table of a result: how the winner does on devices.
+std::string words_on_devices(const Asked& asked, const SearchReport& report, const fs::path& place) {
+  const FoundSearch& found = report.found;
+  if (asked.search.robust && report.devices) return "\n" + robustness_text(*report.devices);
+  const bool judged = found.best().best_scene && !found.interrupted() && asked.c.json != "-";
+  if (asked.search.devices() > 0 || !judged) return {};
+  return on_devices(asked.c, *found.best().best_scene, asked.search.options.jobs, place);
 }
 
 int run_search(const Asked& asked) {
-  return asked.search.robust ? run_robust(asked) : asked.search.for_devices ? run_for_devices(asked) : run_nominal(asked);
+  const Common& c = asked.c;
+  KeptSearch& search = asked.search;
+  SearchRun searching(c, search, asked.known, asked.places);
+  if (search.robust && assume_spread(search.scene) && !c.quiet) say(std::string(assumed_words));
+  SearchReport report(run(search));
+  const OptimizeResult& best = report.found.best();
+  add_devices(report, search, c.command, {.stop = c.stop, .progress = search.options.on_preparation});
+  searching.close();
+
+  const bool interrupted = report.found.interrupted();
+  const fs::path place = searching.folder().destination(interrupted);
+  add_result(report, search, place, {.command = c.command});
+  Result& result = report.result;
+  result.limit = limit_of(asked, best);
+  result.seeds = asked.seeds;
+  for (const auto& [index, e] : searching.log().evaluations())
+    result.search.evaluations.push_back({static_cast<double>(index), e.value});
+  result.search.evaluations = drawn_evaluations(std::move(result.search.evaluations));
+  result.reproduce = searching.commands();
+  result.reproduce.push_back("softland simulate " + shell_word((place / "best.toml").string()));
+  const std::vector<std::string> left = write_found(searching, report, place);
+  searching.folder().publish(interrupted);
+  if (search.devices() == 0 && !c.quiet) {
+    for (const std::string& broken : best.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
+  }
+  print_result(c, result, words_on_devices(asked, report, place) + left_in(place, left));
+  return status_of(report.found);
 }
 
 // What there is of searches from several seeds that were asked to stop: --resume goes on with it.
@@ -272,7 +197,7 @@ int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, 
   return exit_interrupted;
 }
 
-int run_seeds(const Common& c, PlannedSearch& search, const std::optional<KnownSearch>& known, bool limit) {
+int run_seeds(const Common& c, KeptSearch& search, const std::optional<KnownSearch>& known, bool limit) {
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const SearchedParameters searched = searched_parameters(search.scene, search.options, search.robust.has_value(), work->watch());
   work.reset();
@@ -299,7 +224,7 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   if (c.out.empty()) c.out = "softland-out";
   if (c.scene.empty() && !request.resume) c.scene = shipped_scene("mem-gold-pzt.toml").string();
   std::optional<KnownSearch> known;
-  PlannedSearch search = planned_or_known(c, request, known);
+  KeptSearch search = kept_or_known(c, request, known);
   if (known && !c.quiet) tell_of_other_programs((known->place / evaluations_file).string());
   return search.seeds > 1 ? run_seeds(c, search, known, request.limit)
                           : run_search({.c = c, .search = search, .known = known, .limit = request.limit});
@@ -352,10 +277,10 @@ void add_optimize(Verb& verb) {
               "alone; one measure alone: yield (as many devices as possible without a rebound), yield:\"bounce_count == 0\", "
               "cvar:0.9 (the mean of the worst tenth), quantile:0.95, mean+2sigma, worst");
   verb.repeated(
-      "--constrain", request->conditions, "CONDITION",
+      "--constrain", request->constrain, "CONDITION",
       "condition that the winner on the drawing, and 95 % of the devices, have to fulfil: \"permanent_contact_time < 60 us\"; "
       "may be repeated");
-  verb.option("--calibrate", request->calibration, "LIST",
+  verb.option("--calibrate", request->calibrate, "LIST",
               "measured on every device before it is driven, whose waveform is then in its own units: \"Vdp,frequency\" or, with "
               "errors, \"Vdp:1 %,frequency:0.5 %\"; piezo, the deflection per volt on it over the contact gap, as well; "
               "\"Vdp,frequency in 8 classes\": sorted by it, one waveform for each class; none: "

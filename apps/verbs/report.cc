@@ -16,7 +16,9 @@
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
 #include "reports/exploration_report.h"
+#include "reports/html.h"
 #include "reports/result_reader.h"
+#include "reports/svg.h"
 #include "reports/text.h"
 #include "store/study_store.h"
 
@@ -98,7 +100,8 @@ int report_verb(const Common& given, const ReportRequest& request) {
   const std::vector<std::string> files{"report.html", "gap.svg"};
   ResultFolder folder = *claim_places(c, files);
   const Result r = read_result(j);
-  write_report(folder, r);
+  folder.write(files[0], html_report(r));
+  folder.write(files[1], svg_gap_chart(r));
   folder.publish(false);
   print(text_report(r) + left_in(c.out, files));
   return exit_done;

@@ -13,19 +13,23 @@
 #include "apps/exit_status.h"
 #include "apps/output.h"
 #include "apps/progress.h"
-#include "apps/robustness_files.h"
 #include "apps/scenes.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/engineering.h"
 #include "base/require.h"
 #include "config/assumed_spread.h"
+#include "config/calibration_words.h"
+#include "reports/report_files.h"
 #include "reports/robustness_report.h"
 #include "studies/choices.h"
 #include "studies/other_ways.h"
 
 namespace softland::apps {
 namespace {
+
+// The scene of the worst device of the box.
+std::string box_file(std::string_view key) { return fmt::format("box-{}.toml", figure_of(key).symbol); }
 
 struct RobustnessRequest {
   std::vector<std::string> results;  ///< whose drives are judged as well
@@ -71,7 +75,7 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
   std::string text = (spread_assumed ? std::string(assumed_words) + "\n" : std::string()) + robustness_text(report);
   work.reset();
   if (folder) {
-    write_robustness(*folder, report);
+    write_files(*folder, report);
     const DriveRobustness& last = found.drives.back();
     for (std::size_t i = 0; i < most_worst && i < last.worst.size(); ++i)
       folder->write(fmt::format("worst-{}.toml", i + 1), scene_of_device(nominal, last, last.worst[i], options).text());

@@ -58,7 +58,7 @@ int simulate_verb(const Common& c, const SimulateRequest& request) {
   const bool interrupted = closing.metrics.status == Status::interrupted;
   std::string left;
   if (folder) {
-    write_result(*folder, result);
+    write_files(*folder, result);
     left = left_in(folder->destination(interrupted), files);
     folder->publish(interrupted);
   }

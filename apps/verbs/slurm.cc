@@ -8,12 +8,12 @@
 #include <string>
 
 #include "apps/exit_status.h"
-#include "apps/shell_word.h"
 #include "apps/stores.h"
 #include "apps/streams.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
+#include "base/shell_word.h"
 #include "config/plan.h"
 #include "store/study_store.h"
 #include "studies/exploration.h"

@@ -19,6 +19,7 @@
 #include "base/printable.h"
 #include "base/require.h"
 #include "base/shortened.h"
+#include "base/split.h"
 #include "reports/files.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
@@ -83,7 +84,7 @@ std::vector<Column> selected(const StoredPlan& plan, const std::string& select) 
   all.push_back(text_column("content", [](const StoredRow& row) { return row.content.hexadecimal(); }));
   all.push_back(text_column("extra", [](const StoredRow& row) { return row.extra; }));
   std::vector<Column> chosen;
-  for (const std::string& name : parts_of(select)) {
+  for (const std::string& name : split(select, ',')) {
     const auto called =
         std::find_if(plan.columns.begin(), plan.columns.end(), [&](const StoredColumn& c) { return c.name == name; });
     const std::string& key = called == plan.columns.end() ? name : called->key;

@@ -41,6 +41,7 @@
 #include "studies/effects.h"          // effects
 #include "studies/evaluator.h"        // figures as a function of numbers of a scene, many rows at once
 #include "studies/for_devices.h"      // optimize: for the drawing, and for devices that differ
+#include "studies/found_search.h"     // optimize, whatever its options: run(planned(completed(words, scene), scene))
 #include "studies/limit.h"            // limit
 #include "studies/optimize.h"         // optimize --robust none
 #include "studies/prepared.h"         // PreparedScene

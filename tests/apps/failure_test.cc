@@ -9,9 +9,9 @@
 #include <system_error>
 
 #include "apps/exit_status.h"
-#include "apps/shell_word.h"
 #include "base/output_lost.h"
 #include "base/require.h"
+#include "base/shell_word.h"
 #include "base/watch.h"
 #include "program.h"
 #include "version.h"

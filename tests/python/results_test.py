@@ -48,6 +48,18 @@ class Results(unittest.TestCase):
         self.assertEqual(softland.open(folder).metrics.impact_velocity, softland.load(GOLD).simulate().impact_velocity)
         json.loads((folder / "result.json").read_text())
 
+    def test_a_search_leaves_the_files_of_the_program(self):
+        found = softland.load(GOLD).optimize(robust="yield", waveform="catch", budget=400, samples=8, jobs=2)
+        folder = found.save(self.folder / "mine")
+        words = ["--robust", "yield", "--waveform", "catch", "--budget", 400, "--samples", 8, "--jobs", 2]
+        subprocess.run([PROGRAM, "optimize", GOLD, *map(str, words), "--out", self.folder / "theirs"], capture_output=True)
+        theirs = {path.name for path in (self.folder / "theirs").iterdir()}
+        kept = {name for name in theirs if name.startswith("evaluations.") or name.endswith(".lock")}
+        self.assertEqual(theirs - kept, {path.name for path in folder.iterdir()})
+        self.assertIn("robustness.html", theirs)
+        for name in ("best.toml", "best.csv", "gap.svg", "trajectory.csv"):
+            self.assertEqual((folder / name).read_bytes(), (self.folder / "theirs" / name).read_bytes(), name)
+
     def test_a_store(self):
         store = self.folder / "map.sqlite"
         self.run_program("explore", GOLD, "--vary", "gap.contact=1.8 um:2.2 um:3", "--vary", "structure.thickness=1.9 um:2.1 um:2", "--out", store)

@@ -7,7 +7,7 @@
 
 #include "base/printable.h"
 
-namespace softland::apps {
+namespace softland {
 
 /// Quoted where a shell would not leave it as it is. Bytes that printing would change, control characters, such as change the
 /// direction of text, and what is no UTF-8, as bash, ksh and zsh read them, $'\012', which stays on one line.
@@ -29,4 +29,4 @@ namespace softland::apps {
   return quoted + "'";
 }
 
-}  // namespace softland::apps
+}  // namespace softland

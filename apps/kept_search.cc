@@ -1,0 +1,175 @@
+#include "apps/kept_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include "apps/scenes.h"
+#include "apps/values.h"
+#include "base/read_file.h"
+#include "base/require.h"
+#include "base/shortened.h"
+#include "studies/prepared.h"
+
+namespace softland::apps {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kind = "search";
+constexpr const char* raced_families_key = "raced_waveform";  // as it was given
+
+// The scene that a search begins with, as its plan keeps it.
+struct StartingScene {
+  std::string name;  // as it was given
+  SceneFile scene;   // canonical
+};
+
+// The words of a plan. One that says nothing of devices is of the nominal one.
+SearchRequest request_in(const json& plan) {
+  SearchRequest request{.robust = std::string(nominal_alone)};
+  const auto take = [&](std::string_view name, auto& word) {
+    const auto found = plan.find(std::string(name));
+    if (found != plan.end() && found->is_string() && *found != "") word = found->template get<std::string>();
+  };
+  visit_words(take, request);
+  if (plan.contains("constrain")) plan.at("constrain").get_to(request.constrain);
+  return request;
+}
+
+// The scenes that --start names, or those of the plan that is gone on with.
+std::vector<StartingScene> starting_scenes(const OptimizeRequest& request, const json& known) {
+  std::vector<StartingScene> all;
+  for (const std::string& name : request.starts) {
+    require(!name.empty(), "--start: must not be empty");
+    all.push_back({.name = name, .scene = canonical(scene_of_result(name), name)});
+  }
+  if (!all.empty() || !known.is_object() || !known.contains("start")) return all;
+  for (const json& one : known.at("start")) {
+    const std::string name = one.at("name").get<std::string>();
+    all.push_back({.name = name, .scene = SceneFile::parse(one.at("scene_toml").get<std::string>(), name)});
+  }
+  return all;
+}
+
+// The scene as it was given, with what its name and its lines are in messages, or as the plan has it that is gone on with.
+json given_scene(const Common& c, const json& known) {
+  json given;
+  if (c.scene.empty()) {
+    given = known.at("given");
+  } else {
+    // Read before the braces: what throws within them leaves GCC 12 destroying elements that were never made.
+    const std::string text = read_file(c.scene);
+    given = {{"file", c.scene},
+             {"folder", std::filesystem::absolute(c.scene).parent_path().string()},
+             {"text", text},
+             {"set", json::array()}};
+  }
+  for (const std::string& assignment : c.set) given.at("set").push_back(assignment);
+  return given;
+}
+
+SceneFile scene_of(const json& given) {
+  SceneFile scene = SceneFile::parse(given.at("text").get<std::string>(), given.at("file").get<std::string>(),
+                                     given.at("folder").get<std::string>());
+  for (const json& assignment : given.at("set")) scene.set(assignment.get<std::string>());
+  return scene;
+}
+
+// The words are those of the request, with the numbers that were not given.
+json plan_of(SearchRequest request, const PlannedSearch& search, const std::vector<StartingScene>& starts, const json& given) {
+  request.seed = std::to_string(search.options.seed);
+  request.seeds = std::to_string(search.seeds);
+  if (search.devices() > 0) request.samples = std::to_string(search.devices());
+  json plan{{"kind", kind}, {"given", given}, {"scene_toml", canonical(search.scene, "scene").text()}, {"start", json::array()}};
+  for (const StartingScene& start : starts) plan["start"].push_back({{"name", start.name}, {"scene_toml", start.scene.text()}});
+  const auto put = [&](std::string_view name, const auto& word) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(word)>, std::string>) {
+      plan[std::string(name)] = word;
+    } else {
+      plan[std::string(name)] = word.value_or("");
+    }
+  };
+  visit_words(put, request);
+  if (!request.constrain.empty()) plan["constrain"] = request.constrain;
+  if (search.for_devices) plan[raced_families_key] = search.for_devices->families;
+  if (search.devices() > 0) return plan;
+  for (const char* of_devices : {"robust", "calibrate", "samples"}) plan.erase(of_devices);
+  return plan;
+}
+
+// The first key that two scenes do not share, with what each says.
+std::string scene_difference(const std::string& there, const std::string& asked) {
+  const auto keys = [](const std::string& text) { return SceneFile::parse(text, "scene").json().flatten(); };
+  const json before = keys(there), now = keys(asked);
+  const auto value = [](const json& scene, const std::string& key) {
+    return scene.contains(key) ? scene.at(key).dump() : std::string("none");
+  };
+  for (const json& scene : {before, now}) {
+    for (const auto& [key, ignored] : scene.items()) {
+      if (value(before, key) == value(now, key)) continue;
+      std::string path = key.substr(1);
+      std::replace(path.begin(), path.end(), '/', '.');
+      return fmt::format("its scene has {} = {}, not {}", path, shortened(value(before, key)), shortened(value(now, key)));
+    }
+  }
+  return "its scene is another";
+}
+
+std::string start_names(const json& plan) {
+  std::string names;
+  for (const json& one : plan.at("start")) names += (names.empty() ? "" : ", ") + one.at("name").get<std::string>();
+  return names.empty() ? "none" : names;
+}
+
+}  // namespace
+
+KeptSearch kept_search(const Common& c, const OptimizeRequest& given, const json& known) {
+  const json as_given = given_scene(c, known);
+  SceneFile scene = c.scene.empty() ? scene_of(as_given) : load_scene(c);
+  SearchRequest request = given;
+  if (known.is_object()) request = or_else(std::move(request), request_in(known));
+  request = completed(std::move(request), scene);
+  const std::string families = given.waveform.empty() && known.is_object() ? known.value(raced_families_key, "") : given.waveform;
+  KeptSearch search{planned(request, std::move(scene), families), {}};
+  search.options.stop = c.stop;
+  search.options.jobs = job_count(given.jobs);
+  const std::vector<StartingScene> starts = starting_scenes(given, known);
+  search.plan = plan_of(request, search, starts, as_given);
+  for (const StartingScene& start : starts) {
+    Drives drives = prepare(start.scene, false, {.stop = c.stop}).drives;
+    search.options.starts.push_back(
+        {.name = "--start " + start.name, .waveforms = std::move(drives.waveforms), .before = std::move(drives.before)});
+  }
+  return search;
+}
+
+std::string difference(const json& there, const json& asked) {
+  if (there.value("kind", "") != kind) return "it holds no search";
+  if (there.at("scene_toml") != asked.at("scene_toml"))
+    return scene_difference(there.at("scene_toml").get<std::string>(), asked.at("scene_toml").get<std::string>());
+  for (const char* key : {"target", "actuator", "waveform", "optimizer", "robust", "constrain", "samples", "seed"}) {
+    const json before = there.value(key, json()), now = asked.value(key, json());
+    const auto words = [](const json& value) {
+      return value.is_null() ? std::string("none") : value.is_string() ? value.get<std::string>() : value.dump();
+    };
+    if (before != now) return fmt::format("it is for --{} {}, not {}", key, words(before), words(now));
+  }
+  if (there.at("start") != asked.at("start"))
+    return fmt::format("it began with --start {}, not {}", start_names(there), start_names(asked));
+  const auto seeds = [](const json& plan) { return std::stoull(plan.at("seeds").get<std::string>()); };
+  return seeds(asked) < seeds(there) ? fmt::format("it has {} seeds, not {}", seeds(there), seeds(asked)) : std::string();
+}
+
+json plan_of_seed(const json& plan, std::uint64_t seed) {
+  json one = plan;
+  one["seed"] = std::to_string(seed);
+  for (const char* key : {"seeds", "given"}) one.erase(key);  // neither decides what is found
+  return one;
+}
+
+}  // namespace softland::apps

@@ -1,0 +1,69 @@
+#include "reports/report_files.h"
+
+#include <utility>
+
+#include "reports/files.h"
+#include "reports/html.h"
+#include "reports/result_json.h"
+#include "reports/svg.h"
+#include "studies/sent_signals.h"
+#include "waveforms/export.h"
+
+namespace softland {
+namespace {
+
+const ForDevicesResult& raced(const SearchReport& report) { return std::get<ForDevicesResult>(report.found.result); }
+
+// Of a part of the report.
+template <class Part>
+void add(std::vector<ReportFile<SearchReport>>& files, const Part& part, const Part& (*part_of)(const SearchReport&)) {
+  for (ReportFile<Part>& file : files_of(part)) {
+    files.push_back({std::move(file.name),
+                     [text = std::move(file.text), part_of](const SearchReport& report) { return text(part_of(report)); }});
+  }
+}
+
+PreparedScene calibrated(const SearchReport& report) {
+  return read_back(*raced(report).calibrated, "calibrated.toml", raced(report).drawing.scene);
+}
+
+std::string scene_text(const PreparedScene& scene) { return scene.scene.file.text(); }
+
+}  // namespace
+
+std::vector<ReportFile<Result>> files_of(const Result& result) {
+  std::vector<ReportFile<Result>> files{{"report.html", html_report},
+                                        {"gap.svg", svg_gap_chart},
+                                        {"result.json", [](const Result& r) { return json_text(result_json(r)); }}};
+  if (result.best.figures) files.push_back({"trajectory.csv", [](const Result& r) { return trajectory_csv(r.best.curve); }});
+  return files;
+}
+
+std::vector<ReportFile<RobustnessReport>> files_of(const RobustnessReport&) {
+  return {{robustness_files[0], robustness_html},
+          {robustness_files[1], [](const RobustnessReport& r) { return json_text(robustness_json(r), 2); }},
+          {robustness_files[2], robustness_csv}};
+}
+
+std::vector<ReportFile<SearchReport>> files_of(const SearchReport& report) {
+  std::vector<ReportFile<SearchReport>> files;
+  add<Result>(files, report.result, [](const SearchReport& r) -> const Result& { return r.result; });
+  if (report.found.best().best_scene) {
+    files.push_back({"best.toml", [](const SearchReport& r) { return scene_text(*r.found.best().best_scene); }});
+    files.push_back({"best.csv", [](const SearchReport& r) { return told_csv(*r.found.best().best_scene); }});
+  }
+  const auto* devices = std::get_if<ForDevicesResult>(&report.found.result);
+  if (devices != nullptr && devices->drawing.best_scene) {
+    files.push_back({for_devices_files[0], [](const SearchReport& r) { return scene_text(*raced(r).drawing.best_scene); }});
+    files.push_back({for_devices_files[1], [](const SearchReport& r) { return told_csv(*raced(r).drawing.best_scene); }});
+  }
+  if (devices != nullptr && devices->calibrated) {
+    files.push_back({for_devices_files[2], [](const SearchReport& r) { return scene_text(calibrated(r)); }});
+    files.push_back({for_devices_files[3], [](const SearchReport& r) { return told_csv(calibrated(r)); }});
+  }
+  if (report.devices)
+    add<RobustnessReport>(files, *report.devices, [](const SearchReport& r) -> const RobustnessReport& { return *r.devices; });
+  return files;
+}
+
+}  // namespace softland

@@ -1,0 +1,59 @@
+#include "reports/search_report.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "base/shell_word.h"
+#include "config/scene.h"
+
+namespace softland {
+namespace {
+
+// How a device that was measured gets its waveform; empty where there is none for it.
+std::string next_command(const ForDevicesResult& found, const std::filesystem::path& folder) {
+  if (!found.calibrated) return {};
+  const bool by_time = found.calibrated->written("calibration.time").has_value();
+  return fmt::format("softland export {} --measured \"{}\"", shell_word((folder / "calibrated.toml").string()),
+                     by_time ? fmt::format("{}={:.4g} us", measured_time, 1e6 * found.closing_time)
+                             : fmt::format("{}={:.4g} V", measured_pull_in, found.pull_in));
+}
+
+RobustnessOptions options_of(const PlannedSearch& search, std::uint64_t devices) {
+  return {.samples = devices, .seed = search.options.seed, .jobs = search.options.jobs};
+}
+
+}  // namespace
+
+void add_devices(SearchReport& report, const PlannedSearch& search, const std::string& command, const Watch& watch) {
+  if (const auto* raced = std::get_if<ForDevicesResult>(&report.found.result); raced != nullptr && !raced->rows.empty()) {
+    report.devices.emplace(RobustnessReport{.nominal = raced->varied,
+                                            .found = raced->verdict,
+                                            .options = options_of(search, search.for_devices->verdict),
+                                            .command = command,
+                                            .windows = raced->windows});
+  }
+  const auto* robust = std::get_if<RobustResult>(&report.found.result);
+  if (robust == nullptr || !robust->verdict) return;
+  report.devices.emplace(RobustnessReport{.nominal = *robust->found.best_scene,
+                                          .found = *robust->verdict,
+                                          .options = options_of(search, search.robust->verdict),
+                                          .command = command});
+  add_details(*report.devices, false, watch);
+  if (report.devices->interrupted) report.found.best().search.termination = Termination::interrupted;
+}
+
+void add_result(SearchReport& report, const PlannedSearch& search, const std::filesystem::path& folder,
+                const Provenance& provenance) {
+  const auto& found = report.found.result;
+  if (const auto* nominal = std::get_if<OptimizeResult>(&found)) {
+    report.result = result_of(*nominal, search.options, provenance);
+  } else if (const auto* robust = std::get_if<RobustResult>(&found)) {
+    report.result = result_of(*robust, search.options, *search.robust, provenance);
+  } else {
+    const auto& raced = std::get<ForDevicesResult>(found);
+    report.result = result_of(raced, search.options, next_command(raced, folder), provenance);
+  }
+}
+
+}  // namespace softland
