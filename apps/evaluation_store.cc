@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "studies/exploration.h"
+#include "studies/exploration/exploration.h"
 
 namespace softland::apps {
 namespace {

@@ -6,11 +6,11 @@
 #include <string_view>
 
 #include "apps/scenes.h"
-#include "apps/stores.h"
 #include "apps/values.h"
 #include "base/printable.h"
 #include "base/require.h"
 #include "base/shortened.h"
+#include "studies/exploration/front_search.h"
 
 namespace softland::apps {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 // The plan in the words of the options.
 PlanRequest plan_of_options(const Common& c, const ExploreRequest& r) {
   PlanRequest plan{.scene = load_scene(c), .vary = r.vary, .sample = r.sample, .pareto = r.pareto};
-  if (!r.pareto.empty() && r.sample.empty()) plan.sample = "nsga2:2000";
+  if (!r.pareto.empty() && r.sample.empty()) plan.sample = usual_front_sample;
   const std::map<std::string, std::string> given = r.of_plan();
   plan.place = [given, vary = r.vary](std::string_view key, std::size_t number) {
     const auto found = given.find(std::string(key));
@@ -82,21 +82,6 @@ Shard shard_of(const ExploreRequest& r, const std::string& store) {
   } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("--shard: {}", error.what()));
   }
-}
-
-StoredPlan stored_plan(const Exploration& exploration, const Shard& shard) {
-  const Plan& plan = exploration.plan();
-  StoredPlan stored{.text = plan.text(),
-                    .points = static_cast<std::int64_t>(plan.points()),
-                    .columns = {},
-                    .seed = plan.seed(),
-                    .shard = shard};
-  for (const PlanVariable& v : plan.variables())
-    stored.columns.push_back(
-        {.key = column_key(v.name, v.unit()), .name = v.name, .unit = v.unit(), .kind = ColumnKind::variable});
-  for (const PointFigure& f : exploration.figures())
-    stored.columns.push_back({.key = column_key(f.quantity, f.unit), .name = f.name, .unit = f.unit, .kind = ColumnKind::figure});
-  return stored;
 }
 
 }  // namespace softland::apps

@@ -9,7 +9,7 @@
 #include "apps/options.h"
 #include "config/plan.h"
 #include "store/study_store.h"
-#include "studies/exploration.h"
+#include "studies/exploration/stored_exploration.h"
 
 namespace softland::apps {
 
@@ -30,8 +30,5 @@ struct ExploreRequest {
 
 /// What --shard says, else what the store that is gone on with holds; `store` may be empty.
 [[nodiscard]] Shard shard_of(const ExploreRequest& request, const std::string& store);
-
-/// What the store of an exploration holds of its plan.
-[[nodiscard]] StoredPlan stored_plan(const Exploration& exploration, const Shard& shard);
 
 }  // namespace softland::apps

@@ -11,6 +11,7 @@
 #include "apps/stores.h"
 #include "apps/streams.h"
 #include "base/require.h"
+#include "reports/origin.h"
 #include "reports/report_files.h"
 #include "studies/search_space.h"
 
@@ -109,8 +110,8 @@ SearchPlaces::SearchPlaces(const Common& c, const KeptSearch& search, const std:
                            const std::vector<std::string>& variables)
     : kept_(kept_stores(c, known)),
       folder_(claimed(c, search, known)),
-      evaluations_(store(evaluations_file), search.plan, most_evaluations(search), search.options.seed, variables, origin_of(c)) {
-}
+      evaluations_(store(evaluations_file), search.plan, most_evaluations(search), search.options.seed, variables,
+                   stored_origin(c.command)) {}
 
 fs::path SearchPlaces::store(const std::string& name) { return kept_ ? *kept_ / name : folder_.place(name); }
 

@@ -11,8 +11,9 @@
 #include "base/executor.h"
 #include "base/watch.h"
 #include "objectives/figures.h"
+#include "reports/origin.h"
 #include "reports/seeds_report.h"
-#include "studies/exploration.h"
+#include "studies/exploration/exploration.h"
 
 namespace softland::apps {
 namespace {
@@ -74,7 +75,7 @@ SeedStudy::SeedStudy(const Common& c, const KeptSearch& search, SearchPlaces& pl
       places_(places),
       variables_(std::move(variables)),
       file_(places.store(seeds_file)),
-      store_(file_, seed_plan(search, variables_), origin_of(c), StudyStore::Opening::resume),
+      store_(file_, seed_plan(search, variables_), stored_origin(c.command), StudyStore::Opening::resume),
       log_(places.folder(), variables_),
       bar_(c.quiet),
       evaluations_(search.seeds, 0),

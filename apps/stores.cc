@@ -7,34 +7,20 @@
 
 #include "apps/streams.h"
 #include "base/require.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/quantity.h"
 
 namespace softland::apps {
 
-StoredOrigin origin_of(const Common& common) {
-  const MadeWith& m = made_with();
-  return {.program = m.program,
-          .processor = fmt::format("{}, {}, {}, {}", m.processor, m.instruction_set, m.vectors, m.c_library),
-          .command = common.command};
-}
-
 void tell_of_other_programs(const std::string& store) {
   if (!is_store(store)) return;
   const std::vector<StoredSession> sessions = StudyReader(store).sessions();
-  const StoredOrigin ours = origin_of({});
+  const StoredOrigin ours = stored_origin({});
   const auto is_other = [&](const StoredSession& s) { return s.program != ours.program || s.processor != ours.processor; };
   const auto other = std::find_if(sessions.begin(), sessions.end(), is_other);
   if (other == sessions.end()) return;
   say(fmt::format("{}: some of its rows come from {} on {}: their last digits may differ from those of {}", store, other->program,
                   other->host, ours.program));
-}
-
-PlanRequest exploration_in(const StudyReader& store) {
-  const std::string& text = store.plan().text;
-  require(!text.starts_with('{'),
-          fmt::format("{}: holds a search and no exploration; softland table shows its rows", store.path().string()));
-  return read_plan(SceneFile::parse(text, store.path().string() + " (plan)"));
 }
 
 std::string whole(std::int64_t count) { return internal::whole(static_cast<double>(count)); }

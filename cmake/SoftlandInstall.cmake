@@ -3,7 +3,7 @@
 # place.
 include(CMakePackageConfigHelpers)
 
-set(libraries base sampling store integrators waveforms exchange model objectives config optimizers studies tuning fitting reports)
+set(libraries base sampling store integrators waveforms exchange model objectives config optimizers studies exploration tuning fitting reports)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/softland)
 
 # The program is softland::program outside; softland::softland is all that softland/softland.h needs.

@@ -33,7 +33,6 @@ using internal::section;
 using internal::TableRow;
 using nlohmann::json;
 
-constexpr std::string_view largest_mark = "max:";
 constexpr std::size_t most_front_rows = 40;  // in words
 
 /// What is minimised: an aim that is to be large changes its sign.
@@ -201,39 +200,7 @@ json point_json(const ExplorationReport& report, std::size_t k) {
 
 }  // namespace
 
-bool goes_by(const ExploredColumn& column, const std::string& name) {
-  const std::string& key = column.key;
-  const bool without_unit =
-      !column.unit.empty() && key.starts_with(name + "_") && key.size() - name.size() <= column.unit.size() + 1;
-  return key == name || column.name == name || without_unit;
-}
-
-std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& columns, const std::string& list,
-                                       std::string_view option) {
-  std::vector<ExploredAim> aims;
-  for (std::string name : split(list, ',')) {
-    ExploredAim aim{.is_largest = name.starts_with(largest_mark)};
-    if (aim.is_largest) name.erase(0, largest_mark.size());
-    const auto found =
-        std::find_if(columns.begin(), columns.end(), [&](const ExploredColumn& c) { return !c.is_variable && goes_by(c, name); });
-    std::vector<std::string> there;
-    for (const ExploredColumn& c : columns) {
-      if (!c.is_variable) there.push_back(c.key);
-    }
-    require(!name.empty() && found != columns.end(), fmt::format("{} {}: \"{}\" is not among the figures: {}", option, list,
-                                                                 printable_line(name), fmt::join(there, ", ")));
-    aim.column = static_cast<std::size_t>(found - columns.begin());
-    require(std::none_of(aims.begin(), aims.end(), [&](const ExploredAim& other) { return other.column == aim.column; }),
-            fmt::format("{} {}: {} stands twice", option, list, name));
-    aims.push_back(aim);
-  }
-  require(aims.size() >= 2, fmt::format("{} {}: a front needs at least two figures", option, list));
-  return aims;
-}
-
 bool has_figures(std::string_view status) { return status == "done" || status == "not_settled"; }
-
-bool may_lead(std::string_view status) { return status == "done"; }
 
 ExploredFront explored_front(const ExplorationReport& report) {
   ExploredFront front;

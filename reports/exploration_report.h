@@ -11,28 +11,15 @@
 #include <vector>
 
 #include "reports/result.h"
+#include "studies/exploration/aims.h"
 
 namespace softland {
-
-/// Something that varies, or a figure.
-struct ExploredColumn {
-  std::string key;   ///< what options and files call it: "impact_velocity_m_s"
-  std::string name;  ///< for people: "Impact speed", or the key of the scene
-  std::string unit;  ///< of SI; empty: a plain number
-  bool is_variable = false;
-};
 
 struct ExploredPoint {
   std::int64_t number = 0;
   std::string status;  ///< how it ended: "done"
   std::string reason;
   std::vector<double> values;  ///< one per column [SI]; NaN: not known
-};
-
-/// A figure that is to be small, or large.
-struct ExploredAim {
-  std::size_t column = 0;
-  bool is_largest = false;
 };
 
 struct ExplorationReport {
@@ -49,21 +36,9 @@ struct ExplorationReport {
   std::string made_with;  ///< program and processor
 };
 
-/// Whether this is the name of a column: its key, its key without the unit, or its name for people.
-[[nodiscard]] bool goes_by(const ExploredColumn& column, const std::string& name);
-
-/// The aims that a list names: "impact_velocity,max:bounce_free". Throws InvalidInput with `option` for a name that is no figure
-/// or stands twice, and for fewer than two.
-[[nodiscard]] std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& columns, const std::string& list,
-                                                     std::string_view option);
-
 /// Whether the figures of a point that ended so are what they are: "done", or "not_settled", where the window ended before the
 /// last rebound.
 [[nodiscard]] bool has_figures(std::string_view status);
-
-/// Whether a point that ended so may stand on a front: what bounces on when the window ends is no closing that others fall short
-/// of.
-[[nodiscard]] bool may_lead(std::string_view status);
 
 /// The front of the aims, of all points that may lead and have the figures of the aims.
 struct ExploredFront {

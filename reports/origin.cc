@@ -1,5 +1,7 @@
 #include "reports/origin.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "reports/made_with.h"
@@ -17,6 +19,13 @@ json with_origin(json record, const std::string& command) {
 json with_origin(json record, const PreparedScene& scene, const std::string& command) {
   record["scene"] = scene.resolved().json();
   return with_origin(std::move(record), command);
+}
+
+StoredOrigin stored_origin(const std::string& command) {
+  const MadeWith& m = made_with();
+  return {.program = m.program,
+          .processor = fmt::format("{}, {}, {}, {}", m.processor, m.instruction_set, m.vectors, m.c_library),
+          .command = command};
 }
 
 Result internal::origin(const PreparedScene& scene, const std::string& command) {

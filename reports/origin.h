@@ -5,6 +5,7 @@
 #include <string>
 
 #include "reports/result.h"
+#include "store/study_store.h"
 #include "studies/prepared.h"
 
 namespace softland {
@@ -13,6 +14,9 @@ namespace softland {
 [[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const std::string& command);
 /// With the scene, resolved, besides.
 [[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const PreparedScene& scene, const std::string& command);
+
+/// Who writes into a store: this program on this machine, for this command.
+[[nodiscard]] StoredOrigin stored_origin(const std::string& command);
 
 namespace internal {
 

@@ -17,7 +17,7 @@
 #include "model/constants.h"
 #include "studies/choices.h"
 #include "studies/derivatives.h"
-#include "studies/exploration.h"
+#include "studies/row_status.h"
 #include "waveforms/limits.h"
 
 namespace softland {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -9,27 +10,28 @@
 
 #include "apps/exit_status.h"
 #include "apps/explore_request.h"
-#include "apps/explored.h"
-#include "apps/exploring.h"
-#include "apps/front_search.h"
 #include "apps/output.h"
 #include "apps/overview.h"
+#include "apps/pace.h"
 #include "apps/progress.h"
 #include "apps/stores.h"
 #include "apps/streams.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/companion.h"
+#include "base/printable.h"
 #include "base/require.h"
 #include "base/shell_word.h"
 #include "config/plan.h"
 #include "reports/exploration_report.h"
+#include "reports/explored.h"
 #include "reports/files.h"
 #include "reports/made_with.h"
 #include "reports/origin.h"
 #include "reports/quantity.h"
 #include "store/study_store.h"
-#include "studies/exploration.h"
+#include "studies/exploration/exploring.h"
+#include "studies/exploration/front_search.h"
 
 namespace softland::apps {
 namespace {
@@ -75,40 +77,96 @@ int print_point(const Common& c, const ExploreRequest& r) {
   return exit_done;
 }
 
+std::pair<double, std::string> state_of(const Explored& e, double elapsed) {
+  std::string words = fmt::format("{} of {} points", whole(e.there()), whole(e.points));
+  const Pace pace{
+      .remaining = e.remaining(), .computed = e.computed, .reused = e.reused, .earlier = e.earlier, .seconds = e.computing};
+  if (pace.computed > 0 && pace.seconds > 0) {
+    words += fmt::format(", {} per s", internal::plain_number(static_cast<double>(pace.computed) / pace.seconds));
+    if (pace.remaining > 0) words += fmt::format(", {} left", duration_words(pace.seconds_left()));
+  }
+  return {e.points > 0 ? static_cast<double>(e.there()) / static_cast<double>(e.points) : 1,
+          words + fmt::format(", {:.0f} s", elapsed)};
+}
+
+std::pair<double, std::string> state_of(const FrontFound& f, double elapsed) {
+  return {static_cast<double>(f.asked) / static_cast<double>(f.points),
+          fmt::format("{} of {} points, {:.0f} s", f.asked, f.points, elapsed)};
+}
+
+// Shows how far the work is, at last where it has ended.
+template <class State>
+class ShownProgress {
+ public:
+  explicit ShownProgress(bool quiet) : bar_(quiet) {}
+  void operator()(const State& state) {
+    bar_.show([&](double elapsed) { return state_of(state, elapsed); });
+  }
+  void close(const State& state) {
+    bar_.close([&](double elapsed) { return state_of(state, elapsed); });
+  }
+
+ private:
+  Bar bar_;
+};
+
+json explored_json(const Explored& e, const Plan& plan, const ExploringOptions& options) {
+  return {{"status", e.remaining() > 0 ? "interrupted" : "done"},
+          {"plan", content_key(plan.text()).hexadecimal()},
+          {"study", plan.study()},
+          {"seed", plan.seed()},
+          {"points", plan.points()},
+          {"shard", fmt::format("{}/{}", options.shard.index, options.shard.count)},
+          {"rows", {{"known", e.known}, {"computed", e.computed}, {"reused", e.reused}, {"remaining", e.remaining()}}},
+          {"work", {{"wall_s", e.seconds}, {"store_s", e.waited_on_store}, {"jobs", options.jobs}}}};
+}
+
+std::string explored_text(const Explored& e, const std::string& out) {
+  std::string words = fmt::format("{} of {} points in {}: {} computed", whole(e.there()), whole(e.points), printable_line(out),
+                                  whole(e.computed));
+  if (e.known > 0) words += fmt::format(", {} were there", whole(e.known));
+  if (e.reused > 0) words += fmt::format(", {} taken over from an earlier plan", whole(e.reused));
+  return words + fmt::format(", {}\n", internal::quantity(e.seconds, "s"));
+}
+
+StudyStore opened(const std::string& out, const Exploration& exploration, const Shard& shard, const Common& c, bool resume) {
+  return {out, stored_plan(exploration, shard), stored_origin(c.command),
+          resume ? StudyStore::Opening::resume : StudyStore::Opening::fresh};
+}
+
 // A search for a front, whose points are known only as it goes.
-int search_front(const Common& c, const ExploreRequest& r, Exploration& exploration, const std::string& out) {
-  const StoredPlan plan = stored_plan(exploration, {});
-  std::vector<ExploredColumn> columns;
-  for (const StoredColumn& column : plan.columns)
-    columns.push_back({column.key, column.name, column.unit, column.kind == ColumnKind::variable});
-  const std::vector<ExploredAim> aims = explored_aims(columns, exploration.plan().pareto(), "--pareto");
+int search_the_front(const Common& c, const ExploreRequest& r, Exploration& exploration, const std::string& out) {
+  const Plan& plan = exploration.plan();
+  const std::vector<ExploredAim> aims = explored_aims(explored_columns(stored_plan(exploration, {})), plan.pareto());
   KnownRows known = r.resume ? known_rows(out) : KnownRows{};
-  StudyStore store(out, plan, origin_of(c), r.resume ? StudyStore::Opening::resume : StudyStore::Opening::fresh);
-  const auto there = static_cast<std::int64_t>(known.size());
+  StudyStore store = opened(out, exploration, {}, c, r.resume);
   if (!c.quiet) {
     say(fmt::format("{}: searching the front of {} with {} points, {} of them known, study {}; rows go to {}", c.scene,
-                    exploration.plan().pareto(), whole(plan.points), whole(there), exploration.plan().study(), out));
+                    plan.pareto(), whole(static_cast<std::int64_t>(plan.points())),
+                    whole(static_cast<std::int64_t>(known.size())), plan.study(), out));
   }
-  FrontSearch search(exploration, store, std::move(known), aims, job_count(r.jobs), c.quiet, c.stop);
-  search.run();
+  ShownProgress<FrontFound> progress(c.quiet);
+  const FrontFound front = search_front(exploration, store, std::move(known), aims,
+                                        {.jobs = job_count(r.jobs), .stop = c.stop, .on_point = std::ref(progress)});
+  progress.close(front);
   store.close();
 
-  const bool interrupted = search.result().termination == Termination::interrupted;
+  const bool interrupted = front.termination == Termination::interrupted;
   const StudyReader reader(out);
   const ExplorationReport report = explored(reader, {});
   const Overview found = overview_of(reader);
   json j = overview_json(reader.plan(), found);
   j.update(exploration_json(report));
   j.update({{"status", interrupted ? "interrupted" : "done"},
-            {"termination", to_string(search.result().termination)},
-            {"seed", exploration.plan().seed()},
-            {"rows", {{"known", there}, {"computed", search.computed()}}},
+            {"termination", to_string(front.termination)},
+            {"seed", plan.seed()},
+            {"rows", {{"known", front.known}, {"computed", front.computed}}},
             {"store", out},
             {"made_with", made_with_json()}});
   print_json_or(c, j,
                 exploration_text(report) + fmt::format("\n{} computed. The scene of a point: softland explore {} --point K\n"
                                                        "The page: softland report {}\n",
-                                                       whole(search.computed()), shell_word(out), shell_word(out)));
+                                                       whole(front.computed), shell_word(out), shell_word(out)));
   return status_of(found, interrupted);
 }
 
@@ -139,25 +197,29 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   if (exploration.plan().is_search()) {
     require(shard.count == 1,
             "--shard: a search for a front goes from point to point and cannot be divided; --jobs makes it faster");
-    return search_front(c, r, exploration, out);
+    return search_the_front(c, r, exploration, out);
   }
-  StudyStore store(out, stored_plan(exploration, shard), origin_of(c),
-                   r.resume ? StudyStore::Opening::resume : StudyStore::Opening::fresh);
-  Exploring exploring(exploration, store, shard, c, jobs);
+  StudyStore store = opened(out, exploration, shard, c, r.resume);
+  ShownProgress<Explored> progress(c.quiet);
+  const ExploringOptions options{.shard = shard, .jobs = jobs, .stop = c.stop, .on_point = std::ref(progress)};
+  Exploring exploring(exploration, store, options);
   if (!c.quiet) {
-    say(fmt::format("{}: {} of {} points to explore, study {}; rows go to {}", c.scene, whole(exploring.remaining()),
-                    whole(exploring.of_shard()), exploration.plan().study(), out));
+    const Explored before = exploring.explored();
+    say(fmt::format("{}: {} of {} points to explore, study {}; rows go to {}", c.scene, whole(before.remaining()),
+                    whole(before.points), exploration.plan().study(), out));
   }
   exploring.run();
+  const Explored e = exploring.explored();
+  progress.close(e);
   store.close();
 
   const StudyReader reader(out);
   const Overview found = overview_of(reader);
   json j = overview_json(reader.plan(), found);
-  j.update(exploring.data());
+  j.update(explored_json(e, exploration.plan(), options));
   j.update({{"store", out}});
-  print_json_or(c, with_origin(std::move(j), c.command), exploring.text(out) + overview_text(reader.plan(), found));
-  return status_of(found, exploring.remaining() > 0);
+  print_json_or(c, with_origin(std::move(j), c.command), explored_text(e, out) + overview_text(reader.plan(), found));
+  return status_of(found, e.remaining() > 0);
 }
 
 }  // namespace

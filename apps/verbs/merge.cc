@@ -15,6 +15,7 @@
 #include "apps/verbs/verbs.h"
 #include "base/printable.h"
 #include "base/require.h"
+#include "reports/origin.h"
 #include "reports/quantity.h"
 
 namespace softland::apps {
@@ -34,7 +35,8 @@ int merge_verb(const Common& c, const MergeRequest& request) {
     if (!c.quiet && writer_of(part)) say(fmt::format("{}: is still being written: {}", part.string(), *writer_of(part)));
   }
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Merged merged = merge_studies(parts, c.out, origin_of(c), {.complete = request.complete, .watch = work->watch()});
+  const Merged merged =
+      merge_studies(parts, c.out, stored_origin(c.command), {.complete = request.complete, .watch = work->watch()});
   work.reset();
   for (const std::string& note : merged.notes) say(note);
   if (!merged.written) return exit_no_success;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "apps/exit_status.h"
-#include "apps/explored.h"
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/scenes.h"
@@ -16,6 +15,7 @@
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
 #include "reports/exploration_report.h"
+#include "reports/explored.h"
 #include "reports/html.h"
 #include "reports/result_reader.h"
 #include "reports/svg.h"

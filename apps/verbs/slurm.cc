@@ -16,7 +16,7 @@
 #include "base/shell_word.h"
 #include "config/plan.h"
 #include "store/study_store.h"
-#include "studies/exploration.h"
+#include "studies/exploration/stored_exploration.h"
 
 namespace softland::apps {
 namespace {

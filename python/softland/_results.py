@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 _JSON = ("result.json", "robustness.json", "limit.json", "release.json", "accuracy.json", "fit.json", "tune.json")
 _STORE = 0x536F4C61  # the application id of every store
+_LAST = "(SELECT plan FROM session ORDER BY session DESC LIMIT 1)"
 
 
 class Result(Record):
@@ -68,6 +69,7 @@ class Result(Record):
 class Store:
     """A store of `softland explore`, or of a search: rows in one SQLite file, read while others write.
 
+    Of one that was gone on with under other plans these are the plan and the rows of the last.
     Attributes: `plan`, its text; `columns`, {key: (name, unit)}; `points`, how many are planned.
     """
 
@@ -78,7 +80,7 @@ class Store:
                 raise InvalidInput(f"{path}: is no store of softland")
             self.plan: str
             self.points: int
-            self.plan, self.points = database.execute("SELECT text, points FROM study").fetchone()
+            self.plan, self.points = database.execute("SELECT text, points FROM study WHERE plan = " + _LAST).fetchone()
             self.columns: dict[str, tuple[str, str]] = {
                 key: (name, unit) for key, name, unit in database.execute("SELECT key, name, unit FROM columns ORDER BY position")
             }
@@ -89,13 +91,13 @@ class Store:
     def __len__(self) -> int:
         """Rows that are there."""
         with self._opened() as database:
-            return int(database.execute("SELECT count(*) FROM results").fetchone()[0])
+            return int(database.execute("SELECT count(*) FROM results WHERE plan = " + _LAST).fetchone()[0])
 
     def rows(self) -> npt.NDArray[np.void]:
         """All rows by point, a structured array: point, the columns (SI units; NaN where there is none), status, reason."""
         names = ", ".join('"' + key.replace('"', '""') + '"' for key in self.columns)
         with self._opened() as database:
-            rows = database.execute(f"SELECT point, {names}, status, reason FROM results ORDER BY point").fetchall()
+            rows = database.execute(f"SELECT point, {names}, status, reason FROM results WHERE plan = {_LAST} ORDER BY point").fetchall()
         fields = [("point", "i8"), *((key, "f8") for key in self.columns), ("status", "U40"), ("reason", "O")]
         return np.array([tuple(math.nan if one is None else one for one in row) for row in rows], dtype=fields)
 

@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
 from pathlib import Path
-from typing import Any, Literal, Union
+from typing import TYPE_CHECKING, Any, Literal, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +21,9 @@ from ._progress import Progress, shown
 from ._records import Quantity, read
 from ._units import number, units
 from ._waveform import OwnWaveform, Waveform
+
+if TYPE_CHECKING:
+    from ._results import Store
 
 Array = npt.NDArray[np.float64]
 Value = Union[str, float, int, bool, Sequence[Any], Mapping[str, Any]]
@@ -322,7 +325,9 @@ class Scene(MutableMapping[str, Any]):
         own_waveforms: Sequence[OwnWaveform] = (),
         constrain: Sequence[str] = (),
         start: Sequence[Mapping[str, Waveform]] = (),
-        budget: int | None = None,
+        optimizer: str = "",
+        calibrate: str = "",
+        budget: int | str | None = None,
         samples: int | None = None,
         seed: int = 1,
         jobs: int | None = None,
@@ -338,7 +343,8 @@ class Scene(MutableMapping[str, Any]):
             for the step, is minimised. lands_first: among waveforms that land without a significant rebound. With robust it is called for each device.
         constrain: conditions, "peak_contact_force < 20 uN".
         start: waveforms by drive [V] to begin with.
-        budget: evaluations, or closings of devices; samples: devices.
+        optimizer: a method, where it is not to be "auto"; calibrate: what is measured on every device, "Vdp:1 %,frequency".
+        budget: evaluations, or closings of devices; or time, "90 s". samples: devices.
         callback: (evaluations, best cost, cost of the plain step, cost now) after each evaluation on record; one that returns True ends the search, of
             which the best so far is then the result.
         """
@@ -346,10 +352,47 @@ class Scene(MutableMapping[str, Any]):
             "target": target, "actuator": actuator, "robust": robust, "waveform": waveform,
             "objective": None if objective is None else _softland.PythonObjective(getattr(objective, "__name__", "own"), objective, lands_first),
             "own_waveforms": [one._function for one in own_waveforms], "constrain": list(constrain), "starts": [_natives(one) for one in start],
-            "budget": budget, "samples": samples, "seed": seed, "jobs": _jobs(jobs), "callback": callback, "command": _command(),
+            "optimizer": optimizer, "calibrate": calibrate, "budget": budget, "samples": samples, "seed": seed, "jobs": _jobs(jobs), "callback": callback, "command": _command(),
         }  # fmt: skip
         with shown(progress) as tell:
             return Outcome(_softland.optimize(self._native, {**request, "progress": tell}))
+
+    def explore(
+        self,
+        vary: Mapping[str, str] | Sequence[str],
+        out: str | os.PathLike[str] = "softland-out.sqlite",
+        *,
+        study: Literal["simulate", "pull-in", "robustness", "optimize"] = "simulate",
+        sample: str = "",
+        pareto: Sequence[str] = (),
+        options: Mapping[str, Any] | None = None,
+        resume: bool = False,
+        shard: str = "",
+        seed: int = 1,
+        jobs: int | None = None,
+        progress: bool | Progress | None = None,
+    ) -> Store:
+        """An exploration of the design space, as `softland explore`: a row in the store `out` for every point, which is returned.
+
+        vary: what varies, {"gap.contact": "1.6 um:2.4 um:7"}: LOW:HIGH:N, with :log in equal ratios, or A,B,C; "gap.electrode*gap.contact" by one
+            factor; all combinations.
+        sample: "sobol:256" or "lhs:256" points in the box of LOW:HIGH instead.
+        pareto: figures of which the front is searched: ["initial_contact_time", "max:bounce_free"]; sample "nsga2:N" says with how many points.
+        study: what is asked of every point; options: of it, by their names on the command line: {"certify": True}, {"samples": 200}, {"target": "energy"}.
+        resume: go on with the store: points that it holds are not computed again. shard: "2/8", the second of eight parts.
+        Ctrl-C raises KeyboardInterrupt; the rows that are done are in the store.
+        """
+        from ._results import Store
+
+        words = [f"{key}={values}" for key, values in vary.items()] if isinstance(vary, Mapping) else list(vary)
+        given = {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in (options or {}).items()}
+        request = {
+            "vary": words, "out": os.fspath(out), "study": study, "sample": sample, "pareto": ",".join(pareto), "options": given,
+            "resume": resume, "shard": shard, "seed": seed, "jobs": _jobs(jobs), "command": _command(),
+        }  # fmt: skip
+        with shown(progress) as tell:
+            _softland.explore(self._native, {**request, "progress": tell})
+        return Store(Path(out))
 
     def evaluator(
         self,

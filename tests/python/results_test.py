@@ -73,6 +73,41 @@ class Results(unittest.TestCase):
         self.assertEqual(found.columns["impact_velocity_m_s"][1], "m/s")
         self.assertTrue(np.all(rows["status"] != ""))
 
+    def test_an_exploration_has_the_rows_of_the_program(self):
+        vary = {"gap.contact": "1.8 um:2.2 um:3", "structure.thickness": "1.9 um:2.1 um:2"}
+        mine = softland.load(GOLD).explore(vary, self.folder / "mine.sqlite")
+        self.run_program("explore", GOLD, *(word for key, values in vary.items() for word in ("--vary", f"{key}={values}")), "--out", self.folder / "theirs.sqlite")
+        theirs = softland.open(self.folder / "theirs.sqlite")
+        self.assertEqual(mine.plan, theirs.plan)
+        self.assertEqual(mine.columns, theirs.columns)
+        for name in mine.columns:
+            np.testing.assert_array_equal(mine.rows()[name], theirs.rows()[name])
+        # What is there is not computed again, and a longer plan begins with it.
+        vary["gap.contact"] = "1.8 um:2.2 um:5"
+        self.assertEqual(len(softland.load(GOLD).explore(vary, self.folder / "mine.sqlite", resume=True)), 10)
+
+    def test_a_front_and_what_is_asked_of_its_points(self):
+        front = softland.load(GOLD).explore(
+            {"waveform.main.level": "1.05 Vdp:1.6 Vdp"}, self.folder / "front.sqlite", pareto=["initial_contact_time", "impact_velocity"], sample="nsga2:60"
+        )
+        self.assertEqual(len(front), 60)
+        yields = softland.load(GOLD).explore({"gap.contact": "1.9 um,2 um"}, self.folder / "yield.sqlite", study="robustness", options={"samples": 16})
+        self.assertTrue(np.all(yields.rows()["closing_yield"] <= 1))
+
+    def test_an_exploration_that_cannot_be_is_refused_by_name(self):
+        scene = softland.load(GOLD)
+        for vary, more, words in (
+            ({}, {}, "nothing varies"),
+            ({"gap.breadth": "1 um:2 um:3"}, {}, "gap.breadth"),
+            ({"gap.contact": "1.9 um,2 um"}, {"study": "beauty"}, "study beauty: must be"),
+            ({"gap.contact": "1.9 um,2 um"}, {"options": {"samples": 5}}, "belongs to study robustness"),
+            ({"gap.contact": "1.9 um,2 um"}, {"shard": "1/3"}, "has no more parts"),
+            ({"gap.contact": "1.9 um:2 um"}, {"pareto": ["impact_velocity"]}, "at least two figures"),
+        ):
+            with self.assertRaisesRegex(softland.InvalidInput, words):
+                scene.explore(vary, self.folder / "none.sqlite", **more)
+            self.assertFalse((self.folder / "none.sqlite").exists(), words)
+
     def test_what_is_nothing_of_ours_is_refused(self):
         with self.assertRaises(softland.InvalidInput):
             softland.open(self.folder)

@@ -33,7 +33,7 @@ bool holds(const std::string& page, const std::string& words) { return page.find
 
 std::string aims_refusal(const std::string& list) {
   try {
-    static_cast<void>(explored_aims(sample_grid(3, 3).columns, list, "--pareto"));
+    static_cast<void>(explored_aims(sample_grid(3, 3).columns, list));
   } catch (const InvalidInput& e) {
     return e.what();
   }
@@ -41,7 +41,7 @@ std::string aims_refusal(const std::string& list) {
 }
 
 TEST(ExploredAims, GoByKeyByKeyWithoutUnitAndByName) {
-  const auto aims = explored_aims(sample_grid(3, 3).columns, "impact_velocity,max:initial_contact_time_s,Rebounds", "--pareto");
+  const auto aims = explored_aims(sample_grid(3, 3).columns, "impact_velocity,max:initial_contact_time_s,Rebounds");
   ASSERT_EQ(aims.size(), 3u);
   EXPECT_EQ(aims[0].column, 6u);
   EXPECT_EQ(aims[1].column, 2u);
@@ -52,7 +52,7 @@ TEST(ExploredAims, GoByKeyByKeyWithoutUnitAndByName) {
 
 TEST(ExploredAims, AreRefusedWithTheFiguresThereAre) {
   EXPECT_THAT(aims_refusal("impact_velocity,weight"),
-              HasSubstr("--pareto impact_velocity,weight: \"weight\" is not among the figures: "
+              HasSubstr("pareto impact_velocity,weight: \"weight\" is not among the figures: "
                         "initial_contact_time_s, "));
   EXPECT_THAT(aims_refusal("impact_velocity,structure_length"), HasSubstr("not among the figures")) << "it is a variable";
   EXPECT_THAT(aims_refusal("impact_velocity,"), HasSubstr("not among the figures"));
@@ -64,7 +64,7 @@ TEST(ExploredFront, HoldsOnlyPointsThatSettleAndHaveFigures) {
   ExplorationReport report{.columns = {{"a", "a", "", false}, {"b", "b", "", false}}};
   report.points = {{7, "done", "", {1, 3}},      {8, "no_contact", "", {0, 0}},       {9, "done", "", {3, 1}},
                    {10, "done", "", {1.5, 1.5}}, {11, "not_settled", "", {0.5, 0.5}}, {12, "done", "", {Metrics::unset, 0}}};
-  report.aims = explored_aims(report.columns, "a,b", "--pareto");
+  report.aims = explored_aims(report.columns, "a,b");
   const ExploredFront front = explored_front(report);
   EXPECT_THAT(front.members, ElementsAre(0, 3, 2));
   EXPECT_EQ(front.knee, 3u);
@@ -300,7 +300,7 @@ TEST(ExplorationPage, IsMadeOfAnyFigures) {
                                                                     {-std::numeric_limits<double>::infinity(), 1}}) {
     ExplorationReport report = sample_grid(7, 5);
     for (ExploredPoint& point : report.points) point.values[6] = point.number % 2 == 0 ? low : high;
-    report.aims = explored_aims(report.columns, "impact_velocity,initial_contact_time", "--pareto");
+    report.aims = explored_aims(report.columns, "impact_velocity,initial_contact_time");
     EXPECT_LT(exploration_html(report).size(), most_bytes) << low << " " << high;
     EXPECT_FALSE(exploration_text(report).empty());
     EXPECT_TRUE(holds(exploration_map_svg(report, 0, 1, 6), "</svg>"));

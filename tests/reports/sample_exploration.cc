@@ -84,7 +84,7 @@ ExplorationReport sample_cloud(std::size_t points) {
     }
     report.points.push_back(std::move(point));
   }
-  report.aims = explored_aims(report.columns, "initial_contact_time,impact_velocity,peak_voltage", "--pareto");
+  report.aims = explored_aims(report.columns, "initial_contact_time,impact_velocity,peak_voltage");
   const ExploredFront front = explored_front(report);
   for (const std::size_t k : front.members) {
     const std::vector<double>& v = report.points[k].values;

@@ -12,7 +12,7 @@
 #include "studies/certify.h"
 #include "studies/ensemble.h"
 #include "studies/prepared.h"
-#include "studies/pull_in_memory.h"
+#include "studies/exploration/pull_in_memory.h"
 #include "studies/simulate.h"
 
 namespace softland::bias_test {

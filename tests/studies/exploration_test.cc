@@ -1,5 +1,5 @@
 // Explorations: every row is what the verb of its study gives for the scene of its point, to the bit.
-#include "studies/exploration.h"
+#include "studies/exploration/exploration.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

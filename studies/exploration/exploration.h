@@ -24,7 +24,8 @@
 #include "base/watch.h"
 #include "config/plan.h"
 #include "objectives/figures.h"
-#include "studies/pull_in_memory.h"
+#include "studies/exploration/pull_in_memory.h"
+#include "studies/row_status.h"
 
 namespace softland {
 
@@ -46,13 +47,6 @@ struct PointFigure {
 [[nodiscard]] PointFigure parameter_figure(const std::string& name);
 /// Of a figure of merit, with something before its quantity and after its name.
 [[nodiscard]] PointFigure figure_column(const Figure& figure, const std::string& before = {}, const std::string& words = {});
-
-/// Status of a point whose scene cannot be, or cannot be studied: the reason says why.
-inline constexpr std::string_view infeasible = "infeasible";
-/// Of one where the program itself went wrong.
-inline constexpr std::string_view internal_fault = "internal_error";
-/// Of a search that found nothing better than the plain step.
-inline constexpr std::string_view no_success = "no_success";
 
 struct PointRow {
   std::string status;

@@ -1,4 +1,4 @@
-#include "studies/pull_in_memory.h"
+#include "studies/exploration/pull_in_memory.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -6,7 +6,7 @@
 #include "reports/exploration_report.h"
 #include "store/study_store.h"
 
-namespace softland::apps {
+namespace softland {
 
 /// All rows of the store, with the waveforms that it holds. `pareto` names the figures of the front, as --pareto does; empty:
 /// those that the plan itself minimises, if it does. Throws InvalidInput as explored_aims() and StudyReader do.
@@ -16,4 +16,4 @@ namespace softland::apps {
 /// be prepared stays without.
 void add_front_waveforms(ExplorationReport& report, const StudyReader& store, const Watch& watch);
 
-}  // namespace softland::apps
+}  // namespace softland

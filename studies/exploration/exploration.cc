@@ -1,4 +1,4 @@
-#include "studies/exploration.h"
+#include "studies/exploration/exploration.h"
 
 #include <fmt/format.h>
 

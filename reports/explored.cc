@@ -1,15 +1,14 @@
-#include "apps/explored.h"
+#include "reports/explored.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/stores.h"
 #include "config/plan.h"
-#include "studies/exploration.h"
+#include "studies/exploration/stored_exploration.h"
 
-namespace softland::apps {
+namespace softland {
 namespace {
 
 using nlohmann::json;
@@ -24,8 +23,7 @@ ExplorationReport explored(const StudyReader& store, const std::string& pareto) 
   const StoredPlan& stored = store.plan();
   const Plan plan = plan_of(store);
   ExplorationReport report{.title = plan.base().json().value("title", ""), .study = plan.study()};
-  for (const StoredColumn& c : stored.columns)
-    report.columns.push_back({.key = c.key, .name = c.name, .unit = c.unit, .is_variable = c.kind == ColumnKind::variable});
+  report.columns = explored_columns(stored);
   report.planned = stored.shard.size(stored.points);
   store.read([&](const StoredRow& row) {
     report.points.push_back({.number = row.point, .status = row.status, .reason = row.reason, .values = row.values});
@@ -38,8 +36,7 @@ ExplorationReport explored(const StudyReader& store, const std::string& pareto) 
       report.waveforms.erase(row.point);  // of another version
     }
   });
-  if (!pareto.empty() || plan.is_search())
-    report.aims = explored_aims(report.columns, pareto.empty() ? plan.pareto() : pareto, "--pareto");
+  if (!pareto.empty() || plan.is_search()) report.aims = explored_aims(report.columns, pareto.empty() ? plan.pareto() : pareto);
   report.plan = stored.text;
   if (const std::vector<StoredSession> sessions = store.sessions(); !sessions.empty()) {
     report.command = sessions.back().command;
@@ -68,4 +65,4 @@ void add_front_waveforms(ExplorationReport& report, const StudyReader& store, co
   }
 }
 
-}  // namespace softland::apps
+}  // namespace softland

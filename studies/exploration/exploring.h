@@ -1,0 +1,72 @@
+// The points of a part of a plan on their way into its store.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "base/watch.h"
+#include "studies/exploration/stored_exploration.h"
+
+namespace softland {
+
+/// How far it is.
+struct Explored {
+  std::int64_t points = 0;  ///< of the part
+  std::int64_t known = 0;   ///< of these, in the store when it began
+  std::int64_t computed = 0;
+  std::int64_t reused = 0;     ///< taken over from earlier plans
+  std::int64_t earlier = 0;    ///< rows of earlier plans: as many can be taken over at the most
+  double seconds = 0;          ///< since it began
+  double computing = 0;        ///< since the first point was begun that had to be computed [s]
+  double waited_on_store = 0;  ///< by all threads [s]
+
+  [[nodiscard]] std::int64_t there() const { return known + computed + reused; }
+  [[nodiscard]] std::int64_t remaining() const { return points - there(); }
+};
+
+struct ExploringOptions {
+  Shard shard = {};
+  int jobs = 1;
+  const std::atomic<bool>* stop = nullptr;                  ///< ends it early, with what there is
+  std::function<void(const Explored&)> on_point = nullptr;  ///< called under a lock after every point
+};
+
+class Exploring {
+ public:
+  /// The store must be of stored_plan(exploration, options.shard).
+  Exploring(Exploration& exploration, StudyStore& store, const ExploringOptions& options);
+
+  /// Computes the points that the store lacks; the same rows on any number of threads. Throws as StudyStore::add().
+  void run();
+  [[nodiscard]] Explored explored() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  [[nodiscard]] std::int64_t point(std::int64_t i) const { return i * options_.shard.count + options_.shard.index - 1; }
+  template <class Work>
+  auto timed(Work&& work);
+  [[nodiscard]] Explored so_far() const;
+  void take(std::int64_t k);
+  void note_first();
+
+  Exploration& exploration_;
+  StudyStore& store_;
+  ExploringOptions options_;
+  std::vector<bool> done_;
+  bool reuses_;
+  int inner_jobs_ = 1;
+  Watch watch_;
+  mutable std::mutex mutex_;  // of what is told, and of the time when computing began
+  Explored told_;
+  std::atomic<double> store_seconds_ = 0;
+  Clock::time_point begin_ = Clock::now();
+  std::optional<Clock::time_point> first_computed_;
+};
+
+}  // namespace softland

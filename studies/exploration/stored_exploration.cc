@@ -1,0 +1,58 @@
+#include "studies/exploration/stored_exploration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/require.h"
+
+namespace softland {
+
+StoredPlan stored_plan(const Exploration& exploration, const Shard& shard) {
+  const Plan& plan = exploration.plan();
+  StoredPlan stored{.text = plan.text(),
+                    .points = static_cast<std::int64_t>(plan.points()),
+                    .columns = {},
+                    .seed = plan.seed(),
+                    .shard = shard};
+  for (const PlanVariable& v : plan.variables())
+    stored.columns.push_back(
+        {.key = column_key(v.name, v.unit()), .name = v.name, .unit = v.unit(), .kind = ColumnKind::variable});
+  for (const PointFigure& f : exploration.figures())
+    stored.columns.push_back({.key = column_key(f.quantity, f.unit), .name = f.name, .unit = f.unit, .kind = ColumnKind::figure});
+  return stored;
+}
+
+PlanRequest exploration_in(const StudyReader& store) {
+  const std::string& text = store.plan().text;
+  require(!text.starts_with('{'), [&] {
+    return fmt::format("{}: holds a search and no exploration; softland table shows its rows", store.path().string());
+  });
+  return read_plan(SceneFile::parse(text, store.path().string() + " (plan)"));
+}
+
+StoredRow stored_row(std::int64_t point, const ContentKey& content, std::vector<double> values, PointRow row) {
+  values.insert(values.end(), row.figures.begin(), row.figures.end());
+  return {.point = point,
+          .content = content,
+          .status = std::move(row.status),
+          .reason = std::move(row.reason),
+          .values = std::move(values),
+          .extra =
+              row.scene.empty() ? std::string() : nlohmann::json{{"scene_toml", row.scene}, {"waveforms", row.waveforms}}.dump()};
+}
+
+KnownRows known_rows(const std::filesystem::path& store) {
+  KnownRows known;
+  if (!is_store(store)) return known;
+  const StudyReader reader(store);
+  const auto variables = std::ranges::count(reader.plan().columns, ColumnKind::variable, &StoredColumn::kind);
+  reader.read(
+      [&](const StoredRow& row) { known.emplace(std::vector<double>(row.values.begin(), row.values.begin() + variables), row); });
+  return known;
+}
+
+}  // namespace softland

@@ -1,0 +1,25 @@
+// An exploration in its store.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "config/plan.h"
+#include "store/study_store.h"
+#include "studies/exploration/exploration.h"
+
+namespace softland {
+
+/// What its store holds of the plan.
+[[nodiscard]] StoredPlan stored_plan(const Exploration& exploration, const Shard& shard);
+/// The plan of the exploration that a store holds. Throws InvalidInput where it holds a search.
+[[nodiscard]] PlanRequest exploration_in(const StudyReader& store);
+/// The row of a point at these values of the variables [SI unit].
+[[nodiscard]] StoredRow stored_row(std::int64_t point, const ContentKey& content, std::vector<double> values, PointRow row);
+
+/// The rows that a store holds, by the values of their variables.
+using KnownRows = std::map<std::vector<double>, StoredRow>;
+[[nodiscard]] KnownRows known_rows(const std::filesystem::path& store);
+
+}  // namespace softland
