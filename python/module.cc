@@ -62,4 +62,5 @@ PYBIND11_MODULE(_softland, m) {
   python::bind_scene(m);
   python::bind_evaluator(m);
   python::bind_search(m);
+  python::bind_tuning(m);
 }

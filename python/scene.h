@@ -48,6 +48,7 @@ void bind_scene(pybind11::module_& module);
 void bind_waveforms(pybind11::module_& module);
 void bind_evaluator(pybind11::module_& module);
 void bind_search(pybind11::module_& module);
+void bind_tuning(pybind11::module_& module);
 
 /// A waveform, wrapped so that it is one Python type whatever its family.
 struct PyWaveform {

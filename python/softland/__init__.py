@@ -17,12 +17,13 @@ from ._outcome import Outcome
 from ._records import Quantity, Record
 from ._results import Result, Store, open
 from ._scene import Modes, Scene, load, shipped
+from ._tuning import PracticeDevice, Shot, Tuning
 from ._units import units
 from ._waveform import OwnWaveform, Waveform
 
 __version__: str = _softland.version
 
 __all__ = [
-    "Closing", "Evaluator", "InvalidInput", "Modes", "Outcome", "OwnWaveform", "Quantity", "Record", "Result", "Scene", "Store", "Waveform",
+    "Closing", "Evaluator", "InvalidInput", "Modes", "Outcome", "OwnWaveform", "PracticeDevice", "Quantity", "Record", "Result", "Scene", "Shot", "Store", "Tuning", "Waveform",
     "load", "open", "shipped", "units",
 ]  # fmt: skip

@@ -19,6 +19,7 @@ from ._files import write_whole
 from ._outcome import Outcome
 from ._progress import Progress, shown
 from ._records import Quantity, read
+from ._tuning import Device, PracticeDevice, Tuning, laboratory, tuning_of
 from ._units import number, units
 from ._waveform import OwnWaveform, Waveform
 
@@ -350,6 +351,84 @@ class Scene(MutableMapping[str, Any]):
         }  # fmt: skip
         with shown(progress) as tell:
             return Outcome(_softland.optimize(self._native, {**request, "progress": tell}))
+
+    def tuning(
+        self,
+        *,
+        actuator: Actuator = "electrostatic",
+        constrain: str = "",
+        errors: Mapping[str, float | str] | None = None,
+        recipes: int | None = None,
+        effort: float | None = None,
+        wafer: Sequence[str | os.PathLike[str]] = (),
+        out: str | os.PathLike[str] | None = None,
+        resume: bool = False,
+        seed: int = 1,
+        jobs: int | None = None,
+        progress: bool | Progress | None = None,
+    ) -> Tuning:
+        """A tuning on one device that is ready for its first shot: the waveform for the drawing is searched, which takes half a minute or so.
+
+        actuator: which drives are shaped. constrain: "initial_contact_time < 33 us", or "< 1.1 step".
+        errors: of the instruments, one standard deviation: edge_error [s], unseen [s], gain_error, shot_error; default: the usual ones (docs/tune.md).
+        recipes: waveforms searched before the first closing, 1 to 5. effort: evaluations of every search, over the usual.
+        wafer: folders of tunings of devices of the same wafer that have ended.
+        out: folder for closings.jsonl, where each closing is before the next is fired, and for the files of the program. resume: goes on with the
+            closings there, none of which is fired again; scene and options as before. Program and Python may go on with each other's.
+        Same answers, same proposals, whatever `jobs` is. Raises InvalidInput.
+        """
+        request = {
+            "actuator": actuator, "constrain": constrain, **laboratory(errors), "recipes": recipes, "effort": effort,
+            "wafer": [os.fspath(one) for one in wafer], "seed": seed, "jobs": _jobs(jobs), "command": _command(),
+        }  # fmt: skip
+        return tuning_of(self._native, request, out, resume, progress)
+
+    def tune(
+        self,
+        device: Device,
+        *,
+        closings: int = 30,
+        callback: Callable[[str], Any] | None = None,
+        progress: bool | Progress | None = None,
+        **options: Any,
+    ) -> Outcome:
+        """Tunes a waveform on one device, as `softland tune`: until five closings in a row are without a bounce, or `closings` are used.
+
+        device: a function that gets a `Shot`, the waveforms to be fired, and returns when the contact was closed: see `Tuning.learn`. `scene.device()` is
+            a simulated one.
+        callback: called with a line about each closing; one that returns True ends the tuning.
+        options: those of `tuning`; `out="folder"` keeps everything there.
+        The result is a `Record` of tune.json. What the device raises comes through; the exception's `tuning` has the closings until then, and goes on
+        with `error.tuning.run(device)`.
+        """
+        tuning = self.tuning(progress=progress, **options)
+        try:
+            return tuning.run(device, closings=closings, callback=callback, progress=progress)
+        except BaseException as error:
+            error.tuning = tuning  # type: ignore[attr-defined]
+            raise
+
+    def device(
+        self,
+        *,
+        seed: int = 1,
+        errors: Mapping[str, float | str] | None = None,
+        drift: float = 0.0,
+        more_modes: int = 0,
+        gas: str = "",
+        stiffness: float = 1.0,
+        set: Mapping[str, str] | None = None,
+    ) -> PracticeDevice:
+        """A simulated device to practise on, as `softland device`: one of the scene's [spread], or of the usual one, chosen by `seed`.
+
+        errors: of its instruments, as in `tuning`. drift: share by which all volts change from one shot to the next.
+        more_modes, gas, stiffness (a factor, of the contact) and set ({"gap.contact": "2.05 um"}): a physics that the scene does not know.
+        """
+        request = {
+            **laboratory(errors), "seed": seed, "drift": drift, "more_modes": more_modes, "gas": gas, "stiffness": stiffness,
+            "set": [f"{key}={value}" for key, value in (set or {}).items()],
+        }  # fmt: skip
+        return PracticeDevice(_softland.PracticeDevice(self._native, request))
 
     def evaluator(
         self,
