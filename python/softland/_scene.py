@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
 from pathlib import Path
 from typing import Any, Literal, Union
@@ -65,6 +66,11 @@ def _holds_quantity(native: _softland.Scene, key: str) -> bool:
 
 def _command() -> str:
     return f"python3 {sys.argv[0]}".strip() if sys.argv and sys.argv[0] not in ("", "-c") else "python3"
+
+
+def _told(value: float | str | None, unit: str) -> str | None:
+    """As an option of the program is told it."""
+    return value if value is None or isinstance(value, str) else f"{float(value)!r} {unit}"
 
 
 def _jobs(jobs: int | None) -> int:
@@ -318,7 +324,7 @@ class Scene(MutableMapping[str, Any]):
         actuator: Actuator = "electrostatic",
         robust: str = "auto",
         waveform: str = "",
-        objective: Callable[[dict[str, float], dict[str, float]], float] | None = None,
+        objective: Callable[[dict[str, Any], dict[str, float]], Any] | None = None,
         lands_first: bool = True,
         own_waveforms: Sequence[OwnWaveform] = (),
         constrain: Sequence[str] = (),
@@ -336,7 +342,8 @@ class Scene(MutableMapping[str, Any]):
         robust: "auto", for the drawing and for devices; "none", for the drawing alone; a measure such as "cvar:0.9", for devices by it alone.
         waveform: a family, or several "pulse+knots"; names of `own_waveforms` too.
         objective: (closing, step) -> F in the place of a target: both are dicts of figures [SI], of a candidate and of the plain step; F >= 0, about 1
-            for the step, is minimised. lands_first: among waveforms that land without a significant rebound. With robust it is called for each device.
+            for the step, is minimised. lands_first: among waveforms that land without a significant rebound. Over devices it is called once for a
+            candidate: the figures of `closing` are arrays (devices,) of those that close, and it returns an array; of the drawing they are floats.
         constrain: conditions, "peak_contact_force < 20 uN".
         start: waveforms by drive [V] to begin with.
         budget: evaluations, or closings of devices; samples: devices.
@@ -351,6 +358,49 @@ class Scene(MutableMapping[str, Any]):
         }  # fmt: skip
         with shown(progress) as tell:
             return Outcome(_softland.optimize(self._native, {**request, "progress": tell}))
+
+    def export(
+        self,
+        format: str = "csv",
+        *,
+        waveforms: Mapping[str, Waveform] | None = None,
+        drive: str = "",
+        signal: Literal["told", "output"] = "told",
+        sample_rate: float | str | None = None,
+        bits: int | None = None,
+        amplifier: float | None = None,
+        marker: float | str | None = None,
+        measured: Mapping[str, str] | None = None,
+        jobs: int | None = None,
+        progress: bool | Progress | None = False,
+    ) -> str:
+        """The scene's waveforms as the text of a file for others, as `softland export`.
+
+        format: "csv"; of generators "keysight-arb", "siglent-csv", "tektronix-csv", "rigol-csv", "digilent-csv"; "codes", samples as integers; of circuit
+            simulators "spice-pwl", and the switch itself, "spice-model", "spice-bench", "verilog-a".
+        waveforms: in the place of some of the scene's, in volts; own waveforms as tables. drive: of several this one.
+        signal: what the source is told, or its output. sample_rate [Hz], bits: instead of those of [driver].
+        amplifier: volts at the switch per volt of the generator. marker: when the sync output falls [s] (keysight-arb).
+        measured: {"Vdp": "54.2 V", "frequency": "10.2 kHz"} of a device that gets its own waveform.
+        Warns where the switch does not close under the samples as well as under the waveform itself. Raises InvalidInput.
+        """
+        scene = self
+        if waveforms:
+            scene = self.copy()
+            for name, waveform in waveforms.items():
+                own = waveform.family not in _softland.families
+                scene.waveforms[name] = Waveform.table(*waveform.points(self._native.duration())) if own else waveform
+        request = {
+            "format": format, "signal": signal, "drive": drive, "sample_rate": _told(sample_rate, "Hz"), "bits": None if bits is None else str(bits),
+            "amplifier": None if amplifier is None else repr(float(amplifier)), "marker": _told(marker, "s"),
+            "measured": ",".join(f"{key}={value}" for key, value in (measured or {}).items()), "jobs": _jobs(jobs),
+        }  # fmt: skip
+        with shown(progress) as tell:
+            text, said = _softland.export(scene._native, request, tell)
+        for line in said:
+            if not line.startswith("as sampled"):
+                warnings.warn(line.removeprefix("warning: "), stacklevel=2)
+        return text
 
     def tuning(
         self,
