@@ -1,11 +1,7 @@
 #include "apps/laboratory.h"
 
-#include <algorithm>
-
 #include "apps/values.h"
 #include "config/units.h"
-#include "model/constants.h"
-#include "model/switch.h"
 
 namespace softland::apps {
 
@@ -23,11 +19,7 @@ void with_laboratory(Verb& verb, LaboratoryRequest& request) {
 }
 
 LaboratoryErrors laboratory_errors(const LaboratoryRequest& request, const SceneFile& file) {
-  constexpr double of_edge = 1.0 / 200, of_opening = 1.0 / 100;
-  const double period = 2 * pi / Switch(read_scene(file).device).angular_frequencies()[0];
-  LaboratoryErrors known;
-  known.edge_error = std::min(known.edge_error, of_edge * period);
-  known.unseen = std::min(known.unseen, of_opening * period);
+  LaboratoryErrors known = usual_errors(file);
   const auto take = [](double& value, const char* option, const std::optional<std::string>& text, const Dimension& due) {
     if (text) value = quantity_of(option, *text, due);
   };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <thread>
 
+#include "config/told_quantity.h"
+
 namespace softland::apps {
 
 int job_count(const std::optional<std::string>& option) {
@@ -26,18 +28,6 @@ PointSet point_set(const std::string& option) {
   return row->value;
 }
 
-double quantity_of(const char* option, const std::string& text, const Dimension& due) {
-  Quantity given;
-  try {
-    given = parse_quantity(text);
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(fmt::format("{} {}: {}", option, shown(text), error.what()));
-  }
-  require(given.dimension == due && given.value >= 0, [&] {
-    return fmt::format("{} {}: must be {}, at least 0, such as \"{}\"", option, shown(text), describe(due),
-                       due == dimension::none ? "0.5 %" : example(due));
-  });
-  return given.value;
-}
+double quantity_of(const char* option, const std::string& text, const Dimension& due) { return told_quantity(option, text, due); }
 
 }  // namespace softland::apps

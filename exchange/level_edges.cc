@@ -57,14 +57,18 @@ void shift_times(Trace& trace, const TimeShift& shift) {
 std::vector<LevelEdge> contact_edges(const std::string& file, const ContactTraceKeys& keys) {
   Trace trace = trace_of(read_recording(file, keys.file), keys.file, "contact");
   shift_times(trace, keys.shift);
-  std::vector<LevelEdge> edges = level_edges(trace, keys.contact);
+  return contact_edges(trace, keys.contact, file);
+}
+
+std::vector<LevelEdge> contact_edges(const Trace& trace, const ThresholdKeys& keys, const std::string& name) {
+  std::vector<LevelEdge> edges = level_edges(trace, keys);
   std::size_t before = 0;
   while (before < edges.size() && (edges[before].time < 0 || (before == 0 && edges[0].time <= trace.times.front()))) ++before;
   require(before == 0 || !edges[before - 1].closed, [&] {
     return fmt::format(
         "{}: the contact is closed at t = 0 already; closed = \"below\" takes voltages below the threshold for a closed one, and "
         "shift moves t = 0 to where the drives begin",
-        file);
+        name);
   });
   edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(before));
   return edges;

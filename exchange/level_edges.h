@@ -43,5 +43,7 @@ struct ContactTraceKeys {
 /// The edges from t = 0 on, when the drives begin, of a voltage that the file of an instrument holds. Throws what
 /// read_recording() and trace_of() throw, and InvalidInput for a contact that is closed at t = 0 already.
 [[nodiscard]] std::vector<LevelEdge> contact_edges(const std::string& file, const ContactTraceKeys& keys);
+/// The same of a trace; `name` stands for it in messages.
+[[nodiscard]] std::vector<LevelEdge> contact_edges(const Trace& trace, const ThresholdKeys& keys, const std::string& name);
 
 }  // namespace softland

@@ -2,18 +2,25 @@
 
 #include "base/require.h"
 #include "model/beam.h"
+#include "model/tabulated_modes.h"
 
 namespace softland {
 
 ModeShapes mode_shapes(const Switch& model, int places) {
   require(places >= 2, "mode shapes: there must be at least 2 places");
   const Device& device = model.device();
-  const StructureKind kind = device.structure.kind;
-  if (kind != StructureKind::cantilever && kind != StructureKind::clamped_clamped)
+  const Structure& structure = device.structure;
+  if (structure.kind == StructureKind::plate)
     return {.places = model.point_positions().head(model.points()), .shapes = model.point_shapes().topRows(model.points())};
-  const BeamModes beam(beam_sections(device), model.modes(), beam_support(device.structure, device.surface));
-  ModeShapes all{.places = Eigen::VectorXd::LinSpaced(places, 0, device.structure.length),
+  ModeShapes all{.places = Eigen::VectorXd::LinSpaced(places, 0, structure.length),
                  .shapes = Eigen::MatrixXd(places, model.modes())};
+  if (structure.kind == StructureKind::modes) {
+    for (Eigen::Index i = 0; i < places; ++i) {
+      for (int k = 0; k < model.modes(); ++k) all.shapes(i, k) = structure.table->value(k, all.places[i]);
+    }
+    return all;
+  }
+  const BeamModes beam(beam_sections(device), model.modes(), beam_support(structure, device.surface));
   for (Eigen::Index i = 0; i < places; ++i) all.shapes.row(i) = beam.value(all.places[i]).transpose();
   return all;
 }

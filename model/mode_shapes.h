@@ -12,8 +12,8 @@ struct ModeShapes {
   Eigen::MatrixXd shapes;  ///< phi_i there, a row per place [kg^(-1/2)]
 };
 
-/// Of a beam at so many places from end to end; of anything else at the quadrature points of the switch. Throws InvalidInput for
-/// fewer than two.
+/// Of a beam, and of a structure from a table of modes, at so many places from end to end; of a plate at the quadrature points of
+/// the switch. Throws InvalidInput for fewer than two.
 [[nodiscard]] ModeShapes mode_shapes(const Switch& model, int places);
 
 }  // namespace softland

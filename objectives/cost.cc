@@ -9,6 +9,14 @@
 #include "base/require.h"
 
 namespace softland {
+namespace {
+
+void require_not_negative(const OwnObjective& objective, double value) {
+  require(!(value < 0), [&] { return fmt::format("the own objective '{}' gives {}; it must be >= 0", objective.name(), value); });
+}
+
+}  // namespace
+
 Aim::Aim(std::vector<Part> parts) : parts_(std::move(parts)) {
   require(!parts_.empty(), "a search needs a target");
   for (auto part = parts_.begin(); part != parts_.end(); ++part) {
@@ -24,9 +32,16 @@ std::shared_ptr<const OwnObjective> Aim::refuse_null(std::shared_ptr<const OwnOb
   return objective;
 }
 
+void Aim::own_values(const OwnObjective& objective, std::span<const Metrics> closings, const Metrics& step,
+                     std::span<double> values) {
+  if (closings.empty()) return;
+  objective.values(closings, step, values);
+  for (const double one : values) require_not_negative(objective, one);
+}
+
 double Aim::own_value(const OwnObjective& objective, const Metrics& closing, const Metrics& step) {
   const double value = objective.value(closing, step);
-  require(!(value < 0), [&] { return fmt::format("the own objective '{}' gives {}; it must be >= 0", objective.name(), value); });
+  require_not_negative(objective, value);
   return value;
 }
 
@@ -38,6 +53,8 @@ bool Aim::has_own_cost() const {
 bool Aim::has_own_objective() const {
   return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.own != nullptr; });
 }
+
+bool Aim::measures_drive_energy() const { return is_about(Target::drive) || has_own_objective(); }
 
 const OwnObjective* Aim::from_the_start() const { return has_own_cost() ? nullptr : parts_[0].own.get(); }
 

@@ -33,7 +33,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -165,6 +167,8 @@ class Aim {
   [[nodiscard]] bool is_about(Target target) const;
   /// Whether it holds an own objective.
   [[nodiscard]] bool has_own_objective() const;
+  /// Whether it looks at the drive energy, as an own objective may.
+  [[nodiscard]] bool measures_drive_energy() const;
   /// The own objective by which a search goes from its first evaluation on; null: there is none.
   [[nodiscard]] const OwnObjective* from_the_start() const;
   /// "bounce", "0.7 bounce + 0.3 energy"
@@ -182,7 +186,27 @@ class Aim {
     return sum / weights;
   }
 
+  /// mean() of many closings: an own objective is asked once for all of them. `value` is told the closing as well.
+  template <class Value>
+  [[nodiscard]] std::vector<double> means(std::span<const Metrics> closings, const Metrics& step, const Value& value) const {
+    std::vector<double> sums(closings.size(), 0), of_part(closings.size());
+    double weights = 0;
+    for (const Part& part : parts_) {
+      if (part.own) own_values(*part.own, closings, step, of_part);
+      const double weight = is_sum() ? part.weight : 1;
+      for (std::size_t k = 0; k < closings.size(); ++k)
+        sums[k] += weight * (part.own ? of_part[k] : value(row_of(targets, part.target), closings[k]));
+      weights += weight;
+    }
+    if (is_sum()) {
+      for (double& sum : sums) sum /= weights;
+    }
+    return sums;
+  }
+
  private:
+  static void own_values(const OwnObjective& objective, std::span<const Metrics> closings, const Metrics& step,
+                         std::span<double> values);
   [[nodiscard]] static std::shared_ptr<const OwnObjective> refuse_null(std::shared_ptr<const OwnObjective> objective);
   [[nodiscard]] static double own_value(const OwnObjective& objective, const Metrics& closing, const Metrics& step);
 

@@ -5,7 +5,9 @@
 // evaluation on, as lands_first() says. F has no derivative: methods with a gradient take differences.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string_view>
 
 #include "objectives/metrics.h"
@@ -34,6 +36,11 @@ class OwnObjective {
   /// `step`: the same of the plain step to the same hold levels, on the nominal device. Where the step does not touch it holds
   /// what a closing of this switch would be like, and NaN.
   [[nodiscard]] virtual double value(const Metrics& closing, const Metrics& step) const = 0;
+  /// F of the closings of many devices, as many as there are in `values`: asked once for a candidate, where a search is for
+  /// devices. By default value() of each.
+  virtual void values(std::span<const Metrics> closings, const Metrics& step, std::span<double> values) const {
+    for (std::size_t k = 0; k < closings.size(); ++k) values[k] = value(closings[k], step);
+  }
   /// Whether the search is for a landing without a significant rebound first. Where it is not, what touches and stays costs
   /// F / (1 + F), however it bounces, and the goal is met by what is better than the plain step.
   [[nodiscard]] virtual bool lands_first() const { return true; }

@@ -63,4 +63,6 @@ PYBIND11_MODULE(_softland, m) {
   python::bind_evaluator(m);
   python::bind_search(m);
   python::bind_exploration(m);
+  python::bind_tuning(m);
+  python::bind_recordings(m);
 }

@@ -36,6 +36,12 @@ std::vector<double> numbers(const py::object& given) {
   return {values.data(), values.data() + values.size()};
 }
 
+py::dict figures_of(const Metrics& metrics) {
+  py::dict all;
+  for (const Figure& figure : figure_table) all[py::str(std::string(figure.quantity()))] = figure.value(metrics);
+  return all;
+}
+
 }  // namespace
 
 PythonWaveform::PythonWaveform(std::string name, std::vector<OwnParameter> parameters, py::object breakpoints, py::object voltage)
@@ -161,13 +167,30 @@ PythonObjective::~PythonObjective() {
 
 double PythonObjective::value(const Metrics& closing, const Metrics& step) const {
   const py::gil_scoped_acquire held;
-  const auto figures = [](const Metrics& metrics) {
-    py::dict all;
-    for (const Figure& figure : figure_table) all[py::str(std::string(figure.quantity()))] = figure.value(metrics);
-    return all;
-  };
   try {
-    return value_(figures(closing), figures(step)).cast<double>();
+    return value_(figures_of(closing), figures_of(step)).cast<double>();
+  } catch (...) {
+    first_.keep(std::current_exception());
+    throw;
+  }
+}
+
+void PythonObjective::values(std::span<const Metrics> closings, const Metrics& step, std::span<double> values) const {
+  const py::gil_scoped_acquire held;
+  try {
+    py::dict all;
+    for (const Figure& figure : figure_table) {
+      py::array_t<double> column(static_cast<py::ssize_t>(closings.size()));
+      std::transform(closings.begin(), closings.end(), column.mutable_data(),
+                     [&](const Metrics& one) { return figure.value(one); });
+      all[py::str(std::string(figure.quantity()))] = column;
+    }
+    const std::vector<double> told = numbers(value_(all, figures_of(step)));
+    require(told.size() == values.size(), [&] {
+      return "the objective '" + name_ + "' gave " + std::to_string(told.size()) + " values for " +
+             std::to_string(values.size()) + " devices: over devices its figures are arrays, and it returns an array";
+    });
+    std::copy(told.begin(), told.end(), values.begin());
   } catch (...) {
     first_.keep(std::current_exception());
     throw;

@@ -90,6 +90,8 @@ class PythonObjective final : public OwnObjective {
 
   [[nodiscard]] std::string_view name() const override { return name_; }
   [[nodiscard]] double value(const Metrics& closing, const Metrics& step) const override;
+  /// One call with arrays.
+  void values(std::span<const Metrics> closings, const Metrics& step, std::span<double> values) const override;
   [[nodiscard]] bool lands_first() const override { return lands_first_; }
   [[nodiscard]] FirstError& first_error() const { return first_; }
 

@@ -49,6 +49,8 @@ void bind_waveforms(pybind11::module_& module);
 void bind_evaluator(pybind11::module_& module);
 void bind_search(pybind11::module_& module);
 void bind_exploration(pybind11::module_& module);
+void bind_tuning(pybind11::module_& module);
+void bind_recordings(pybind11::module_& module);
 
 /// A waveform, wrapped so that it is one Python type whatever its family.
 struct PyWaveform {

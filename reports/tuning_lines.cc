@@ -94,6 +94,21 @@ double ToldShot::last_row() const {
   return last;
 }
 
+std::vector<Waveform> ToldShot::waveforms(const PreparedScene& nominal) const {
+  std::vector<std::string> names = nominal.drive_names();
+  std::erase(names, std::string(dispersion_drive));
+  std::map<std::string, Waveform> all;
+  for (const auto& [name, table] : drives) {
+    require(std::find(names.begin(), names.end(), name) != names.end(), [&, &name = name] {
+      return fmt::format("drives.{}: there is no such drive; there are {}", shortened(name), fmt::join(names, ", "));
+    });
+    all.emplace(name, table);
+  }
+  if (const auto scene = nominal.drives.waveforms.find(std::string(dispersion_drive)); scene != nominal.drives.waveforms.end())
+    all.insert(*scene);
+  return nominal.in_drive_order(all);
+}
+
 ToldShot told_shot(int number, double hold_time, const std::map<std::string, Signal>& signals) {
   constexpr double tolerance = 1e-4;  // of the peak
   ToldShot shot{.number = number, .hold_time = hold_time, .drives = {}};

@@ -35,6 +35,9 @@ struct ToldShot {
   [[nodiscard]] double last_row() const;
   /// How long the closing is recorded from t = 0 on [s].
   [[nodiscard]] double duration() const { return last_row() + hold_time; }
+  /// In the order of the drives of a device; a factor of the dispersion force, which is no voltage, stays that of its scene.
+  /// Throws InvalidInput for a drive that it has not.
+  [[nodiscard]] std::vector<Waveform> waveforms(const PreparedScene& nominal) const;
 };
 
 /// Signals of sources in rows: straight pieces exactly, curves within 1e-4 of their peak.

@@ -1,6 +1,7 @@
 #include "reports/tuning_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -29,8 +30,6 @@ using internal::quantity;
 using nlohmann::json;
 
 constexpr std::array end_names{"under_way", "done", "closings_used", "stopped", "interrupted", "failed"};
-
-std::string_view name_of(TuningEnd end) { return end_names.at(static_cast<std::size_t>(end)); }
 
 // Of a shot, by drive: rows of time [s] and voltage [V]; a factor of the dispersion force is no voltage.
 std::map<std::string, std::vector<std::pair<double, double>>> rows_of(const PreparedScene& scene, const TunerShot& shot) {
@@ -365,6 +364,15 @@ bool TuningReport::was_bounce_free(int shot) const {
 
 bool TuningReport::ever_bounce_free() const {
   return std::any_of(closings.begin(), closings.end(), [](const TunedClosing& one) { return is_bounce_free(one.record); });
+}
+
+std::string_view name_of(TuningEnd end) { return end_names.at(static_cast<std::size_t>(end)); }
+
+TuningEnd tuning_end(std::string_view name) {
+  const auto found = std::find(end_names.begin(), end_names.end(), name);
+  require(found != end_names.end(),
+          [&] { return fmt::format("a tuning is {}, and never {}", fmt::join(end_names, ", "), name); });
+  return static_cast<TuningEnd>(found - end_names.begin());
 }
 
 TuningReport tuning_report(const Tuner& tuner, std::vector<TunedClosing> closings, const TunerOptions& options, TuningEnd end) {

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "reports/result_maker.h"
@@ -12,6 +13,10 @@ namespace softland {
 
 /// How a tuning stands.
 enum class TuningEnd { under_way, done, closings_used, stopped, interrupted, failed };
+/// "closings_used"
+[[nodiscard]] std::string_view name_of(TuningEnd end);
+/// Throws InvalidInput for a name that there is not.
+[[nodiscard]] TuningEnd tuning_end(std::string_view name);
 
 /// A closing that was recorded.
 struct TunedClosing {

@@ -16,7 +16,6 @@
 //   store.close();
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -28,6 +27,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/content_key.h"
 #include "base/watch.h"
 
 namespace softland {
@@ -79,14 +79,6 @@ struct StoredOrigin {
   std::string processor;  ///< and the instructions that are used of it
   std::string command;
 };
-
-/// A hash of 128 bits of what a row was computed from. Equal content has equal keys on every machine.
-struct ContentKey {
-  std::uint64_t high = 0, low = 0;
-  auto operator<=>(const ContentKey&) const = default;
-  [[nodiscard]] std::string hexadecimal() const;
-};
-[[nodiscard]] ContentKey content_key(std::string_view text);
 
 struct StoredRow {
   std::int64_t point = 0;

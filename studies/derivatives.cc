@@ -60,7 +60,13 @@ struct NominalClosing {
   Eigen::MatrixXd gradient = {};  // a row to each of derived_figures; empty where the device does not close
 };
 
-NominalClosing close_nominal(const PreparedScene& nominal, const std::vector<Signal>& signals, DeviceChanges& by,
+// What figures are derived by.
+struct Changes {
+  SwitchSlopes* of_switch = nullptr;  // null: it does not change
+  const SignalSlopes& of_signals;
+};
+
+NominalClosing close_nominal(const PreparedScene& nominal, const std::vector<Signal>& signals, const Changes& by,
                              const DerivativeOptions& options, const Watch& watch) {
   MetricsObserver observer(nominal.model.device().gap.contact, nominal.scene.metrics);
   RecordedMotion tape(observer);
@@ -68,7 +74,7 @@ NominalClosing close_nominal(const PreparedScene& nominal, const std::vector<Sig
       nominal.model, signals, {.duration = nominal.duration, .tolerance = options.tolerance, .stop = watch.stop}, tape);
   NominalClosing closing{.outcome = {.metrics = observer.metrics(end)}, .slopes = {}};
   if (end.status != Status::done || !closing.outcome.closed()) return closing;
-  LinearizedClosing motion(nominal.model, signals, tape, options.refinement, &by.of_switch);
+  LinearizedClosing motion(nominal.model, signals, tape, options.refinement, by.of_switch);
   closing.slopes = cost_slopes(nominal.model, signals, motion, nominal.scene.metrics);
   std::vector<FigureSlope> wanted;
   for (const Figure& figure : derived_figures) wanted.push_back(closing.slopes.of[figure.slope]);
@@ -104,6 +110,42 @@ std::vector<Derivatives::Variable> variables_of(const DeviceSpread& spread) {
   return all;
 }
 
+// Of the closing under these signals; `places` are those of the changes among the variables that are found.
+void derive(Derivatives& found, const PreparedScene& nominal, const std::vector<Signal>& signals, const Changes& by,
+            const std::vector<std::size_t>& places, const Eigen::MatrixXd& correlation, const DerivativeOptions& options,
+            const Watch& watch) {
+  DerivativeOptions own = options;
+  if (!(own.tolerance > 0)) own.tolerance = std::min(nominal.tolerance, usual_tolerance);
+  const NominalClosing closing = close_nominal(nominal, signals, by, own, watch);
+  const NominalClosing judge = close_nominal(nominal, signals, by, looser_than(own), watch);
+  if (watch.stopped()) {
+    found.why_none = "interrupted";
+    return;
+  }
+  if (closing.gradient.size() == 0 || judge.gradient.size() == 0) {
+    found.why_none = "the nominal device does not close";
+    return;
+  }
+  found.grazing = closing.slopes.grazing;
+  for (std::size_t f = 0; f < derived_figures.size(); ++f) {
+    const Figure& derived = derived_figures[f];
+    FigureDerivatives figure{.key = derived.key, .value = closing.outcome.of(derived), .by_variable = {}};
+    figure.why_none = why_no_derivative(derived, figure.value, closing.slopes, closing.outcome.metrics);
+    if (figure.why_none.empty()) {
+      const auto of = [&](const Eigen::MatrixXd& gradient) {
+        std::vector<double> all(found.variables.size(), no_derivative);
+        for (std::size_t k = 0; k < places.size(); ++k) {
+          if (found.variables[places[k]].why_none.empty())
+            all[places[k]] = gradient(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k));
+        }
+        return all;
+      };
+      set_derivatives(figure, found.variables, correlation, of(closing.gradient), of(judge.gradient));
+    }
+    found.figures.push_back(std::move(figure));
+  }
+}
+
 }  // namespace
 
 bool Derivatives::grazes() const { return grazing < grazing_share; }
@@ -129,36 +171,28 @@ Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive, 
   DeviceChanges by = changes_near(near, nominal.model, variables, watch);
   for (const std::size_t k : by.of_signals.kinks()) variables[k]->why_none = NearbyDevices::other_pieces;
   const std::vector<Signal> signals = near.signals();
-  DerivativeOptions own = options;
-  if (!(own.tolerance > 0)) own.tolerance = std::min(nominal.tolerance, usual_tolerance);
-  const NominalClosing closing = close_nominal(nominal, signals, by, own, watch);
-  const NominalClosing judge = close_nominal(nominal, signals, by, looser_than(own), watch);
-  if (watch.stopped()) {
-    found.why_none = "interrupted";
-    return found;
+  derive(found, nominal, signals, {.of_switch = &by.of_switch, .of_signals = by.of_signals}, places, spread.correlation, options,
+         watch);
+  return found;
+}
+
+Derivatives derivatives_by_waveforms(const PreparedScene& scene, const std::vector<WaveformParameter>& parameters,
+                                     const SignalSlopes::SignalsOf& signals, const DerivativeOptions& options,
+                                     const Watch& watch) {
+  Derivatives found{.figures = {}};
+  found.why_none = LinearizedClosing::refusal(scene.model);
+  if (!found.why_none.empty()) return found;
+  std::vector<std::size_t> places;
+  std::vector<double> x, lower, upper;
+  for (const WaveformParameter& one : parameters) {
+    found.variables.push_back({.name = one.name, .nominal = one.value, .deviation = one.size / 100});
+    places.push_back(places.size());
+    x.push_back(one.value), lower.push_back(one.value - one.size), upper.push_back(one.value + one.size);
   }
-  if (closing.gradient.size() == 0 || judge.gradient.size() == 0) {
-    found.why_none = "the nominal device does not close";
-    return found;
-  }
-  found.grazing = closing.slopes.grazing;
-  for (std::size_t f = 0; f < derived_figures.size(); ++f) {
-    const Figure& derived = derived_figures[f];
-    FigureDerivatives figure{.key = derived.key, .value = closing.outcome.of(derived), .by_variable = {}};
-    figure.why_none = why_no_derivative(derived, figure.value, closing.slopes, closing.outcome.metrics);
-    if (figure.why_none.empty()) {
-      const auto of = [&](const Eigen::MatrixXd& gradient) {
-        std::vector<double> all(found.variables.size(), no_derivative);
-        for (std::size_t k = 0; k < places.size(); ++k) {
-          if (variables[k]->why_none.empty())
-            all[places[k]] = gradient(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k));
-        }
-        return all;
-      };
-      set_derivatives(figure, found.variables, spread.correlation, of(closing.gradient), of(judge.gradient));
-    }
-    found.figures.push_back(std::move(figure));
-  }
+  const SignalSlopes by(signals, x, lower, upper);
+  for (const std::size_t k : by.kinks()) found.variables[k].why_none = NearbyDevices::other_pieces;
+  const auto count = static_cast<Eigen::Index>(parameters.size());
+  derive(found, scene, signals(x), {.of_signals = by}, places, Eigen::MatrixXd::Identity(count, count), options, watch);
   return found;
 }
 

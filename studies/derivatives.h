@@ -20,6 +20,7 @@
 
 #include "base/watch.h"
 #include "studies/ensemble.h"
+#include "waveforms/signal_slopes.h"
 
 namespace softland {
 
@@ -58,5 +59,17 @@ struct DerivativeOptions {
 /// film, where devices are sorted into classes, where the nominal device does not close, and when asked to stop.
 [[nodiscard]] Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive,
                                       const DerivativeOptions& options = {}, const Watch& watch = {});
+
+/// A number that waveforms are made from.
+struct WaveformParameter {
+  std::string name;
+  double value = 0;
+  double size = 0;  ///< of what counts as a large change of it, above 0
+};
+/// The same by such numbers, of the nominal device under the signals that are made of them: a variable each, whose deviation is a
+/// hundredth of its size. Those on either side of which the signals have other pieces have none.
+[[nodiscard]] Derivatives derivatives_by_waveforms(const PreparedScene& scene, const std::vector<WaveformParameter>& parameters,
+                                                   const SignalSlopes::SignalsOf& signals, const DerivativeOptions& options = {},
+                                                   const Watch& watch = {});
 
 }  // namespace softland

@@ -229,6 +229,18 @@ std::vector<Waveform> Evaluator::waveforms_of(std::span<const double> values) co
   return all;
 }
 
+// Why a driver cannot give what a row asks of it; empty where it can.
+std::string Evaluator::violation_of(const std::vector<Waveform>& own) const {
+  const std::vector<std::string> names = nominal_->drive_names();
+  for (const WaveformKey& key : of_waveforms_) {
+    const auto limits = nominal_->drives.limits.find(names[key.drive]);
+    if (limits == nominal_->drives.limits.end()) continue;
+    const std::string why = violation(nominal_->told(key.drive, own[key.drive]), limits->second);
+    if (!why.empty()) return why;
+  }
+  return {};
+}
+
 SceneFile Evaluator::scene_of(std::span<const double> values) const {
   SceneFile file = nominal_->scene.file;
   for (std::size_t i = 0; i < keys_.size(); ++i) {
@@ -292,12 +304,7 @@ std::vector<Evaluator::Row> Evaluator::built(std::span<const double> rows, std::
       }
       if (!row.refusal.empty() || (of_waveforms_.empty() && !drives_->differ({}))) continue;
       const std::vector<Waveform> own = waveforms_of(values);
-      const std::vector<std::string> names = nominal_->drive_names();
-      for (const WaveformKey& key : of_waveforms_) {
-        const auto limits = nominal_->drives.limits.find(names[key.drive]);
-        if (limits == nominal_->drives.limits.end()) continue;
-        if (row.refusal.empty()) row.refusal = violation(nominal_->told(key.drive, own[key.drive]), limits->second);
-      }
+      row.refusal = violation_of(own);
       if (!row.refusal.empty()) continue;
       row.signals = drives_->signals(own, {}, row.own.values);
       row.has_signals = true;
@@ -355,36 +362,194 @@ void Evaluator::evaluate(std::span<const double> rows, std::span<double> figures
   watch.throw_if_stopped();
 }
 
+namespace {
+
+// Which drives have volts in the unit Vdp, that follow the device, and which in volts.
+struct WrittenVolts {
+  bool in_volts = false, in_pull_in = false, in_other_units = false;
+};
+WrittenVolts written_volts(const SceneFile& file, const PreparedScene& there) {
+  WrittenVolts found;
+  for (const auto& [drive, waveform] : there.drives.waveforms) {
+    if (drive == dispersion_drive || drive == piezo_drive) continue;
+    const auto look = [&, &drive = drive](std::string_view name, std::size_t element) {
+      const std::optional<Quantity> given = written_quantity(file, fmt::format("waveform.{}.{}", drive, name), element);
+      if (!given || given->value == 0) return;
+      bool& of_unit = given->dimension == dimension::voltage           ? found.in_volts
+                      : given->dimension == dimension::dynamic_pull_in ? found.in_pull_in
+                                                                       : found.in_other_units;
+      of_unit = true;
+    };
+    std::visit(
+        [&]<class Family>(const Family& family) {
+          for (const Parameter<Family>& one : FamilyOf<Family>::parameters) {
+            if (one.meaning != Meaning::level && one.meaning != Meaning::swing) continue;
+            if (std::get_if<double Family::*>(&one.member) != nullptr) {
+              look(one.name, 0);
+            } else {
+              for (std::size_t k = 1; k <= (family.*std::get<std::vector<double> Family::*>(one.member)).size(); ++k)
+                look(one.name, k);
+            }
+          }
+        },
+        waveform);
+  }
+  return found;
+}
+
+// The figures' row of derivatives; throws where there is none.
+const FigureDerivatives& derived(const Derivatives& found, const Figure& figure) {
+  require(found.why_none.empty(), [&] { return "jacobian: no derivatives here: " + found.why_none; });
+  const auto of = std::find_if(found.figures.begin(), found.figures.end(),
+                               [&](const FigureDerivatives& one) { return one.key == figure.key; });
+  require(of != found.figures.end(), [&] { return fmt::format("jacobian: {} has no slope: it jumps", figure.quantity()); });
+  require(of->is_known(),
+          [&] { return fmt::format("jacobian: {} has no derivative here: {}", figure.quantity(), of->why_none); });
+  return *of;
+}
+
+void require_derived(const Derivatives::Variable& variable) {
+  require(variable.why_none.empty(),
+          [&] { return fmt::format("jacobian: no derivative by {}: {}", variable.name, variable.why_none); });
+}
+
+}  // namespace
+
+// The scene of a row, in volts, with all that a derivative by its columns needs.
+struct Evaluator::Place {
+  PreparedScene scene;                 ///< its [spread] is that of the columns of the device
+  std::vector<std::size_t> of_device;  ///< columns, in the order of its variables
+  std::vector<WaveformKey> of_waveforms;
+  KnownUnits known;  ///< by which volts follow the device
+};
+
+Evaluator::Place Evaluator::place_of(std::span<const double> row, const Watch& watch) const {
+  std::vector<std::string> device_keys;
+  for (const std::string& key : keys_) {
+    if (!waveform_key(key_and_element(key).first)) device_keys.push_back(key);
+  }
+  const auto with_columns = [&](PreparedScene scene, std::vector<WaveformKey> of_waveforms, KnownUnits known) {
+    Place place{.scene = std::move(scene), .of_waveforms = std::move(of_waveforms), .known = std::move(known)};
+    for (const SpreadVariable& variable : place.scene.scene.spread.variables)
+      place.of_device.push_back(static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), variable.name) - keys_.begin()));
+    return place;
+  };
+  if (options_.volts == VoltsOf::nominal) {
+    SceneFile file = nominal_->resolved();
+    file.erase("spread");
+    for (std::size_t i = 0; i < of_device_.size(); ++i) {
+      const VariedKey& key = nominal_->scene.spread.variables[i].keys.front();
+      file.assign(key.path, Quantity{.value = row[of_device_[i]], .dimension = key.measured_in}, key.element);
+    }
+    PreparedScene there = prepare(scene_that_varies(file, device_keys), false, watch);
+    const std::vector<std::string> names = there.drive_names();
+    const std::vector<Waveform> own = waveforms_of(row);
+    const std::string why = violation_of(own);
+    require(why.empty(), [&] { return "jacobian: " + why; });
+    for (std::size_t k = 0; k < names.size(); ++k) there.drives.waveforms[names[k]] = own[k];
+    return with_columns(std::move(there), of_waveforms_, {});
+  }
+  const SceneFile file = scene_of(row);
+  const PreparedScene in_volts = prepare_and_choose(file, false, watch);
+  KnownUnits known;
+  if (!device_keys.empty()) {
+    const WrittenVolts volts = written_volts(file, in_volts);
+    require(!volts.in_other_units && !(volts.in_volts && volts.in_pull_in),
+            "jacobian: volts that follow the pull-in voltage of each row have an exact derivative where all of them are written "
+            "in Vdp, or none");
+    const std::vector<std::string> drives = in_volts.drive_names();
+    const auto electrodes =
+        std::ranges::count_if(drives, [](const std::string& name) { return name != piezo_drive && name != dispersion_drive; });
+    require(!volts.in_pull_in || electrodes == 1, "jacobian: volts in Vdp of several electrodes have no exact derivative");
+    if (volts.in_pull_in) known = KnownUnits({.pull_in_error = 0.0});
+  }
+  PreparedScene there = prepare(scene_that_varies(in_volts.resolved(), device_keys), false, watch);
+  return with_columns(std::move(there), keys_of_row(in_volts, row), std::move(known));
+}
+
+// The parameters of waveforms among the columns, by the units that they are written in.
+std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& in_volts, std::span<const double> row) const {
+  std::vector<WaveformKey> all;
+  std::vector<Waveform> waveforms = in_volts.in_drive_order(in_volts.drives.waveforms);
+  const std::vector<std::string> drives = in_volts.drive_names();
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    const auto [path, element] = key_and_element(keys_[i]);
+    const auto named = waveform_key(path);
+    if (!named) continue;
+    const auto& [drive, name] = *named;
+    WaveformKey key{.column = i,
+                    .drive = static_cast<std::size_t>(std::find(drives.begin(), drives.end(), drive) - drives.begin()),
+                    .parameter = name == "frequency" ? "angular_frequency" : name,
+                    .element = element};
+    std::vector<std::string_view> names;
+    Meaning meaning{};
+    const double* const number =
+        key.drive < drives.size() ? waveform_parameter(waveforms[key.drive], key.parameter, element, names, meaning) : nullptr;
+    require(number != nullptr, [&] { return fmt::format("jacobian: {} is no number of a waveform in volts", keys_[i]); });
+    require(row[i] != 0, [&] { return fmt::format("jacobian: {} is 0, which does not tell its unit", keys_[i]); });
+    key.factor = *number / row[i];
+    all.push_back(std::move(key));
+  }
+  return all;
+}
+
+// Figures by parameters of waveforms.
+void Evaluator::derive_by_waveforms(const Place& place, std::span<const double> row, Eigen::MatrixXd& all,
+                                    const Watch& watch) const {
+  const std::vector<Waveform> here = place.scene.in_drive_order(place.scene.drives.waveforms);
+  std::vector<WaveformParameter> parameters;
+  for (const WaveformKey& key : place.of_waveforms) {
+    require(!place.scene.source(key.drive).bits, [&] {
+      return fmt::format("jacobian: no derivative by {}: its source rounds to so many bits, and jumps", keys_[key.column]);
+    });
+    const Signal told = place.scene.told(key.drive, here[key.drive]);
+    Waveform one = here[key.drive];
+    std::vector<std::string_view> names;
+    Meaning meaning{};
+    const double number = std::abs(*waveform_parameter(one, key.parameter, key.element, names, meaning));
+    const bool is_time = meaning == Meaning::time || meaning == Meaning::end_time;
+    const bool is_voltage = meaning == Meaning::level || meaning == Meaning::swing;
+    const double size = std::max(number, is_voltage ? told.peak() : is_time ? told.pieces().back().begin : 0);
+    parameters.push_back({.name = keys_[key.column], .value = row[key.column], .size = size > 0 ? size / key.factor : 1});
+  }
+  const auto signals = [&](std::span<const double> x) {
+    std::vector<Waveform> moved = here;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const WaveformKey& key = place.of_waveforms[k];
+      std::vector<std::string_view> names;
+      Meaning meaning{};
+      *waveform_parameter(moved[key.drive], key.parameter, key.element, names, meaning) = key.factor * x[k];
+    }
+    return place.scene.driven(moved);
+  };
+  const Derivatives found = derivatives_by_waveforms(place.scene, parameters, signals, {}, watch);
+  watch.throw_if_stopped();
+  for (std::size_t f = 0; f < figures_.size(); ++f) {
+    const FigureDerivatives& of = derived(found, figures_[f]);
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      require_derived(found.variables[k]);
+      all(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(place.of_waveforms[k].column)) = of.by_variable[k];
+    }
+  }
+}
+
 Eigen::MatrixXd Evaluator::jacobian(std::span<const double> row, const Watch& watch) const {
   require(row.size() == keys_.size(), [&] { return fmt::format("jacobian: a row has {} numbers", keys_.size()); });
-  require(options_.volts == VoltsOf::nominal,
-          "jacobian: volts that follow the pull-in voltage of each row have no exact derivative");
-  require(of_waveforms_.empty(),
-          "jacobian: there is no exact derivative by a parameter of a waveform: vary the device and errors of drives");
-  SceneFile file = nominal_->resolved();
-  file.erase("spread");
-  for (std::size_t i = 0; i < of_device_.size(); ++i) {
-    const VariedKey& key = nominal_->scene.spread.variables[i].keys.front();
-    file.assign(key.path, Quantity{.value = row[of_device_[i]], .dimension = key.measured_in}, key.element);
-  }
-  const PreparedScene there = prepare(scene_that_varies(file, keys_), false, watch);
-  const Derivatives found = derivatives(there, {.waveforms = there.in_drive_order(there.drives.waveforms)}, {}, watch);
-  watch.throw_if_stopped();
-  require(found.why_none.empty(), [&] { return "jacobian: no derivatives here: " + found.why_none; });
+  const Place place = place_of(row, watch);
   Eigen::MatrixXd all(static_cast<Eigen::Index>(figures_.size()), static_cast<Eigen::Index>(keys_.size()));
+  if (!place.of_waveforms.empty()) derive_by_waveforms(place, row, all, watch);
+  if (place.of_device.empty()) return all;
+  const PreparedScene& there = place.scene;
+  const Derivatives found =
+      derivatives(there, {.waveforms = there.in_drive_order(there.drives.waveforms), .known = place.known}, {}, watch);
+  watch.throw_if_stopped();
   for (std::size_t f = 0; f < figures_.size(); ++f) {
-    const auto of = std::find_if(found.figures.begin(), found.figures.end(),
-                                 [&](const FigureDerivatives& one) { return one.key == figures_[f].key; });
-    require(of != found.figures.end(),
-            [&] { return fmt::format("jacobian: {} has no slope: it jumps", figures_[f].quantity()); });
-    require(of->is_known(),
-            [&] { return fmt::format("jacobian: {} has no derivative here: {}", figures_[f].quantity(), of->why_none); });
-    for (std::size_t i = 0; i < of_device_.size(); ++i) {
+    const FigureDerivatives& of = derived(found, figures_[f]);
+    for (std::size_t i = 0; i < place.of_device.size(); ++i) {
       const SpreadVariable& variable = there.scene.spread.variables[i];
-      require(found.variables[i].why_none.empty(),
-              [&] { return fmt::format("jacobian: no derivative by {}: {}", variable.name, found.variables[i].why_none); });
-      const auto column = std::find(keys_.begin(), keys_.end(), variable.name) - keys_.begin();
-      all(static_cast<Eigen::Index>(f), column) = of->by_variable[i] / (variable.is_factor ? variable.keys.front().nominal : 1);
+      require_derived(found.variables[i]);
+      all(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(place.of_device[i])) =
+          of.by_variable[i] / (variable.is_factor ? variable.keys.front().nominal : 1);
     }
   }
   return all;

@@ -66,7 +66,8 @@ class Evaluator {
                 const Watch& watch = {}) const;
 
   /// The derivatives of the figures by the keys at a row, figures x keys [unit of the figure over that of the key]: exact ones of
-  /// the closing (studies/derivatives.h). Throws InvalidInput with the reason where a figure has none there.
+  /// the closing (studies/derivatives.h). Volts that follow each row have them where all are written in Vdp of one electrode, or
+  /// none. Throws InvalidInput with the reason where a figure has none there.
   [[nodiscard]] Eigen::MatrixXd jacobian(std::span<const double> row, const Watch& watch = {}) const;
 
  private:
@@ -78,6 +79,7 @@ class Evaluator {
     double factor = 1;        ///< of the parameter for one unit of the column
   };
   struct Row;
+  struct Place;
 
   void read_waveform_key(std::size_t column);
   void vary_device(const SceneFile& file, const Watch& watch);
@@ -85,7 +87,11 @@ class Evaluator {
   void build_device(Row& row, std::span<const double> values, DeviceBuilder& builder) const;
   void build_anew(Row& row, std::span<const double> values) const;
   [[nodiscard]] std::vector<Waveform> waveforms_of(std::span<const double> values) const;
+  [[nodiscard]] std::string violation_of(const std::vector<Waveform>& own) const;
   [[nodiscard]] SceneFile scene_of(std::span<const double> values) const;
+  [[nodiscard]] Place place_of(std::span<const double> row, const Watch& watch) const;
+  [[nodiscard]] std::vector<WaveformKey> keys_of_row(const PreparedScene& in_volts, std::span<const double> row) const;
+  void derive_by_waveforms(const Place& place, std::span<const double> row, Eigen::MatrixXd& all, const Watch& watch) const;
   [[nodiscard]] std::unique_ptr<DeviceBuilder> take_builder() const;
 
   std::vector<std::string> keys_, units_;

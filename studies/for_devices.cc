@@ -348,8 +348,7 @@ class DevicesStudy {
     return {.samples = devices_.verdict,
             .seed = options_.seed,
             .jobs = options_.jobs,
-            .vectors = vectors_for(options_.target),
-            .measures_drive_energy = options_.target.is_about(Target::drive)};
+            .measures_drive_energy = options_.target.measures_drive_energy()};
   }
   // The searched drives of a candidate, and the others as in the plain step.
   [[nodiscard]] std::map<std::string, Waveform> all_drives(std::map<std::string, Waveform> searched) const {

@@ -68,8 +68,6 @@ bool is_about_steady_force(const SearchSetting& setting, const RobustAim& aim) {
 
 }  // namespace
 
-Vectors vectors_for(const Aim& target, Vectors vectors) { return target.has_own_objective() ? Vectors::none : vectors; }
-
 GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, int jobs, const Watch& watch) {
   constexpr std::size_t together = 16;
   GaugedEnsemble all{.devices = std::vector<SampledDevice>(ensemble.size()), .exact = std::vector<DeviceUnits>(ensemble.size())};
@@ -117,7 +115,7 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
       aim_(aim),
       ensemble_(std::move(ensemble)),
       drives_(setting.given),
-      vectors_(vectors_for(setting.target, vectors)),
+      vectors_(vectors),
       measures_steady_force_(is_about_steady_force(setting, aim)) {
   const Switch& model = setting.given.model;
   const double period = 2 * pi / model.angular_frequencies()[0], in_contact = model.in_contact_period();
@@ -176,7 +174,7 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
       closings.push_back({.device = &device,
                           .signals = &signals,
                           .run = run(device, signals),
-                          .measures_drive_energy = setting_.target.is_about(Target::drive)});
+                          .measures_drive_energy = setting_.target.measures_drive_energy()});
     }
     std::vector<DeviceOutcome> closed = close_devices(closings, setting_.given.scene.metrics, vectors_);
     for (std::size_t i = 0; i < closed.size(); ++i) {
@@ -214,8 +212,20 @@ double RobustCost::score(const DeviceOutcome& outcome) const {
 }
 
 std::vector<double> RobustCost::scores(std::span<const DeviceOutcome> outcomes) const {
+  std::vector<Metrics> closings;
+  for (const DeviceOutcome& o : outcomes) {
+    if (!fails(o)) closings.push_back(o.metrics);
+  }
+  const std::vector<double> means =
+      setting_.target.means(closings, step_.metrics, [&](const TargetRow& row, const Metrics& closing) {
+        return row.in(row.robust, {.own = closing, .step = step_.metrics, .window = window_});
+      });
   std::vector<double> all;
-  for (const DeviceOutcome& o : outcomes) all.push_back(std::min(score(o), worst_score));
+  auto next = means.begin();
+  for (const DeviceOutcome& o : outcomes) {
+    const double score = fails(o) ? worst_score : *next++;
+    all.push_back(std::isnan(score) ? worst_score : std::min(score, worst_score));
+  }
   return all;
 }
 

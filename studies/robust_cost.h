@@ -74,7 +74,7 @@ struct BuiltEnsemble {
 
 class RobustCost {
  public:
-  /// Keeps references to `setting` and `aim`. Lanes measure no drive energy: where it is asked for, devices close one by one.
+  /// Keeps references to `setting` and `aim`.
   RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors = vectors_in_use());
 
   [[nodiscard]] std::size_t devices() const { return ensemble_.devices.size(); }
@@ -118,9 +118,6 @@ class RobustCost {
   std::vector<bool> kept_closed_;                    // each device, under them
   double window_, tail_, wait_;                      // after first touch, after the last breakpoint, for a touch [s]
 };
-
-/// What devices may close in when a search is about `target`: no vectors where it may ask for a figure that lanes do not measure.
-[[nodiscard]] Vectors vectors_for(const Aim& target, Vectors vectors = vectors_in_use());
 
 /// Whether a device does not close and stay closed, cannot be followed, or cannot be described.
 [[nodiscard]] bool fails(const DeviceOutcome& outcome);

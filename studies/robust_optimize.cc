@@ -303,8 +303,7 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
                  {.samples = robust.verdict,
                   .seed = options.seed,
                   .jobs = options.jobs,
-                  .vectors = vectors_for(options.target),
-                  .measures_drive_energy = options.target.is_about(Target::drive),
+                  .measures_drive_energy = options.target.measures_drive_energy(),
                   .worth_of_measuring = true},
                  watch);
   if (result.verdict->interrupted) out.search.termination = Termination::interrupted;

@@ -1,10 +1,7 @@
 // A simulated device that answers as one in a laboratory does, to practise on.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -19,7 +16,6 @@
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
-#include "base/shortened.h"
 #include "base/trimmed.h"
 #include "reports/tuning_lines.h"
 #include "studies/tuning/practice_device.h"
@@ -73,34 +69,13 @@ PracticeModel model_of(const std::string& text) {
   return model;
 }
 
-std::vector<std::string> told_names(const PreparedScene& nominal) {
-  std::vector<std::string> names = nominal.drive_names();
-  std::erase(names, std::string(dispersion_drive));
-  return names;
-}
-
-// One per drive of the device; a factor of the dispersion force, which is no voltage, stays that of the scene.
-std::vector<Waveform> waveforms_of(const PreparedScene& nominal, const ToldShot& shot) {
-  std::map<std::string, Waveform> all;
-  const std::vector<std::string> names = told_names(nominal);
-  for (const auto& [name, table] : shot.drives) {
-    require(std::find(names.begin(), names.end(), name) != names.end(), [&, &name = name] {
-      return fmt::format("drives.{}: there is no such drive; there are {}", shortened(name), fmt::join(names, ", "));
-    });
-    all.emplace(name, table);
-  }
-  if (const auto scene = nominal.drives.waveforms.find(std::string(dispersion_drive)); scene != nominal.drives.waveforms.end())
-    all.insert(*scene);
-  return nominal.in_drive_order(all);
-}
-
 // What the device says to a line, and what is wrong with it where it cannot be done.
 json answer(const PracticeDevice& device, const json& line) {
   try {
     const ToldShot shot = read_shot(line);
     return record_json(
         shot.number,
-        device.close(static_cast<std::uint64_t>(shot.number), waveforms_of(device.nominal(), shot), shot.duration()).record);
+        device.close(static_cast<std::uint64_t>(shot.number), shot.waveforms(device.nominal()), shot.duration()).record);
   } catch (const InvalidInput& error) {
     return {{"shot", line.value("shot", json())}, {"error", error.what()}};
   }

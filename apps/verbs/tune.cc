@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -19,20 +18,16 @@
 #include "apps/scenes.h"
 #include "apps/streams.h"
 #include "apps/tuning_lab.h"
-#include "apps/tuning_log.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
-#include "base/read_file.h"
 #include "base/require.h"
 #include "base/shell_word.h"
 #include "config/assumed_spread.h"
 #include "config/bench.h"
-#include "reports/tuning_lines.h"
 #include "reports/tuning_report.h"
-#include "store/study_store.h"
+#include "reports/tuning_session.h"
 #include "studies/search_setting.h"
 #include "studies/tuning/tuner.h"
-#include "waveforms/export.h"
 
 namespace softland::apps {
 namespace {
@@ -40,7 +35,6 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* log_file = "closings.jsonl";
-constexpr int usual_closings = 30;
 
 struct TuneRequest {
   std::string device, actuator = "electrostatic";
@@ -70,37 +64,6 @@ TunerOptions tuner_options(const TuneRequest& request, const SceneFile& file) {
   return options;
 }
 
-// What all closings of a log have in common.
-json origin_of(const SceneFile& file, const TunerOptions& options) {
-  return {{"scene", content_key(canonical(file, "scene").text()).hexadecimal()},
-          {"actuator", name_of(actuators, options.actuator)},
-          {"seed", options.seed},
-          {"recipes", options.most_recipes},
-          {"effort", options.effort},
-          {"edge_error_s", options.laboratory.edge_error},
-          {"unseen_s", options.laboratory.unseen},
-          {"gain_error", options.laboratory.gain_error},
-          {"shot_error", options.laboratory.shot_error},
-          {"constrain", options.touch ? json(options.touch->text) : json()}};
-}
-
-// What a tuning began with and found, in the folder that --out named.
-TunedBelief tuned_in(const std::string& folder, const json& origin) {
-  const std::string path = (std::filesystem::path(folder) / "tune.json").string();
-  json written;
-  try {
-    written = read_line(read_file(path));
-    for (const char* key : {"scene", "actuator", "gain_error"})
-      require(written.value(origin_key, json::object()).value(key, json()) == origin.at(key),
-              [&] { return fmt::format("is a tuning of another {}", key); });
-    return tuned_belief(written);
-  } catch (const InvalidInput& error) {
-    const std::string_view what = error.what();
-    throw InvalidInput(
-        fmt::format("--wafer {}: {}", folder, what.starts_with(path) ? std::string(what) : path + ": " + error.what()));
-  }
-}
-
 std::chrono::milliseconds patience_of(const std::optional<std::string>& timeout) {
   constexpr double usual = 60, longest = 1e6;  // [s]
   const double seconds = timeout ? quantity_of("--timeout", *timeout, dimension::time) : usual;
@@ -109,7 +72,7 @@ std::chrono::milliseconds patience_of(const std::optional<std::string>& timeout)
   return std::chrono::milliseconds(std::max<long>(1, std::lround(1000 * seconds)));
 }
 
-/// A tuning, its closings on disk, and the files that tell of it.
+/// A tuning, and the files that tell of it.
 class Tuning {
  public:
   Tuning(const Common& common, const SceneFile& file, TunerOptions options, const TuneRequest& request);
@@ -120,111 +83,51 @@ class Tuning {
   TuningEnd run(TuningLab& lab, int closings);
   /// The files as they stand.
   void write(TuningEnd end);
-  [[nodiscard]] json told_json(const TuningReport& report) const;
-  [[nodiscard]] TuningReport report(TuningEnd end) const { return tuning_report(*tuner_, closings_, options_, end); }
+  [[nodiscard]] json told_json(TuningEnd end) const { return session_.json(end, {.command = common_.command}); }
+  [[nodiscard]] TuningReport report(TuningEnd end) const { return session_.report(end); }
   [[nodiscard]] const ResultFolder& folder() const { return *folder_; }
 
  private:
-  void make_tuner(const SceneFile& file);
-  [[nodiscard]] ToldShot told(const TunerShot& shot) const;
-  [[nodiscard]] SentSignals sent(const TunerShot& shot) const { return sent_signals(tuner_->scene(), shot.waveforms); }
-  void learn(const TunerShot& shot, const ContactRecord& record);
-
   Common common_;
-  TunerOptions options_;
-  json origin_;
+  TuningSession session_;
   std::optional<ResultFolder> folder_;
-  std::unique_ptr<TuningLog> log_;
-  std::optional<Tuner> tuner_;
-  std::vector<TunedClosing> closings_;
 };
 
 Tuning::Tuning(const Common& common, const SceneFile& file, TunerOptions options, const TuneRequest& request)
-    : common_(common), options_(std::move(options)), origin_(origin_of(file, options_)) {
-  json wafer = json::array();
-  for (const std::string& folder : request.wafer) {
-    options_.wafer.push_back(tuned_in(folder, origin_));
-    wafer.push_back(belief_json(options_.wafer.back()));
-  }
-  origin_["wafer"] = wafer.empty() ? json() : json(content_key(wafer.dump()).hexadecimal());
+    : common_(common), session_(file, std::move(options), request.wafer) {
   folder_ = claim_places(common, {"best.toml", "best.csv", "tune.json", "tune.html", log_file}, {log_file});
-  log_ = std::make_unique<TuningLog>(folder_->path() / log_file, origin_, request.resume);
-  if (!log_->kept_aside().empty() && !common_.quiet)
-    say(fmt::format("the closings of an earlier run are now in {}", log_->kept_aside().string()));
-  options_.recipes = log_->recipes();
-  make_tuner(file);
-  if (log_->recipes().empty()) log_->append(tuner_->recipes());
-}
-
-void Tuning::make_tuner(const SceneFile& file) {
+  const std::filesystem::path aside = session_.keep(folder_->path() / log_file, request.resume);
+  if (!aside.empty() && !common_.quiet) say(fmt::format("the closings of an earlier run are now in {}", aside.string()));
   const WatchedWork work(common_.quiet, common_.stop);
-  try {
-    tuner_.emplace(file, options_, work.watch());
-  } catch (const InvalidInput& error) {
-    if (options_.recipes.empty()) throw;
-    throw InvalidInput(fmt::format("{}: {}", (folder_->path() / log_file).string(), error.what()));
-  }
+  session_.begin(work.watch());
 }
 
-ToldShot Tuning::told(const TunerShot& shot) const { return told_shot(shot.number, shot.hold_time, sent(shot).signals); }
-
-void Tuning::learn(const TunerShot& shot, const ContactRecord& record) {
-  const WatchedWork work(common_.quiet, common_.stop);
-  tuner_->learn(record, work.watch());
-  closings_.push_back({.shot = shot, .record = record});
-}
-
-// What was proposed then is proposed again, or these closings are of something else.
 void Tuning::learn_log() {
-  for (const TuningLog::Closing& closing : log_->closings()) {
-    const TunerShot shot = tuner_->next();
-    require(shot_json(told(shot)) == closing.shot, [&] {
-      return fmt::format("{}: this program proposes another shot after the closings before it; name another folder with --out",
-                         log_->place(closing));
-    });
-    learn(shot, closing.record);
+  for (bool learned = true; learned;) {
+    const WatchedWork work(common_.quiet, common_.stop);
+    learned = session_.learn_kept(work.watch());
   }
 }
 
 TuningEnd Tuning::run(TuningLab& lab, int closings) {
-  constexpr int most_failures = 3;  // in a row
-  for (int failures = 0; !tuner_->is_done();) {
-    if (tuner_->closings() >= closings) return TuningEnd::closings_used;
-    const TunerShot shot = tuner_->next();
-    const ToldShot line = told(shot);
-    const std::optional<ContactRecord> record = lab.fire(line, sent(shot));
+  while (!session_.tuner().is_done()) {
+    if (session_.tuner().closings() >= closings) return TuningEnd::closings_used;
+    const SentSignals sent = sent_signals(session_.tuner().scene(), session_.tuner().next().waveforms);
+    const std::optional<ContactRecord> record = lab.fire(session_.told(), sent);
     if (!record) return TuningEnd::stopped;
-    log_->append(line, *record);
-    learn(shot, *record);
+    {
+      const WatchedWork work(common_.quiet, common_.stop);
+      session_.learn(*record, work.watch());
+    }
     write(TuningEnd::under_way);
     if (!common_.quiet) say(closing_words(report(TuningEnd::under_way)));
-    failures = record->error.empty() ? 0 : failures + 1;
-    require(failures < most_failures, [&] {
-      return fmt::format("{} shots in a row gave no record; the device said of the last one: {}", failures, record->error);
-    });
+    session_.throw_if_failing();
   }
   return TuningEnd::done;
 }
 
-json Tuning::told_json(const TuningReport& report) const {
-  json told = tuning_json(report, {.command = common_.command});
-  told[origin_key] = origin_;
-  return told;
-}
-
 void Tuning::write(TuningEnd end) {
-  const TuningReport now = report(end);
-  const PreparedScene& scene = tuner_->scene();
-  const SentSignals kept = sent(now.kept);
-  std::map<std::string, Waveform> waveforms;
-  const std::vector<std::string> names = scene.drive_names();
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    if (kept.signals.contains(names[k])) waveforms.emplace(names[k], now.kept.waveforms[k]);
-  }
-  folder_->write("best.toml", with_waveforms(scene, waveforms).text());
-  folder_->write("best.csv", csv(kept.signals, scene.duration, kept.sample_rates));
-  folder_->write("tune.json", json_text(told_json(now), 1));
-  folder_->write("tune.html", tuning_html(now, {.command = common_.command}));
+  for (const auto& [name, content] : session_.files(end, {.command = common_.command})) folder_->write(name, content);
   folder_->publish(false);
 }
 
@@ -260,7 +163,7 @@ int tune_verb(const Common& given, const TuneRequest& request) {
   tuning.write(end);
   const TuningReport report = tuning.report(end);
   print_json_or(
-      c, tuning.told_json(report),
+      c, tuning.told_json(end),
       tuning_text(report) + left_in(tuning.folder().path(), {"tune.html", "tune.json", "best.toml", "best.csv", log_file}));
   if (end == TuningEnd::interrupted) return exit_interrupted;
   return report.ever_bounce_free() ? exit_done : exit_no_success;

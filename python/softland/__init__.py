@@ -14,15 +14,17 @@ from ._closing import Closing
 from ._errors import InvalidInput
 from ._evaluator import Evaluator
 from ._outcome import Outcome
+from ._recording import Recording, contact_edges, read
 from ._records import Quantity, Record
 from ._results import Result, Store, open
 from ._scene import Modes, Scene, load, shipped
+from ._tuning import PracticeDevice, Shot, Tuning
 from ._units import units
 from ._waveform import OwnWaveform, Waveform
 
 __version__: str = _softland.version
 
 __all__ = [
-    "Closing", "Evaluator", "InvalidInput", "Modes", "Outcome", "OwnWaveform", "Quantity", "Record", "Result", "Scene", "Store", "Waveform",
-    "load", "open", "shipped", "units",
+    "Closing", "Evaluator", "InvalidInput", "Modes", "Outcome", "OwnWaveform", "PracticeDevice", "Quantity", "Record", "Recording", "Result", "Scene", "Shot", "Store", "Tuning", "Waveform",
+    "contact_edges", "load", "open", "read", "shipped", "units",
 ]  # fmt: skip

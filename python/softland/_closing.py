@@ -114,8 +114,8 @@ class Closing:
     def shape(self, time: npt.ArrayLike, places: int = 101) -> tuple[Array, Array]:
         """The deflection of the whole beam towards the electrode: places x (p,) and y, (p,) for a time or (n, p) for times (n,) [s] -> [m].
 
-        Between steps modes follow the quintics that have q, v and a of both ends. Of a structure that is no beam the places are those of its
-        quadrature points. Raises ValueError for a time outside the window.
+        Between steps modes follow the quintics that have q, v and a of both ends. Of a plate the places are those of its quadrature
+        points. Raises ValueError for a time outside the window.
         """
         times, states = self._arcs()
         given = np.asarray(time, float)

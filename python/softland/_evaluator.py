@@ -62,7 +62,8 @@ class Evaluator:
     def jacobian(self, x: npt.ArrayLike) -> Array:
         """The derivatives of the figures by the keys at a row (d,) -> (m, d): exact ones, through impacts and rebounds (docs/figures.md).
 
-        Raises InvalidInput with the reason where there is none: of counts and settling times, of parameters of waveforms, and for vdp="each".
+        Raises InvalidInput with the reason where there is none: of counts, where a source rounds to bits, and, for vdp="each", unless all volts are
+        written in Vdp of one electrode, or none.
         """
         return np.asarray(self._native.jacobian(np.asarray(x, float)))
 

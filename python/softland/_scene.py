@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Union
@@ -19,6 +20,7 @@ from ._files import write_whole
 from ._outcome import Outcome
 from ._progress import Progress, shown
 from ._records import Quantity, read
+from ._tuning import Device, PracticeDevice, Tuning, laboratory, tuning_of
 from ._units import number, units
 from ._waveform import OwnWaveform, Waveform
 
@@ -67,6 +69,11 @@ def _holds_quantity(native: _softland.Scene, key: str) -> bool:
 
 def _command() -> str:
     return f"python3 {sys.argv[0]}".strip() if sys.argv and sys.argv[0] not in ("", "-c") else "python3"
+
+
+def _told(value: float | str | None, unit: str) -> str | None:
+    """As an option of the program is told it."""
+    return value if value is None or isinstance(value, str) else f"{float(value)!r} {unit}"
 
 
 def _jobs(jobs: int | None) -> int:
@@ -320,7 +327,7 @@ class Scene(MutableMapping[str, Any]):
         actuator: Actuator = "electrostatic",
         robust: str = "auto",
         waveform: str = "",
-        objective: Callable[[dict[str, float], dict[str, float]], float] | None = None,
+        objective: Callable[[dict[str, Any], dict[str, float]], Any] | None = None,
         lands_first: bool = True,
         own_waveforms: Sequence[OwnWaveform] = (),
         constrain: Sequence[str] = (),
@@ -340,7 +347,8 @@ class Scene(MutableMapping[str, Any]):
         robust: "auto", for the drawing and for devices; "none", for the drawing alone; a measure such as "cvar:0.9", for devices by it alone.
         waveform: a family, or several "pulse+knots"; names of `own_waveforms` too.
         objective: (closing, step) -> F in the place of a target: both are dicts of figures [SI], of a candidate and of the plain step; F >= 0, about 1
-            for the step, is minimised. lands_first: among waveforms that land without a significant rebound. With robust it is called for each device.
+            for the step, is minimised. lands_first: among waveforms that land without a significant rebound. Over devices it is called once for a
+            candidate: the figures of `closing` are arrays (devices,) of those that close, and it returns an array; of the drawing they are floats.
         constrain: conditions, "peak_contact_force < 20 uN".
         start: waveforms by drive [V] to begin with.
         optimizer: a method, where it is not to be "auto"; calibrate: what is measured on every device, "Vdp:1 %,frequency".
@@ -393,6 +401,127 @@ class Scene(MutableMapping[str, Any]):
         with shown(progress) as tell:
             _softland.explore(self._native, {**request, "progress": tell})
         return Store(Path(out))
+
+    def export(
+        self,
+        format: str = "csv",
+        *,
+        waveforms: Mapping[str, Waveform] | None = None,
+        drive: str = "",
+        signal: Literal["told", "output"] = "told",
+        sample_rate: float | str | None = None,
+        bits: int | None = None,
+        amplifier: float | None = None,
+        marker: float | str | None = None,
+        measured: Mapping[str, str] | None = None,
+        jobs: int | None = None,
+        progress: bool | Progress | None = False,
+    ) -> str:
+        """The scene's waveforms as the text of a file for others, as `softland export`.
+
+        format: "csv"; of generators "keysight-arb", "siglent-csv", "tektronix-csv", "rigol-csv", "digilent-csv"; "codes", samples as integers; of circuit
+            simulators "spice-pwl", and the switch itself, "spice-model", "spice-bench", "verilog-a".
+        waveforms: in the place of some of the scene's, in volts; own waveforms as tables. drive: of several this one.
+        signal: what the source is told, or its output. sample_rate [Hz], bits: instead of those of [driver].
+        amplifier: volts at the switch per volt of the generator. marker: when the sync output falls [s] (keysight-arb).
+        measured: {"Vdp": "54.2 V", "frequency": "10.2 kHz"} of a device that gets its own waveform.
+        Warns where the switch does not close under the samples as well as under the waveform itself. Raises InvalidInput.
+        """
+        scene = self
+        if waveforms:
+            scene = self.copy()
+            for name, waveform in waveforms.items():
+                own = waveform.family not in _softland.families
+                scene.waveforms[name] = Waveform.table(*waveform.points(self._native.duration())) if own else waveform
+        request = {
+            "format": format, "signal": signal, "drive": drive, "sample_rate": _told(sample_rate, "Hz"), "bits": None if bits is None else str(bits),
+            "amplifier": None if amplifier is None else repr(float(amplifier)), "marker": _told(marker, "s"),
+            "measured": ",".join(f"{key}={value}" for key, value in (measured or {}).items()), "jobs": _jobs(jobs),
+        }  # fmt: skip
+        with shown(progress) as tell:
+            text, said = _softland.export(scene._native, request, tell)
+        for line in said:
+            if not line.startswith("as sampled"):
+                warnings.warn(line.removeprefix("warning: "), stacklevel=2)
+        return text
+
+    def tuning(
+        self,
+        *,
+        actuator: Actuator = "electrostatic",
+        constrain: str = "",
+        errors: Mapping[str, float | str] | None = None,
+        recipes: int | None = None,
+        effort: float | None = None,
+        wafer: Sequence[str | os.PathLike[str]] = (),
+        out: str | os.PathLike[str] | None = None,
+        resume: bool = False,
+        seed: int = 1,
+        jobs: int | None = None,
+        progress: bool | Progress | None = None,
+    ) -> Tuning:
+        """A tuning on one device that is ready for its first shot: the waveform for the drawing is searched, which takes half a minute or so.
+
+        actuator: which drives are shaped. constrain: "initial_contact_time < 33 us", or "< 1.1 step".
+        errors: of the instruments, one standard deviation: edge_error [s], unseen [s], gain_error, shot_error; default: the usual ones (docs/tune.md).
+        recipes: waveforms searched before the first closing, 1 to 5. effort: evaluations of every search, over the usual.
+        wafer: folders of tunings of devices of the same wafer that have ended.
+        out: folder for closings.jsonl, where each closing is before the next is fired, and for the files of the program. resume: goes on with the
+            closings there, none of which is fired again; scene and options as before. Program and Python may go on with each other's.
+        Same answers, same proposals, whatever `jobs` is. Raises InvalidInput.
+        """
+        request = {
+            "actuator": actuator, "constrain": constrain, **laboratory(errors), "recipes": recipes, "effort": effort,
+            "wafer": [os.fspath(one) for one in wafer], "seed": seed, "jobs": _jobs(jobs), "command": _command(),
+        }  # fmt: skip
+        return tuning_of(self._native, request, out, resume, progress)
+
+    def tune(
+        self,
+        device: Device,
+        *,
+        closings: int = 30,
+        callback: Callable[[str], Any] | None = None,
+        progress: bool | Progress | None = None,
+        **options: Any,
+    ) -> Outcome:
+        """Tunes a waveform on one device, as `softland tune`: until five closings in a row are without a bounce, or `closings` are used.
+
+        device: a function that gets a `Shot`, the waveforms to be fired, and returns when the contact was closed: see `Tuning.learn`. `scene.device()` is
+            a simulated one.
+        callback: called with a line about each closing; one that returns True ends the tuning.
+        options: those of `tuning`; `out="folder"` keeps everything there.
+        The result is a `Record` of tune.json. What the device raises comes through; the exception's `tuning` has the closings until then, and goes on
+        with `error.tuning.run(device)`.
+        """
+        tuning = self.tuning(progress=progress, **options)
+        try:
+            return tuning.run(device, closings=closings, callback=callback, progress=progress)
+        except BaseException as error:
+            error.tuning = tuning  # type: ignore[attr-defined]
+            raise
+
+    def device(
+        self,
+        *,
+        seed: int = 1,
+        errors: Mapping[str, float | str] | None = None,
+        drift: float = 0.0,
+        more_modes: int = 0,
+        gas: str = "",
+        stiffness: float = 1.0,
+        set: Mapping[str, str] | None = None,
+    ) -> PracticeDevice:
+        """A simulated device to practise on, as `softland device`: one of the scene's [spread], or of the usual one, chosen by `seed`.
+
+        errors: of its instruments, as in `tuning`. drift: share by which all volts change from one shot to the next.
+        more_modes, gas, stiffness (a factor, of the contact) and set ({"gap.contact": "2.05 um"}): a physics that the scene does not know.
+        """
+        request = {
+            **laboratory(errors), "seed": seed, "drift": drift, "more_modes": more_modes, "gas": gas, "stiffness": stiffness,
+            "set": [f"{key}={value}" for key, value in (set or {}).items()],
+        }  # fmt: skip
+        return PracticeDevice(_softland.PracticeDevice(self._native, request))
 
     def evaluator(
         self,

@@ -16,6 +16,12 @@ struct LaboratoryErrors {
   double shot_error = 2e-4;   ///< of the gain from shot to shot, relative
 };
 
+class SceneFile;
+
+/// Of instruments for this scene: those of time are at most a 200th and a 100th of the period of the first mode. Throws
+/// InvalidInput for a scene that cannot be read.
+[[nodiscard]] LaboratoryErrors usual_errors(const SceneFile& file);
+
 /// An edge of the contact's state.
 struct ContactEdge {
   double time = 0;      ///< since the drives began, at t = 0 [s]

@@ -12,9 +12,9 @@
 #include <string>
 #include <thread>
 
-#include "apps/tuning_log.h"
 #include "base/require.h"
 #include "program.h"
+#include "reports/tuning_log.h"
 #include "waveforms/step.h"
 
 namespace softland::apps {

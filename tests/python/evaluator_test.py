@@ -75,10 +75,48 @@ class Evaluators(unittest.TestCase):
     def test_where_no_slope_exists_the_reason_is_raised(self):
         with self.assertRaisesRegex(softland.InvalidInput, "bounce_count"):
             self.evaluate.jacobian(self.evaluate.nominal)
-        with self.assertRaisesRegex(softland.InvalidInput, "waveform"):
-            self.scene.evaluator(["waveform.main.level"], ["impact_velocity"]).jacobian([17.0])
-        with self.assertRaisesRegex(softland.InvalidInput, "each"):
-            self.scene.evaluator(["gap.contact"], ["impact_velocity"], vdp="each").jacobian([2e-6])
+        level = self.scene.waveforms["main"].hold_level
+        rounded = softland.load(GOLD, set={"driver.main.sample_rate": "10 MHz", "driver.main.bits": 10})
+        with self.assertRaisesRegex(softland.InvalidInput, "bits"):
+            rounded.evaluator(["waveform.main.level"], ["impact_velocity"]).jacobian([level])
+        static = softland.load(GOLD, set={"waveform.main.level": "1.3 Vsp"})
+        with self.assertRaisesRegex(softland.InvalidInput, "Vdp"):
+            static.evaluator(["gap.contact"], ["impact_velocity"], vdp="each").jacobian([2e-6])
+
+    def differences(self, evaluate, x, step=1e-4):
+        """Central ones of every key by its own size."""
+        columns = []
+        for k in range(len(x)):
+            h = np.zeros(len(x))
+            h[k] = step * abs(x[k])
+            columns.append((evaluate(x + h) - evaluate(x - h)) / (2 * h[k]))
+        return np.array(columns).T
+
+    def assert_slopes(self, evaluate, x):
+        slopes, differences = evaluate.jacobian(x), self.differences(evaluate, x)
+        size = np.max(np.abs(differences * x), axis=1, keepdims=True) / np.abs(x)
+        # Second differences of 1e-4 are 1e-8; closings at 1e-9 over 2e-4 leave 1e-5.
+        self.assertLess(np.max(np.abs(slopes - differences) / size), 1e-3, (slopes, differences))
+
+    def test_slopes_by_parameters_of_waveforms_are_limits_of_differences(self):
+        scene = self.scene.copy()
+        hold = scene.waveforms["main"].hold_level
+        scene.waveforms["main"] = softland.Waveform("pulse", levels=[1.1 * hold, 0.6 * hold, hold], times=["12 us", "30 us"], edge="1 us")
+        keys = ["waveform.main.levels[1]", "waveform.main.levels[2]", "gap.contact", "waveform.main.times[2]", "waveform.main.edge", "driver.main.gain"]
+        evaluate = scene.evaluator(keys, FIGURES[:2], tolerance=1e-9)
+        self.assert_slopes(evaluate, evaluate.nominal * [1.01, 0.98, 1.02, 0.99, 1.05, 0.995])
+        self.assert_slopes(scene.evaluator(keys[:2], FIGURES[:2], tolerance=1e-9), np.array([1.05 * hold, 0.65 * hold]))
+        beyond = evaluate.nominal * [3, 1, 1, 1, 1, 1]
+        self.assertTrue(np.isnan(evaluate(beyond)).all())
+        with self.assertRaisesRegex(softland.InvalidInput, "max"):
+            evaluate.jacobian(beyond)
+
+    def test_slopes_where_volts_follow_each_row_are_limits_of_differences(self):
+        evaluate = self.scene.evaluator(["gap.contact", "structure.thickness", "waveform.main.level"], FIGURES[:2], vdp="each", tolerance=1e-9)
+        self.assert_slopes(evaluate, evaluate.nominal * [1.02, 0.99, 1.03])
+        volts = softland.load(GOLD, set={"waveform.main.level": 17.7})
+        fixed = volts.evaluator(["gap.contact", "waveform.main.level"], FIGURES[:2], vdp="each", tolerance=1e-9)
+        self.assert_slopes(fixed, fixed.nominal * [1.02, 1.01])
 
     def test_it_survives_a_pickle(self):
         rows = self.rows(5)

@@ -116,6 +116,19 @@ class Closings(unittest.TestCase):
         with self.assertRaises(ValueError):
             closing.shape(1.0)
 
+    def test_a_table_of_modes_moves_like_the_beam_whose_modes_it_holds(self):
+        short = {"simulate.duration": "50 us"}
+        beam, table = (softland.load(SCENES / name, set=short) for name in ("mem-gold.toml", "mem-gold-modes.toml"))
+        x, shapes = beam.modes().x, beam.modes().shapes
+        np.testing.assert_allclose(table.modes().x, x, rtol=1e-12)
+        # 101 places of the closed form, a cubic between them: 1e-6 of the largest value of the fourth mode.
+        np.testing.assert_allclose(table.modes(301).shapes, beam.modes(301).shapes, atol=1e-5 * np.max(np.abs(shapes)))
+        times = np.linspace(0, 45e-6, 10)
+        own, same = (scene.simulate(errors=False).shape(times)[1] for scene in (beam, table))
+        self.assertEqual(same.shape, (10, 101))
+        self.assertGreater(np.max(own), 1.5e-6)
+        self.assertLess(np.max(np.abs(same - own)), 1e-4 * np.max(own))
+
     def test_modes_are_those_of_the_program(self):
         modes = softland.load(GOLD).modes()
         self.assertEqual(modes.shapes.shape, (101, 4))

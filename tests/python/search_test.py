@@ -67,6 +67,24 @@ class Searches(unittest.TestCase):
         self.assertGreater(len(calls), 100)
         self.assertLess(found.metrics.peak_contact_force, found.baseline.metrics.peak_contact_force)
 
+    def test_over_devices_an_objective_gets_arrays_once_for_a_candidate(self):
+        scene = softland.load(GOLD)
+        sizes = []
+
+        def gentle(closing, step):
+            sizes.append(np.shape(closing["peak_contact_force"]))
+            return closing["peak_contact_force"] / step["peak_contact_force"]
+
+        options = {"robust": "cvar:0.9", "waveform": "pulse", "budget": 1500, "samples": 32}
+        found = scene.optimize(objective=gentle, **options)
+        built_in = scene.optimize(target="force", **options)
+        self.assertEqual(found.best.parameters.to_json(), built_in.best.parameters.to_json())
+        of_devices = [size for size in sizes if size != ()]
+        self.assertGreater(max(size[0] for size in of_devices), 16)
+        self.assertLess(len(sizes), 1500 / 8)  # closings for each call
+        with self.assertRaisesRegex(softland.InvalidInput, "1 values for .* devices.*array"):
+            scene.optimize(objective=lambda closing, step: np.mean(closing["impact_velocity"]) / step["impact_velocity"], **options)
+
     def test_what_an_objective_raises_comes_out_at_once(self):
         def broken(closing, step):
             raise ZeroDivisionError("mine")

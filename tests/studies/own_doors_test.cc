@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -173,18 +174,51 @@ TEST(OwnObjective, ThatDoesNotAskForALandingIsSearchedByAMethodWithAGradientToo)
   EXPECT_TRUE(found.goal_met) << "better than the plain step, however it bounces";
 }
 
-TEST(OwnObjective, OfDevicesIsTheTargetOfItsFigureAndClosesThemOneByOne) {
+TEST(OwnObjective, OfDevicesIsTheTargetOfItsFigureInLanesAndOneByOne) {
   const SceneFile scene = quick_gold();
   const SearchSetting built_in = search_setting(scene, Target::drive, Actuator::electrostatic, "pulse", {});
   SearchSetting own = built_in;
   own.target = by(share_of_drive);
-  EXPECT_EQ(vectors_for(own.target), Vectors::none);
   const RobustAim aim{.measure = parse_robust_measure("worst", device_figures), .conditions = {}};
-  const auto value = [&](const SearchSetting& setting) {
-    const RobustCost cost(setting, aim, own_devices(setting, {}, 8, 1, 0, 1, {}), Vectors::none);
+  const auto value = [&](const SearchSetting& setting, Vectors vectors) {
+    const RobustCost cost(setting, aim, own_devices(setting, {}, 8, 1, 0, 1, {}), vectors);
     return cost.value(cost.close(setting.drives({}), 0, 8, 1));
   };
-  EXPECT_EQ(value(own), value(built_in));
+  EXPECT_EQ(value(own, Vectors::none), value(built_in, Vectors::none));
+  EXPECT_EQ(value(own, vectors_in_use()), value(built_in, vectors_in_use()));
+}
+
+// Asked for many closings, and never for one.
+class ByMany final : public OwnObjective {
+ public:
+  explicit ByMany(double excess) : excess_(excess) {}
+  [[nodiscard]] std::string_view name() const override { return "by many"; }
+  [[nodiscard]] double value(const Metrics&, const Metrics&) const override { return Metrics::unset; }
+  void values(std::span<const Metrics> closings, const Metrics& step, std::span<double> values) const override {
+    ++calls_;
+    for (std::size_t k = 0; k < closings.size(); ++k) values[k] = share_of_drive(closings[k], step) - excess_;
+  }
+  [[nodiscard]] int calls() const { return calls_; }
+
+ private:
+  double excess_;
+  mutable int calls_ = 0;
+};
+
+TEST(OwnObjective, IsAskedOnceForAllDevicesOfACandidate) {
+  SearchSetting setting = search_setting(quick_gold(), Target::drive, Actuator::electrostatic, "pulse", {});
+  const RobustAim aim{.measure = parse_robust_measure("worst", device_figures), .conditions = {}};
+  const auto value = [&](const Aim& target) {
+    setting.target = target;
+    const RobustCost cost(setting, aim, own_devices(setting, {}, 8, 1, 0, 1, {}));
+    return cost.value(cost.close(setting.drives({}), 0, 8, 1));
+  };
+  const auto many = std::make_shared<ByMany>(0);
+  EXPECT_EQ(value(Aim(many)), value(Target::drive));
+  EXPECT_EQ(many->calls(), 1);
+  const Aim sum({{.target = Target::impact, .weight = 1}, {.weight = 3, .own = many}});
+  EXPECT_DOUBLE_EQ(value(sum), value(Aim({{.target = Target::impact, .weight = 1}, {.target = Target::drive, .weight = 3}})));
+  EXPECT_THROW((void)value(Aim(std::make_shared<ByMany>(100))), InvalidInput);
 }
 
 TEST(OwnObjective, ForDevicesIsRacedAsTheTargetOfItsFigure_slow) {
@@ -197,7 +231,6 @@ TEST(OwnObjective, ForDevicesIsRacedAsTheTargetOfItsFigure_slow) {
   EXPECT_EQ(own.drawing.parameters, built_in.drawing.parameters);
   EXPECT_EQ(own.plain_step_wins, built_in.plain_step_wins);
   ASSERT_EQ(own.rows.size(), built_in.rows.size());
-  // Its closings are made one by one, those of the built-in one in lanes: alike, not the same.
   ASSERT_GE(own.rows.size(), 3U);
   for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(own.rows[k].judged.bounce_free.value, built_in.rows[k].judged.bounce_free.value);
   EXPECT_GT(own.closings, 0);

@@ -12,7 +12,7 @@
 #include "studies/prepared.h"
 #include "waveforms/signal.h"
 
-namespace softland::apps {
+namespace softland {
 
 /// How the samples of a waveform are taken, as options say it.
 struct Sampling {
@@ -34,8 +34,9 @@ void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const
 [[nodiscard]] std::string generator_text(const GeneratorFormat& format, const PreparedScene& prepared, const std::string& drive,
                                          const Signal& told, const Sampling& sampling);
 
-/// Tells how the switch closes under the samples of a drive, and warns where it does not as well as under the waveform that they
+/// How the switch closes under the samples of a drive, and a warning where it does not as well as under the waveform that they
 /// were taken of; null: that is not there without them.
-void tell_sampled(const PreparedScene& sampled, const PreparedScene* drawn, const std::string& drive, const Watch& watch);
+[[nodiscard]] std::vector<std::string> sampled_words(const PreparedScene& sampled, const PreparedScene* drawn,
+                                                     const std::string& drive, const Watch& watch);
 
-}  // namespace softland::apps
+}  // namespace softland

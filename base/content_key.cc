@@ -1,9 +1,9 @@
+#include "base/content_key.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
-
-#include "store/study_store.h"
 
 // MurmurHash3_x64_128 of Austin Appleby (public domain), seed 0: not against those who want two contents of one key, but 128 bits
 // wide, the same on every machine and ten times as quick as what is.

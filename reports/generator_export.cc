@@ -1,4 +1,4 @@
-#include "apps/generator_export.h"
+#include "reports/generator_export.h"
 
 #include <fmt/format.h>
 
@@ -6,17 +6,15 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/streams.h"
-#include "apps/values.h"
 #include "base/choice.h"
 #include "base/require.h"
-#include "config/units.h"
+#include "config/told_quantity.h"
 #include "reports/closing_clauses.h"
 #include "reports/quantity.h"
 #include "reports/result_maker.h"
 #include "studies/simulate.h"
 
-namespace softland::apps {
+namespace softland {
 namespace {
 
 using internal::plain_number;
@@ -57,7 +55,7 @@ std::vector<std::string> exported_drives(const PreparedScene& p, const std::stri
   }
   if (named.empty()) return driven;
   require(std::ranges::find(all, named) != all.end(),
-          [&] { return fmt::format("--drive {}: is no drive of this scene; there are {}", shown(named), fmt::join(all, ", ")); });
+          [&] { return fmt::format("--drive {}: is no drive of this scene; there are {}", named, fmt::join(all, ", ")); });
   return {named};
 }
 
@@ -76,30 +74,32 @@ std::string generator_text(const GeneratorFormat& format, const PreparedScene& p
                        drive, drive);
   });
   const double rate = *source.sample_rate;
-  const double factor = sampling.amplifier ? quantity_of("--amplifier", *sampling.amplifier, dimension::none) : 1;
+  const double factor = sampling.amplifier ? told_quantity("--amplifier", *sampling.amplifier, dimension::none) : 1;
   require(factor > 0, "--amplifier 0: must be above 0: volts at the switch per volt of the generator");
   GeneratorSamples samples{.name = drive, .rate = rate};
   const double last = std::round(told.pieces().back().begin * rate);
   for (double k = 0; k <= last; ++k) samples.volts.push_back(told.voltage(k / rate) / factor);
   if (sampling.marker) {
-    const double at = std::round(quantity_of("--marker", *sampling.marker, dimension::time) * rate);
+    const double at = std::round(told_quantity("--marker", *sampling.marker, dimension::time) * rate);
     require(at >= 0 && at <= last, [&] {
-      return fmt::format("--marker {}: must be within the waveform, 0 to {}", shown(*sampling.marker),
-                         quantity(last / rate, "s"));
+      return fmt::format("--marker {}: must be within the waveform, 0 to {}", *sampling.marker, quantity(last / rate, "s"));
     });
     samples.marker = static_cast<std::size_t>(at);
   }
   return generator_file(format, std::move(samples));
 }
 
-void tell_sampled(const PreparedScene& sampled, const PreparedScene* drawn, const std::string& drive, const Watch& watch) {
+std::vector<std::string> sampled_words(const PreparedScene& sampled, const PreparedScene* drawn, const std::string& drive,
+                                       const Watch& watch) {
   const Closing as_sampled = simulate(sampled, false, watch);
-  say(fmt::format("as sampled, {}: {}", words(sampled.source(place_of(sampled, drive))), clause(sampled, as_sampled)));
-  if (drawn == nullptr) return;
+  std::vector<std::string> all{
+      fmt::format("as sampled, {}: {}", words(sampled.source(place_of(sampled, drive))), clause(sampled, as_sampled))};
+  if (drawn == nullptr) return all;
   const Closing as_drawn = simulate(*drawn, false, watch);
-  if (!is_worse(as_sampled.metrics, as_drawn.metrics)) return;
-  say(fmt::format("warning: as drawn, {}: a higher rate or more bits keep that, or a search under this [driver]",
-                  clause(*drawn, as_drawn)));
+  if (is_worse(as_sampled.metrics, as_drawn.metrics))
+    all.push_back(fmt::format("warning: as drawn, {}: a higher rate or more bits keep that, or a search under this [driver]",
+                              clause(*drawn, as_drawn)));
+  return all;
 }
 
-}  // namespace softland::apps
+}  // namespace softland

@@ -1,4 +1,4 @@
-#include "apps/tuning_log.h"
+#include "reports/tuning_log.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 #include "base/read_file.h"
 #include "base/require.h"
 
-namespace softland::apps {
+namespace softland {
 namespace {
 
 namespace fs = std::filesystem;
@@ -117,4 +117,4 @@ void TuningLog::append(const ToldShot& shot, const ContactRecord& record) {
 
 std::string TuningLog::place(const Closing& closing) const { return fmt::format("{}:{}", file_.string(), closing.line); }
 
-}  // namespace softland::apps
+}  // namespace softland

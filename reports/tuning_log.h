@@ -7,7 +7,7 @@
 
 #include "reports/tuning_lines.h"
 
-namespace softland::apps {
+namespace softland {
 
 /// Of what tells apart tunings that cannot go on with each other, in a file.
 inline constexpr const char* origin_key = "tuning";
@@ -53,4 +53,4 @@ class TuningLog {
   int descriptor_ = -1;
 };
 
-}  // namespace softland::apps
+}  // namespace softland

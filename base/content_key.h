@@ -1,0 +1,19 @@
+// A key by which equal contents are found again.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace softland {
+
+/// A hash of 128 bits of what something was computed from. Equal content has equal keys on every machine.
+struct ContentKey {
+  std::uint64_t high = 0, low = 0;
+  auto operator<=>(const ContentKey&) const = default;
+  [[nodiscard]] std::string hexadecimal() const;
+};
+[[nodiscard]] ContentKey content_key(std::string_view text);
+
+}  // namespace softland

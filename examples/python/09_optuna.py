@@ -1,0 +1,55 @@
+# %% [markdown]
+# # Optuna drives the evaluator
+# Two objectives at once: how fast the switch touches, and how soon. Optuna's NSGA-II proposes pulses, a whole generation is closed in one call of
+# `scene.evaluator`, and the front says what softness costs in time.
+
+# %%
+import numpy as np
+import numpy.typing as npt
+import optuna
+import softland
+
+scene = softland.shipped("mem-gold")
+hold = scene.waveforms["main"].hold_level
+step = scene.simulate(errors=False)
+scene.waveforms["main"] = softland.Waveform("pulse", levels=[hold, 0.0, hold], times=["16 us", "28 us"], edge="1 us")
+bounds = {
+    "waveform.main.levels[1]": (0.9 * hold, 1.19 * hold),
+    "waveform.main.levels[2]": (0.0, 0.8 * hold),
+    "waveform.main.times[1]": (8e-6, 30e-6),
+    "waveform.main.times[2]": (31e-6, 60e-6),
+}
+evaluate = scene.evaluator(list(bounds), ["initial_contact_time", "impact_velocity"])
+
+# %% [markdown]
+# `ask` gives a candidate and `tell` takes what came of it. What has no figures, a pulse that never touches, say, is pruned.
+
+# %%
+optuna.logging.set_verbosity(optuna.logging.WARNING)
+sampler = optuna.samplers.NSGAIISampler(population_size=64, seed=1)
+study = optuna.create_study(directions=["minimize", "minimize"], sampler=sampler)
+for _ in range(25):
+    trials = [study.ask() for _ in range(64)]
+    rows = np.array([[trial.suggest_float(key, *bounds[key]) for key in bounds] for trial in trials])
+    for trial, (touch, speed) in zip(trials, evaluate(rows)):
+        if np.isfinite(touch) and np.isfinite(speed):
+            study.tell(trial, (1e6 * touch, 1e3 * speed))
+        else:
+            study.tell(trial, state=optuna.trial.TrialState.FAIL)
+
+# %%
+front: npt.NDArray[np.float64] = np.array(sorted(trial.values for trial in study.best_trials))
+for touch, speed in front[:: max(1, len(front) // 8)]:
+    print(f"{touch:6.2f} us  {speed:6.2f} mm/s")
+
+# %% [markdown]
+# One of them is run as the program runs it, with the errors of its figures.
+
+# %%
+slow = step.initial_contact_time * 1.4e6
+softest = min((trial for trial in study.best_trials if trial.values[0] < slow), key=lambda trial: trial.values[1])
+levels = [softest.params["waveform.main.levels[1]"], softest.params["waveform.main.levels[2]"], hold]
+times = [softest.params["waveform.main.times[1]"], softest.params["waveform.main.times[2]"]]
+closing = scene.simulate(waveforms={"main": softland.Waveform("pulse", levels=levels, times=times, edge="1 us")})
+speeds = f"{closing.impact_velocity * 1e3:.2f} mm/s instead of {step.impact_velocity * 1e3:.1f} mm/s"
+print(f"{len(study.trials)} pulses; the softest that is not 40 % later than the step touches at {speeds}")

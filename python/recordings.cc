@@ -1,0 +1,114 @@
+// Files of instruments under Python, and the waveforms of a scene as files for others.
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/read_keys.h"
+#include "exchange/level_edges.h"
+#include "exchange/recording.h"
+#include "python/scene.h"
+#include "reports/recording_report.h"
+#include "reports/scene_export.h"
+
+namespace softland::python {
+
+namespace py = pybind11;
+
+namespace {
+
+using Column = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+py::array_t<double> array(const std::vector<double>& values) {
+  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+std::vector<double> numbers(const Column& column) { return {column.data(), column.data() + column.size()}; }
+
+Recording read(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
+  const ReadKeys keys = read_keys(assignments);
+  Run run;
+  return run([&](const Watch&) {
+    Recording found = read_recording(file.string(), keys);
+    if (!keys.column.empty() || keys.column_number > 0) found.channels = {channel_of(found, keys, "")};
+    return found;
+  });
+}
+
+// (name, heading, unit, column in the file, values in SI units)
+py::list channels_of(const Recording& recording) {
+  py::list all;
+  for (const Channel& channel : recording.channels) {
+    std::vector<double> values = channel.values;
+    for (double& one : values) one /= channel.per_si;
+    all.append(py::make_tuple(channel.name, channel.heading, channel.unit, channel.column, array(values), channel.is_voltage));
+  }
+  return all;
+}
+
+// Rows of time and 1 where the contact closes, 0 where it opens, from t = 0 on.
+py::array_t<double> edges(const Column& times, const Column& volts, double threshold, bool is_closed_below, double hysteresis,
+                          double merge, bool from_zero) {
+  require(times.ndim() == 1 && times.size() == volts.size() && times.size() > 0,
+          "times and volts: must be as many, of shape (n,)");
+  require(hysteresis >= 0 && merge >= 0, "hysteresis and merge: must be at least 0");
+  const Trace trace{.times = numbers(times), .values = numbers(volts), .told = {}};
+  for (std::size_t i = 0; i < trace.times.size(); ++i)
+    require(std::isfinite(trace.times[i]) && std::isfinite(trace.values[i]) && (i == 0 || trace.times[i] >= trace.times[i - 1]),
+            "times and volts: must be finite, and times must not go back");
+  const ThresholdKeys keys{.threshold = threshold, .hysteresis = hysteresis, .is_closed_below = is_closed_below, .merge = merge};
+  const std::vector<LevelEdge> found = from_zero ? contact_edges(trace, keys, "the trace") : level_edges(trace, keys);
+  py::array_t<double> rows({static_cast<py::ssize_t>(found.size()), py::ssize_t{2}});
+  auto to = rows.mutable_unchecked<2>();
+  for (py::ssize_t i = 0; i < to.shape(0); ++i) {
+    to(i, 0) = found[static_cast<std::size_t>(i)].time;
+    to(i, 1) = found[static_cast<std::size_t>(i)].closed ? 1 : 0;
+  }
+  return rows;
+}
+
+// The text, and what is to be known of it.
+py::tuple exported(const PyScene& scene, const py::dict& given, const py::object& progress) {
+  const auto text = [&](const char* key) { return given[key].cast<std::optional<std::string>>(); };
+  const ExportRequest request{.format = *text("format"),
+                              .signal = *text("signal"),
+                              .measured = *text("measured"),
+                              .sampling = {.rate = text("sample_rate"),
+                                           .bits = text("bits"),
+                                           .drive = *text("drive"),
+                                           .amplifier = text("amplifier"),
+                                           .marker = text("marker")},
+                              .jobs = given["jobs"].cast<int>()};
+  const SceneFile file = scene.file;
+  std::vector<std::string> said;
+  Run run(progress);
+  const std::string found = run([&](const Watch& watch) {
+    return exported_text(file, request, watch, [&](const std::string& line) { said.push_back(line); });
+  });
+  return py::make_tuple(found, said);
+}
+
+}  // namespace
+
+void bind_recordings(py::module_& m) {
+  py::class_<Recording>(m, "Recording")
+      .def_static("read", &read)
+      .def_readonly("file", &Recording::file)
+      .def_readonly("format", &Recording::format)
+      .def_property_readonly("times", [](const Recording& r) { return array(r.times); })
+      .def_property_readonly("channels", &channels_of)
+      .def_readonly("left_out", &Recording::left_out)
+      .def_readonly("notes", &Recording::notes)
+      .def_readonly("is_breakpoints", &Recording::is_breakpoints)
+      .def_property_readonly("text", [](const Recording& r) { return recording_text(r); })
+      .def_property_readonly("svg", [](const Recording& r) { return recording_svg(r); });
+  m.def("contact_edges", &edges);
+  m.def("export", &exported);
+}
+
+}  // namespace softland::python

@@ -1,0 +1,289 @@
+#include "reports/scene_export.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/choice.h"
+#include "base/require.h"
+#include "base/split.h"
+#include "config/assumed_spread.h"
+#include "config/units.h"
+#include "exchange/generator.h"
+#include "reports/circuit_model.h"
+#include "reports/quantity.h"
+#include "studies/choices.h"
+#include "studies/device_drives.h"
+#include "studies/ensemble.h"
+#include "studies/sent_signals.h"
+#include "waveforms/export.h"
+#include "waveforms/limits.h"
+
+namespace softland {
+namespace {
+
+using internal::plain_number;
+using Say = std::function<void(const std::string&)>;
+
+// As the shell takes it: an empty value is seen.
+std::string shown_option(const std::string& text) { return text.empty() ? "''" : text; }
+
+constexpr double usual_error = 0.01;  // of a measurement whose error nobody gives, relative
+
+// The formats that are no files of generators.
+constexpr std::array<std::string_view, 6> other_formats{"csv", "spice-pwl", "codes", "spice-model", "spice-bench", "verilog-a"};
+
+// Null: none of a generator. Throws InvalidInput where it is no format at all.
+const GeneratorFormat* generator_format(const std::string& name) {
+  if (std::ranges::find(other_formats, name) != other_formats.end()) return nullptr;
+  std::vector<std::string_view> names(other_formats.begin(), other_formats.end());
+  for (const GeneratorFormat& format : generator_formats()) {
+    if (format.name == name) return &format;
+    names.push_back(format.name);
+  }
+  throw InvalidInput(fmt::format("--format {}: must be one of {}", shown_option(name), fmt::join(names, ", ")));
+}
+
+struct SentRow {
+  Sent value;
+  std::string_view name;
+};
+constexpr auto sent_names = std::to_array<SentRow>({{Sent::told, "told"}, {Sent::output, "output"}});
+static_assert(is_complete<sent_names>());
+
+// A quantity that was measured on a device.
+struct Measured {
+  std::string_view name;
+  Dimension due;
+  std::string said = {};  // how it was given
+  std::optional<double> value = {};
+
+  void read(const std::string& option, const std::string& text) {
+    require(!value, [&] { return fmt::format("{} {}: {} stands twice", option, shown_option(text), name); });
+    Quantity q;
+    try {
+      q = parse_quantity(text);
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(fmt::format("{} {}: {}", option, shown_option(text), error.what()));
+    }
+    require(q.dimension == due && q.value > 0, [&] {
+      return fmt::format("{} {}: must be {} above 0, such as \"{}\"", option, shown_option(text), describe(due), example(due));
+    });
+    value = q.value;
+    said = fmt::format("{} {}", option, shown_option(text));
+  }
+};
+
+// What was measured on the device that gets the waveform.
+struct Measurements {
+  Measured pull_in{.name = measured_pull_in, .due = dimension::voltage};
+  Measured frequency{.name = measured_frequency, .due = dimension::frequency};
+  Measured piezo{.name = measured_piezo, .due = dimension::inverse_voltage};  // its deflection per volt over the contact gap
+  Measured time{.name = measured_time, .due = dimension::time};               // of closing under a step to closing_step Vdp
+
+  explicit Measurements(const ExportRequest& request) {
+    if (request.device_pull_in) pull_in.read("--device-vdp", *request.device_pull_in);
+    if (request.device_frequency) frequency.read("--device-frequency", *request.device_frequency);
+    if (request.measured.empty()) return;
+    for (const std::string& one : split(request.measured, ',')) {
+      const std::size_t sign = one.find('=');
+      const std::string name = one.substr(0, sign);
+      Measured* const known = sign == std::string::npos ? nullptr
+                              : name == pull_in.name    ? &pull_in
+                              : name == frequency.name  ? &frequency
+                              : name == piezo.name      ? &piezo
+                              : name == time.name       ? &time
+                                                        : nullptr;
+      require(known != nullptr, [&] {
+        return fmt::format("--measured {}: '{}' is no measurement; there are {}, such as \"{}=54.2 V\"",
+                           shown_option(request.measured), shown_option(one), in_words(measurement_names), pull_in.name);
+      });
+      known->read(fmt::format("--measured {} =", name), one.substr(sign + 1));
+    }
+    require(!time.value || !pull_in.value,
+            "--measured: a closing time tells the volts of a device, as Vdp does: give one of them");
+  }
+  [[nodiscard]] bool are_none() const { return !pull_in.value && !frequency.value && !piezo.value && !time.value; }
+  [[nodiscard]] const std::string& said() const {
+    return pull_in.value ? pull_in.said : time.value ? time.said : piezo.value ? piezo.said : frequency.said;
+  }
+};
+
+// Of a measurement, relative: what [calibration] says, or the usual one, which is told.
+double error_of(const Measured& measured, const std::optional<double>& given, const Say& say) {
+  if (given && *given > 0) return *given;
+  say(fmt::format("{}: taken to be right to {}: [calibration] gives no error of {}", measured.said,
+                  plain_number(100 * usual_error) + " %", measured.name));
+  return usual_error;
+}
+
+// Warns of a device that hardly any is like; `deviation`: of the spread, `ratio`: what is measured over the nominal, relative.
+void warn_if_strange(const Measured& measured, double ratio, double deviation, const std::optional<double>& error,
+                     const Say& say) {
+  constexpr double strange = 4;
+  const double off = std::abs(ratio - 1), sigma = std::hypot(deviation, error_of(measured, error, say));
+  if (off <= strange * sigma) return;
+  say(
+      fmt::format("warning: {}: {} % from the nominal device, {} times the standard deviation of devices and measurement: is "
+                  "it this switch?",
+                  measured.said, plain_number(100 * off, 3), plain_number(off / sigma, 2)));
+}
+
+// The scene, whose devices differ in the usual way where it does not say how.
+PreparedScene with_spread(const PreparedScene& p) {
+  SceneFile file = p.scene.file;
+  return assume_spread(file) ? prepare(file) : p;
+}
+
+// The units of the device on which this was measured.
+DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int jobs, const Watch& watch, const Say& say) {
+  const DeviceMeter meter(p, {.pull_in = measured.pull_in.value.has_value(),
+                              .closing_time = measured.time.value.has_value(),
+                              .piezo = measured.piezo.value.has_value()});
+  const Calibration& calibration = p.scene.calibration;
+  require(!calibration.classes || (measured.pull_in.value.has_value() == calibration.pull_in_error.has_value() &&
+                                   measured.frequency.value.has_value() == calibration.frequency_error.has_value() &&
+                                   measured.piezo.value.has_value() == calibration.piezo_error.has_value() &&
+                                   measured.time.value.has_value() == calibration.time_error.has_value()),
+          "--measured, --device-vdp, --device-frequency: the scene sorts devices into classes: give what [calibration] measures");
+  const DeviceUnits told = measured.time.value ? meter.told_by(*measured.time.value) : DeviceUnits{};
+  const double volts = measured.pull_in.value ? *measured.pull_in.value / meter.pull_in() : told.volts,
+               time = meter.frequency() / measured.frequency.value.value_or(meter.frequency()),
+               piezo = measured.piezo.value ? DeviceMeter::piezo_unit(p.model) / *measured.piezo.value : 1;
+  const bool by_volts = measured.pull_in.value || measured.time.value;
+  const DeviceUnits deviation = deviation_of_units(with_spread(p), by_volts, jobs, watch);
+  if (measured.time.value)
+    warn_if_strange(measured.time, volts, deviation.volts, told.volts_by_time * calibration.time_error.value_or(usual_time_error),
+                    say);
+  if (measured.pull_in.value) warn_if_strange(measured.pull_in, volts, deviation.volts, calibration.pull_in_error, say);
+  if (measured.frequency.value) warn_if_strange(measured.frequency, 1 / time, deviation.time, calibration.frequency_error, say);
+  if (measured.piezo.value) warn_if_strange(measured.piezo, 1 / piezo, deviation.piezo, calibration.piezo_error, say);
+  const KnownUnits known = known_units(p, std::array{calibration}, jobs, watch).front();
+  return known.of({.volts = volts, .time = time, .piezo = piezo, .volts_by_time = told.volts_by_time});
+}
+
+// The waveforms of that device. Throws InvalidInput where a source cannot give them.
+std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& measured, int jobs, const Watch& watch,
+                                   const Say& say) {
+  const std::vector<Waveform> own =
+      in_units(p.in_drive_order(p.drives.waveforms), p.scene.device, units_of(p, measured, jobs, watch, say));
+  const std::vector<std::string> names = p.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (!p.drives.limits.contains(names[k])) continue;
+    const std::string broken = violation(p.told(k, own[k]), p.limits(k));
+    const std::string& said = measured.said();
+    require(broken.empty(),
+            [&] { return fmt::format("{}: the waveform of this device: drive '{}': {}", said, names[k], broken); });
+  }
+  return own;
+}
+
+// Of the drives that are samples of so many bits; tells which are not.
+std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& sent, const Say& say) {
+  std::map<std::string, Coded> all;
+  const std::vector<std::string> names = p.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto signal = sent.signals.find(names[k]);
+    if (signal == sent.signals.end()) continue;
+    const DriverModel source = p.source(k);
+    if (!source.bits) {
+      say(fmt::format("drive '{}' is left out: [driver.{}] has no sample_rate and bits", names[k], names[k]));
+      continue;
+    }
+    const DriverLimits limits = p.limits(k);
+    all.emplace(names[k], Coded{.held = signal->second,
+                                .sample_rate = *source.sample_rate,
+                                .bits = *source.bits,
+                                .minimum = limits.min_voltage,
+                                .maximum = limits.max_voltage});
+  }
+  require(!all.empty(), "--format codes: no driver takes samples: give [driver.NAME] a sample_rate and bits");
+  return all;
+}
+
+double last_breakpoint(const std::map<std::string, Signal>& signals) {
+  double last = 0;
+  for (const auto& [name, signal] : signals) last = std::max(last, signal.pieces().back().begin);
+  return last;
+}
+
+// What is exported of the scene, with the samples that are asked for.
+struct Exported {
+  PreparedScene sampled;
+  std::optional<PreparedScene> drawn;  // where the samples are not those of the scene
+  std::vector<std::string> drives;
+};
+Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_in, const Watch& watch) {
+  PreparedScene drawn = prepare_and_choose(file, need_pull_in, watch);
+  std::vector<std::string> drives = exported_drives(drawn, request.sampling.drive);
+  if (!request.sampling.rate && !request.sampling.bits) return {std::move(drawn), std::nullopt, std::move(drives)};
+  set_sampling(file, drives, request.sampling);
+  return {prepare_and_choose(file, need_pull_in, watch), std::move(drawn), std::move(drives)};
+}
+
+std::string for_generator(const GeneratorFormat& format, const Exported& what, const SentSignals& sent,
+                          const Sampling& sampling) {
+  require(what.drives.size() == 1, [&] {
+    return fmt::format("--format {}: a file holds one drive: choose it by --drive, one of {}", format.name,
+                       fmt::join(what.drives, ", "));
+  });
+  const std::string& drive = what.drives.front();
+  return generator_text(format, what.sampled, drive, sent.signals.at(drive), sampling);
+}
+
+// The switch itself, where that is asked for. Throws InvalidInput for what has no such model.
+std::optional<std::string> circuit(const std::string& format, const PreparedScene& p) {
+  if (format == "spice-model") return spice_model(p);
+  if (format == "spice-bench") return spice_bench(p);
+  if (format == "verilog-a") return verilog_a(p);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string exported_text(const SceneFile& file, const ExportRequest& request, const Watch& watch, const Say& told) {
+  const Say say = [&](const std::string& line) {
+    if (told) told(line);
+  };
+  const GeneratorFormat* const generator = generator_format(request.format);
+  const SentRow* const row = find_named(sent_names, request.signal);
+  require(row != nullptr, [&] { return fmt::format("--signal {}: must be told or output", shown_option(request.signal)); });
+  const Sent sent_as = row->value;
+  require((request.format != "codes" && generator == nullptr) || sent_as == Sent::told, [&] {
+    return fmt::format("--format {} --signal output: a generator is told samples, not the output of its source", request.format);
+  });
+  require(generator != nullptr || (!request.sampling.amplifier && !request.sampling.marker), [&] {
+    return fmt::format("--amplifier, --marker: belong to the file of a generator, --format {} is none", request.format);
+  });
+  const Measurements measured(request);
+  const Exported what = exported(file, request, !measured.are_none(), watch);
+  const PreparedScene& p = what.sampled;
+  if (std::optional<std::string> model = circuit(request.format, p)) {
+    require(measured.are_none(),
+            [&] { return fmt::format("--format {}: is of the drawing, and of no device that was measured", request.format); });
+    return *std::move(model);
+  }
+  SentSignals sent = sent_signals(
+      p, measured.are_none() ? p.in_drive_order(p.drives.waveforms) : waveforms_of(p, measured, request.jobs, watch, say),
+      sent_as);
+  if (!request.sampling.drive.empty())
+    std::erase_if(sent.signals, [&](const auto& one) { return one.first != request.sampling.drive; });
+  const double end = std::max(p.duration, last_breakpoint(sent.signals));  // the hold level belongs to the waveform
+  if (request.format == "csv") return csv(sent.signals, end, sent.sample_rates);
+  if (request.format == "spice-pwl") return spice_pwl(sent.signals, end);
+  if (generator == nullptr) return codes(coded(p, sent, say));
+  std::string text = for_generator(*generator, what, sent, request.sampling);
+  if (measured.are_none()) {
+    for (const std::string& line : sampled_words(p, what.drawn ? &*what.drawn : nullptr, what.drives.front(), watch)) say(line);
+  }
+  return text;
+}
+
+}  // namespace softland

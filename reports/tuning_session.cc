@@ -1,0 +1,174 @@
+#include "reports/tuning_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "base/content_key.h"
+#include "base/read_file.h"
+#include "base/require.h"
+#include "config/scene.h"
+#include "reports/files.h"
+#include "reports/result_json.h"
+#include "reports/tuning_log.h"
+#include "studies/search_setting.h"
+#include "studies/sent_signals.h"
+#include "waveforms/export.h"
+
+namespace softland {
+namespace {
+
+using Json = nlohmann::json;
+
+// What all closings of a log have in common.
+Json origin_of(const SceneFile& file, const TunerOptions& options) {
+  return {{"scene", content_key(canonical(file, "scene").text()).hexadecimal()},
+          {"actuator", name_of(actuators, options.actuator)},
+          {"seed", options.seed},
+          {"recipes", options.most_recipes},
+          {"effort", options.effort},
+          {"edge_error_s", options.laboratory.edge_error},
+          {"unseen_s", options.laboratory.unseen},
+          {"gain_error", options.laboratory.gain_error},
+          {"shot_error", options.laboratory.shot_error},
+          {"constrain", options.touch ? Json(options.touch->text) : Json()}};
+}
+
+// What a tuning began with and found, in the folder that --out named.
+TunedBelief tuned_in(const std::string& folder, const Json& origin) {
+  const std::string path = (std::filesystem::path(folder) / "tune.json").string();
+  try {
+    const Json written = read_line(read_file(path));
+    for (const char* key : {"scene", "actuator", "gain_error"})
+      require(written.value(origin_key, Json::object()).value(key, Json()) == origin.at(key),
+              [&] { return fmt::format("is a tuning of another {}", key); });
+    return tuned_belief(written);
+  } catch (const InvalidInput& error) {
+    const std::string_view what = error.what();
+    throw InvalidInput(
+        fmt::format("--wafer {}: {}", folder, what.starts_with(path) ? std::string(what) : path + ": " + error.what()));
+  }
+}
+
+}  // namespace
+
+struct TuningSession::State {
+  SceneFile file;
+  TunerOptions options;
+  Json origin = {};
+  std::filesystem::path log_file = {};
+  std::unique_ptr<TuningLog> log = {};
+  std::size_t behind = 0;  // closings of the log that were learned
+  std::optional<Tuner> tuner = {};
+  std::vector<TunedClosing> closings = {};
+
+  void learn(const ContactRecord& record, const Watch& watch) {
+    const TunerShot shot = tuner->next();
+    tuner->learn(record, watch);
+    closings.push_back({.shot = shot, .record = record});
+  }
+};
+
+TuningSession::TuningSession(SceneFile file, TunerOptions options, std::span<const std::string> wafer)
+    : state_(std::make_unique<State>(State{.file = std::move(file), .options = std::move(options)})) {
+  State& s = *state_;
+  check(s.options);
+  s.origin = origin_of(s.file, s.options);
+  Json told = Json::array();
+  for (const std::string& folder : wafer) {
+    s.options.wafer.push_back(tuned_in(folder, s.origin));
+    told.push_back(belief_json(s.options.wafer.back()));
+  }
+  s.origin["wafer"] = told.empty() ? Json() : Json(content_key(told.dump()).hexadecimal());
+}
+
+TuningSession::~TuningSession() = default;
+TuningSession::TuningSession(TuningSession&&) noexcept = default;
+TuningSession& TuningSession::operator=(TuningSession&&) noexcept = default;
+
+std::filesystem::path TuningSession::keep(const std::filesystem::path& log, bool resume) {
+  state_->log = std::make_unique<TuningLog>(log, state_->origin, resume);
+  state_->log_file = log;
+  state_->options.recipes = state_->log->recipes();
+  return state_->log->kept_aside();
+}
+
+void TuningSession::begin(const Watch& watch) {
+  State& s = *state_;
+  try {
+    s.tuner.emplace(s.file, s.options, watch);
+  } catch (const InvalidInput& error) {
+    if (s.options.recipes.empty()) throw;
+    throw InvalidInput(fmt::format("{}: {}", s.log_file.string(), error.what()));
+  }
+  if (s.log && s.log->recipes().empty()) s.log->append(s.tuner->recipes());
+}
+
+// What was proposed then is proposed again, or these closings are of something else.
+bool TuningSession::learn_kept(const Watch& watch) {
+  State& s = *state_;
+  if (!s.log || s.behind == s.log->closings().size()) return false;
+  const TuningLog::Closing& closing = s.log->closings()[s.behind];
+  require(shot_json(told()) == closing.shot, [&] {
+    return fmt::format("{}: this program proposes another shot after the closings before it; name another folder with --out",
+                       s.log->place(closing));
+  });
+  s.learn(closing.record, watch);
+  ++s.behind;
+  return true;
+}
+
+const Tuner& TuningSession::tuner() const { return *state_->tuner; }
+const std::vector<TunedClosing>& TuningSession::closings() const { return state_->closings; }
+
+ToldShot TuningSession::told() const {
+  const TunerShot& shot = tuner().next();
+  return told_shot(shot.number, shot.hold_time, sent_signals(tuner().scene(), shot.waveforms).signals);
+}
+
+void TuningSession::learn(const ContactRecord& record, const Watch& watch, bool is_kept) {
+  const std::string fault = record_fault(record);
+  require(fault.empty(), fault);
+  if (state_->log && !is_kept) state_->log->append(told(), record);
+  state_->learn(record, watch);
+}
+
+void TuningSession::throw_if_failing() const {
+  constexpr std::ptrdiff_t most_failures = 3;  // in a row
+  const std::vector<TunedClosing>& all = closings();
+  const auto of_log = all.rend() - static_cast<std::ptrdiff_t>(state_->behind);
+  const auto failures =
+      std::find_if(all.rbegin(), of_log, [](const TunedClosing& one) { return one.record.error.empty(); }) - all.rbegin();
+  require(failures < most_failures, [&] {
+    return fmt::format("{} shots in a row gave no record; the device said of the last one: {}", failures,
+                       all.back().record.error);
+  });
+}
+
+TuningReport TuningSession::report(TuningEnd end) const { return tuning_report(tuner(), closings(), state_->options, end); }
+
+Json TuningSession::json(TuningEnd end, const Provenance& provenance) const {
+  Json told = tuning_json(report(end), provenance);
+  told[origin_key] = state_->origin;
+  return told;
+}
+
+std::map<std::string, std::string> TuningSession::files(TuningEnd end, const Provenance& provenance) const {
+  const TuningReport now = report(end);
+  const PreparedScene& scene = tuner().scene();
+  const SentSignals kept = sent_signals(scene, now.kept.waveforms);
+  std::map<std::string, Waveform> waveforms;
+  const std::vector<std::string> names = scene.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (kept.signals.contains(names[k])) waveforms.emplace(names[k], now.kept.waveforms[k]);
+  }
+  return {{"best.toml", with_waveforms(scene, waveforms).text()},
+          {"best.csv", csv(kept.signals, scene.duration, kept.sample_rates)},
+          {"tune.json", json_text(json(end, provenance), 1)},
+          {"tune.html", tuning_html(now, provenance)}};
+}
+
+}  // namespace softland
