@@ -27,6 +27,7 @@
 #include "model/tabulated_modes.h"  // ModalTable: a structure by its modes
 
 // Its pieces: the switch, its pull-in voltages, waveforms and one closing.
+#include "exchange/recording.h"  // read: files of instruments
 #include "model/closing.h"       // simulate_closing
 #include "model/pull_in.h"       // static_pull_in, dynamic_pull_in, release_voltage
 #include "model/switch.h"        // Switch
@@ -35,20 +36,22 @@
 #include "waveforms/waveform.h"  // Waveform: the families
 
 // What the verbs of the program do.
-#include "studies/certify.h"          // simulate --certify
-#include "studies/choices.h"          // prepare_and_choose: a scene made ready to run
-#include "studies/derivatives.h"      // figures by what the scene says
-#include "studies/effects.h"          // effects
-#include "studies/evaluator.h"        // figures as a function of numbers of a scene, many rows at once
-#include "studies/for_devices.h"      // optimize: for the drawing, and for devices that differ
-#include "studies/limit.h"            // limit
-#include "studies/optimize.h"         // optimize --robust none
-#include "studies/prepared.h"         // PreparedScene
-#include "studies/release.h"          // release
-#include "studies/robust_optimize.h"  // optimize --robust MEASURE
-#include "studies/robustness.h"       // robustness
-#include "studies/simulate.h"         // simulate
-#include "studies/sweep.h"            // pull-in --sweep
+#include "studies/certify.h"                 // simulate --certify
+#include "studies/choices.h"                 // prepare_and_choose: a scene made ready to run
+#include "studies/derivatives.h"             // figures by what the scene says
+#include "studies/effects.h"                 // effects
+#include "studies/evaluator.h"               // figures as a function of numbers of a scene, many rows at once
+#include "studies/for_devices.h"             // optimize: for the drawing, and for devices that differ
+#include "studies/limit.h"                   // limit
+#include "studies/optimize.h"                // optimize --robust none
+#include "studies/prepared.h"                // PreparedScene
+#include "studies/release.h"                 // release
+#include "studies/robust_optimize.h"         // optimize --robust MEASURE
+#include "studies/robustness.h"              // robustness
+#include "studies/simulate.h"                // simulate
+#include "studies/sweep.h"                   // pull-in --sweep
+#include "studies/tuning/practice_device.h"  // device
+#include "studies/tuning/tuner.h"            // tune
 
 // The doors for what softland does not have.
 #include "model/contact/own.h"
