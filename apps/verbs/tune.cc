@@ -22,6 +22,7 @@
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
 #include "config/assumed_spread.h"
+#include "config/bench.h"
 #include "reports/tuning_report.h"
 #include "reports/tuning_session.h"
 #include "studies/search_setting.h"
