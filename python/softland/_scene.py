@@ -7,6 +7,7 @@ import os
 import sys
 import warnings
 from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Literal, Union
 
@@ -459,7 +460,8 @@ class Scene(MutableMapping[str, Any]):
         try:
             return tuning.run(device, closings=closings, callback=callback, progress=progress)
         except BaseException as error:
-            error.tuning = tuning  # type: ignore[attr-defined]
+            with suppress(AttributeError):  # of an exception that takes no attributes
+                error.tuning = tuning  # type: ignore[attr-defined]
             raise
 
     def device(
