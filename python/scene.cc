@@ -38,6 +38,7 @@
 #include "studies/measurements.h"
 #include "studies/release.h"
 #include "studies/robustness.h"
+#include "studies/sent_signals.h"
 #include "waveforms/export.h"
 
 namespace softland::python {
@@ -263,7 +264,10 @@ Outcome limit(PyScene& scene, const std::string& actuator, std::optional<double>
     Outcome outcome{.json = json_text(limit_json(*found, {.command = command}))};
     outcome.files = {{"limit.json", [found, command] { return json_text(limit_json(*found, {.command = command}), 1) + "\n"; }},
                      {"limit.svg", [found] { return limit_svg(*found); }}};
-    if (found->landing) outcome.files["best.toml"] = [found] { return found->landing->scene.scene.file.text(); };
+    if (found->landing) {
+      outcome.files["best.toml"] = [found] { return found->landing->scene.scene.file.text(); };
+      outcome.files["best.csv"] = [found] { return told_csv(found->landing->scene); };
+    }
     return outcome;
   });
 }
@@ -349,12 +353,14 @@ Outcome calibrated(PyScene& scene, const std::map<std::string, double>& errors, 
     *found->second = error;
   }
   PyScene spread{.file = scene.file, .directory = scene.directory};
-  assume_spread(spread.file);
+  const bool assumed = assume_spread(spread.file);
   Run run(progress);
   return {.json = run([&](const Watch& watch) {
             const MeasurementStudy found = study_measurements(spread.file, options, watch);
             watch.throw_if_stopped();
-            return json_text(measurements_json(found, options, command));
+            nlohmann::json data = measurements_json(found, options, command);
+            data["spread_assumed"] = assumed;
+            return json_text(data);
           })};
 }
 

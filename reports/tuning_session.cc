@@ -11,7 +11,6 @@
 #include "base/read_file.h"
 #include "base/require.h"
 #include "config/scene.h"
-#include "reports/files.h"
 #include "reports/result_json.h"
 #include "reports/tuning_log.h"
 #include "studies/search_setting.h"

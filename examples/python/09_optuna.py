@@ -47,7 +47,7 @@ for touch, speed in front[:: max(1, len(front) // 8)]:
 
 # %%
 slow = step.initial_contact_time * 1.4e6
-softest = min((trial for trial in study.best_trials if trial.values[0] < slow), key=lambda trial: trial.values[1])
+softest = min((trial for trial in study.best_trials if trial.values[0] < slow), key=lambda trial: float(trial.values[1]))
 levels = [softest.params["waveform.main.levels[1]"], softest.params["waveform.main.levels[2]"], hold]
 times = [softest.params["waveform.main.times[1]"], softest.params["waveform.main.times[2]"]]
 closing = scene.simulate(waveforms={"main": softland.Waveform("pulse", levels=levels, times=times, edge="1 us")})

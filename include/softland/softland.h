@@ -27,6 +27,7 @@
 #include "model/tabulated_modes.h"  // ModalTable: a structure by its modes
 
 // Its pieces: the switch, its pull-in voltages, waveforms and one closing.
+#include "exchange/recording.h"  // read: files of instruments
 #include "model/closing.h"       // simulate_closing
 #include "model/pull_in.h"       // static_pull_in, dynamic_pull_in, release_voltage
 #include "model/switch.h"        // Switch
@@ -52,6 +53,8 @@
 #include "studies/robustness.h"                // robustness
 #include "studies/simulate.h"                  // simulate
 #include "studies/sweep.h"                     // pull-in --sweep
+#include "studies/tuning/practice_device.h"    // device
+#include "studies/tuning/tuner.h"              // tune
 
 // The doors for what softland does not have.
 #include "model/contact/own.h"

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _softland
+from ._errors import InvalidInput
 from ._progress import Progress, shown
 
 if TYPE_CHECKING:
@@ -45,6 +46,9 @@ class Evaluator:
     def __call__(self, x: npt.ArrayLike, progress: bool | Progress | None = False) -> Array:
         """Figures of rows: (n, d) -> (n, m), or of one row (d,) -> (m,). Raises InvalidInput for another shape, KeyboardInterrupt on Ctrl-C."""
         rows = np.asarray(x, float)
+        if rows.ndim not in (1, 2) or rows.shape[-1] != len(self.keys):
+            hint = ": one key, so x[:, None]" if len(self.keys) == 1 and rows.ndim == 1 else ""
+            raise InvalidInput(f"evaluator: expected rows of {', '.join(self.keys)}, shape (n, {len(self.keys)}), got {rows.shape}{hint}")
         with shown(progress) as tell:
             values, self._status, self._reasons = self._native.evaluate(np.atleast_2d(rows), self.jobs, tell)
         return np.asarray(values[0] if rows.ndim == 1 else values)

@@ -7,6 +7,7 @@ import os
 import sys
 import warnings
 from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Union
 
@@ -14,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _softland
+from ._bench import bench_of
 from ._closing import Closing
 from ._evaluator import Evaluator
 from ._files import write_whole
@@ -300,7 +302,7 @@ class Scene(MutableMapping[str, Any]):
 
     def fit(
         self,
-        data: str | os.PathLike[str],
+        data: str | os.PathLike[str] | Sequence[Mapping[str, Any]],
         unknowns: Sequence[str] = (),
         *,
         shared: Sequence[str] = (),
@@ -310,14 +312,17 @@ class Scene(MutableMapping[str, Any]):
         jobs: int | None = None,
         progress: bool | Progress | None = None,
     ) -> Outcome:
-        """The scene fitted to the measurements of a bench file (docs/fit.md): values with standard errors and correlations.
+        """The scene fitted to measurements: values with standard errors and correlations.
 
+        data: a bench file, or measurements with the keys of one (docs/fit.md): {"quantity": "frequency", "value": 10.39e3, "error": "0.5 %"}; numbers in SI
+            units. Rows are arrays: "times" [s] or "levels" [V] with "values", {"quantity": "velocity", "times": t, "values": v, "error": 1e-3}; of a
+            "contact" the voltage at it, with its "threshold".
         unknowns: entries of [spread], which are their priors, or keys of the scene; default: all of [spread]. shared: what all devices of the file have in
         common. loss: how data that do not agree count. `found.file("fitted.toml")` is the scene found. Needs the Debian package libceres-dev.
         """
-        with shown(progress) as tell:
+        with bench_of(data) as path, shown(progress) as tell:
             return Outcome(
-                self._native.fit(os.fspath(data), list(unknowns), list(shared), loss, starts, seed, _jobs(jobs), _command(), tell)
+                self._native.fit(path, list(unknowns), list(shared), loss, starts, seed, _jobs(jobs), _command(), tell)
             )
 
     def optimize(
@@ -498,7 +503,8 @@ class Scene(MutableMapping[str, Any]):
         try:
             return tuning.run(device, closings=closings, callback=callback, progress=progress)
         except BaseException as error:
-            error.tuning = tuning  # type: ignore[attr-defined]
+            with suppress(AttributeError):  # of an exception that takes no attributes
+                error.tuning = tuning  # type: ignore[attr-defined]
             raise
 
     def device(
@@ -541,7 +547,8 @@ class Scene(MutableMapping[str, Any]):
             its own, of which any number that is written may vary, in the unit that it is written in, Vdp too.
         jobs: threads; default: one per core. tolerance: of the integrator; with 1e-5 95 % quantiles of rebounds move by less than 0.4 %.
         """
-        return Evaluator(self, keys, figures, vdp, jobs, tolerance)
+        given = [[one] if isinstance(one, str) else one for one in (keys, figures)]
+        return Evaluator(self, given[0], given[1], vdp, jobs, tolerance)
 
     def __repr__(self) -> str:
         title = self._tree().get("title", "")

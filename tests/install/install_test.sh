@@ -48,6 +48,16 @@ for program in "$work/by_pkg_config" "$work/consumer/consumer"; do
   [[ $said =~ ^'first contact after 3'[0-9.]+' us'$ ]] || fail "$program says: $said"
 done
 
+# All that softland/softland.h lists, and the errors that it throws.
+# shellcheck disable=SC2086
+quietly "$compiler" $flags "$here/consumer/device.cc" -o "$work/device_by_pkg_config" $libraries
+sed 's/^contact = .*/contact = "9 um"/' "$scenes/mem-gold.toml" >"$work/wrong.toml"
+for program in "$work/device_by_pkg_config" "$work/consumer/device"; do
+  said=$("$program" "$scenes/mem-gold.toml")
+  [[ $said =~ ^'closed '[1-9][0-9]*' times'$ ]] || fail "$program says: $said"
+  [ "$("$program" "$work/wrong.toml")" = gap.contact ] || fail "$program does not tell which key is wrong"
+done
+
 # The examples, as they are installed.
 examples=$(find "$prefix/share/doc" -type d -name examples)
 quietly cmake -G Ninja -S "$examples" -B "$work/examples" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release

@@ -64,6 +64,45 @@ class Bits(unittest.TestCase):
             self.assertEqual([row[k] for row in own[1:]], [row[k] for row in other[1:]], other[0][k])
         self.assertGreater(compared, 10)
 
+    def test_other_verbs(self):
+        path = SCENES / "mem-gold.toml"
+        scene = softland.load(path)
+        with tempfile.TemporaryDirectory() as folder:
+            place = pathlib.Path(folder)
+            best = place / "best.toml"
+            best.write_text(scene.optimize(robust="none", budget=300).file("best.toml"))
+            for verb, found, of, options in (
+                ("limit", scene.limit(curves=False), path, ("--no-curves", "--out", place / "limit")),
+                ("release", scene.opening(budget=100, samples=16), path, ("--budget", "100", "--samples", "16", "--out", place / "release")),
+                ("calibrate", softland.load(best).calibrate(samples=16), best, ("--samples", "16")),
+            ):
+                with self.subTest(verb=verb):
+                    ours, theirs = figures(found.to_json()), figures(said_by_program(verb, of, *map(str, options)))
+                    self.assertGreater(len(theirs), 2)
+                    _nearly(self, _without(ours), _without(theirs))
+                    if verb == "calibrate":
+                        continue
+                    left = {one.name for one in (place / verb).iterdir() if not one.name.startswith(".")}
+                    self.assertEqual(set(found.files), left)
+                    for name in left - {f"{verb}.json"}:
+                        self.assertEqual(found.file(name), (place / verb / name).read_text(), name)
+
+    def test_effects(self):
+        path = SCENES / "mem-gold.toml"
+        ours, theirs = (one["effects"] for one in (softland.load(path).effects().to_json(), said_by_program("effects", path)))
+        # How long a law takes is of the machine, and after many rebounds the last digits of a compressible film are all there is.
+        sound = ("initial_contact_time_s", "impact_velocity_m_s", "peak_contact_force_N")
+        for one, other in zip(ours, theirs, strict=True):
+            self.assertEqual(one["choice"], other["choice"])
+            _nearly(self, {key: one["metrics"][key] for key in sound}, {key: other["metrics"][key] for key in sound})
+
+    def test_accuracy_has_the_settings_of_the_program(self):
+        path = SCENES / "mem-gold.toml"
+        short = {"simulate.duration": "40 us"}
+        ours = softland.load(path, set=short).accuracy().to_json()
+        theirs = said_by_program("accuracy", path, "--set", "simulate.duration=40 us")
+        self.assertEqual(ours.keys(), theirs.keys())  # figures depend on how fast the machine is
+
     def test_a_fit(self):
         path = SCENES / "mem-gold.toml"
         with tempfile.TemporaryDirectory() as folder:

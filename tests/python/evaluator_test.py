@@ -152,8 +152,12 @@ class Evaluators(unittest.TestCase):
             self.scene.evaluator(["structure.thickness"], ["impact"])
         with self.assertRaisesRegex(softland.InvalidInput, "level"):
             self.scene.evaluator(["waveform.main.levle"], ["impact_velocity"])
-        with self.assertRaises(softland.InvalidInput):
+        with self.assertRaisesRegex(softland.InvalidInput, r"\(n, 4\), got \(3, 7\)"):
             self.evaluate(np.zeros((3, 7)))
+        one = self.scene.evaluator("gap.contact", "impact_velocity")
+        self.assertEqual((one.keys, one.figures), (["gap.contact"], ["impact_velocity"]))
+        with self.assertRaisesRegex(softland.InvalidInput, r"x\[:, None\]"):
+            one(np.linspace(1.9e-6, 2.1e-6, 5))
 
     def test_scipy_takes_one_figure_in_whole_populations(self):
         try:

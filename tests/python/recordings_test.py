@@ -89,6 +89,47 @@ class Recordings(unittest.TestCase):
             softland.contact_edges(times, volts[1:], 1.0)
 
 
+class Fits(unittest.TestCase):
+    def test_measurements_as_arrays_are_those_of_a_bench_file(self):
+        scene = softland.load(GOLD)
+        device = softland.load(GOLD, set={"gap.contact": 1.03 * scene["gap.contact"], "gap.electrode": 1.03 * scene["gap.electrode"]})
+        closing = device.simulate(errors=False, waveforms=dict(scene.waveforms))
+        times = np.arange(0, 10_000) * 1e-8
+        closed = np.interp(times, closing.trajectory["time"], closing.trajectory["gap"]) <= 0
+        volts = np.where((times > 0) & closed, 5.0, 0.0)
+        frequency = float(device.modes().frequencies[0])
+        measured = [
+            {"quantity": "contact", "times": times, "values": volts, "threshold": 2.5, "error": 30e-9},
+            {"quantity": "frequency", "value": np.array([frequency]), "error": "0.5 %"},
+            {"quantity": "closing_time", "levels": [20.0, 25.0], "values": [device_time(device, 20.0), device_time(device, 25.0)], "error": 50e-9},
+        ]
+        found = scene.fit(measured, ["gaps"])
+        # The device's gaps are 3 % larger; that of the contact is known to the sampling of 10 ns.
+        self.assertLess(abs(found.unknowns[0]["value"] - 1.03), 3 * found.unknowns[0].standard_error)
+        self.assertLess(found.unknowns[0].standard_error, 2e-3)
+        with tempfile.TemporaryDirectory() as folder:
+            place = pathlib.Path(folder)
+            np.savetxt(place / "scope.csv", np.column_stack([times, volts]), delimiter=",", header="time_s,voltage_V", comments="")
+            (place / "times.csv").write_text("voltage_V,closing_time_s\n" + "".join(f"{v!r},{t!r}\n" for v, t in zip((20.0, 25.0), measured[2]["values"])))
+            (place / "bench.toml").write_text(
+                '[[measurement]]\nquantity = "contact"\nfile = "scope.csv"\nthreshold = "2.5 V"\nerror = "30 ns"\n'
+                f'[[measurement]]\nquantity = "frequency"\nvalue = ["{frequency!r} Hz"]\nerror = "0.5 %"\n'
+                '[[measurement]]\nquantity = "closing_time"\nfile = "times.csv"\nerror = "50 ns"\n'
+            )
+            same = scene.fit(place / "bench.toml", ["gaps"])
+            relative = scene.fit([{**measured[1]}, {"quantity": "closing_time", "file": os.path.relpath(place / "times.csv"), "error": "50 ns"}], ["gaps"])
+        self.assertEqual(found.unknowns[0].to_json(), same.unknowns[0].to_json())
+        self.assertLess(abs(relative.unknowns[0]["value"] - 1.03), 3 * relative.unknowns[0].standard_error)
+        with self.assertRaisesRegex(softland.InvalidInput, "quantity"):
+            scene.fit([{"quantity": "frequencies", "value": 1.0}])
+
+
+def device_time(device, volts):
+    step = softland.Waveform("step", level=volts)
+    free = softland.load(device.text, set={"driver.main.max_voltage": "30 V"})
+    return float(free.simulate(errors=False, waveforms={"main": step}).initial_contact_time)
+
+
 class Exports(unittest.TestCase):
     def by_program(self, *options):
         return subprocess.run([PROGRAM, "export", GOLD, *options], capture_output=True, text=True, check=True)

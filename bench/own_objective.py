@@ -1,0 +1,20 @@
+"""own_objective.py: what a search for devices takes by an objective that is a Python function, beside the target that is the same. A table of results/python.md.
+
+Seconds of the processor, of all threads: what else the machine does counts little.
+"""
+
+import time
+
+import softland
+
+
+def gentle(closing, step):
+    return closing["peak_contact_force"] / step["peak_contact_force"]
+
+
+scene = softland.shipped("mem-gold")
+for name, what in (("objective", {"objective": gentle}), ("target", {"target": "force"})):
+    began = time.process_time()
+    found = scene.optimize(robust="cvar:0.9", waveform="pulse", budget=4000, samples=64, jobs=2, **what)
+    took = time.process_time() - began
+    print(f"{name:10s} {took:6.2f} s, {found.evaluations} candidates, peak contact force {found.metrics.peak_contact_force:.6g} N")
