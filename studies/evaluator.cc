@@ -23,7 +23,7 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t rows_of_task = 128;  // rows of one task: many to a lane, few between two looks at a Watch
+constexpr std::size_t rows_of_task = 64;  // rows of one task: many to a lane, few between two looks at a Watch
 
 // "electrode.main.span[2]" as its path and 2; without an element 0.
 std::pair<std::string, std::size_t> key_and_element(const std::string& key) {
