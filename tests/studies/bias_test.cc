@@ -11,8 +11,8 @@
 #include "scenes.h"
 #include "studies/certify.h"
 #include "studies/ensemble.h"
-#include "studies/prepared.h"
 #include "studies/exploration/pull_in_memory.h"
+#include "studies/prepared.h"
 #include "studies/simulate.h"
 
 namespace softland::bias_test {
