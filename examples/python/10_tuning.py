@@ -30,6 +30,6 @@ found = scene.tune(fire, callback=print)
 
 # %%
 for quantity in found.belief.quantities:
-    print(f"{quantity.name:20s} {quantity.prior_mean:8.3g} ± {quantity.prior_deviation:.2g} before, {quantity['mean']:8.3g} ± {quantity.deviation:.2g} now")
+    print(f"{quantity.name:24s} {quantity.prior_mean:5.3g} ± {quantity.prior_deviation:.2g} before, {quantity['mean']:8.3g} ± {quantity.deviation:.2g} now")
 step = scene.simulate(errors=False)
 print(f"the last {found.bounce_free_in_a_row} of {len(found.closings)} closings are without a bounce; the plain step on the drawing has {step.bounce_count:.0f}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -21,7 +22,9 @@ def shown(progress: bool | Progress | None) -> Iterator[Progress | None]:
     bar: Any = None
     if progress:
         try:
-            from tqdm.auto import tqdm
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of a notebook without ipywidgets, where the bar is one of text
+                from tqdm.auto import tqdm
         except ImportError:
             yield None
             return
