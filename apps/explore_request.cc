@@ -23,7 +23,7 @@ PlanRequest plan_of_options(const Common& c, const ExploreRequest& r) {
   plan.place = [given, vary = r.vary](std::string_view key, std::size_t number) {
     const auto found = given.find(std::string(key));
     const std::string value = key == "vary" && number < vary.size() ? vary[number] : found == given.end() ? "" : found->second;
-    return key == "certify" ? std::string("--certify") : fmt::format("--{} {}", key, shortened(printable_line(shown(value))));
+    return key == "certify" ? std::string("--certify") : fmt::format("--{} {}", key, shortened(printable_line(visible(value))));
   };
   if (!r.study.empty()) plan.study = r.study;
   for (const std::string_view name : plan_options) {

@@ -127,10 +127,10 @@ class HandLab final : public TuningLab {
     }
     const Quantity time = parse_quantity(text);
     if (time.dimension != dimension::time || !(time.value >= 0))
-      throw InvalidInput(fmt::format("{} is no time; write it with its unit, such as \"36.1 us\"", shown(text)));
+      throw InvalidInput(fmt::format("{} is no time; write it with its unit, such as \"36.1 us\"", visible(text)));
     if (time.value > duration)
       throw InvalidInput(
-          fmt::format("{} is after the end of the record, which is {} long", shown(text), quantity(duration, "s")));
+          fmt::format("{} is after the end of the record, which is {} long", visible(text), quantity(duration, "s")));
     return {.closing_time = time.value};
   }
 

@@ -11,13 +11,11 @@
 #include <system_error>
 
 #include "base/require.h"
+#include "base/shortened.h"
 #include "config/units.h"
 #include "sampling/points.h"
 
 namespace softland::apps {
-
-/// As the shell takes it: an empty value is seen.
-[[nodiscard]] inline std::string shown(const std::string& text) { return text.empty() ? "''" : text; }
 
 template <class Number>
 [[nodiscard]] Number whole_number(const char* option, const std::string& text, Number least) {
@@ -26,7 +24,7 @@ template <class Number>
   require(error != std::errc::result_out_of_range,
           fmt::format("{} {}: must be a whole number from {} to {}", option, text, least, std::numeric_limits<Number>::max()));
   require(error == std::errc() && end == text.data() + text.size() && value >= least,
-          fmt::format("{} {}: must be a whole number from {} on", option, shown(text), least));
+          fmt::format("{} {}: must be a whole number from {} on", option, visible(text), least));
   return value;
 }
 

@@ -36,25 +36,26 @@ void require(bool rule_holds, Message&& message, std::source_location where = st
 /// The name of a field of a request, for the message of an InvalidRequest.
 [[nodiscard]] inline std::string requested(std::string_view field) { return '\x02' + std::string(field) + '\x03'; }
 
+/// Words with `before` each of the fields that requested() has marked: "--" for a command line, "" for a library.
+[[nodiscard]] inline std::string with_fields(std::string_view words, std::string_view before) {
+  std::string text;
+  for (const char c : words) {
+    if (c == '\x02') text += before;
+    if (c != '\x02' && c != '\x03') text += c;
+  }
+  return text;
+}
+
 /// A request, such as OptimizeOptions, that breaks a rule. Its message names the fields as requested() marks them; what() has
 /// their bare names.
 class InvalidRequest : public InvalidInput {
  public:
   explicit InvalidRequest(const std::string& message, std::source_location where = std::source_location::current())
-      : InvalidInput(with_fields(message, ""), where), message_(message) {}
-  /// The message with `before` each of its fields: "--" for a command line.
-  [[nodiscard]] std::string with_fields(std::string_view before) const { return with_fields(message_, before); }
+      : InvalidInput(softland::with_fields(message, ""), where), message_(message) {}
+  /// The message with `before` each of its fields.
+  [[nodiscard]] std::string with_fields(std::string_view before) const { return softland::with_fields(message_, before); }
 
  private:
-  static std::string with_fields(std::string_view message, std::string_view before) {
-    std::string text;
-    for (const char c : message) {
-      if (c == '\x02') text += before;
-      if (c != '\x02' && c != '\x03') text += c;
-    }
-    return text;
-  }
-
   std::string message_;
 };
 
@@ -62,6 +63,14 @@ class InvalidRequest : public InvalidInput {
 template <std::invocable Message>
 void require_request(bool rule_holds, Message&& message, std::source_location where = std::source_location::current()) {
   if (!rule_holds) throw InvalidRequest(message(), where);
+}
+
+/// The same of one field and what was given for it: "FIELD GIVEN: " and broken(), the rule.
+template <std::invocable Broken>
+void require_field(bool rule_holds, std::string_view field, std::string_view given, Broken&& broken,
+                   std::source_location where = std::source_location::current()) {
+  require_request(
+      rule_holds, [&] { return requested(field) + ' ' + std::string(given) + ": " + std::string(broken()); }, where);
 }
 
 /// A parameter that breaks the rules of what it belongs to: a waveform family, a distribution.

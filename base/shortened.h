@@ -15,6 +15,9 @@ namespace softland {
   return std::string(text.substr(0, longest)) + "…";
 }
 
+/// As the shell takes it: an empty text is seen.
+[[nodiscard]] inline std::string visible(const std::string& text) { return text.empty() ? "''" : text; }
+
 /// `text` with every word longer than any path cut short: a message stays one that people read.
 [[nodiscard]] inline std::string with_words_shortened(std::string_view text) {
   constexpr std::size_t longest_word = 1000;

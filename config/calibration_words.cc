@@ -18,20 +18,17 @@ void set_calibration(SceneFile& file, const std::string& words) {
   if (words == "none") return;
   constexpr std::string_view before = " in ", after = " classes";
   const std::size_t in = words.ends_with(after) ? words.rfind(before) : std::string::npos;
-  const auto rule = [&](bool holds, const auto& broken) {
-    require_request(holds, [&] { return fmt::format("{} {}: {}", requested("calibrate"), words, broken()); });
-  };
   std::set<std::string> seen;
   for (const std::string& one : split(words.substr(0, in), ',')) {
     const std::size_t colon = one.find(':');
     const std::string name = one.substr(0, colon), error = colon != std::string::npos ? one.substr(colon + 1)
                                                            : name == measured_time    ? "0 s"
                                                                                       : "0 %";
-    rule(std::ranges::find(measurement_names, name) != measurement_names.end(), [&] {
+    require_field(std::ranges::find(measurement_names, name) != measurement_names.end(), "calibrate", words, [&] {
       return fmt::format("'{}' is no measurement; there are {}, with an error such as {}:1 % or {}:50 ns", name,
                          in_words(measurement_names), measured_pull_in, measured_time);
     });
-    rule(seen.insert(name).second, [&] { return fmt::format("{} stands twice", name); });
+    require_field(seen.insert(name).second, "calibrate", words, [&] { return fmt::format("{} stands twice", name); });
     file.set(fmt::format("calibration.{}.error=\"{}\"", name, error));
   }
   if (in == std::string::npos) return;

@@ -7,21 +7,22 @@
 #include <string_view>
 
 #include "base/require.h"
+#include "base/shortened.h"
 #include "config/units.h"
 
 namespace softland {
 
-/// Of this dimension, at least 0 [SI unit]. Throws InvalidInput that names `what`, such as "--marker", the text and the rule.
+/// Of this dimension, at least 0 [SI unit]. Throws InvalidRequest that names `what`, such as requested("marker"), the text and
+/// the rule.
 [[nodiscard]] inline double told_quantity(std::string_view what, const std::string& text, const Dimension& due) {
-  const std::string shown = text.empty() ? "''" : text;
   Quantity given;
   try {
     given = parse_quantity(text);
   } catch (const InvalidInput& error) {
-    throw InvalidInput(fmt::format("{} {}: {}", what, shown, error.what()));
+    throw InvalidRequest(fmt::format("{} {}: {}", what, visible(text), error.what()));
   }
-  require(given.dimension == due && given.value >= 0, [&] {
-    return fmt::format("{} {}: must be {}, at least 0, such as \"{}\"", what, shown, describe(due),
+  require_request(given.dimension == due && given.value >= 0, [&] {
+    return fmt::format("{} {}: must be {}, at least 0, such as \"{}\"", what, visible(text), describe(due),
                        due == dimension::none ? "0.5 %" : example(due));
   });
   return given.value;

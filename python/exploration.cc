@@ -86,12 +86,9 @@ void explore(const PyScene& scene, const py::dict& given) {
     Exploration exploration(Plan(request.plan), watch);
     const bool is_search = exploration.plan().is_search();
     const Shard shard = request.shard.empty() ? Shard{} : shard_from(request.shard);
-    require(!is_search || shard.count == 1, "shard: a search for a front goes from point to point and cannot be divided");
-    require(static_cast<std::uint64_t>(shard.count) <= exploration.plan().points(), [&] {
-      return fmt::format("shard {}: a study of {} points has no more parts", request.shard, exploration.plan().points());
-    });
+    require_part(exploration, shard);
     std::vector<ExploredAim> aims;
-    if (is_search) aims = explored_aims(explored_columns(stored_plan(exploration, {})), exploration.plan().pareto());
+    if (is_search) aims = aims_of(exploration);
     KnownRows known = is_search && request.resume ? known_rows(request.out) : KnownRows{};
     StudyStore store(request.out, stored_plan(exploration, shard), stored_origin(request.command),
                      request.resume ? StudyStore::Opening::resume : StudyStore::Opening::fresh);

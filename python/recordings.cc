@@ -88,7 +88,7 @@ py::tuple exported(const PyScene& scene, const py::dict& given, const py::object
   std::vector<std::string> said;
   Run run(progress);
   const std::string found = run([&](const Watch& watch) {
-    return exported_text(file, request, watch, [&](const std::string& line) { said.push_back(line); });
+    return exported_text(file, request, watch, [&](const std::string& line) { said.push_back(with_fields(line, "")); });
   });
   return py::make_tuple(found, said);
 }

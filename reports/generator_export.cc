@@ -54,8 +54,8 @@ std::vector<std::string> exported_drives(const PreparedScene& p, const std::stri
     if (!told[k].is_zero()) driven.push_back(names[k]);
   }
   if (named.empty()) return driven;
-  require(std::ranges::find(all, named) != all.end(),
-          [&] { return fmt::format("--drive {}: is no drive of this scene; there are {}", named, fmt::join(all, ", ")); });
+  require_field(std::ranges::find(all, named) != all.end(), "drive", named,
+                [&] { return fmt::format("is no drive of this scene; there are {}", fmt::join(all, ", ")); });
   return {named};
 }
 
@@ -69,21 +69,20 @@ void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const
 std::string generator_text(const GeneratorFormat& format, const PreparedScene& p, const std::string& drive, const Signal& told,
                            const Sampling& sampling) {
   const DriverModel source = p.source(place_of(p, drive));
-  require(source.sample_rate.has_value(), [&] {
-    return fmt::format("--format {}: drive '{}' takes no samples: give --sample-rate, or [driver.{}] a sample_rate", format.name,
-                       drive, drive);
+  require_field(source.sample_rate.has_value(), "format", format.name, [&] {
+    return fmt::format("drive '{}' takes no samples: give {}, or [driver.{}] a sample_rate", drive, requested("sample-rate"),
+                       drive);
   });
   const double rate = *source.sample_rate;
-  const double factor = sampling.amplifier ? told_quantity("--amplifier", *sampling.amplifier, dimension::none) : 1;
-  require(factor > 0, "--amplifier 0: must be above 0: volts at the switch per volt of the generator");
+  const double factor = sampling.amplifier ? told_quantity(requested("amplifier"), *sampling.amplifier, dimension::none) : 1;
+  require_field(factor > 0, "amplifier", "0", [] { return "must be above 0: volts at the switch per volt of the generator"; });
   GeneratorSamples samples{.name = drive, .rate = rate};
   const double last = std::round(told.pieces().back().begin * rate);
   for (double k = 0; k <= last; ++k) samples.volts.push_back(told.voltage(k / rate) / factor);
   if (sampling.marker) {
-    const double at = std::round(told_quantity("--marker", *sampling.marker, dimension::time) * rate);
-    require(at >= 0 && at <= last, [&] {
-      return fmt::format("--marker {}: must be within the waveform, 0 to {}", *sampling.marker, quantity(last / rate, "s"));
-    });
+    const double at = std::round(told_quantity(requested("marker"), *sampling.marker, dimension::time) * rate);
+    require_field(at >= 0 && at <= last, "marker", *sampling.marker,
+                  [&] { return fmt::format("must be within the waveform, 0 to {}", quantity(last / rate, "s")); });
     samples.marker = static_cast<std::size_t>(at);
   }
   return generator_file(format, std::move(samples));

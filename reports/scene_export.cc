@@ -13,6 +13,7 @@
 
 #include "base/choice.h"
 #include "base/require.h"
+#include "base/shortened.h"
 #include "base/split.h"
 #include "config/assumed_spread.h"
 #include "config/units.h"
@@ -32,9 +33,6 @@ namespace {
 using internal::plain_number;
 using Say = std::function<void(const std::string&)>;
 
-// As the shell takes it: an empty value is seen.
-std::string shown_option(const std::string& text) { return text.empty() ? "''" : text; }
-
 constexpr double usual_error = 0.01;  // of a measurement whose error nobody gives, relative
 
 // The formats that are no files of generators.
@@ -48,7 +46,7 @@ const GeneratorFormat* generator_format(const std::string& name) {
     if (format.name == name) return &format;
     names.push_back(format.name);
   }
-  throw InvalidInput(fmt::format("--format {}: must be one of {}", shown_option(name), fmt::join(names, ", ")));
+  throw InvalidRequest(fmt::format("{} {}: must be one of {}", requested("format"), visible(name), fmt::join(names, ", ")));
 }
 
 struct SentRow {
@@ -66,18 +64,18 @@ struct Measured {
   std::optional<double> value = {};
 
   void read(const std::string& option, const std::string& text) {
-    require(!value, [&] { return fmt::format("{} {}: {} stands twice", option, shown_option(text), name); });
+    require_request(!value, [&] { return fmt::format("{} {}: {} stands twice", option, visible(text), name); });
     Quantity q;
     try {
       q = parse_quantity(text);
     } catch (const InvalidInput& error) {
-      throw InvalidInput(fmt::format("{} {}: {}", option, shown_option(text), error.what()));
+      throw InvalidRequest(fmt::format("{} {}: {}", option, visible(text), error.what()));
     }
-    require(q.dimension == due && q.value > 0, [&] {
-      return fmt::format("{} {}: must be {} above 0, such as \"{}\"", option, shown_option(text), describe(due), example(due));
+    require_request(q.dimension == due && q.value > 0, [&] {
+      return fmt::format("{} {}: must be {} above 0, such as \"{}\"", option, visible(text), describe(due), example(due));
     });
     value = q.value;
-    said = fmt::format("{} {}", option, shown_option(text));
+    said = fmt::format("{} {}", option, visible(text));
   }
 };
 
@@ -89,8 +87,8 @@ struct Measurements {
   Measured time{.name = measured_time, .due = dimension::time};               // of closing under a step to closing_step Vdp
 
   explicit Measurements(const ExportRequest& request) {
-    if (request.device_pull_in) pull_in.read("--device-vdp", *request.device_pull_in);
-    if (request.device_frequency) frequency.read("--device-frequency", *request.device_frequency);
+    if (request.device_pull_in) pull_in.read(requested("device-vdp"), *request.device_pull_in);
+    if (request.device_frequency) frequency.read(requested("device-frequency"), *request.device_frequency);
     if (request.measured.empty()) return;
     for (const std::string& one : split(request.measured, ',')) {
       const std::size_t sign = one.find('=');
@@ -101,14 +99,15 @@ struct Measurements {
                               : name == piezo.name      ? &piezo
                               : name == time.name       ? &time
                                                         : nullptr;
-      require(known != nullptr, [&] {
-        return fmt::format("--measured {}: '{}' is no measurement; there are {}, such as \"{}=54.2 V\"",
-                           shown_option(request.measured), shown_option(one), in_words(measurement_names), pull_in.name);
+      require_field(known != nullptr, "measured", visible(request.measured), [&] {
+        return fmt::format("'{}' is no measurement; there are {}, such as \"{}=54.2 V\"", visible(one),
+                           in_words(measurement_names), pull_in.name);
       });
-      known->read(fmt::format("--measured {} =", name), one.substr(sign + 1));
+      known->read(fmt::format("{} {} =", requested("measured"), name), one.substr(sign + 1));
     }
-    require(!time.value || !pull_in.value,
-            "--measured: a closing time tells the volts of a device, as Vdp does: give one of them");
+    require_request(!time.value || !pull_in.value, [] {
+      return requested("measured") + ": a closing time tells the volts of a device, as Vdp does: give one of them";
+    });
   }
   [[nodiscard]] bool are_none() const { return !pull_in.value && !frequency.value && !piezo.value && !time.value; }
   [[nodiscard]] const std::string& said() const {
@@ -148,11 +147,14 @@ DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int j
                               .closing_time = measured.time.value.has_value(),
                               .piezo = measured.piezo.value.has_value()});
   const Calibration& calibration = p.scene.calibration;
-  require(!calibration.classes || (measured.pull_in.value.has_value() == calibration.pull_in_error.has_value() &&
-                                   measured.frequency.value.has_value() == calibration.frequency_error.has_value() &&
-                                   measured.piezo.value.has_value() == calibration.piezo_error.has_value() &&
-                                   measured.time.value.has_value() == calibration.time_error.has_value()),
-          "--measured, --device-vdp, --device-frequency: the scene sorts devices into classes: give what [calibration] measures");
+  require_request(!calibration.classes || (measured.pull_in.value.has_value() == calibration.pull_in_error.has_value() &&
+                                           measured.frequency.value.has_value() == calibration.frequency_error.has_value() &&
+                                           measured.piezo.value.has_value() == calibration.piezo_error.has_value() &&
+                                           measured.time.value.has_value() == calibration.time_error.has_value()),
+                  [] {
+                    return fmt::format("{}, {}, {}: the scene sorts devices into classes: give what [calibration] measures",
+                                       requested("measured"), requested("device-vdp"), requested("device-frequency"));
+                  });
   const DeviceUnits told = measured.time.value ? meter.told_by(*measured.time.value) : DeviceUnits{};
   const double volts = measured.pull_in.value ? *measured.pull_in.value / meter.pull_in() : told.volts,
                time = meter.frequency() / measured.frequency.value.value_or(meter.frequency()),
@@ -179,8 +181,8 @@ std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& m
     if (!p.drives.limits.contains(names[k])) continue;
     const std::string broken = violation(p.told(k, own[k]), p.limits(k));
     const std::string& said = measured.said();
-    require(broken.empty(),
-            [&] { return fmt::format("{}: the waveform of this device: drive '{}': {}", said, names[k], broken); });
+    require_request(broken.empty(),
+                    [&] { return fmt::format("{}: the waveform of this device: drive '{}': {}", said, names[k], broken); });
   }
   return own;
 }
@@ -204,7 +206,8 @@ std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& se
                                 .minimum = limits.min_voltage,
                                 .maximum = limits.max_voltage});
   }
-  require(!all.empty(), "--format codes: no driver takes samples: give [driver.NAME] a sample_rate and bits");
+  require_field(!all.empty(), "format", "codes",
+                [] { return "no driver takes samples: give [driver.NAME] a sample_rate and bits"; });
   return all;
 }
 
@@ -230,9 +233,8 @@ Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_i
 
 std::string for_generator(const GeneratorFormat& format, const Exported& what, const SentSignals& sent,
                           const Sampling& sampling) {
-  require(what.drives.size() == 1, [&] {
-    return fmt::format("--format {}: a file holds one drive: choose it by --drive, one of {}", format.name,
-                       fmt::join(what.drives, ", "));
+  require_field(what.drives.size() == 1, "format", format.name, [&] {
+    return fmt::format("a file holds one drive: choose it by {}, one of {}", requested("drive"), fmt::join(what.drives, ", "));
   });
   const std::string& drive = what.drives.front();
   return generator_text(format, what.sampled, drive, sent.signals.at(drive), sampling);
@@ -254,20 +256,22 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
   };
   const GeneratorFormat* const generator = generator_format(request.format);
   const SentRow* const row = find_named(sent_names, request.signal);
-  require(row != nullptr, [&] { return fmt::format("--signal {}: must be told or output", shown_option(request.signal)); });
+  require_field(row != nullptr, "signal", visible(request.signal), [] { return "must be told or output"; });
   const Sent sent_as = row->value;
-  require((request.format != "codes" && generator == nullptr) || sent_as == Sent::told, [&] {
-    return fmt::format("--format {} --signal output: a generator is told samples, not the output of its source", request.format);
+  require_request((request.format != "codes" && generator == nullptr) || sent_as == Sent::told, [&] {
+    return fmt::format("{} {} {} output: a generator is told samples, not the output of its source", requested("format"),
+                       request.format, requested("signal"));
   });
-  require(generator != nullptr || (!request.sampling.amplifier && !request.sampling.marker), [&] {
-    return fmt::format("--amplifier, --marker: belong to the file of a generator, --format {} is none", request.format);
+  require_request(generator != nullptr || (!request.sampling.amplifier && !request.sampling.marker), [&] {
+    return fmt::format("{}, {}: belong to the file of a generator, {} {} is none", requested("amplifier"), requested("marker"),
+                       requested("format"), request.format);
   });
   const Measurements measured(request);
   const Exported what = exported(file, request, !measured.are_none(), watch);
   const PreparedScene& p = what.sampled;
   if (std::optional<std::string> model = circuit(request.format, p)) {
-    require(measured.are_none(),
-            [&] { return fmt::format("--format {}: is of the drawing, and of no device that was measured", request.format); });
+    require_field(measured.are_none(), "format", request.format,
+                  [] { return "is of the drawing, and of no device that was measured"; });
     return *std::move(model);
   }
   SentSignals sent = sent_signals(

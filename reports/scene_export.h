@@ -21,8 +21,8 @@ struct ExportRequest {
   int jobs = 1;
 };
 
-/// The text of the file. `say` is told, in lines, what is to be known of it, such as how the switch closes under the samples.
-/// Throws InvalidInput that names options of `export`, Interrupted.
+/// The text of the file. `say` is told, in lines, what is to be known of it, such as how the switch closes under the samples;
+/// they name fields as requested() does. Throws InvalidRequest, Interrupted.
 [[nodiscard]] std::string exported_text(const SceneFile& scene, const ExportRequest& request, const Watch& watch = {},
                                         const std::function<void(const std::string&)>& say = {});
 

@@ -45,7 +45,8 @@ void require_origin(const json& line, const json& origin, const std::string& pla
 TuningLog::TuningLog(fs::path file, const json& origin, bool resume) : file_(std::move(file)) {
   std::error_code ignored;
   const bool exists = fs::exists(file_, ignored);
-  require(exists || !resume, [&] { return fmt::format("--resume: {}: there is no such file", file_.string()); });
+  require_request(exists || !resume,
+                  [&] { return fmt::format("{}: {}: there is no such file", requested("resume"), file_.string()); });
   std::size_t size = 0;
   if (resume) {
     size = read(origin);

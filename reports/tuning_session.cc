@@ -47,8 +47,8 @@ TunedBelief tuned_in(const std::string& folder, const Json& origin) {
     return tuned_belief(written);
   } catch (const InvalidInput& error) {
     const std::string_view what = error.what();
-    throw InvalidInput(
-        fmt::format("--wafer {}: {}", folder, what.starts_with(path) ? std::string(what) : path + ": " + error.what()));
+    throw InvalidRequest(fmt::format("{} {}: {}", requested("wafer"), folder,
+                                     what.starts_with(path) ? std::string(what) : path + ": " + error.what()));
   }
 }
 

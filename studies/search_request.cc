@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/require.h"
+#include "base/shortened.h"
 #include "config/aim.h"
 #include "config/calibration_words.h"
 #include "config/criterion.h"
@@ -19,13 +20,6 @@
 
 namespace softland {
 namespace {
-
-// As people see it who gave an empty text.
-std::string shown(const std::string& text) { return text.empty() ? "''" : text; }
-
-void rule(bool holds, std::string_view field, const std::string& given, const auto& broken) {
-  require_request(holds, [&] { return fmt::format("{} {}: {}", requested(field), given, broken()); });
-}
 
 // What `parse` gives; its complaints name the field, and what else is said of it.
 template <class Parse>
@@ -40,10 +34,11 @@ auto read(const std::string& field, const Parse& parse) {
 std::uint64_t whole_number(std::string_view field, const std::string& text, std::uint64_t least) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  rule(error != std::errc::result_out_of_range, field, text,
-       [&] { return fmt::format("must be a whole number from {} to {}", least, std::numeric_limits<std::uint64_t>::max()); });
-  rule(error == std::errc() && end == text.data() + text.size() && value >= least, field, shown(text),
-       [&] { return fmt::format("must be a whole number from {} on", least); });
+  require_field(error != std::errc::result_out_of_range, field, text, [&] {
+    return fmt::format("must be a whole number from {} to {}", least, std::numeric_limits<std::uint64_t>::max());
+  });
+  require_field(error == std::errc() && end == text.data() + text.size() && value >= least, field, visible(text),
+                [&] { return fmt::format("must be a whole number from {} on", least); });
   return value;
 }
 
@@ -68,8 +63,8 @@ void read_shared_conditions(const SearchRequest& request, std::vector<Criterion>
 
 void read_budget(const std::string& text, OptimizeOptions& options) {
   const auto holds = [&](bool ok) {
-    rule(ok, "budget", shown(text),
-         [] { return "must be a whole number of evaluations such as 2500, or a time such as \"90 s\""; });
+    require_field(ok, "budget", visible(text),
+                  [] { return "must be a whole number of evaluations such as 2500, or a time such as \"90 s\""; });
   };
   Quantity q;
   try {
@@ -90,13 +85,14 @@ void read_budget(const std::string& text, OptimizeOptions& options) {
 std::uint64_t devices_of(const SearchRequest& request, std::uint64_t usual, std::uint64_t least) {
   if (!request.samples) return usual;
   const std::uint64_t devices = whole_number("samples", *request.samples, least);
-  rule(devices <= most_searched, "samples", *request.samples, [] { return fmt::format("must be at most {}", most_searched); });
+  require_field(devices <= most_searched, "samples", *request.samples,
+                [] { return fmt::format("must be at most {}", most_searched); });
   return devices;
 }
 
 OptimizeOptions options_of(const SearchRequest& request, const SceneFile& scene, const OwnParts& own) {
   const Named<Actuator>* actuator = find_named(actuators, request.actuator);
-  rule(actuator != nullptr, "actuator", request.actuator, [] { return fmt::format("must be {}", listed(actuators)); });
+  require_field(actuator != nullptr, "actuator", request.actuator, [] { return fmt::format("must be {}", listed(actuators)); });
   const Aim target = own.objective ? Aim(own.objective)
                                    : read(requested("target") + " " + request.target, [&] { return parse_aim(request.target); });
   OptimizeOptions options = usual_options(scene, target, actuator->value);
@@ -135,7 +131,8 @@ RobustOptions robust_of(const SearchRequest& request) {
       read(requested("robust") + " " + request.robust, [&] { return parse_robust_measure(request.robust, device_figures); });
   robust.aim.conditions = conditions_of(request, device_figures);
   robust.samples = devices_of(request, robust.samples, 8);
-  rule(request.optimizer == "auto", "optimizer", request.optimizer, [] { return "a robust search has a method of its own"; });
+  require_field(request.optimizer == "auto", "optimizer", request.optimizer,
+                [] { return "a robust search has a method of its own"; });
   return robust;
 }
 
@@ -143,15 +140,16 @@ std::uint64_t seed_count(const SearchRequest& request, const OptimizeOptions& op
   if (!request.seeds) return 1;
   const std::string seeds = requested("seeds");
   const std::uint64_t count = whole_number("seeds", *request.seeds, 1);
-  rule(count <= most_seeds, "seeds", *request.seeds, [] { return fmt::format("must be at most {}", most_seeds); });
-  rule(count - 1 <= std::numeric_limits<std::uint64_t>::max() - options.seed, "seeds", *request.seeds,
-       [&] { return fmt::format("from {} {} on there are not so many", requested("seed"), options.seed); });
+  require_field(count <= most_seeds, "seeds", *request.seeds, [] { return fmt::format("must be at most {}", most_seeds); });
+  require_field(count - 1 <= std::numeric_limits<std::uint64_t>::max() - options.seed, "seeds", *request.seeds,
+                [&] { return fmt::format("from {} {} on there are not so many", requested("seed"), options.seed); });
   require_request(count == 1 || request.robust != by_race, [&] {
     return fmt::format("{}: is for searches on the nominal device, or over devices by one measure such as {} cvar:0.9", seeds,
                        requested("robust"));
   });
-  rule(count == 1 || !std::isfinite(options.max_seconds), "budget", request.budget.value_or(""),
-       [] { return "searches from several seeds are compared at equal effort, so their budget is a number of evaluations"; });
+  require_field(count == 1 || !std::isfinite(options.max_seconds), "budget", request.budget.value_or(""), [] {
+    return "searches from several seeds are compared at equal effort, so their budget is a number of evaluations";
+  });
   return count;
 }
 

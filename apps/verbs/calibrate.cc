@@ -60,9 +60,10 @@ void read_errors(const std::string& list, MeasurementOptions& options) {
     require(q.dimension == dimension::none && q.value >= 0 && q.value <= most, [&] {
       return fmt::format(
           "--error {}: must be Vdp, Vsp, release, frequency, piezo or time with an error from 0 to 50 %, such as \"Vdp:1 %\"",
-          shown(list));
+          visible(list));
     });
-    require(seen.insert(row->first).second, [&] { return fmt::format("--error {}: {} stands twice", shown(list), row->first); });
+    require(seen.insert(row->first).second,
+            [&] { return fmt::format("--error {}: {} stands twice", visible(list), row->first); });
     *row->second = q.value;
   }
 }
@@ -77,8 +78,8 @@ std::vector<double> read_steps(const std::string& list) {
     require(error == std::errc() && end == one.data() + one.size() && value >= 1 && value <= most &&
                 (steps.empty() || value > steps.back()),
             [&] {
-              return fmt::format("--steps {}: must be rising multiples of Vdp from 1 to {:g}, such as 1.1,1.25,1.5", shown(list),
-                                 most);
+              return fmt::format("--steps {}: must be rising multiples of Vdp from 1 to {:g}, such as 1.1,1.25,1.5",
+                                 visible(list), most);
             });
     steps.push_back(value);
   }

@@ -56,7 +56,7 @@ void read_model_part(PracticeModel& model, const std::string& part, const std::s
     throw InvalidInput(
         fmt::format("--model {}: '{}' must be modes=+N, gas=NAME, stiffness=FACTOR or a key of the scene with its "
                     "value, such as gap.contact=\"2.05 um\"",
-                    shown(given), part));
+                    visible(given), part));
   }
 }
 

@@ -137,7 +137,7 @@ StudyStore opened(const std::string& out, const Exploration& exploration, const 
 // A search for a front, whose points are known only as it goes.
 int search_the_front(const Common& c, const ExploreRequest& r, Exploration& exploration, const std::string& out) {
   const Plan& plan = exploration.plan();
-  const std::vector<ExploredAim> aims = explored_aims(explored_columns(stored_plan(exploration, {})), plan.pareto());
+  const std::vector<ExploredAim> aims = aims_of(exploration);
   KnownRows known = r.resume ? known_rows(out) : KnownRows{};
   StudyStore store = opened(out, exploration, {}, c, r.resume);
   if (!c.quiet) {
@@ -189,16 +189,9 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   Exploration exploration(Plan(request), work->watch());
   work.reset();
 
-  require(static_cast<std::uint64_t>(shard.count) <= exploration.plan().points(), [&] {
-    return fmt::format("--shard {}/{}: a study of {} points has at most {} parts", shard.index, shard.count,
-                       exploration.plan().points(), exploration.plan().points());
-  });
+  require_part(exploration, shard);
   if (r.resume && !c.quiet) tell_of_other_programs(out);
-  if (exploration.plan().is_search()) {
-    require(shard.count == 1,
-            "--shard: a search for a front goes from point to point and cannot be divided; --jobs makes it faster");
-    return search_the_front(c, r, exploration, out);
-  }
+  if (exploration.plan().is_search()) return search_the_front(c, r, exploration, out);
   StudyStore store = opened(out, exploration, shard, c, r.resume);
   ShownProgress<Explored> progress(c.quiet);
   const ExploringOptions options{.shard = shard, .jobs = jobs, .stop = c.stop, .on_point = std::ref(progress)};

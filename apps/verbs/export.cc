@@ -26,7 +26,7 @@ int export_verb(const Common& c, const ExportedResult& request) {
   std::string text;
   {
     const WatchedWork work(c.quiet, c.stop);
-    text = exported_text(file, how, work.watch(), [](const std::string& line) { say(line); });
+    text = exported_text(file, how, work.watch(), [](const std::string& line) { say(with_fields(line, "--")); });
   }
   print(text);
   return exit_done;

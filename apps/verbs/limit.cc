@@ -34,7 +34,7 @@ struct LimitRequest {
 
 double speed_of(const std::string& text) {
   const auto rule = [&](bool ok) {
-    require(ok, fmt::format("--impact-velocity {}: must be a speed above 0 m/s such as \"1 mm/s\"", shown(text)));
+    require(ok, fmt::format("--impact-velocity {}: must be a speed above 0 m/s such as \"1 mm/s\"", visible(text)));
   };
   Quantity q;
   try {

@@ -49,7 +49,7 @@ struct PullInRequest {
 // --sweep V1:V2:N
 SweepRange sweep_range(const std::string& text) {
   constexpr int most_points = 100'000;
-  const auto refuse = [&](std::string_view rule) { throw InvalidInput(fmt::format("--sweep {}: {}", shown(text), rule)); };
+  const auto refuse = [&](std::string_view rule) { throw InvalidInput(fmt::format("--sweep {}: {}", visible(text), rule)); };
   const std::size_t first = text.find(':'), second = first == std::string::npos ? first : text.find(':', first + 1);
   if (second == std::string::npos) refuse("not of the form FIRST:LAST:N, such as \"0 V:40 V:81\"");
   const auto voltage = [&](const std::string& part) {
@@ -72,7 +72,7 @@ SweepRange sweep_range(const std::string& text) {
 
 // --bias NAME=V: takes the place of what the drive stands at in the scene.
 void set_bias(PreparedScene& p, const std::string& assignment) {
-  const auto refuse = [&](std::string_view rule) { throw InvalidInput(fmt::format("--bias {}: {}", shown(assignment), rule)); };
+  const auto refuse = [&](std::string_view rule) { throw InvalidInput(fmt::format("--bias {}: {}", visible(assignment), rule)); };
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos) refuse("not of the form NAME=VOLTAGE, such as \"piezo=-1.5 V\"");
   const std::vector<std::string> names = p.drive_names();

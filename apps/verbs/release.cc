@@ -31,8 +31,8 @@ struct ReleaseRequest {
 
 double share_of(const std::string& text) {
   const auto rule = [&](bool ok) {
-    require(ok,
-            fmt::format("--band {}: must be a share of the contact gap above 0 % and below 100 %, such as \"5 %\"", shown(text)));
+    require(ok, fmt::format("--band {}: must be a share of the contact gap above 0 % and below 100 %, such as \"5 %\"",
+                            visible(text)));
   };
   Quantity q;
   try {

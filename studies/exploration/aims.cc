@@ -25,9 +25,6 @@ bool goes_by(const ExploredColumn& column, const std::string& name) {
 }
 
 std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& columns, const std::string& list) {
-  const auto rule = [&](bool holds, const auto& broken) {
-    require_request(holds, [&] { return fmt::format("{} {}: {}", requested("pareto"), list, broken()); });
-  };
   std::vector<ExploredAim> aims;
   for (std::string name : split(list, ',')) {
     ExploredAim aim{.is_largest = name.starts_with(largest_mark)};
@@ -38,14 +35,15 @@ std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& column
     for (const ExploredColumn& c : columns) {
       if (!c.is_variable) there.push_back(c.key);
     }
-    rule(!name.empty() && found != columns.end(),
-         [&] { return fmt::format("\"{}\" is not among the figures: {}", printable_line(name), fmt::join(there, ", ")); });
+    require_field(!name.empty() && found != columns.end(), "pareto", list, [&] {
+      return fmt::format("\"{}\" is not among the figures: {}", printable_line(name), fmt::join(there, ", "));
+    });
     aim.column = static_cast<std::size_t>(found - columns.begin());
-    rule(std::none_of(aims.begin(), aims.end(), [&](const ExploredAim& other) { return other.column == aim.column; }),
-         [&] { return fmt::format("{} stands twice", name); });
+    require_field(std::none_of(aims.begin(), aims.end(), [&](const ExploredAim& other) { return other.column == aim.column; }),
+                  "pareto", list, [&] { return fmt::format("{} stands twice", name); });
     aims.push_back(aim);
   }
-  rule(aims.size() >= 2, [] { return "a front needs at least two figures"; });
+  require_field(aims.size() >= 2, "pareto", list, [] { return "a front needs at least two figures"; });
   return aims;
 }
 

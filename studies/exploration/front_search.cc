@@ -108,6 +108,10 @@ class FrontSearch {
 
 }  // namespace
 
+std::vector<ExploredAim> aims_of(const Exploration& exploration) {
+  return explored_aims(explored_columns(stored_plan(exploration, {})), exploration.plan().pareto());
+}
+
 FrontFound search_front(Exploration& exploration, StudyStore& store, KnownRows known, const std::vector<ExploredAim>& aims,
                         const FrontOptions& options) {
   return FrontSearch(exploration, store, std::move(known), aims, options).run();

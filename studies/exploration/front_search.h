@@ -16,6 +16,9 @@ namespace softland {
 /// Of a plan for a front that says nothing else.
 inline constexpr std::string_view usual_front_sample = "nsga2:2000";
 
+/// Of the plan of an exploration that is a search. Throws as explored_aims().
+[[nodiscard]] std::vector<ExploredAim> aims_of(const Exploration& exploration);
+
 /// How far it is.
 struct FrontFound {
   std::int64_t points = 0;    ///< of the plan

@@ -26,6 +26,16 @@ StoredPlan stored_plan(const Exploration& exploration, const Shard& shard) {
   return stored;
 }
 
+void require_part(const Exploration& exploration, const Shard& shard) {
+  const std::uint64_t points = exploration.plan().points();
+  require_field(static_cast<std::uint64_t>(shard.count) <= points, "shard", fmt::format("{}/{}", shard.index, shard.count),
+                [&] { return fmt::format("a study of {} points has at most {} parts", points, points); });
+  require_request(shard.count == 1 || !exploration.plan().is_search(), [] {
+    return fmt::format("{}: a search for a front goes from point to point and cannot be divided; {} makes it faster",
+                       requested("shard"), requested("jobs"));
+  });
+}
+
 PlanRequest exploration_in(const StudyReader& store) {
   const std::string& text = store.plan().text;
   require(!text.starts_with('{'), [&] {

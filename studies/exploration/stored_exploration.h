@@ -13,6 +13,8 @@ namespace softland {
 
 /// What its store holds of the plan.
 [[nodiscard]] StoredPlan stored_plan(const Exploration& exploration, const Shard& shard);
+/// Throws InvalidRequest of the field `shard` where the exploration has no such part: a search for a front cannot be divided.
+void require_part(const Exploration& exploration, const Shard& shard);
 /// The plan of the exploration that a store holds. Throws InvalidInput where it holds a search.
 [[nodiscard]] PlanRequest exploration_in(const StudyReader& store);
 /// The row of a point at these values of the variables [SI unit].

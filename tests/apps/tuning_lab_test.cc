@@ -211,7 +211,7 @@ TEST_F(TuningLogs, KeepTheClosingsOfAnEarlierRun) {
 }
 
 TEST_F(TuningLogs, SayWhyTheyCannotGoOn) {
-  EXPECT_THAT(refused(), AllOf(StartsWith("--resume: "), HasSubstr("there is no such file")));
+  EXPECT_THAT(refused(), AllOf(StartsWith("resume: "), HasSubstr("there is no such file")));
   { TuningLog first(file(), {{"seed", 1}}, false); }
   EXPECT_THAT(refused({{"seed", 2}}), HasSubstr("closings.jsonl:1: its closings are of another seed: 1 instead of 2"));
   const std::string header = read(file());

@@ -101,7 +101,7 @@ class Results(unittest.TestCase):
             ({"gap.breadth": "1 um:2 um:3"}, {}, "gap.breadth"),
             ({"gap.contact": "1.9 um,2 um"}, {"study": "beauty"}, "study beauty: must be"),
             ({"gap.contact": "1.9 um,2 um"}, {"options": {"samples": 5}}, "belongs to study robustness"),
-            ({"gap.contact": "1.9 um,2 um"}, {"shard": "1/3"}, "has no more parts"),
+            ({"gap.contact": "1.9 um,2 um"}, {"shard": "1/3"}, "shard 1/3: a study of 2 points has at most 2 parts"),
             ({"gap.contact": "1.9 um:2 um"}, {"pareto": ["impact_velocity"]}, "at least two figures"),
         ):
             with self.assertRaisesRegex(softland.InvalidInput, words):
