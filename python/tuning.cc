@@ -6,7 +6,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <utility>
 
 #include "config/criterion.h"
 #include "python/scene.h"
@@ -40,7 +39,6 @@ LaboratoryErrors errors_of(const SceneFile& file, const py::dict& given) {
 struct PyTuning {
   TuningSession session;
   std::string command;
-  bool is_behind = false;  // the last record is on the disk, and is not learned
 
   [[nodiscard]] Provenance provenance() const { return {.command = command}; }
 };
@@ -94,9 +92,7 @@ void learn(PyTuning& tuning, const std::string& answer, const py::object& progre
   const ContactRecord record = read_record(read_line(answer), tuning.session.told().number);
   Run run(progress);
   run([&](const Watch& watch) {
-    const bool is_kept = std::exchange(tuning.is_behind, true);
-    tuning.session.learn(record, watch, is_kept);
-    tuning.is_behind = false;
+    tuning.session.learn(record, watch);
     return true;
   });
 }

@@ -60,7 +60,8 @@ struct TuningSession::State {
   Json origin = {};
   std::filesystem::path log_file = {};
   std::unique_ptr<TuningLog> log = {};
-  std::size_t behind = 0;  // closings of the log that were learned
+  std::size_t behind = 0;     // closings of the log that were learned
+  bool is_on_record = false;  // what came of the next shot, which is not learned
   std::optional<Tuner> tuner = {};
   std::vector<TunedClosing> closings = {};
 
@@ -128,11 +129,13 @@ ToldShot TuningSession::told() const {
   return told_shot(shot.number, shot.hold_time, sent_signals(tuner().scene(), shot.waveforms).signals);
 }
 
-void TuningSession::learn(const ContactRecord& record, const Watch& watch, bool is_kept) {
+void TuningSession::learn(const ContactRecord& record, const Watch& watch) {
   const std::string fault = record_fault(record);
   require(fault.empty(), fault);
-  if (state_->log && !is_kept) state_->log->append(told(), record);
+  if (state_->log && !state_->is_on_record) state_->log->append(told(), record);
+  state_->is_on_record = true;
   state_->learn(record, watch);
+  state_->is_on_record = false;
 }
 
 void TuningSession::throw_if_failing() const {

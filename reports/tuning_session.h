@@ -48,8 +48,8 @@ class TuningSession {
   /// The next shot, as a device is told.
   [[nodiscard]] ToldShot told() const;
   /// Puts what came of the next shot on the disk, and learns it. Throws InvalidInput for a record that cannot be one, OutputLost,
-  /// and Interrupted: then the record is on the disk, and the same call with `is_kept` learns it.
-  void learn(const ContactRecord& record, const Watch& watch = {}, bool is_kept = false);
+  /// and Interrupted: then the record is on the disk, and is to be given again.
+  void learn(const ContactRecord& record, const Watch& watch = {});
   /// Throws InvalidInput where the last three shots gave no record.
   void throw_if_failing() const;
 

@@ -83,9 +83,9 @@ class Tuning:
 
         answer: {"edges_s": [[time, 1 closes or 0 opens], ...]} or {"closing_time_s": t or None, "bounce_count": n}, either with "loudness"; or
             {"error": "no trigger"}: the same waveform comes again. None, or no edges: the contact stayed open.
-        Raises InvalidInput for what cannot be an answer, which is not learned.
+        Raises InvalidInput for what cannot be an answer, which is not learned. After Ctrl-C here the answer is on record: the next call learns that one.
         """
-        self._pending = json.dumps({**(answer or {"edges_s": []}), "shot": self._native.shot()[0]}, default=_plain)
+        self._pending = self._pending or json.dumps({**(answer or {"edges_s": []}), "shot": self._native.shot()[0]}, default=_plain)
         self._learn_pending(progress)
         return self._native.words
 

@@ -119,6 +119,14 @@ class Tunings(unittest.TestCase):
         tuning.run(lambda shot: None, closings=1)  # it stayed open
         self.assertIsNone(tuning.result().closings[-1].to_json().get("touch_s"))
 
+    def test_what_follows_a_refused_answer_is_on_record(self):
+        tuning = self.scene.tuning(out=self.folder, **QUICK)
+        with self.assertRaisesRegex(softland.InvalidInput, "first edge closes"):
+            tuning.learn({"edges_s": [[40e-6, 0]]})
+        tuning.learn(self.scene.device(seed=7)(tuning.shot()))
+        again = self.scene.tuning(out=self.folder, resume=True, **QUICK)
+        self.assertEqual((again.closings, again.shot().line), (1, tuning.shot().line))
+
     def test_bad_options_are_refused(self):
         for options, words in (
             ({"actuator": "magnet"}, "actuator"),
