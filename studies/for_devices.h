@@ -2,13 +2,13 @@
 // that no stage has seen.
 //
 //   1  the search on the nominal device (optimize.h): the drawing's waveform
-//   2  its candidates ranked again on 16 devices, the best of them on 64
-//   3  a race over families and measures (race.h)
-//   4  choice on 512 other devices, beside the plain step
-//   5  searches in units that are measured on every device: Vdp to 1 %, and the closing time of one slow step to 50 ns (of
+//   2  beside it, as neither needs what the other finds, a race over families and measures (race.h) and a choice among what it
+//      came to on 512 other devices, beside the plain step
+//   3  what the nominal search tried ranked again on 16 devices, the best of it on 64, and these on the devices of the choice
+//   4  searches in units that are measured on every device: Vdp to 1 %, and the closing time of one slow step to 50 ns (of
 //      switches for which that is no time, Vdp and period to 0.2 %); again, under conditions, where one finds what is harder
 //      than the plain step
-//   6  verdict on 2000 fresh devices: plain step, drawing and winner over the whole window; measured units over that of a search,
+//   5  verdict on 2000 fresh devices: plain step, drawing and winner over the whole window; measured units over that of a search,
 //      which moves 95 % quantiles by less than 0.4 %
 //
 // What wins: of the candidates that are not worse than the plain step, that close in at most five times its 95 % time (seven
@@ -26,60 +26,23 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/devices_search.h"
 #include "studies/hold_window.h"
-#include "studies/optimize.h"
-#include "studies/race.h"
-#include "studies/robust_optimize.h"
 
 namespace softland {
 
 /// What names of parameters of the race begin with, among those of all searches.
 inline constexpr std::string_view raced_prefix = "devices.";
 
-struct ForDevicesOptions {
-  std::vector<Criterion> conditions = {};  ///< on figures of device_figures, that 95 % of the devices have to fulfil
-  std::uint64_t verdict = 2000;            ///< fresh devices
-  /// Families of the race; empty: raced_families, as far as the scene has room for them.
-  std::string families = {};
-  long closings = race_closings;  ///< of the race
-};
-
 /// Shares a budget of closings, which is that of everything together: a fifth of options.max_evaluations is for the drawing, the
 /// rest for the race.
 void share_budget(OptimizeOptions& options, ForDevicesOptions& devices);
-
-/// A row of the first table: drives of one kind on the fresh devices.
-struct DevicesRow {
-  std::string name;             ///< "plain step", "for the drawing", "for the devices", "Vdp to 1 %"
-  Calibration knowledge = {};   ///< what is measured on every device
-  bool searched_for_it = true;  ///< else the waveform was made for another knowledge
-  bool judged_whole = true;     ///< over the whole window of a closing, else over that of a search
-  DriveRobustness judged = {};
-};
-
-/// What is reached in units of a Vdp that is measured with an error, on the first of the fresh devices, each figure by the better
-/// of the waveforms that were searched in measured units.
-struct KnownVdp {
-  double error = 0;                                                    ///< of Vdp, standard deviation, relative
-  double bounce_free = Metrics::unset, impact_speed = Metrics::unset;  ///< share of the devices; 95 % quantile [m/s]
-};
 
 /// A candidate on the fresh devices.
 struct FrontPoint {
   double first_touch = Metrics::unset, impact_speed = Metrics::unset;  ///< 95 % quantiles [s], [m/s]
   double bounce_free = Metrics::unset;                                 ///< share of the devices
   std::string measure, waveform;                                       ///< how it was searched
-};
-
-/// A candidate of the choice.
-struct ChosenFrom {
-  std::string measure, family;  ///< "cvar:0.9", "knots:6"; measure "drawing" for what the nominal search tried
-  std::map<std::string, Waveform> waveforms;
-  std::map<std::string, double> parameters;  ///< by drive.name; empty for what the nominal search tried
-  std::vector<Variable> variables;
-  long closings = 0;
-  double bounce_free = 0, tail = 0;                                    ///< on the devices of the choice
-  double first_touch = Metrics::unset, impact_speed = Metrics::unset;  ///< 95 % quantiles there [s], [m/s]
 };
 
 struct ForDevicesResult {

@@ -71,11 +71,11 @@ struct RaceResult {
   long closings = 0;
 };
 
-/// `settings` differ in their family alone; `cost` is on raced_devices of them. `begun`: waveforms to begin with as well.
+/// `settings` differ in their family alone; `cost` is on raced_devices of them.
 [[nodiscard]] RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims,
-                              const std::vector<std::map<std::string, Waveform>>& begun, const RaceOptions& options);
+                              const RaceOptions& options);
 
-/// One search through all rungs, of one family by one measure.
+/// One search through all rungs, of one family by one measure. `begun`: waveforms to begin with as well.
 [[nodiscard]] RaceResult race_alone(const SearchSetting& setting, std::size_t family, const RobustCost& cost,
                                     const RaceAims& aims, bool by_share,
                                     const std::vector<std::map<std::string, Waveform>>& begun, const RaceOptions& options);

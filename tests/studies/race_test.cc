@@ -30,7 +30,7 @@ class Race : public testing::Test {
     options.closings = race_closings / 4;
     options.first = 1;
     options.all = 1 + settings_[0].space.variables().size() + settings_[1].space.variables().size();
-    return race(settings_, cost_, aims_, {}, options);
+    return race(settings_, cost_, aims_, options);
   }
   [[nodiscard]] double cost_of(const Racer& racer) const {
     const SearchSetting& setting = settings_[racer.family];
@@ -112,7 +112,7 @@ TEST_F(Race, EndsWhenItIsAskedTo) {
 }
 
 TEST_F(Race, OfTooFewClosingsIsNone) {
-  const RaceResult none = race(settings_, cost_, aims_, {}, {.closings = 1000});
+  const RaceResult none = race(settings_, cost_, aims_, {.closings = 1000});
   EXPECT_TRUE(none.racers.empty());
   EXPECT_EQ(none.closings, 0);
 }
