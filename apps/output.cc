@@ -43,7 +43,7 @@ std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std:
                                          const std::vector<std::string>& kept) {
   const bool has_file = !c.json.empty() && c.json != "-";
   std::optional<ResultFolder> folder;
-  if (!c.out.empty()) folder.emplace(c.out, c.command, files, kept);
+  if (!c.out.empty()) folder.emplace(c.out, "--out " + c.out, c.command, files, kept);
   if (has_file) check_json_place(c.json, folder ? folder->path() : fs::path());
   for (const std::string& name : folder ? files : std::vector<std::string>()) {
     const fs::path file = folder->path() / name;

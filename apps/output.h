@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "apps/options.h"
-#include "apps/result_folder.h"
 #include "model/status.h"
 #include "reports/report_files.h"
 #include "reports/result.h"
+#include "reports/result_folder.h"
 #include "reports/result_json.h"
 
 namespace softland::apps {

@@ -3,14 +3,14 @@
 # place.
 include(CMakePackageConfigHelpers)
 
-set(libraries base sampling store integrators waveforms exchange model objectives config optimizers studies exploration tuning fitting reports)
+set(libraries base sampling store integrators waveforms exchange model objectives config optimizers studies exploration stored_search tuning fitting reports)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/softland)
 
 # The program is softland::program outside; softland::softland is all that softland/softland.h needs.
 set_target_properties(softland PROPERTIES EXPORT_NAME program)
 install(TARGETS softland EXPORT softland)
 add_library(softland_public INTERFACE)
-target_link_libraries(softland_public INTERFACE softland_exploration softland_tuning softland_studies)
+target_link_libraries(softland_public INTERFACE softland_exploration softland_stored_search softland_tuning softland_studies)
 target_include_directories(softland_public INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
 set_target_properties(softland_public PROPERTIES EXPORT_NAME softland)
 add_library(softland::softland ALIAS softland_public)

@@ -59,6 +59,8 @@ class Run {
 
   [[nodiscard]] const Watch& watch() const { return watch_; }
   [[nodiscard]] const std::atomic<bool>* stop() const { return &stop_; }
+  /// Whether it was asked to stop, and not by a wish to see what there is.
+  [[nodiscard]] bool given_up() const { return stop_.load(std::memory_order_relaxed) && !ended_by_wish_; }
   /// For callbacks of the library: ends the work at once where it was asked to stop by Ctrl-C or by a failed function.
   void throw_if_given_up() const {
     if (given_up()) throw Interrupted();
@@ -78,7 +80,6 @@ class Run {
   void keep(std::exception_ptr error);
 
  private:
-  [[nodiscard]] bool given_up() const { return stop_.load(std::memory_order_relaxed) && !ended_by_wish_; }
   void finish(const std::exception_ptr& error);
 
   std::atomic<bool> stop_ = false, ended_by_wish_ = false;

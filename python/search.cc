@@ -3,7 +3,9 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "python/own.h"
@@ -11,6 +13,7 @@
 #include "reports/report_files.h"
 #include "reports/result_json.h"
 #include "reports/search_report.h"
+#include "reports/search_session.h"
 
 namespace softland::python {
 
@@ -27,6 +30,8 @@ struct Request {
   int jobs = 1;
   py::object callback, progress;
   std::string command;
+  std::string out;  // empty: nothing is kept
+  bool resume = false;
 };
 
 PlannedSearch planned_search(const Request& request, const SceneFile& file, Run& run) {
@@ -45,15 +50,38 @@ PlannedSearch planned_search(const Request& request, const SceneFile& file, Run&
   return search;
 }
 
+// The same, as one that is kept in a folder. What starts it is written into its plan, and has to be something that can be.
+StoredSearch kept_search(const Request& request, const PyScene& scene, std::optional<KnownSearch>& known, Run& run) {
+  require(!request.objective && request.own_waveforms.empty(),
+          "out: a search with functions of Python cannot be kept, since no file tells which functions they were");
+  AskedSearch asked{.request = request.words,
+                    .given = GivenText{.file = scene.file.name(), .folder = scene.directory, .text = scene.file.text()},
+                    .scene = scene.file,
+                    .jobs = request.jobs,
+                    .stop = run.stop()};
+  for (const py::dict& start : request.starts) {
+    SceneFile begun = scene.file;
+    for (const auto& [drive, waveform] : waveforms_of(start, run)) begun.set_waveform(drive, waveform);
+    asked.starts.push_back({.name = fmt::format("start {}", asked.starts.size() + 1), .scene = std::move(begun)});
+  }
+  const auto stores = request.resume ? ResultFolder::places(request.out, evaluations_file) : std::vector<std::filesystem::path>();
+  return stored_search(asked, stores, known);
+}
+
 // The callbacks: what Python is told, and how it ends a search. Once candidates are tried they throw nothing, which a search
 // would take for a bad candidate: run.stop() ends it.
-void listen(OptimizeOptions& options, const Request& request, Run& run) {
+void listen(OptimizeOptions& options, const Request& request, Run& run, SearchSession* session = nullptr) {
   options.on_preparation = [&run](std::string_view what, double part) {
     run.throw_if_given_up();
     run.watch().tell(what, part);
   };
-  options.on_evaluation = [&request, &run, budget = options.max_evaluations](const Evaluation& evaluation,
-                                                                             const OptimizeProgress& progress) {
+  if (session != nullptr) {
+    options.on_start = [session](const std::vector<std::string>& variables) { session->begin(variables); };
+    options.on_improvement = [session](const Evaluation&, const SceneFile& best) { session->improved(best); };
+  }
+  options.on_evaluation = [&request, &run, session, budget = options.max_evaluations](const Evaluation& evaluation,
+                                                                                      const OptimizeProgress& progress) {
+    if (session != nullptr) session->evaluated(evaluation);
     const bool failed = (request.objective && request.objective->first_error().is_there()) ||
                         std::any_of(request.own_waveforms.begin(), request.own_waveforms.end(),
                                     [](const auto& one) { return one->first_error().is_there(); });
@@ -135,6 +163,29 @@ Outcome search(PyScene& scene, const Request& request) {
   });
 }
 
+Outcome search_in_folder(PyScene& scene, const Request& request) {
+  Run running(request.progress);
+  std::optional<KnownSearch> known;
+  StoredSearch search = kept_search(request, scene, known, running);
+  const SearchOutput output{.folder = request.out,
+                            .command = request.command,
+                            .claim = [&](const std::vector<std::string>& files, const std::vector<std::string>& kept) {
+                              return ResultFolder(request.out, "out " + request.out, request.command, files, kept);
+                            }};
+  SearchSession session(search, known, output);
+  listen(search.options, request, running, &session);
+  return running([&](const Watch& watch) {
+    const auto report = std::make_shared<SearchReport>(run(search));
+    if (!running.given_up()) add_devices(*report, search, request.command, watch);
+    session.close();
+    running.throw_if_given_up();
+    add_result(*report, search, session.destination(*report), {.command = request.command});
+    session.add_log(report->result, *report);
+    session.leave(*report);
+    return Outcome{.json = json_text(result_json(report->result)), .files = files_of(report)};
+  });
+}
+
 }  // namespace
 
 void bind_search(py::module_& m) {
@@ -145,7 +196,9 @@ void bind_search(py::module_& m) {
                     .jobs = given["jobs"].cast<int>(),
                     .callback = given["callback"],
                     .progress = given["progress"],
-                    .command = given["command"].cast<std::string>()};
+                    .command = given["command"].cast<std::string>(),
+                    .out = given["out"].cast<std::string>(),
+                    .resume = given["resume"].cast<bool>()};
     visit_words(
         [&](std::string_view name, auto& word) {
           const py::str key{std::string(name)};
@@ -153,7 +206,8 @@ void bind_search(py::module_& m) {
         },
         request.words);
     request.words.constrain = given["constrain"].cast<std::vector<std::string>>();
-    return search(scene, request);
+    require(!request.resume || !request.out.empty(), "resume: needs `out`, the folder of the search that is gone on with");
+    return request.out.empty() ? search(scene, request) : search_in_folder(scene, request);
   });
 }
 

@@ -17,6 +17,7 @@
 #include "studies/certify.h"
 #include "studies/closed_state.h"
 #include "studies/hold_window.h"
+#include "studies/stored_search/seed_study.h"
 
 namespace softland {
 
@@ -181,16 +182,9 @@ struct ResultLimit {
 
 /// Searches that differ in their seeds alone; the result is that of the best.
 struct ResultSeeds {
-  struct Search {
-    std::uint64_t seed = 0;
-    std::string status, termination;
-    double cost = Metrics::unset, evaluations = Metrics::unset;
-    bool goal_met = false, confirmed = false, better_than_baseline = false;
-    FigureValues figures;  ///< of the waveform found
-  };
-  std::uint64_t planned = 0;     ///< searches, of which those below are done
-  std::vector<Search> searches;  ///< in the order of their seeds
-  std::size_t best = 0;          ///< of them
+  std::uint64_t planned = 0;           ///< searches, of which those below are done
+  std::vector<SearchOfSeed> searches;  ///< in the order of their seeds
+  std::size_t best = 0;                ///< of them
 };
 
 /// What the search within one of several families came to.

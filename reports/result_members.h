@@ -235,7 +235,7 @@ void members(A& a, ResultDevices& devices) {
 }
 
 template <class A>
-void members(A& a, ResultSeeds::Search& search) {
+void members(A& a, SearchOfSeed& search) {
   a("seed", search.seed);
   a("status", search.status);
   a("cost", search.cost);

@@ -41,13 +41,13 @@ FiveNumbers five_numbers(const std::vector<double>& sample) {
 
 FiveNumbers spread_of_cost(const ResultSeeds& seeds) {
   std::vector<double> costs;
-  for (const ResultSeeds::Search& one : seeds.searches) costs.push_back(or_none(one.cost));
+  for (const SearchOfSeed& one : seeds.searches) costs.push_back(or_none(one.cost));
   return five_numbers(costs);
 }
 
 FiveNumbers spread_of(const ResultSeeds& seeds, const Figure& figure) {
   std::vector<double> values;
-  for (const ResultSeeds::Search& one : seeds.searches) {
+  for (const SearchOfSeed& one : seeds.searches) {
     if (const double value = one.figures[figure]; std::isfinite(value)) values.push_back(value);
   }
   return five_numbers(values);
@@ -62,18 +62,18 @@ json five_json(const FiveNumbers& n) {
 }
 
 // Why a search has failed; empty where it has not.
-std::string failure(const ResultSeeds::Search& one) {
+std::string failure(const SearchOfSeed& one) {
   if (!std::isfinite(one.cost)) return "no feasible waveform";
   if (!one.better_than_baseline && !one.goal_met) return "no better than the plain step";
   return one.goal_met ? "" : "goal not met";
 }
 
-std::string outcome(const ResultSeeds::Search& one) {
+std::string outcome(const SearchOfSeed& one) {
   const std::string failed = failure(one);
   return !failed.empty() ? failed : one.confirmed ? "goal met, confirmed" : "goal met";
 }
 
-std::vector<std::string> search_cells(const ResultSeeds::Search& one) {
+std::vector<std::string> search_cells(const SearchOfSeed& one) {
   std::vector<std::string> all{std::to_string(one.seed), outcome(one), quantity(one.cost, "", 4)};
   for (const Figure& f : shown_figures) all.push_back(figure_text(f, one.figures[f], Metrics::unset, Metrics::unset));
   all.push_back(std::isfinite(one.evaluations) ? internal::whole(one.evaluations) : "—");
@@ -96,7 +96,7 @@ void rank(ResultSeeds& seeds, const Aim& target, double significant, bool over_d
   const bool by_figure = !over_devices && !target.is_sum();
   const Figure& own = figure_of(target.parts()[0].target);
   const bool is_height = target.is_about(Target::bounce) || target.is_about(Target::rebound);
-  const auto key = [&](const ResultSeeds::Search& one) {
+  const auto key = [&](const SearchOfSeed& one) {
     const double settled = one.figures[figure_of(&Metrics::settled)];
     const int belief = over_devices ? (one.goal_met ? 1 : 0) : one.confirmed ? 3 : one.goal_met ? 2 : settled == 1 ? 1 : 0;
     double figure = by_figure ? or_none(one.figures[own]) : 0;
@@ -111,7 +111,7 @@ void rank(ResultSeeds& seeds, const Aim& target, double significant, bool over_d
 json seeds_json(const ResultSeeds& seeds) {
   json searches = json::array(), failed = json::array(), figures = json::object();
   std::size_t met = 0, confirmed = 0;
-  for (const ResultSeeds::Search& one : seeds.searches) {
+  for (const SearchOfSeed& one : seeds.searches) {
     searches.push_back(record_json(one));
     met += one.goal_met ? 1 : 0;
     confirmed += one.confirmed ? 1 : 0;
@@ -135,7 +135,7 @@ std::string seeds_caption(const ResultSeeds& seeds) {
   if (count == 0) return fmt::format("None of {} searches is done.", seeds.planned);
   std::string words = count < seeds.planned ? fmt::format("{} of {} searches are done.", count, seeds.planned)
                                             : fmt::format("{} searches that differ in their seeds.", count);
-  const ResultSeeds::Search& best = seeds.searches.at(seeds.best);
+  const SearchOfSeed& best = seeds.searches.at(seeds.best);
   if (!std::isfinite(best.cost)) return words + " None of them found a feasible waveform.";
   words += fmt::format(" The best is that of seed {}, with cost {}.", best.seed, quantity(best.cost, "", 4));
   const FiveNumbers cost = spread_of_cost(seeds);
@@ -145,7 +145,7 @@ std::string seeds_caption(const ResultSeeds& seeds) {
   std::string failed;
   std::size_t failures = 0;
   constexpr std::size_t most_named = 12;
-  for (const ResultSeeds::Search& one : seeds.searches) {
+  for (const SearchOfSeed& one : seeds.searches) {
     const std::string why = failure(one);
     if (why.empty()) continue;
     if (++failures <= most_named) failed += fmt::format("{}{} ({})", failed.empty() ? "" : ", ", one.seed, why);
@@ -158,7 +158,7 @@ std::string seeds_caption(const ResultSeeds& seeds) {
 std::string seeds_text(const std::optional<ResultSeeds>& seeds) {
   if (!seeds) return {};
   std::vector<std::vector<std::string>> rows{heads()};
-  for (const ResultSeeds::Search& one : seeds->searches) rows.push_back(search_cells(one));
+  for (const SearchOfSeed& one : seeds->searches) rows.push_back(search_cells(one));
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const auto& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], columns_of(row[i]));

@@ -293,7 +293,7 @@ void SearchSetting::check_starts(const std::vector<StartingWaveforms>& starts) c
   for (const StartingWaveforms& start : starts) {
     std::string reason = begins_elsewhere(start.waveforms, start.before, given);
     if (reason.empty()) reason = space.misfit(start.waveforms);
-    require(reason.empty(), [&] { return fmt::format("{}: {}", start.name, reason); });
+    require_request(reason.empty(), [&] { return fmt::format("{}: {}", start.name, reason); });
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -15,12 +16,10 @@
 #include <vector>
 
 #include "apps/exit_status.h"
-#include "apps/kept_search.h"
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/scenes.h"
 #include "apps/search_run.h"
-#include "apps/seed_study.h"
 #include "apps/stores.h"
 #include "apps/streams.h"
 #include "apps/verbs/verbs.h"
@@ -37,6 +36,7 @@
 #include "reports/text.h"
 #include "studies/limit.h"
 #include "studies/robust_optimize.h"
+#include "studies/stored_search/seed_study.h"
 #include "waveforms/export.h"
 
 namespace softland::apps {
@@ -46,6 +46,9 @@ namespace fs = std::filesystem;
 using internal::percent;
 using internal::quantity;
 using nlohmann::json;
+
+/// Of a search that the least time of any waveform, a second or two, does not make much longer.
+constexpr long evaluations_worth_a_limit = 1000;
 
 // How a winner does on devices of its scene's spread, beside the plain step, in a sentence; empty where nothing varies, or when
 // asked to stop.
@@ -80,22 +83,6 @@ std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, c
   }
 }
 
-// Writes the files of a search, and names them with those that it has kept on its way.
-std::vector<std::string> write_found(SearchRun& run, const SearchReport& report, const fs::path& place) {
-  std::vector<std::string> left, kept{"evaluations.csv"};
-  if (run.places().stores_go_to(place)) {
-    kept.emplace_back(evaluations_file);
-    if (report.result.seeds) kept.emplace_back(seeds_file);
-  }
-  const std::string last = report.found.best().best_scene ? "best.csv" : "result.json";
-  for (const ReportFile<SearchReport>& file : files_of(report)) {
-    run.folder().write(file.name, file.text(report));
-    left.push_back(file.name == "best.toml" ? file.name + " (run it with `softland simulate`)" : file.name);
-    if (file.name == last) left.insert(left.end(), kept.begin(), kept.end());
-  }
-  return left;
-}
-
 int status_of(const FoundSearch& found) {
   if (found.interrupted()) return exit_interrupted;
   return found.is_success() ? exit_done : exit_no_success;
@@ -104,8 +91,9 @@ int status_of(const FoundSearch& found) {
 // A search on its way to the result that is reported; of several the best.
 struct Asked {
   const Common& c;
-  KeptSearch& search;
+  StoredSearch& search;
   const std::optional<KnownSearch>& known;
+  const SearchOutput& output;
   SearchPlaces* places = nullptr;         // of a study of seeds
   std::optional<ResultSeeds> seeds = {};  // that are done
   bool limit = false;                     // the least time is told however long it takes
@@ -154,27 +142,23 @@ std::string words_on_devices(const Asked& asked, const SearchReport& report, con
 
 int run_search(const Asked& asked) {
   const Common& c = asked.c;
-  KeptSearch& search = asked.search;
-  SearchRun searching(c, search, asked.known, asked.places);
+  StoredSearch& search = asked.search;
+  SearchRun searching(c, search, asked.known, asked.output, asked.places);
   if (search.robust && assume_spread(search.scene) && !c.quiet) say(std::string(assumed_words));
   SearchReport report(run(search));
   const OptimizeResult& best = report.found.best();
   add_devices(report, search, c.command, {.stop = c.stop, .progress = search.options.on_preparation});
   searching.close();
 
-  const bool interrupted = report.found.interrupted();
-  const fs::path place = searching.folder().destination(interrupted);
+  SearchSession& session = searching.session();
+  const fs::path place = session.destination(report);
   add_result(report, search, place, {.command = c.command});
   Result& result = report.result;
   result.limit = limit_of(asked, best);
   result.seeds = asked.seeds;
-  for (const auto& [index, e] : searching.log().evaluations())
-    result.search.evaluations.push_back({static_cast<double>(index), e.value});
-  result.search.evaluations = drawn_evaluations(std::move(result.search.evaluations));
-  result.reproduce = searching.commands();
-  result.reproduce.push_back("softland simulate " + shell_word((place / "best.toml").string()));
-  const std::vector<std::string> left = write_found(searching, report, place);
-  searching.folder().publish(interrupted);
+  session.add_log(result, report);
+  std::vector<std::string> left = session.leave(report);
+  for (std::string& name : left) name += name == "best.toml" ? " (run it with `softland simulate`)" : "";
   if (search.devices() == 0 && !c.quiet) {
     for (const std::string& broken : best.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
   }
@@ -182,11 +166,19 @@ int run_search(const Asked& asked) {
   return status_of(report.found);
 }
 
+// The searches that are done, ranked.
+ResultSeeds ranked(const SeedStudy& study, const StoredSearch& search, double significant) {
+  ResultSeeds seeds{.planned = search.seeds, .searches = study.searches()};
+  if (!seeds.searches.empty()) rank(seeds, search.options.target, significant, search.robust.has_value());
+  return seeds;
+}
+
 // What there is of searches from several seeds that were asked to stop: --resume goes on with it.
 int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, const ResultSeeds& seeds) {
   const fs::path stores = places.store(evaluations_file).parent_path();
   std::string left = left_in(stores, {evaluations_file, seeds_file});
-  if (const std::string best = study.best_scene(seeds); !best.empty()) {
+  const std::string best = seeds.searches.empty() ? std::string() : study.scene_of(seeds.searches[seeds.best].seed);
+  if (!best.empty()) {
     places.folder().write("best.toml", best);
     left += left_in(places.folder().place("best.toml").parent_path(), {"best.toml (of the best that is done)"});
   }
@@ -197,26 +189,52 @@ int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, 
   return exit_interrupted;
 }
 
-int run_seeds(const Common& c, KeptSearch& search, const std::optional<KnownSearch>& known, bool limit) {
+std::pair<double, std::string> words_of(const SeedStudy::State& now, const StoredSearch& search, double elapsed) {
+  std::string words =
+      fmt::format("{} of {} seeds, {} {}", now.done, search.seeds, now.evaluations, search.robust ? "closings" : "evaluations");
+  words += std::isfinite(now.best_cost) ? fmt::format(", best cost {:.4f} (plain step {:.4f})", now.best_cost, now.step_cost)
+                                        : ", no feasible waveform yet";
+  return {now.part, words + fmt::format(", {:.0f} s", elapsed)};
+}
+
+// Shows how far they are, and keeps the best scene in the folder.
+void run_shown(SeedStudy& study, const Common& c, const StoredSearch& search, SearchPlaces& places,
+               const std::vector<std::string>& variables) {
+  SearchLog log(places.folder(), variables);
+  Bar bar(c.quiet);
+  std::mutex one_at_a_time;
+  study.run({.progress =
+                 [&](const SeedStudy::State& now) {
+                   const std::scoped_lock lock(one_at_a_time);
+                   bar.show([&](double elapsed) { return words_of(now, search, elapsed); });
+                 },
+             .improvement = [&](const SceneFile& best) { log.improved(best); }});
+  bar.close([&](double elapsed) { return words_of(study.state(), search, elapsed); });
+  log.flush();
+  study.close();
+}
+
+int run_seeds(const Common& c, StoredSearch& search, const std::optional<KnownSearch>& known, const SearchOutput& output,
+              bool limit) {
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const SearchedParameters searched = searched_parameters(search.scene, search.options, search.robust.has_value(), work->watch());
   work.reset();
-  SearchPlaces places(c, search, known, searched.names);
+  SearchPlaces places(output, search, known, searched.names);
   if (!c.quiet) {
     say(search_words(c, search) +
         fmt::format(", from seeds {} to {}; results go to {}", search.seed(0), search.seed(search.seeds - 1), c.out));
   }
-  SeedStudy study(c, search, places, searched.names);
-  study.run();
-  study.close();
-  const ResultSeeds seeds = study.found(searched.significant_rebound);
+  SeedStudy study(search, places.evaluations(), places.store(seeds_file), searched.names, stored_origin(c.command));
+  run_shown(study, c, search, places, searched.names);
+  const ResultSeeds seeds = ranked(study, search, searched.significant_rebound);
   if (study.missing() > 0) {
     places.evaluations().close();
     return tell_of_part(c, places, study, seeds);
   }
   // The best once more, all of whose evaluations are known, for the report.
   search.options.seed = seeds.searches.at(seeds.best).seed;
-  return run_search({.c = c, .search = search, .known = known, .places = &places, .seeds = seeds, .limit = limit});
+  return run_search(
+      {.c = c, .search = search, .known = known, .output = output, .places = &places, .seeds = seeds, .limit = limit});
 }
 
 int optimize_verb(const Common& given, const OptimizeRequest& request) {
@@ -224,10 +242,11 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   if (c.out.empty()) c.out = "softland-out";
   if (c.scene.empty() && !request.resume) c.scene = shipped_scene("mem-gold-pzt.toml").string();
   std::optional<KnownSearch> known;
-  KeptSearch search = kept_or_known(c, request, known);
+  StoredSearch search = asked_or_known(c, request, known);
+  const SearchOutput output = output_of(c);
   if (known && !c.quiet) tell_of_other_programs((known->place / evaluations_file).string());
-  return search.seeds > 1 ? run_seeds(c, search, known, request.limit)
-                          : run_search({.c = c, .search = search, .known = known, .limit = request.limit});
+  return search.seeds > 1 ? run_seeds(c, search, known, output, request.limit)
+                          : run_search({.c = c, .search = search, .known = known, .output = output, .limit = request.limit});
 }
 
 // "settling, impact and energy"

@@ -343,6 +343,8 @@ class Scene(MutableMapping[str, Any]):
         samples: int | None = None,
         seed: int = 1,
         jobs: int | None = None,
+        out: str | os.PathLike[str] | None = None,
+        resume: bool = False,
         callback: Callable[[int, float, float, float], Any] | None = None,
         progress: bool | Progress | None = None,
     ) -> Outcome:
@@ -358,6 +360,8 @@ class Scene(MutableMapping[str, Any]):
         start: waveforms by drive [V] to begin with.
         optimizer: a method, where it is not to be "auto"; calibrate: what is measured on every device, "Vdp:1 %,frequency".
         budget: evaluations, or closings of devices; or time, "90 s". samples: devices.
+        out: folder in which all evaluations are kept while the search runs, and its files when it ends. resume: goes on with the search in that
+            folder, of Python or of the program, that was interrupted or ended by its budget; nothing is simulated twice.
         callback: (evaluations, best cost, cost of the plain step, cost now) after each evaluation on record; one that returns True ends the search, of
             which the best so far is then the result.
         """
@@ -366,6 +370,7 @@ class Scene(MutableMapping[str, Any]):
             "objective": None if objective is None else _softland.PythonObjective(getattr(objective, "__name__", "own"), objective, lands_first),
             "own_waveforms": [one._function for one in own_waveforms], "constrain": list(constrain), "starts": [_natives(one) for one in start],
             "optimizer": optimizer, "calibrate": calibrate, "budget": budget, "samples": samples, "seed": seed, "jobs": _jobs(jobs), "callback": callback, "command": _command(),
+            "out": "" if out is None else os.fspath(out), "resume": resume,
         }  # fmt: skip
         with shown(progress) as tell:
             return Outcome(_softland.optimize(self._native, {**request, "progress": tell}))

@@ -12,21 +12,21 @@
 namespace softland {
 namespace {
 
-ResultSeeds::Search search(std::uint64_t seed, double cost, bool goal_met = true, bool confirmed = true) {
-  ResultSeeds::Search one{.seed = seed,
-                          .status = "done",
-                          .termination = "evaluation_budget",
-                          .cost = cost,
-                          .evaluations = 100,
-                          .goal_met = goal_met,
-                          .confirmed = confirmed,
-                          .better_than_baseline = true};
+SearchOfSeed search(std::uint64_t seed, double cost, bool goal_met = true, bool confirmed = true) {
+  SearchOfSeed one{.seed = seed,
+                   .status = "done",
+                   .termination = "evaluation_budget",
+                   .cost = cost,
+                   .evaluations = 100,
+                   .goal_met = goal_met,
+                   .confirmed = confirmed,
+                   .better_than_baseline = true};
   one.figures[&Metrics::settled] = 1;
   one.figures[&Metrics::initial_contact_time] = 40e-6;
   return one;
 }
 
-std::uint64_t best_seed(std::vector<ResultSeeds::Search> searches, Target target = Target::bounce, bool over_devices = false) {
+std::uint64_t best_seed(std::vector<SearchOfSeed> searches, Target target = Target::bounce, bool over_devices = false) {
   ResultSeeds seeds{.planned = searches.size(), .searches = std::move(searches)};
   rank(seeds, target, 1e-9, over_devices);
   return seeds.searches.at(seeds.best).seed;

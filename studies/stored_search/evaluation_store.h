@@ -13,7 +13,7 @@
 #include "store/study_store.h"
 #include "studies/evaluation_memory.h"
 
-namespace softland::apps {
+namespace softland {
 
 /// In the folder of a search.
 inline constexpr const char* evaluations_file = "evaluations.sqlite";
@@ -48,4 +48,4 @@ class EvaluationStore : public EvaluationMemory {
   std::exception_ptr failure_;
 };
 
-}  // namespace softland::apps
+}  // namespace softland

@@ -1,4 +1,4 @@
-#include "apps/kept_search.h"
+#include "studies/stored_search/stored_search.h"
 
 #include <fmt/format.h>
 
@@ -8,26 +8,18 @@
 #include <type_traits>
 #include <utility>
 
-#include "apps/scenes.h"
-#include "apps/values.h"
-#include "base/read_file.h"
 #include "base/require.h"
 #include "base/shortened.h"
+#include "store/study_store.h"
 #include "studies/prepared.h"
 
-namespace softland::apps {
+namespace softland {
 namespace {
 
 using nlohmann::json;
 
 constexpr const char* kind = "search";
 constexpr const char* raced_families_key = "raced_waveform";  // as it was given
-
-// The scene that a search begins with, as its plan keeps it.
-struct StartingScene {
-  std::string name;  // as it was given
-  SceneFile scene;   // canonical
-};
 
 // The words of a plan. One that says nothing of devices is of the nominal one.
 SearchRequest request_in(const json& plan) {
@@ -41,12 +33,12 @@ SearchRequest request_in(const json& plan) {
   return request;
 }
 
-// The scenes that --start names, or those of the plan that is gone on with.
-std::vector<StartingScene> starting_scenes(const OptimizeRequest& request, const json& known) {
+// The scenes to begin with, or those of the plan that is gone on with.
+std::vector<StartingScene> starting_scenes(const AskedSearch& asked, const json& known) {
   std::vector<StartingScene> all;
-  for (const std::string& name : request.starts) {
-    require(!name.empty(), "--start: must not be empty");
-    all.push_back({.name = name, .scene = canonical(scene_of_result(name), name)});
+  for (const StartingScene& one : asked.starts) {
+    require_request(!one.name.empty(), [] { return requested("start") + ": must not be empty"; });
+    all.push_back({.name = one.name, .scene = canonical(one.scene, one.name)});
   }
   if (!all.empty() || !known.is_object() || !known.contains("start")) return all;
   for (const json& one : known.at("start")) {
@@ -56,20 +48,15 @@ std::vector<StartingScene> starting_scenes(const OptimizeRequest& request, const
   return all;
 }
 
-// The scene as it was given, with what its name and its lines are in messages, or as the plan has it that is gone on with.
-json given_scene(const Common& c, const json& known) {
+// The scene as it was given, or as the plan has it that is gone on with, with what is set.
+json given_scene(const AskedSearch& asked, const json& known) {
   json given;
-  if (c.scene.empty()) {
-    given = known.at("given");
+  if (asked.given) {
+    given = {{"file", asked.given->file}, {"folder", asked.given->folder}, {"text", asked.given->text}, {"set", json::array()}};
   } else {
-    // Read before the braces: what throws within them leaves GCC 12 destroying elements that were never made.
-    const std::string text = read_file(c.scene);
-    given = {{"file", c.scene},
-             {"folder", std::filesystem::absolute(c.scene).parent_path().string()},
-             {"text", text},
-             {"set", json::array()}};
+    given = known.at("given");
   }
-  for (const std::string& assignment : c.set) given.at("set").push_back(assignment);
+  for (const std::string& assignment : asked.set) given.at("set").push_back(assignment);
   return given;
 }
 
@@ -128,24 +115,50 @@ std::string start_names(const json& plan) {
 
 }  // namespace
 
-KeptSearch kept_search(const Common& c, const OptimizeRequest& given, const json& known) {
-  const json as_given = given_scene(c, known);
-  SceneFile scene = c.scene.empty() ? scene_of(as_given) : load_scene(c);
-  SearchRequest request = given;
+StoredSearch stored_search(const AskedSearch& asked, const json& known) {
+  const json as_given = given_scene(asked, known);
+  SceneFile scene = asked.scene ? *asked.scene : scene_of(as_given);
+  SearchRequest request = asked.request;
   if (known.is_object()) request = or_else(std::move(request), request_in(known));
   request = completed(std::move(request), scene);
-  const std::string families = given.waveform.empty() && known.is_object() ? known.value(raced_families_key, "") : given.waveform;
-  KeptSearch search{planned(request, std::move(scene), families), {}};
-  search.options.stop = c.stop;
-  search.options.jobs = job_count(given.jobs);
-  const std::vector<StartingScene> starts = starting_scenes(given, known);
+  const std::string& waveform = asked.request.waveform;
+  const std::string families = waveform.empty() && known.is_object() ? known.value(raced_families_key, "") : waveform;
+  StoredSearch search{planned(request, std::move(scene), families), {}};
+  search.options.stop = asked.stop;
+  search.options.jobs = asked.jobs;
+  const std::vector<StartingScene> starts = starting_scenes(asked, known);
   search.plan = plan_of(request, search, starts, as_given);
   for (const StartingScene& start : starts) {
-    Drives drives = prepare(start.scene, false, {.stop = c.stop}).drives;
-    search.options.starts.push_back(
-        {.name = "--start " + start.name, .waveforms = std::move(drives.waveforms), .before = std::move(drives.before)});
+    Drives drives = prepare(start.scene, false, {.stop = asked.stop}).drives;
+    search.options.starts.push_back({.name = requested("start") + " " + start.name,
+                                     .waveforms = std::move(drives.waveforms),
+                                     .before = std::move(drives.before)});
   }
   return search;
+}
+
+StoredSearch stored_search(const AskedSearch& asked, const std::vector<std::filesystem::path>& stores,
+                           std::optional<KnownSearch>& known) {
+  const auto refuse = [](const std::string& why) { throw InvalidRequest(requested("resume") + ": " + why); };
+  std::string refusal;
+  for (const std::filesystem::path& store : stores) {
+    const StudyReader reader(store);
+    const json plan = json::parse(reader.plan().text, nullptr, false);
+    require(plan.is_object() && plan.contains("kind"), fmt::format("{}: holds no search", store.string()));
+    try {
+      StoredSearch search = stored_search(asked, plan);
+      const std::string other = difference(plan, search.plan);
+      if (other.empty()) {
+        known = KnownSearch{.place = store.parent_path(), .plan = plan, .command = reader.sessions().front().command};
+        return search;
+      }
+      if (refusal.empty()) refusal = fmt::format("{} holds another search: {}", store.string(), other);
+    } catch (const json::exception&) {
+      throw InvalidInput(fmt::format("{}: holds a search of another version of softland", store.string()));
+    }
+  }
+  if (!refusal.empty()) refuse(refusal);
+  return stored_search(asked);
 }
 
 std::string difference(const json& there, const json& asked) {
@@ -157,10 +170,10 @@ std::string difference(const json& there, const json& asked) {
     const auto words = [](const json& value) {
       return value.is_null() ? std::string("none") : value.is_string() ? value.get<std::string>() : value.dump();
     };
-    if (before != now) return fmt::format("it is for --{} {}, not {}", key, words(before), words(now));
+    if (before != now) return fmt::format("it is for {} {}, not {}", requested(key), words(before), words(now));
   }
   if (there.at("start") != asked.at("start"))
-    return fmt::format("it began with --start {}, not {}", start_names(there), start_names(asked));
+    return fmt::format("it began with {} {}, not {}", requested("start"), start_names(there), start_names(asked));
   const auto seeds = [](const json& plan) { return std::stoull(plan.at("seeds").get<std::string>()); };
   return seeds(asked) < seeds(there) ? fmt::format("it has {} seeds, not {}", seeds(there), seeds(asked)) : std::string();
 }
@@ -172,4 +185,13 @@ json plan_of_seed(const json& plan, std::uint64_t seed) {
   return one;
 }
 
-}  // namespace softland::apps
+std::int64_t evaluations_at_most(const PlannedSearch& search) {
+  constexpr std::int64_t most = std::int64_t{1} << 24, scouting = 4096;
+  const std::int64_t budget = std::min<std::int64_t>(search.options.max_evaluations + search.options.more_evaluations, most);
+  const std::int64_t of_race = search.for_devices ? std::min<std::int64_t>(2 * search.for_devices->closings / 8, most) : 0;
+  const std::int64_t each = search.robust ? budget / 8 + scouting : budget + of_race;
+  const auto seeds = static_cast<std::int64_t>(search.seeds);
+  return each > most / seeds ? most : each * seeds;
+}
+
+}  // namespace softland

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/result_folder.h"
 #include "config/scene.h"
 #include "optimizers/problem.h"
+#include "reports/result_folder.h"
 
-namespace softland::apps {
+namespace softland {
 
 /// best.toml and evaluations.csv among the unfinished results of a folder.
 class SearchLog {
@@ -37,4 +37,4 @@ class SearchLog {
   std::chrono::steady_clock::time_point written_{};
 };
 
-}  // namespace softland::apps
+}  // namespace softland

@@ -1,4 +1,4 @@
-#include "apps/result_folder.h"
+#include "reports/result_folder.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "base/require.h"
 #include "reports/files.h"
 
-namespace softland::apps {
+namespace softland {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,30 +25,30 @@ bool is_of(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-fs::path created(const std::string& folder) {
-  require_no_companion(folder, "--out " + folder);
+fs::path created(const fs::path& folder, const std::string& called) {
+  require_no_companion(folder, called);
   std::error_code error;
   fs::create_directories(folder, error);
-  require(!error, fmt::format("--out {}: the folder cannot be created: {}", folder, error.message()));
+  require(!error, [&] { return fmt::format("{}: the folder cannot be created: {}", called, error.message()); });
   return folder;
 }
 
 }  // namespace
 
-ResultFolder::ResultFolder(const std::string& folder, const std::string& command, const std::vector<std::string>& files,
-                           const std::vector<std::string>& kept)
-    : folder_(created(folder)),
+ResultFolder::ResultFolder(const fs::path& folder, const std::string& called, const std::string& command,
+                           const std::vector<std::string>& files, const std::vector<std::string>& kept)
+    : folder_(created(folder, called)),
       files_(files),
       kept_(kept),
-      lock_(std::make_unique<LockFile>(folder_ / lock_name,
-                                       LockedPlace{"--out " + folder, "folder", "another run works in this folder"}, command)) {
+      lock_(std::make_unique<LockFile>(folder_ / lock_name, LockedPlace{called, "folder", "another run works in this folder"},
+                                       command)) {
   for (const std::string& name : files_) {
+    const std::string file = (folder_ / name).string();
     std::error_code ignored;
-    require(!fs::is_directory(folder_ / name, ignored),
-            fmt::format("--out {}: {} is a folder, where a result would be written", folder, (folder_ / name).string()));
-    require(is_of(kept_, name) || !was_read(folder_ / name),
-            fmt::format("--out {}: {} would be replaced, which this run reads; name another folder", folder,
-                        (folder_ / name).string()));
+    require(!fs::is_directory(file, ignored),
+            [&] { return fmt::format("{}: {} is a folder, where a result would be written", called, file); });
+    require(is_of(kept_, name) || !was_read(file),
+            [&] { return fmt::format("{}: {} would be replaced, which this run reads; name another folder", called, file); });
   }
 }
 
@@ -145,4 +145,4 @@ void ResultFolder::publish(bool interrupted) {
   written_.clear();
 }
 
-}  // namespace softland::apps
+}  // namespace softland

@@ -1,21 +1,20 @@
-#include "apps/seed_study.h"
+#include "studies/stored_search/seed_study.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
-#include "apps/stores.h"
 #include "base/executor.h"
 #include "base/watch.h"
-#include "objectives/figures.h"
-#include "reports/origin.h"
-#include "reports/seeds_report.h"
 #include "studies/exploration/exploration.h"
+#include "studies/robust_optimize.h"
 
-namespace softland::apps {
+namespace softland {
 namespace {
 
 using nlohmann::json;
@@ -34,7 +33,7 @@ StoredColumn column_of(const PointFigure& figure) {
   return {.key = column_key(figure.quantity, figure.unit), .name = figure.name, .unit = figure.unit, .kind = ColumnKind::figure};
 }
 
-StoredPlan seed_plan(const KeptSearch& search, const std::vector<std::string>& variables) {
+StoredPlan seed_plan(const StoredSearch& search, const std::vector<std::string>& variables) {
   StoredPlan plan{.text = search.plan.dump(1),
                   .points = static_cast<std::int64_t>(search.seeds),
                   .columns = {{.key = "seed", .name = "seed", .unit = {}, .kind = ColumnKind::variable}},
@@ -48,9 +47,8 @@ StoredPlan seed_plan(const KeptSearch& search, const std::vector<std::string>& v
 
 double finite(double value) { return std::isfinite(value) ? value : Metrics::unset; }
 
-// A row as a search of the report.
-ResultSeeds::Search search_of(const StoredRow& row, std::uint64_t seed) {
-  ResultSeeds::Search one{.seed = seed, .status = row.status, .termination = {}};
+SearchOfSeed search_of(const StoredRow& row, std::uint64_t seed) {
+  SearchOfSeed one{.seed = seed, .status = row.status, .termination = {}};
   std::size_t at = 1;
   for (const Figure& figure : all_figures) one.figures[figure] = row.values.at(at++);
   one.goal_met = row.values.at(at) == 1;
@@ -63,24 +61,20 @@ ResultSeeds::Search search_of(const StoredRow& row, std::uint64_t seed) {
   return one;
 }
 
-ContentKey content_of(const KeptSearch& search, std::uint64_t k) {
+ContentKey content_of(const StoredSearch& search, std::uint64_t k) {
   return content_key(plan_of_seed(search.plan, search.seed(k)).dump());
 }
 
 }  // namespace
 
-SeedStudy::SeedStudy(const Common& c, const KeptSearch& search, SearchPlaces& places, std::vector<std::string> variables)
-    : common_(c),
-      search_(search),
-      places_(places),
+SeedStudy::SeedStudy(const StoredSearch& search, EvaluationStore& evaluations, const std::filesystem::path& file,
+                     std::vector<std::string> variables, const StoredOrigin& origin)
+    : search_(search),
+      evaluations_(evaluations),
       variables_(std::move(variables)),
-      file_(places.store(seeds_file)),
-      store_(file_, seed_plan(search, variables_), stored_origin(c.command), StudyStore::Opening::resume),
-      log_(places.folder(), variables_),
-      bar_(c.quiet),
-      evaluations_(search.seeds, 0),
-      best_cost_(Metrics::unset),
-      step_cost_(Metrics::unset) {
+      file_(file),
+      store_(file_, seed_plan(search, variables_), origin, StudyStore::Opening::resume),
+      made_(search.seeds, 0) {
   const std::vector<bool> done = store_.done();
   for (std::uint64_t k = 0; k < search.seeds; ++k) {
     if (done[k]) continue;
@@ -97,39 +91,44 @@ SeedStudy::SeedStudy(const Common& c, const KeptSearch& search, SearchPlaces& pl
   done_ = search.seeds - to_do_.size();
 }
 
-void SeedStudy::run() {
+void SeedStudy::run(const Listener& listener) {
   const int jobs = search_.options.jobs;
   const int inner = to_do_.size() < static_cast<std::size_t>(jobs) ? jobs : 1;
   run_tasks(
-      to_do_.size(), jobs, [&](std::size_t i) { search(to_do_[i], inner); }, common_.stop);
-  const std::scoped_lock lock(mutex_);
-  bar_.close([this](double elapsed) { return state(elapsed); });
-  log_.flush();
+      to_do_.size(), jobs, [&](std::size_t i) { search(to_do_[i], inner, listener); }, search_.options.stop);
 }
 
-void SeedStudy::close() { store_.close(); }
-
 // A search that was asked to stop before its end is no row: what it evaluated is kept, and the study goes on with it.
-void SeedStudy::search(std::uint64_t k, int jobs) {
+void SeedStudy::search(std::uint64_t k, int jobs, const Listener& listener) {
   OptimizeOptions options = search_.options;
-  const Watch watch{.stop = common_.stop};
+  const Watch watch{.stop = search_.options.stop};
   options.seed = search_.seed(k);
   options.jobs = jobs;
-  options.memory = &places_.evaluations();
+  options.memory = &evaluations_;
   options.on_preparation = [&](std::string_view, double) { watch.throw_if_stopped(); };
   options.on_start = {};
-  const auto progress = [this, k](const OptimizeProgress& p) {
-    const std::scoped_lock lock(mutex_);
-    evaluations_[k] = p.evaluations;
-    step_cost_ = p.baseline_cost;
-    show();
+  const auto tell = [&] {
+    if (listener.progress) listener.progress(state());
+  };
+  const auto progress = [&](const OptimizeProgress& p) {
+    {
+      const std::scoped_lock lock(mutex_);
+      made_[k] = p.evaluations;
+      step_cost_ = p.baseline_cost;
+    }
+    tell();
   };
   options.on_evaluation = [&](const Evaluation&, const OptimizeProgress& p) {
-    places_.evaluations().check();
+    evaluations_.check();
     progress(p);
   };
   options.on_progress = progress;
-  options.on_improvement = [this](const Evaluation& e, const SceneFile& best) { improved(e.value, best); };
+  options.on_improvement = [&](const Evaluation& e, const SceneFile& best) {
+    const std::scoped_lock lock(mutex_);
+    if (best_cost_ <= e.value) return;
+    best_cost_ = e.value;
+    if (listener.improvement) listener.improvement(best);
+  };
   try {
     double closings = Metrics::unset;
     std::optional<OptimizeResult> found;
@@ -141,14 +140,16 @@ void SeedStudy::search(std::uint64_t k, int jobs) {
       found.emplace(optimize(search_.scene, options));
     }
     if (found->search.termination == Termination::interrupted || watch.stopped()) return;
-    places_.evaluations().check();
+    evaluations_.check();
     store_.add(row(k, *found, closings));
   } catch (const Interrupted&) {
     return;
   }
-  const std::scoped_lock lock(mutex_);
-  ++done_;
-  show();
+  {
+    const std::scoped_lock lock(mutex_);
+    ++done_;
+  }
+  tell();
 }
 
 StoredRow SeedStudy::row(std::uint64_t k, const OptimizeResult& result, double closings) const {
@@ -174,46 +175,30 @@ StoredRow SeedStudy::row(std::uint64_t k, const OptimizeResult& result, double c
   return row;
 }
 
-void SeedStudy::improved(double cost, const SceneFile& best) {
+SeedStudy::State SeedStudy::state() const {
   const std::scoped_lock lock(mutex_);
-  if (best_cost_ <= cost) return;
-  best_cost_ = cost;
-  log_.improved(best);
-}
-
-void SeedStudy::show() {
-  bar_.show([this](double elapsed) { return state(elapsed); });
-}
-
-std::pair<double, std::string> SeedStudy::state(double elapsed) const {
-  const long made = std::accumulate(evaluations_.begin(), evaluations_.end(), 0L);
+  State now{.done = done_,
+            .evaluations = std::accumulate(made_.begin(), made_.end(), 0L),
+            .best_cost = best_cost_,
+            .step_cost = step_cost_};
   const auto all = static_cast<double>(search_.options.max_evaluations) * static_cast<double>(search_.seeds);
   const auto there = static_cast<double>(search_.seeds - to_do_.size()) / static_cast<double>(search_.seeds);
-  std::string words =
-      fmt::format("{} of {} seeds, {} {}", done_, search_.seeds, made, search_.robust ? "closings" : "evaluations");
-  words += std::isfinite(best_cost_) ? fmt::format(", best cost {:.4f} (plain step {:.4f})", best_cost_, step_cost_)
-                                     : ", no feasible waveform yet";
-  return {there + static_cast<double>(made) / all, words + fmt::format(", {:.0f} s", elapsed)};
+  now.part = there + static_cast<double>(now.evaluations) / all;
+  return now;
 }
 
-ResultSeeds SeedStudy::found(double significant) const {
-  ResultSeeds seeds{.planned = search_.seeds};
-  StudyReader(file_).read([&](const StoredRow& row) {
-    seeds.searches.push_back(search_of(row, search_.seed(static_cast<std::uint64_t>(row.point))));
-  });
-  if (!seeds.searches.empty()) rank(seeds, search_.options.target, significant, search_.robust.has_value());
-  return seeds;
+std::vector<SearchOfSeed> SeedStudy::searches() const {
+  std::vector<SearchOfSeed> all;
+  StudyReader(file_).read(
+      [&](const StoredRow& row) { all.push_back(search_of(row, search_.seed(static_cast<std::uint64_t>(row.point)))); });
+  return all;
 }
 
-std::string SeedStudy::best_scene(const ResultSeeds& seeds) const {
-  if (seeds.searches.empty()) return {};
-  const std::uint64_t point = seeds.searches[seeds.best].seed - search_.options.seed;
+std::string SeedStudy::scene_of(std::uint64_t seed) const {
   std::string text;
   StudyReader(file_).read([&](const StoredRow& row) { text = json::parse(row.extra).value("scene_toml", ""); },
-                          {.where = fmt::format("point = {}", point)});
+                          {.where = fmt::format("point = {}", seed - search_.options.seed)});
   return text;
 }
 
-std::uint64_t SeedStudy::missing() const { return search_.seeds - done_; }
-
-}  // namespace softland::apps
+}  // namespace softland

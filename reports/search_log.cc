@@ -1,11 +1,11 @@
-#include "apps/search_log.h"
+#include "reports/search_log.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <utility>
 
-namespace softland::apps {
+namespace softland {
 
 SearchLog::SearchLog(ResultFolder& folder, std::vector<std::string> variables)
     : folder_(folder), variables_(std::move(variables)) {
@@ -38,4 +38,4 @@ void SearchLog::flush() {
   written_ = std::chrono::steady_clock::now();
 }
 
-}  // namespace softland::apps
+}  // namespace softland

@@ -10,15 +10,15 @@
 
 #include "base/lock_file.h"
 
-namespace softland::apps {
+namespace softland {
 
 class ResultFolder {
  public:
   /// Creates and locks the folder for the run `command`, which will leave `files` in it; of those it goes on with the `kept` ones
-  /// of an earlier run, which stay where they are. Throws InvalidInput, before anything is changed, where that is not possible or
-  /// one of the others is an input of this run.
-  ResultFolder(const std::string& folder, const std::string& command, const std::vector<std::string>& files,
-               const std::vector<std::string>& kept = {});
+  /// of an earlier run, which stay where they are. Messages begin with `called`, "--out run1". Throws InvalidInput, before
+  /// anything is changed, where that is not possible or one of the others is an input of this run.
+  ResultFolder(const std::filesystem::path& folder, const std::string& called, const std::string& command,
+               const std::vector<std::string>& files, const std::vector<std::string>& kept = {});
 
   /// Writes a file of the unfinished results.
   void write(const std::string& name, std::string_view content);
@@ -48,4 +48,4 @@ class ResultFolder {
   std::filesystem::path stage_;
 };
 
-}  // namespace softland::apps
+}  // namespace softland

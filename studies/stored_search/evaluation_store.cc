@@ -1,4 +1,4 @@
-#include "apps/evaluation_store.h"
+#include "studies/stored_search/evaluation_store.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "studies/exploration/exploration.h"
 
-namespace softland::apps {
+namespace softland {
 namespace {
 
 constexpr std::size_t figures = 7;  // columns after the parameters: cost, leading cost, lands, devices, limit, seed, closings
@@ -126,4 +126,4 @@ void EvaluationStore::close() {
   store_.close();
 }
 
-}  // namespace softland::apps
+}  // namespace softland

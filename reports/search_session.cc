@@ -1,0 +1,107 @@
+#include "reports/search_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "base/require.h"
+#include "base/shell_word.h"
+#include "reports/origin.h"
+#include "reports/report_files.h"
+#include "store/study_store.h"
+
+namespace softland {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> files_of(const StoredSearch& search) {
+  std::vector<std::string> files{"best.toml",      "best.csv",        "report.html",    "gap.svg", "result.json",
+                                 "trajectory.csv", "evaluations.csv", evaluations_file, seeds_file};
+  if (search.robust || search.for_devices) files.insert(files.end(), robustness_files.begin(), robustness_files.end());
+  if (search.for_devices) files.insert(files.end(), for_devices_files.begin(), for_devices_files.end());
+  return files;
+}
+
+std::optional<fs::path> kept_stores(const SearchOutput& output, const std::optional<KnownSearch>& known) {
+  std::error_code ignored;
+  return known && fs::equivalent(known->place, output.folder, ignored) ? std::optional(known->place) : std::nullopt;
+}
+
+ResultFolder claimed(const SearchOutput& output, const StoredSearch& search, const std::optional<KnownSearch>& known) {
+  const bool stays = kept_stores(output, known).has_value();
+  std::vector<std::string> kept;
+  if (stays) kept = {evaluations_file};
+  if (stays && search.seeds > 1) kept.emplace_back(seeds_file);
+  ResultFolder folder = output.claim(files_of(search), kept);
+  // Whoever held the folder until now may have put them elsewhere.
+  require_request(!known || is_store(known->place / evaluations_file), [&] {
+    return fmt::format("{}: {} is gone; try again", requested("resume"), (known->place / evaluations_file).string());
+  });
+  if (known && !stays) folder.adopt(known->place);
+  return folder;
+}
+
+}  // namespace
+
+SearchPlaces::SearchPlaces(const SearchOutput& output, const StoredSearch& search, const std::optional<KnownSearch>& known,
+                           const std::vector<std::string>& variables)
+    : kept_(kept_stores(output, known)),
+      folder_(claimed(output, search, known)),
+      evaluations_(store(evaluations_file), search.plan, evaluations_at_most(search), search.options.seed, variables,
+                   stored_origin(output.command)) {}
+
+fs::path SearchPlaces::store(const std::string& name) { return kept_ ? *kept_ / name : folder_.place(name); }
+
+SearchSession::SearchSession(StoredSearch& search, const std::optional<KnownSearch>& known, const SearchOutput& output,
+                             SearchPlaces* places)
+    : search_(search), known_(known), output_(output), places_(places) {}
+
+void SearchSession::begin(const std::vector<std::string>& variables) {
+  if (places_ == nullptr) places_ = &own_.emplace(output_, search_, known_, variables);
+  search_.options.memory = &places_->evaluations();
+  std::vector<std::string> of_log = variables;  // that of the race is in the store alone
+  std::erase_if(of_log, [](const std::string& name) { return name.starts_with(raced_prefix); });
+  log_.emplace(places_->folder(), of_log);
+}
+
+void SearchSession::evaluated(const Evaluation& evaluation) {
+  places_->evaluations().check();
+  log_->evaluated(evaluation);
+}
+
+void SearchSession::close() {
+  log_->flush();
+  places_->evaluations().close();
+}
+
+fs::path SearchSession::destination(const SearchReport& report) const {
+  return places_->folder().destination(report.found.interrupted());
+}
+
+void SearchSession::add_log(Result& result, const SearchReport& report) const {
+  for (const auto& [index, e] : log_->evaluations()) result.search.evaluations.push_back({static_cast<double>(index), e.value});
+  result.search.evaluations = drawn_evaluations(std::move(result.search.evaluations));
+  if (known_ && known_->command != output_.command) result.reproduce.push_back(known_->command);
+  result.reproduce.push_back(output_.command);
+  result.reproduce.push_back("softland simulate " + shell_word((destination(report) / "best.toml").string()));
+}
+
+std::vector<std::string> SearchSession::leave(const SearchReport& report) {
+  std::vector<std::string> left, kept{"evaluations.csv"};
+  if (places_->stores_go_to(destination(report))) {
+    kept.emplace_back(evaluations_file);
+    if (report.result.seeds) kept.emplace_back(seeds_file);
+  }
+  const std::string last = report.found.best().best_scene ? "best.csv" : "result.json";
+  for (const ReportFile<SearchReport>& file : softland::files_of(report)) {
+    places_->folder().write(file.name, file.text(report));
+    left.push_back(file.name);
+    if (file.name == last) left.insert(left.end(), kept.begin(), kept.end());
+  }
+  places_->folder().publish(report.found.interrupted());
+  return left;
+}
+
+}  // namespace softland

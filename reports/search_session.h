@@ -1,0 +1,89 @@
+// A search from its first evaluation to the files that it leaves: the folder that it fills, the store of its evaluations, with
+// which it can be gone on with, and its log.
+//
+//   SearchSession session(search, known, output);
+//   search.options.on_start = [&](const auto& variables) { session.begin(variables); };
+//   search.options.on_evaluation = [&](const Evaluation& e, const auto&) { session.evaluated(e); };
+//   search.options.on_improvement = [&](const Evaluation&, const SceneFile& best) { session.improved(best); };
+//   SearchReport report(run(search));
+//   session.close();
+//   add_result(report, search, session.destination(report), {.command = command});
+//   session.add_log(report.result, report);
+//   session.leave(report);
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reports/result_folder.h"
+#include "reports/search_log.h"
+#include "reports/search_report.h"
+#include "studies/stored_search/evaluation_store.h"
+#include "studies/stored_search/stored_search.h"
+
+namespace softland {
+
+/// In the folder of searches from several seeds.
+inline constexpr const char* seeds_file = "seeds.sqlite";
+
+/// Where a search leaves what it finds.
+struct SearchOutput {
+  std::filesystem::path folder;
+  std::string command;
+  /// Takes the folder for these files, of which some are those of an earlier run: see ResultFolder.
+  std::function<ResultFolder(const std::vector<std::string>& files, const std::vector<std::string>& kept)> claim;
+};
+
+class SearchPlaces {
+ public:
+  /// Takes the folder and opens the store of evaluations, for a search of these parameters.
+  SearchPlaces(const SearchOutput& output, const StoredSearch& search, const std::optional<KnownSearch>& known,
+               const std::vector<std::string>& variables);
+
+  [[nodiscard]] ResultFolder& folder() { return folder_; }
+  [[nodiscard]] EvaluationStore& evaluations() { return evaluations_; }
+  /// Where another store of the search is.
+  [[nodiscard]] std::filesystem::path store(const std::string& name);
+  /// Whether the stores are, or will be, among results that are put here.
+  [[nodiscard]] bool stores_go_to(const std::filesystem::path& place) const { return !kept_ || place == folder_.path(); }
+
+ private:
+  std::optional<std::filesystem::path> kept_;  // the stores of the folder itself are gone on with
+  ResultFolder folder_;
+  EvaluationStore evaluations_;
+};
+
+class SearchSession {
+ public:
+  /// Keeps references to search, known and output, and to `places`, those of a study that it is part of; null: it takes its own
+  /// when it begins.
+  SearchSession(StoredSearch& search, const std::optional<KnownSearch>& known, const SearchOutput& output,
+                SearchPlaces* places = nullptr);
+
+  /// When the parameters are known: opens folder, store and log, and gives the search its memory. Throws what these throw.
+  void begin(const std::vector<std::string>& variables);
+  /// Throws what kept the store from keeping an evaluation.
+  void evaluated(const Evaluation& evaluation);
+  void improved(const SceneFile& best) { log_->improved(best); }
+  /// When the search has ended: lets the store go.
+  void close();
+  /// Where the files will be.
+  [[nodiscard]] std::filesystem::path destination(const SearchReport& report) const;
+  /// The costs of the evaluations, and the command lines that make the result again.
+  void add_log(Result& result, const SearchReport& report) const;
+  /// Writes the files, puts them where they belong, and names them with those that were kept on the way.
+  std::vector<std::string> leave(const SearchReport& report);
+
+ private:
+  StoredSearch& search_;
+  const std::optional<KnownSearch>& known_;
+  const SearchOutput& output_;
+  std::optional<SearchPlaces> own_;
+  SearchPlaces* places_;
+  std::optional<SearchLog> log_;
+};
+
+}  // namespace softland
