@@ -96,6 +96,7 @@ void SeedStudy::run(const Listener& listener) {
   const int inner = to_do_.size() < static_cast<std::size_t>(jobs) ? jobs : 1;
   run_tasks(
       to_do_.size(), jobs, [&](std::size_t i) { search(to_do_[i], inner, listener); }, search_.options.stop);
+  store_.flush();
 }
 
 // A search that was asked to stop before its end is no row: what it evaluated is kept, and the study goes on with it.

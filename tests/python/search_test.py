@@ -3,6 +3,7 @@
 import os
 import pathlib
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -15,6 +16,7 @@ import softland
 
 SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes"
 GOLD = SCENES / "mem-gold.toml"
+PROGRAM = os.environ["SOFTLAND_PROGRAM"]
 
 
 def swell(hold, limit):
@@ -110,6 +112,77 @@ class Searches(unittest.TestCase):
         softland.load(GOLD).robustness(samples=2000, progress=lambda what, part: told.append((what, part)))
         self.assertTrue(all(0 <= part <= 1 for _, part in told))
         self.assertTrue(any("devices" in what for what, _ in told))
+
+
+class Kept(unittest.TestCase):
+    """Searches in a folder, which Python and the program go on with."""
+
+    OPTIONS = {"robust": "none", "waveform": "pulse", "jobs": 1}
+    WORDS = ["optimize", GOLD, "--robust", "none", "--waveform", "pulse", "--jobs", "1", "--quiet"]
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.out = pathlib.Path(self.folder.name)
+
+    def program(self, *words):
+        run = subprocess.run([PROGRAM, *words], capture_output=True, text=True, check=False)
+        self.assertIn(run.returncode, (0, 4), run.stderr)
+        return run.stdout
+
+    def text(self, name, file):
+        return (self.out / name / file).read_text()
+
+    def count(self, name, of):
+        with sqlite3.connect(self.out / name / "evaluations.sqlite") as store:
+            return store.execute(f"select count(*) from {of}").fetchone()[0]
+
+    def test_leaves_the_files_of_the_program(self):
+        found = softland.load(GOLD).optimize(**self.OPTIONS, budget=150, out=self.out / "python")
+        self.program(*self.WORDS, "--budget", "150", "--out", self.out / "program")
+        names = {file.name for file in (self.out / "program").iterdir()}
+        self.assertEqual({file.name for file in (self.out / "python").iterdir()}, names)
+        for file in ("best.toml", "best.csv", "evaluations.csv", "trajectory.csv"):
+            self.assertEqual(self.text("python", file), self.text("program", file), file)
+        self.assertEqual(self.count("python", "results"), self.count("program", "results"))
+        self.assertEqual(found.file("best.toml"), self.text("python", "best.toml"))
+
+    def test_goes_on_with_a_search_of_the_program_and_the_other_way_round(self):
+        scene = softland.load(GOLD)
+        whole = scene.optimize(**self.OPTIONS, budget=200)
+        self.program(*self.WORDS, "--budget", "90", "--out", self.out / "begun")
+        begun = self.count("begun", "results")
+        longer = scene.optimize(**self.OPTIONS, budget=200, out=self.out / "begun", resume=True)
+        self.assertEqual(longer.file("best.toml"), whole.file("best.toml"))
+        self.assertGreater(self.count("begun", "results"), begun)
+        self.assertEqual(self.count("begun", "session"), 2)
+        scene.optimize(**self.OPTIONS, budget=90, out=self.out / "other")
+        self.program("optimize", "--resume", "--quiet", "--out", self.out / "other", "--budget", "200")
+        self.assertEqual(self.text("other", "best.toml"), whole.file("best.toml"))
+        self.assertEqual(self.count("other", "session"), 2)
+
+    def test_what_is_there_is_not_simulated_again(self):
+        scene = softland.load(GOLD)
+        scene.optimize(**self.OPTIONS, budget=1500, out=self.out / "kept")
+        began = time.process_time()
+        again = scene.optimize(**self.OPTIONS, budget=1500, out=self.out / "kept", resume=True)
+        recalled = time.process_time() - began
+        began = time.process_time()
+        self.assertEqual(scene.optimize(**self.OPTIONS, budget=1500).file("best.toml"), again.file("best.toml"))
+        self.assertLess(recalled, 0.7 * (time.process_time() - began))
+
+    def test_refuses_what_no_folder_can_hold(self):
+        scene = softland.load(GOLD)
+        with self.assertRaisesRegex(softland.InvalidInput, "out: a search with functions of Python cannot be kept"):
+            scene.optimize(objective=lambda closing, step: 1.0, out=self.out / "own")
+        with self.assertRaisesRegex(softland.InvalidInput, "resume: needs `out`"):
+            scene.optimize(resume=True)
+        scene.optimize(**self.OPTIONS, budget=20, out=self.out / "other")
+        with self.assertRaisesRegex(softland.InvalidInput, "resume: .*holds another search: it is for target bounce, not impact"):
+            scene.optimize(**self.OPTIONS, target="impact", out=self.out / "other", resume=True)
+        with self.assertRaisesRegex(softland.InvalidInput, "out .*best.toml is a folder"):
+            (self.out / "taken" / "best.toml").mkdir(parents=True)
+            scene.optimize(**self.OPTIONS, out=self.out / "taken")
 
 
 class Interrupts(unittest.TestCase):

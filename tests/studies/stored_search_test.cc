@@ -1,0 +1,145 @@
+// Searches that are kept from a library: gone on with, refused, and from several seeds.
+#include "studies/stored_search/stored_search.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/require.h"
+#include "store/study_store.h"
+#include "studies/found_search.h"
+#include "studies/robust_optimize.h"
+#include "studies/stored_search/evaluation_store.h"
+#include "studies/stored_search/seed_study.h"
+#include "tests/studies/scenes.h"
+#include "tests/support/temporary_folder.h"
+
+namespace softland::stored_search_test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class StoredSearches : public testing::Test {
+ protected:
+  static SceneFile quick() {
+    return gold({"simulate.duration=150 us", "structure.modes=2", "simulate.accuracy=1e-3", "waveform.main.level=18 V",
+                 "driver.main.max_voltage=40 V"});
+  }
+  static AskedSearch asked(const std::string& budget, const SceneFile& scene = quick()) {
+    return {.request = {.waveform = "pulse", .robust = std::string(nominal_alone), .budget = budget},
+            .given = GivenText{.file = "gold.toml", .folder = ".", .text = scene.text()},
+            .scene = scene};
+  }
+  [[nodiscard]] fs::path file() const { return folder_.path() / evaluations_file; }
+
+  // The scene that is found, with the evaluations in the store; how many of them were simulated.
+  std::string found(const AskedSearch& asked, std::int64_t& computed) {
+    std::optional<KnownSearch> known;
+    StoredSearch search = stored_search(asked, fs::exists(file()) ? std::vector{file()} : std::vector<fs::path>(), known);
+    EXPECT_EQ(known.has_value(), fs::exists(file()));
+    std::optional<EvaluationStore> store;
+    search.options.on_start = [&](const std::vector<std::string>& variables) {
+      store.emplace(file(), search.plan, evaluations_at_most(search), search.options.seed, variables, StoredOrigin{});
+      search.options.memory = &*store;
+    };
+    const FoundSearch found = run(search);
+    computed = store->computed();
+    store->close();
+    return found.best().best_scene->scene.file.text();
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(StoredSearches, GoOnWithoutSimulatingAnythingTwice) {
+  std::int64_t first = 0, rest = 0, none = 0;
+  static_cast<void>(found(asked("60"), first));
+  const std::string whole = found(asked("150"), rest);
+  EXPECT_GT(first, 30);
+  EXPECT_GT(rest, 0);
+  EXPECT_EQ(found(asked("150"), none), whole);
+  EXPECT_EQ(none, 0);
+  StoredSearch fresh = stored_search(asked("150"));
+  EXPECT_EQ(run(fresh).best().best_scene->scene.file.text(), whole);
+}
+
+TEST_F(StoredSearches, HaveTheWordsAndTheSceneOfWhatTheyGoOnWith) {
+  std::int64_t first = 0;
+  static_cast<void>(found(asked("60"), first));
+  std::optional<KnownSearch> known;
+  const StoredSearch search = stored_search({.request = {.budget = "70"}}, {file()}, known);
+  ASSERT_TRUE(known);
+  EXPECT_EQ(search.options.family, "pulse");
+  EXPECT_EQ(search.options.max_evaluations, 70);
+  EXPECT_EQ(search.scene.text(), quick().text());
+}
+
+TEST_F(StoredSearches, SayWhatTheyDifferIn) {
+  std::int64_t first = 0;
+  static_cast<void>(found(asked("40"), first));
+  const auto refusal = [&](const AskedSearch& other) {
+    std::optional<KnownSearch> known;
+    try {
+      static_cast<void>(stored_search(other, {file()}, known));
+    } catch (const InvalidRequest& error) {
+      return error.with_fields("--");
+    }
+    return std::string("taken");
+  };
+  AskedSearch impact = asked("40");
+  impact.request.target = "impact";
+  EXPECT_THAT(refusal(impact), HasSubstr("--resume: "));
+  EXPECT_THAT(refusal(impact), HasSubstr("holds another search: it is for --target bounce, not impact"));
+  SceneFile longer = quick();
+  longer.set("simulate.duration=160 us");
+  EXPECT_THAT(refusal(asked("40", longer)), HasSubstr("its scene has simulate.duration = \"0.00015 s\", not \"0.00016 s\""));
+  AskedSearch begun = asked("40");
+  begun.starts = {{.name = "other.toml", .scene = quick()}};
+  EXPECT_THAT(refusal(begun), HasSubstr("it began with --start none, not other.toml"));
+  EXPECT_EQ(refusal(asked("50")), "taken");
+}
+
+TEST_F(StoredSearches, OfSeveralSeedsAreRowsThatAreNotComputedAgain) {
+  AskedSearch several = asked("60");
+  several.request.seeds = "3";
+  several.jobs = 2;
+  const StoredSearch search = stored_search(several);
+  const std::vector<std::string> variables = searched_parameters(search.scene, search.options, false, {}).names;
+  const auto study = [&](std::atomic<bool>* stop) {
+    StoredSearch own = search;
+    own.options.stop = stop;
+    EvaluationStore evaluations(file(), own.plan, evaluations_at_most(own), own.options.seed, variables, {});
+    SeedStudy seeds(own, evaluations, folder_.path() / "seeds.sqlite", variables, {});
+    int improved = 0;
+    seeds.run({.improvement = [&](const SceneFile&) { ++improved; }});
+    const std::vector<SearchOfSeed> all = seeds.searches();
+    EXPECT_EQ(all.size() + seeds.missing(), 3);
+    seeds.close();
+    evaluations.close();
+    return std::pair(all, improved);
+  };
+  std::atomic<bool> stop = true;
+  EXPECT_TRUE(study(&stop).first.empty());
+  const auto [all, improved] = study(nullptr);
+  ASSERT_EQ(all.size(), 3);
+  EXPECT_GT(improved, 0);
+  EXPECT_EQ(all[1].seed, all[0].seed + 1);
+  EXPECT_GT(all[1].evaluations, 30);
+  const auto [again, improved_again] = study(nullptr);
+  EXPECT_EQ(improved_again, 0) << "all of them are there";
+  EXPECT_EQ(again[2].cost, all[2].cost);
+  StoredSearch alone = stored_search(asked("60"));
+  alone.options.seed = all[1].seed;
+  EXPECT_EQ(optimize(alone.scene, alone.options).best_cost, all[1].cost);
+}
+
+}  // namespace
+}  // namespace softland::stored_search_test
