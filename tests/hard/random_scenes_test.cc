@@ -44,7 +44,10 @@ TEST(EveryScene, ThatOnceBrokeAnInvariantKeepsItNow) {
     std::uint64_t seed, index;
     double tolerance;
   };
-  for (const Found& f : {Found{3, 50, 1e-5}}) {  // a step that began beyond its edge, by rounding, ended before it began
+  for (const Found& f : {
+           Found{3, 50, 1e-5},      // a step that began beyond its edge, by rounding, ended before it began
+           Found{7, 165398, 1e-8},  // a drive far beyond pull-in gave more in contact than the bound of its depth allowed
+       }) {
     const PreparedScene p = prepare(test::random_scene(f.seed, f.index));
     EXPECT_EQ(closing(p, Integrator::automatic, f.tolerance).violations, std::vector<std::string>{}) << f.seed << " " << f.index;
   }

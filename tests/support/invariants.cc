@@ -41,11 +41,12 @@ class Energy {
     }
     const double brought = at_rest_ + supplied_ + uncertain_;
     surplus_ = std::max(surplus_, kinetic + open + contact - brought);
-    if (d <= 0) available_ = std::max(available_, brought - open + device_.elastic_energy(q));
+    // A drive goes on pulling in contact: what it gives there counts where the beam is then.
+    available_ = std::max(available_, brought - open + (d <= 0 ? device_.elastic_energy(q) : 0.0));
   }
 
   [[nodiscard]] double surplus() const { return surplus_; }      // [J]
-  [[nodiscard]] double available() const { return available_; }  // for a contact, with the beam straight [J]
+  [[nodiscard]] double available() const { return available_; }  // for a contact: before it with the beam straight [J]
   [[nodiscard]] double moved() const { return moved_; }          // by the drives, to and fro [J]
 
  private:
@@ -199,7 +200,9 @@ CheckedRun checked_run(const Switch& model, std::span<const Signal> drives, cons
                  "the energy balance is off by {:.3g} of the bending energy", run.surplus);
     found.expect(t.smallest_gap > 0, "smallest gap {} m", t.smallest_gap);
     if (model.has_contact() && !model.has_pad_contact()) {
-      run.largest_penetration = rigid ? 1e-9 * t.contact_gap : takes_up(model.contact(), 2 * energies.available(), t.contact_gap);
+      constexpr double margin = 1.05;  // for what steps leave between them
+      run.largest_penetration =
+          rigid ? 1e-9 * t.contact_gap : takes_up(model.contact(), margin * energies.available(), t.contact_gap);
       found.expect(t.deepest_penetration <= run.largest_penetration,
                    "interference {:.3g} m, and no more than {:.3g} m is possible", t.deepest_penetration,
                    run.largest_penetration);

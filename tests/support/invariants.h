@@ -14,7 +14,7 @@ struct CheckedRun {
   Trajectory trajectory;
   Metrics metrics;
   double surplus = 0;  ///< largest energy that no source supplied, over the energy that bends the beam by the contact gap
-  double largest_penetration = 0;  ///< bound of it: where first loading alone takes up twice the energy there was [m]
+  double largest_penetration = 0;  ///< bound of it: where first loading alone takes up the energy there was and a twentieth [m]
   std::vector<std::string> violations;
 };
 
@@ -22,8 +22,9 @@ struct CheckedRun {
 /// - no energy without a source: after every step kinetic energy and potential are at most those at rest and what changing
 ///   drives have added, to `energy` times the energy that bends the beam by the contact gap or that the drives have moved (where
 ///   the run says done);
-/// - no falling through: the deepest interference is one at which the contact law has taken up no more than twice the energy
-///   there was before touch (of a contact along the pad, whose tilt also counts, the energy above is all that is checked);
+/// - no falling through: the deepest interference is one at which the contact law has taken up no more than the energy there
+///   was, with what the drives added in contact, and a twentieth (of a contact along the pad, whose tilt also counts, the energy
+///   above is all that is checked);
 /// - no event missed: in flight the motion between two knots is nowhere beyond the contact plane, in contact nowhere before it;
 ///   touches are in order; there are no more rebounds than touches;
 /// - no number that is not one: knots, touches and every figure that the status promises;
