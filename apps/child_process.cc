@@ -104,7 +104,7 @@ void ChildProcess::close_input() {
 }
 
 ChildProcess::Told ChildProcess::tell(std::string_view text, milliseconds patience) {
-  constexpr milliseconds look_around{200};
+  constexpr milliseconds check_interval{200};
   const steady_clock::time_point end = steady_clock::now() + patience;
   while (!text.empty()) {
     if (stop_requested()) throw Interrupted();
@@ -117,7 +117,7 @@ ChildProcess::Told ChildProcess::tell(std::string_view text, milliseconds patien
     const auto left = std::chrono::duration_cast<milliseconds>(end - steady_clock::now());
     if (left.count() <= 0) return Told::late;
     pollfd input{.fd = pipes_.in, .events = POLLOUT, .revents = 0};
-    ::poll(&input, 1, static_cast<int>(std::min(left, look_around).count()));
+    ::poll(&input, 1, static_cast<int>(std::min(left, check_interval).count()));
   }
   return Told::yes;
 }

@@ -40,13 +40,13 @@ bool LineReader::fill() {
 
 LineReader::Line LineReader::next(std::optional<std::chrono::milliseconds> patience) {
   using std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds look_around{200};
+  constexpr std::chrono::milliseconds check_interval{200};
   const steady_clock::time_point begin = steady_clock::now();
   for (;;) {
     if (std::optional<std::string> line = complete_line()) return {.end = End::line, .text = *std::move(line)};
     if (ended_) break;
     if (stop_requested()) throw Interrupted();
-    std::chrono::milliseconds wait = look_around;
+    std::chrono::milliseconds wait = check_interval;
     if (patience) {
       const auto left = *patience - std::chrono::duration_cast<std::chrono::milliseconds>(steady_clock::now() - begin);
       if (left.count() <= 0) return {.end = End::late};

@@ -9,7 +9,7 @@
 
 #include "apps/pace.h"
 #include "base/watch.h"
-#include "studies/optimize.h"
+#include "studies/search/optimize.h"
 
 namespace softland::apps {
 

@@ -12,7 +12,7 @@
 #include "apps/values.h"
 #include "base/read_file.h"
 #include "base/require.h"
-#include "studies/search_space.h"
+#include "studies/search/search_space.h"
 
 namespace softland::apps {
 namespace {

@@ -39,14 +39,14 @@ void open_standard_streams() {
 
 void print(std::string_view text) {
   const std::string clean = printable(text);
-  constexpr int look_around = 200, patience = 600;  // [ms]
+  constexpr int check_interval = 200, patience = 600;  // [ms]
   int waited = 0;
   for (std::string_view rest = clean; !rest.empty();) {
     // A pipe that can be written to takes PIPE_BUF bytes without waiting for its reader.
     pollfd output{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
-    if (const int ready = ::poll(&output, 1, look_around); ready <= 0) {
+    if (const int ready = ::poll(&output, 1, check_interval); ready <= 0) {
       // Of the time that the reader had since it was asked to stop; a signal cuts a look short.
-      if (ready == 0 && stop_requested()) waited += look_around;
+      if (ready == 0 && stop_requested()) waited += check_interval;
       if (waited >= patience) throw OutputInterrupted();
       continue;
     }

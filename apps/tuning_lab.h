@@ -10,7 +10,7 @@
 #include "apps/scenes.h"
 #include "exchange/level_edges.h"
 #include "reports/tuning_lines.h"
-#include "studies/sent_signals.h"
+#include "studies/closing/sent_signals.h"
 
 namespace softland::apps {
 

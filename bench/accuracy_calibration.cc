@@ -28,8 +28,8 @@
 #include <vector>
 
 #include "bench/figure.h"
-#include "studies/prepared.h"
-#include "studies/simulate.h"
+#include "studies/closing/prepared.h"
+#include "studies/closing/simulate.h"
 #include "tests/support/random_scenes.h"
 
 namespace softland {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 
 namespace {
 

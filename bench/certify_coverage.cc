@@ -24,7 +24,7 @@
 
 #include "bench/figure.h"
 #include "model/closing.h"
-#include "studies/certify.h"
+#include "studies/closing/certify.h"
 #include "tests/support/random_scenes.h"
 
 namespace softland {

@@ -21,8 +21,8 @@
 #include "model/constants.h"
 #include "model/pull_in.h"
 #include "reports/files.h"
-#include "studies/optimize.h"
-#include "studies/simulate.h"
+#include "studies/closing/simulate.h"
+#include "studies/search/optimize.h"
 #include "version.h"
 
 namespace softland {

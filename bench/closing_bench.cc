@@ -20,8 +20,8 @@
 #include "base/literals.h"
 #include "model/closing.h"
 #include "objectives/metrics.h"
-#include "studies/prepared.h"
-#include "studies/timing.h"
+#include "studies/closing/prepared.h"
+#include "studies/closing/timing.h"
 
 namespace softland {
 namespace {

@@ -18,8 +18,8 @@
 
 #include "bench/figure.h"
 #include "model/closing.h"
-#include "studies/prepared.h"
-#include "studies/timing.h"
+#include "studies/closing/prepared.h"
+#include "studies/closing/timing.h"
 
 namespace softland {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "studies/choices.h"
-#include "studies/ensemble.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/devices/ensemble.h"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "sampling/statistics.h"
-#include "studies/robustness.h"
+#include "studies/devices/robustness.h"
 
 namespace {
 

@@ -16,7 +16,7 @@
 
 #include "base/require.h"
 #include "objectives/cost_slope.h"
-#include "studies/search_setting.h"
+#include "studies/search/search_setting.h"
 
 namespace {
 

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "bench/figure.h"
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 #include "tests/support/invariants.h"
 #include "tests/support/random_scenes.h"
 

@@ -3,14 +3,14 @@
 # place.
 include(CMakePackageConfigHelpers)
 
-set(libraries base sampling store integrators waveforms exchange model objectives config optimizers studies exploration stored_search tuning fitting reports)
+set(libraries base sampling store integrators waveforms exchange model objectives config optimizers closing devices search exploration stored_search tuning fitting reports)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/softland)
 
 # The program is softland::program outside; softland::softland is all that softland/softland.h needs.
 set_target_properties(softland PROPERTIES EXPORT_NAME program)
 install(TARGETS softland EXPORT softland)
 add_library(softland_public INTERFACE)
-target_link_libraries(softland_public INTERFACE softland_exploration softland_stored_search softland_tuning softland_studies)
+target_link_libraries(softland_public INTERFACE softland_stored_search softland_tuning)
 target_include_directories(softland_public INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
 set_target_properties(softland_public PROPERTIES EXPORT_NAME softland)
 add_library(softland::softland ALIAS softland_public)
@@ -41,7 +41,7 @@ foreach(name ${libraries})
 endforeach()
 set(public_headers ${PROJECT_BINARY_DIR}/package/include)
 install(CODE "
-  execute_process(COMMAND \"${CMAKE_COMMAND}\" \"-DFROM=${PROJECT_SOURCE_DIR}\" \"-DTO=${public_headers}\" \"-DFOLDERS=${libraries}\"
+  execute_process(COMMAND \"${CMAKE_COMMAND}\" \"-DFROM=${PROJECT_SOURCE_DIR}\" \"-DTO=${public_headers}\" \"-DFOLDERS=${libraries};studies\"
                           -P \"${PROJECT_SOURCE_DIR}/cmake/public_headers.cmake\" COMMAND_ERROR_IS_FATAL ANY)")
 install(DIRECTORY ${public_headers}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland)
 install(FILES ${PROJECT_BINARY_DIR}/generated/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland)

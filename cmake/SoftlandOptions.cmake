@@ -49,7 +49,8 @@ endif()
 # included only by those who name its library: build/views/FOLDER holds a link to it and nothing else.
 function(softland_offers target scope folder)
   set(view ${PROJECT_BINARY_DIR}/views/${folder})
-  file(MAKE_DIRECTORY ${view})
+  cmake_path(GET folder PARENT_PATH parent)
+  file(MAKE_DIRECTORY ${view}/${parent})
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${view}/${folder} SYMBOLIC)
   target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${view}>)
 endfunction()
@@ -100,6 +101,15 @@ function(softland_compiled_as target kind)
   endif()
 endfunction()
 
+# softland_arrows(FOLDER TARGET USES...): what the tests of arrows read: the folder of a target, and the libraries that it names.
+function(softland_arrows folder target)
+  list(FILTER ARGN INCLUDE REGEX "^softland_")
+  set_property(GLOBAL APPEND PROPERTY SOFTLAND_FOLDERS ${folder})
+  set_property(GLOBAL PROPERTY SOFTLAND_TARGET_${folder} ${target})
+  set_property(GLOBAL PROPERTY SOFTLAND_USES_${folder} ${ARGN})
+  set_property(GLOBAL PROPERTY SOFTLAND_FOLDER_${target} ${folder})
+endfunction()
+
 # softland_library(NAME [FOLDER folder] [KIND hot|warm|cold] [UNIT files] SOURCES ... USES ...): a static library of the folder, NAME unless it
 # is given, linked only to what it names; hot unless it says how.
 function(softland_library name)
@@ -114,4 +124,5 @@ function(softland_library name)
   target_link_libraries(softland_${name} PUBLIC $<BUILD_INTERFACE:softland_options> ${ARG_USES})
   softland_offers(softland_${name} PUBLIC ${ARG_FOLDER})
   softland_compiled_as(softland_${name} ${ARG_KIND} UNIT ${ARG_UNIT})
+  softland_arrows(${ARG_FOLDER} softland_${name} ${ARG_USES})
 endfunction()

@@ -88,12 +88,12 @@ double swing(const SectionReader& in, std::string_view key, const Quantity& give
   return given.value * *to.main_hold;
 }
 
-void read_list(const SectionReader& in, std::string_view key, Meaning meaning, const References& to, double base,
+void read_list(const SectionReader& in, std::string_view key, ParameterKind kind, const References& to, double base,
                std::vector<double>& list) {
-  if (meaning == Meaning::swing) {
+  if (kind == ParameterKind::swing) {
     for (const Quantity& given : in.quantities(key)) list.push_back(swing(in, key, given, to, base));
   } else {
-    list = meaning == Meaning::level ? volts(in.quantities(key), to.pull_in) : in.numbers(key);
+    list = kind == ParameterKind::level ? volts(in.quantities(key), to.pull_in) : in.numbers(key);
   }
 }
 
@@ -104,15 +104,15 @@ Waveform read_parameters(const SectionReader& in, const References& to) {
   for (const Parameter<Family>& p : FamilyOf<Family>::parameters) {
     const auto* one = std::get_if<double Family::*>(&p.member);
     if (one == nullptr) {
-      read_list(in, p.name, p.meaning, to, base, waveform.*std::get<std::vector<double> Family::*>(p.member));
+      read_list(in, p.name, p.kind, to, base, waveform.*std::get<std::vector<double> Family::*>(p.member));
       continue;
     }
     double& value = waveform.*(*one);
-    if (p.meaning == Meaning::level) {
+    if (p.kind == ParameterKind::level) {
       value = base = volts(in.quantities(p.name).front(), to.pull_in);
-    } else if (p.meaning == Meaning::swing) {
+    } else if (p.kind == ParameterKind::swing) {
       value = swing(in, p.name, in.quantities(p.name).front(), to, base);
-    } else if (p.meaning == Meaning::angular_frequency && in.is_given(frequency_key)) {
+    } else if (p.kind == ParameterKind::angular_frequency && in.is_given(frequency_key)) {
       value = 2 * std::numbers::pi * in.number(frequency_key);
     } else if (in.is_word(p.name)) {  // steepest_rise
       value = std::abs(base - to.before) / to.max_slew;
@@ -306,19 +306,19 @@ std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene,
 
 }  // namespace
 
-Dimension dimension_of(Meaning meaning) {
-  switch (meaning) {
-    case Meaning::level:
-    case Meaning::swing:
+Dimension dimension_of(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::level:
+    case ParameterKind::swing:
       break;
-    case Meaning::time:
-    case Meaning::end_time:
+    case ParameterKind::time:
+    case ParameterKind::end_time:
       return dimension::time;
-    case Meaning::angular_frequency:
+    case ParameterKind::angular_frequency:
       return dimension::angular_frequency;
-    case Meaning::angle:
+    case ParameterKind::angle:
       return dimension::angle;
-    case Meaning::ratio:
+    case ParameterKind::ratio:
       return dimension::none;
   }
   return dimension::voltage;
@@ -328,7 +328,7 @@ Waveform raised(Waveform waveform, double by) {
   std::visit(
       [&]<class Family>(Family& w) {
         for (const Parameter<Family>& p : FamilyOf<Family>::parameters) {
-          if (p.meaning != Meaning::level) continue;
+          if (p.kind != ParameterKind::level) continue;
           if (const auto* one = std::get_if<double Family::*>(&p.member)) {
             w.*(*one) += by;
           } else {

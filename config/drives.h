@@ -32,7 +32,7 @@ inline constexpr std::string_view before_key = "before";  ///< of every family: 
 inline constexpr std::string_view steepest_rise = "driver";
 
 /// The unit of a parameter in a scene; a level's is decided by its drive.
-[[nodiscard]] Dimension dimension_of(Meaning meaning);
+[[nodiscard]] Dimension dimension_of(ParameterKind kind);
 
 /// The waveform with every level raised by `by`.
 [[nodiscard]] Waveform raised(Waveform waveform, double by);

@@ -147,7 +147,8 @@ struct Scene {
   std::string title;
   Device device;
   SimulateOptions simulate;
-  bool auto_modes = false;  ///< modes = "auto": device has the default number until someone chooses (studies/auto_modes.h)
+  bool auto_modes =
+      false;  ///< modes = "auto": device has the default number until someone chooses (studies/closing/auto_modes.h)
   MetricsOptions metrics;
   DeviceSpread spread;
   Calibration calibration;

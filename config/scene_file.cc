@@ -538,9 +538,9 @@ void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
   std::visit(
       [&]<class Family>(const Family& w) {
         for (const Parameter<Family>& p : FamilyOf<Family>::parameters) {
-          const bool plain = is_factor && (p.meaning == Meaning::level || p.meaning == Meaning::swing);
+          const bool plain = is_factor && (p.kind == ParameterKind::level || p.kind == ParameterKind::swing);
           const auto put = [&](auto&& insert, double value) {
-            plain ? insert(value) : insert(quantity_text(value, internal::dimension_of(p.meaning)));
+            plain ? insert(value) : insert(quantity_text(value, internal::dimension_of(p.kind)));
           };
           if (const auto* one = std::get_if<double Family::*>(&p.member)) {
             if (std::isfinite(w.*(*one))) put([&](const auto& value) { table.insert(p.name, value); }, w.*(*one));

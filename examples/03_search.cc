@@ -32,13 +32,13 @@ int main(int argc, char** argv) try {
   for (int k = 1; k < argc; ++k) {
     const std::filesystem::path scene = argv[k];
     // The request is a struct: what is not named keeps its default. The result does not depend on the number of threads.
-    const ReleaseOptions request{.actuator = Actuator::electrostatic,
+    const OpeningOptions request{.actuator = Actuator::electrostatic,
                                  .max_evaluations = 3000,
                                  .seed = 1,
                                  .jobs = static_cast<int>(std::thread::hardware_concurrency()),
                                  .devices = 0};  // how devices do that differ is not asked
-    const Release found = release(SceneFile::load(scene.string()), request);
-    const ReleaseFigures &plain = found.plain.figures, best = found.best ? found.best->figures : ReleaseFigures{};
+    const OpeningResult found = search_opening(SceneFile::load(scene.string()), request);
+    const OpeningFigures &plain = found.plain.figures, best = found.best ? found.best->figures : OpeningFigures{};
     std::printf("%-18s%22s%20s%22s%20s%11s\n", scene.stem().c_str(), text(plain.settling_time, "s").c_str(),
                 text(plain.residual_vibration, "m").c_str(), text(best.settling_time, "s").c_str(),
                 text(best.residual_vibration, "m").c_str(), found.confirmed ? "yes" : "no");

@@ -80,7 +80,7 @@ class Run {
     if (step->event) pass(*step->event);
     parts_.course.hand_over();
     out_.smallest_gap = std::min(out_.smallest_gap, step->field.smallest_gap);
-    look_around(step->field);
+    check_interval(step->field);
   }
 
   // At an event: settles the energies, records what it is, and goes on to the next phase.
@@ -142,11 +142,11 @@ class Run {
     parts_.course.push(now);
     if (stay.leaves) pass({.time = stay.until, .edge = Edge{.level = plane_, .side = 1, .next = Phase::flight}});
     parts_.course.hand_over();
-    look_around(field);
+    check_interval(field);
   }
 
   // After a step, at whose end these figures were found.
-  void look_around(const FieldFigures& field) {
+  void check_interval(const FieldFigures& field) {
     if (ended_) return;
     if (field.smallest_gap < model_.gap_floor()) {
       return collapse(fmt::format("the beam came within {} of the electrode", engineering(model_.gap_floor(), "m")));

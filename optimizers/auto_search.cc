@@ -54,7 +54,7 @@ double distance(const Point& a, const Point& b) {
 }
 
 /// The best known points that are apart from each other and from the explored ones; the distance shrinks until there are enough.
-std::vector<Point> promising_points(std::vector<Ledger::Known> known, const std::vector<Point>& explored) {
+std::vector<Point> promising_points(std::vector<EvaluationRecord::Known> known, const std::vector<Point>& explored) {
   std::stable_sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.answer.value < b.answer.value; });
   std::vector<Point> chosen;
   const auto apart = [&](const Point& candidate, double separation) {
@@ -64,7 +64,7 @@ std::vector<Point> promising_points(std::vector<Ledger::Known> known, const std:
   constexpr int halvings = 10;
   double separation = largest_separation;
   for (int i = 0; i < halvings && chosen.size() < searches_at_once; ++i, separation /= 2) {
-    for (const Ledger::Known& candidate : known) {
+    for (const EvaluationRecord::Known& candidate : known) {
       if (chosen.size() == searches_at_once) break;
       if (apart(candidate.point, separation)) chosen.push_back(candidate.point);
     }
@@ -73,25 +73,25 @@ std::vector<Point> promising_points(std::vector<Ledger::Known> known, const std:
 }
 
 /// Empty before a point was feasible.
-Point best_point(const Ledger& ledger) {
-  const auto& known = ledger.known();
+Point best_point(const EvaluationRecord& record) {
+  const auto& known = record.known();
   const auto best =
       std::min_element(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.answer.value < b.answer.value; });
   if (best == known.end() || !best->answer.feasible) return {};
   return best->point;
 }
 
-void sample(Ledger& ledger, std::uint64_t first, std::size_t count) {
-  std::vector<Ledger::Task> tasks;
-  for (const Point& point : sobol_points(ledger.seed(), ledger.dimension(), first, count)) {
+void sample(EvaluationRecord& record, std::uint64_t first, std::size_t count) {
+  std::vector<EvaluationRecord::Task> tasks;
+  for (const Point& point : sobol_points(record.seed(), record.dimension(), first, count)) {
     tasks.push_back({.budget = 1, .body = [point](BudgetedObjective& budgeted) { budgeted(point); }});
   }
-  ledger.run(tasks);
+  record.run(tasks);
 }
 
 /// Lets each search that has not converged go on for `budget` evaluations.
-void advance(Ledger& ledger, std::vector<Search>& searches, long budget) {
-  std::vector<Ledger::Task> tasks;
+void advance(EvaluationRecord& record, std::vector<Search>& searches, long budget) {
+  std::vector<EvaluationRecord::Task> tasks;
   for (Search& search : searches) {
     if (search.converged) continue;
     tasks.push_back({.budget = budget, .body = [&search](BudgetedObjective& budgeted) {
@@ -102,7 +102,7 @@ void advance(Ledger& ledger, std::vector<Search>& searches, long budget) {
                        }
                      }});
   }
-  ledger.run(tasks);
+  record.run(tasks);
 }
 
 long share_of(long budget, double share, std::size_t searches) {
@@ -111,56 +111,56 @@ long share_of(long budget, double share, std::size_t searches) {
 
 /// Monotonic basin hopping (Leary 2000, J. Glob. Optim. 18, 367): local searches from around the best point, and again from the
 /// better ones that they find, within a budget.
-void hop(Ledger& ledger, const Method& method, long budget) {
+void hop(EvaluationRecord& record, const Method& method, long budget) {
   const long each =
-      std::max(shortest_heat, evaluations_of_iteration * (iterations_of_hop + static_cast<long>(ledger.dimension())));
-  const long end = std::max(0L, ledger.remaining() - budget);
+      std::max(shortest_heat, evaluations_of_iteration * (iterations_of_hop + static_cast<long>(record.dimension())));
+  const long end = std::max(0L, record.remaining() - budget);
   std::uint64_t hops = 0;
-  while (!ledger.over() && ledger.remaining() - end >= each) {
-    const Point best = best_point(ledger);
+  while (!record.over() && record.remaining() - end >= each) {
+    const Point best = best_point(record);
     if (best.empty()) return;
-    const auto affordable = static_cast<std::size_t>((ledger.remaining() - end) / each);
+    const auto affordable = static_cast<std::size_t>((record.remaining() - end) / each);
     std::vector<Search> beside;
     for (const double size : hop_sizes) {
       if (beside.size() == affordable) break;
       Point start = best;
-      const std::uint64_t seed = random_bits(ledger.seed(), Stream::hop, hops++);
+      const std::uint64_t seed = random_bits(record.seed(), Stream::hop, hops++);
       for (std::size_t i = 0; i < start.size(); ++i)
         start[i] = std::clamp(start[i] + size * random_normal(seed, Stream::hop, i), 0.0, 1.0);
       beside.emplace_back(method, start, polishing_step, seed);
     }
-    const long before = ledger.remaining();
-    advance(ledger, beside, each);
-    if (ledger.remaining() == before) return;
+    const long before = record.remaining();
+    advance(record, beside, each);
+    if (record.remaining() == before) return;
   }
 }
 
 /// `finisher`: takes over from the searches after their first heat, where it is another method.
-void search(Ledger& ledger, const std::array<const Method*, searches_at_once>& methods, const Method* finisher,
+void search(EvaluationRecord& record, const std::array<const Method*, searches_at_once>& methods, const Method* finisher,
             const Method& polisher) {
   std::uint64_t points_sampled = 0;
   std::uint64_t searches_begun = 0;
   const auto begin_search = [&](const Method& method, const Point& start, double step) {
-    return Search(method, start, step, random_bits(ledger.seed(), Stream::library_seed, searches_begun++));
+    return Search(method, start, step, random_bits(record.seed(), Stream::library_seed, searches_begun++));
   };
   std::vector<Point> explored;
   // With a gradient a search ends sooner, and more of them find more valleys.
-  const long longest = ledger.has_gradient()
-                           ? std::clamp(ledger.remaining() / epochs_with_gradient, shortest_epoch, longest_epoch)
+  const long longest = record.has_gradient()
+                           ? std::clamp(record.remaining() / epochs_with_gradient, shortest_epoch, longest_epoch)
                            : longest_epoch;
 
   // Starts come with a reason: their neighbourhood is searched before the box, which would lead away from them.
-  if (!ledger.starts().empty()) {
-    const long budget = std::min(ledger.remaining(), longest_epoch);
-    std::vector<Point> starts = promising_points(ledger.known(), explored);
+  if (!record.starts().empty()) {
+    const long budget = std::min(record.remaining(), longest_epoch);
+    std::vector<Point> starts = promising_points(record.known(), explored);
     starts.resize(std::min(starts.size(), starts_refined));
     std::vector<Search> refined;  // none where the search was told to end before its first evaluation
     const auto go_on = [&] {
       if (refined.empty()) return;
-      advance(ledger, refined, std::max(share_of(budget, refining, refined.size()), shortest_refinement));
+      advance(record, refined, std::max(share_of(budget, refining, refined.size()), shortest_refinement));
       for (const Search& search : refined) explored.push_back(search.best_point);
     };
-    const bool by_values = finisher == nullptr || !(ledger.has_gradient() && ledger.smooth());
+    const bool by_values = finisher == nullptr || !(record.has_gradient() && record.smooth());
     const Method& first = by_values ? find_method("sbplx") : *finisher;
     for (const Point& start : starts) refined.push_back(begin_search(first, start, polishing_step));
     go_on();
@@ -169,25 +169,25 @@ void search(Ledger& ledger, const std::array<const Method*, searches_at_once>& m
         for (Search& each : refined) each = begin_search(*finisher, each.best_point, polishing_step);
         go_on();
       }
-      if (ledger.has_gradient() && ledger.goes_on() && ledger.dimension() >= fewest_hopping)
-        hop(ledger, *finisher, static_cast<long>(hopping * static_cast<double>(ledger.remaining())));
+      if (record.has_gradient() && record.goes_on() && record.dimension() >= fewest_hopping)
+        hop(record, *finisher, static_cast<long>(hopping * static_cast<double>(record.remaining())));
     }
   }
 
-  while (!ledger.over()) {
-    const long before = ledger.remaining();
+  while (!record.over()) {
+    const long before = record.remaining();
     const long budget = std::min(before, longest);
     const auto samples = static_cast<std::size_t>(std::ceil(sampling * static_cast<double>(budget)));
-    sample(ledger, points_sampled, samples);
+    sample(record, points_sampled, samples);
     points_sampled += samples;
 
     std::vector<Search> running;
-    for (const Point& start : promising_points(ledger.known(), explored)) {
+    for (const Point& start : promising_points(record.known(), explored)) {
       running.push_back(begin_search(*methods[running.size()], start, first_step));
     }
     double share = first_heat;
-    while (!running.empty() && !ledger.over()) {
-      advance(ledger, running, share_of(budget, share, running.size()));
+    while (!running.empty() && !record.over()) {
+      advance(record, running, share_of(budget, share, running.size()));
       for (const Search& search : running) explored.push_back(search.best_point);
       if (running.size() == 1) break;
       std::stable_sort(running.begin(), running.end(), [](const Search& a, const Search& b) { return a.best < b.best; });
@@ -198,27 +198,27 @@ void search(Ledger& ledger, const std::array<const Method*, searches_at_once>& m
       share = later_heat;
     }
 
-    if (const Point best = best_point(ledger); !best.empty()) {
+    if (const Point best = best_point(record); !best.empty()) {
       std::vector<Search> polish{begin_search(polisher, best, polishing_step)};
-      advance(ledger, polish, budget);
+      advance(record, polish, budget);
     }
-    if (ledger.remaining() == before) return;
+    if (record.remaining() == before) return;
   }
 }
 
 }  // namespace
 
-void search_auto(Ledger& ledger) {
+void search_auto(EvaluationRecord& record) {
   const Method& polisher = find_method("bobyqa");
   const Method& searcher = find_method("cma-es");
-  if (!ledger.has_gradient()) return search(ledger, {&searcher, &polisher, &searcher, &searcher}, nullptr, polisher);
+  if (!record.has_gradient()) return search(record, {&searcher, &polisher, &searcher, &searcher}, nullptr, polisher);
   const Method& finisher = find_method("slsqp");
-  search(ledger, {&searcher, &searcher, &searcher, &searcher}, &finisher, finisher);
+  search(record, {&searcher, &searcher, &searcher, &searcher}, &finisher, finisher);
 }
 
-void search_and_finish(Ledger& ledger, const Method& finisher) {
+void search_and_finish(EvaluationRecord& record, const Method& finisher) {
   const Method& searcher = find_method("cma-es");
-  search(ledger, {&searcher, &searcher, &searcher, &searcher}, &finisher, finisher);
+  search(record, {&searcher, &searcher, &searcher, &searcher}, &finisher, finisher);
 }
 
 }  // namespace softland::internal

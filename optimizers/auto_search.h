@@ -12,14 +12,14 @@
 #pragma once
 
 #include "optimizers/backends.h"
-#include "optimizers/ledger.h"
+#include "optimizers/evaluation_record.h"
 
 namespace softland::internal {
 
-/// Runs until the ledger is over, or until an epoch makes no new evaluation.
-void search_auto(Ledger& ledger);
+/// Runs until the record is over, or until an epoch makes no new evaluation.
+void search_auto(EvaluationRecord& record);
 /// For the methods with a gradient, which end at the first kink: cma-es makes the first heat of every search, `finisher` goes on
 /// from the best points it found, and polishes.
-void search_and_finish(Ledger& ledger, const Method& finisher);
+void search_and_finish(EvaluationRecord& record, const Method& finisher);
 
 }  // namespace softland::internal

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "optimizers/ledger.h"
+#include "optimizers/evaluation_record.h"
 
 namespace softland::internal {
 

@@ -6,7 +6,7 @@
 #include "base/require.h"
 #include "optimizers/auto_search.h"
 #include "optimizers/backends.h"
-#include "optimizers/ledger.h"
+#include "optimizers/evaluation_record.h"
 #include "optimizers/problem.h"
 #include "optimizers/sobol.h"
 
@@ -50,17 +50,17 @@ constexpr std::uint64_t infeasible_starts_skipped = 20;
 // Runs that end without a single new evaluation: the method has nothing more to offer, from anywhere.
 constexpr int idle_runs_allowed = 20;
 
-RunReport search_single_method(Ledger& ledger, const Method& method, double step) {
+RunReport search_single_method(EvaluationRecord& record, const Method& method, double step) {
   RunReport report;
   const auto body = [&](BudgetedObjective& budgeted) {
     int idle_runs = 0;
     std::uint64_t skipped = 0;
-    const std::size_t given = ledger.starts().size();
+    const std::size_t given = record.starts().size();
     for (std::uint64_t k = 0; !budgeted.over() && idle_runs < idle_runs_allowed; ++k) {
       const Run run{
-          .start = k < given ? ledger.starts()[k] : sobol_points(ledger.seed(), ledger.dimension(), k - given, 1).front(),
+          .start = k < given ? record.starts()[k] : sobol_points(record.seed(), record.dimension(), k - given, 1).front(),
           .step = step,
-          .seed = random_bits(ledger.seed(), Stream::library_seed, k)};
+          .seed = random_bits(record.seed(), Stream::library_seed, k)};
       const long before = budgeted.evaluations();
       if (method.reach == Reach::global) {
         report = run_method(method, run, budgeted);
@@ -75,15 +75,15 @@ RunReport search_single_method(Ledger& ledger, const Method& method, double step
       idle_runs = budgeted.evaluations() == before ? idle_runs + 1 : 0;
     }
   };
-  ledger.run({{.budget = ledger.remaining(), .body = body}});
+  record.run({{.budget = record.remaining(), .body = body}});
   return report;
 }
 
-void evaluate_starts(Ledger& ledger) {
-  std::vector<Ledger::Task> tasks;
-  for (const Point& start : ledger.starts())
+void evaluate_starts(EvaluationRecord& record) {
+  std::vector<EvaluationRecord::Task> tasks;
+  for (const Point& start : record.starts())
     tasks.push_back({.budget = 1, .body = [&start](BudgetedObjective& budgeted) { budgeted(start); }});
-  ledger.run(tasks);
+  record.run(tasks);
 }
 
 }  // namespace
@@ -115,22 +115,22 @@ OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options
   const internal::Method& method = internal::find_method(options.optimizer);
   internal::check(problem, options);
 
-  internal::Ledger ledger(problem, options);
-  internal::evaluate_starts(ledger);
-  if (ledger.dimension() == 0) {
-    ledger.run({{.budget = 1, .body = [](internal::BudgetedObjective& budgeted) { budgeted(internal::Point{}); }}});
-    return ledger.result(true, "every variable is held");
+  internal::EvaluationRecord record(problem, options);
+  internal::evaluate_starts(record);
+  if (record.dimension() == 0) {
+    record.run({{.budget = 1, .body = [](internal::BudgetedObjective& budgeted) { budgeted(internal::Point{}); }}});
+    return record.result(true, "every variable is held");
   }
   if (method.backend == internal::Backend::search_auto) {
-    internal::search_auto(ledger);
-    return ledger.result(true, "");
+    internal::search_auto(record);
+    return record.result(true, "");
   }
   if (method.uses_gradient) {
-    internal::search_and_finish(ledger, method);
-    return ledger.result(true, "");
+    internal::search_and_finish(record, method);
+    return record.result(true, "");
   }
-  const internal::RunReport report = internal::search_single_method(ledger, method, options.step);
-  return ledger.result(report.converged, report.message);
+  const internal::RunReport report = internal::search_single_method(record, method, options.step);
+  return record.result(report.converged, report.message);
 }
 
 }  // namespace softland

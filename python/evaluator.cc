@@ -1,5 +1,5 @@
 // The evaluator under Python: arrays in, arrays out.
-#include "studies/evaluator.h"
+#include "studies/devices/evaluator.h"
 
 #include <fmt/format.h>
 #include <pybind11/eigen.h>

@@ -29,16 +29,16 @@
 #include "reports/result_maker.h"
 #include "reports/robustness_report.h"
 #include "reports/svg.h"
-#include "studies/accuracy.h"
-#include "studies/certify.h"
-#include "studies/choices.h"
-#include "studies/effects.h"
+#include "studies/closing/accuracy.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/certify.h"
+#include "studies/closing/effects.h"
+#include "studies/closing/sent_signals.h"
+#include "studies/devices/robustness.h"
 #include "studies/fitting/fit.h"
-#include "studies/limit.h"
-#include "studies/measurements.h"
-#include "studies/release.h"
-#include "studies/robustness.h"
-#include "studies/sent_signals.h"
+#include "studies/search/identification.h"
+#include "studies/search/limit.h"
+#include "studies/search/opening.h"
 #include "waveforms/export.h"
 
 namespace softland::python {
@@ -276,7 +276,7 @@ Outcome opening(PyScene& scene, const std::string& actuator, double band, long b
                 int jobs, std::string command, const py::object& progress) {
   require(band > 0 && band < 1, "band: must be a share of the contact gap above 0 and below 1");
   require(budget >= 1, "budget: must be at least 1 evaluation");
-  const ReleaseOptions options{.actuator = named(actuators, "actuator", actuator),
+  const OpeningOptions options{.actuator = named(actuators, "actuator", actuator),
                                .band = band,
                                .max_evaluations = budget,
                                .seed = seed,
@@ -285,7 +285,7 @@ Outcome opening(PyScene& scene, const std::string& actuator, double band, long b
   Run run(progress);
   const SceneFile file = scene.file;
   return run([&](const Watch& watch) {
-    const auto found = std::make_shared<const Release>(release(file, options, watch));
+    const auto found = std::make_shared<const OpeningResult>(search_opening(file, options, watch));
     watch.throw_if_stopped();
     return Outcome{
         .json = json_text(release_json(*found, {.command = command})),
@@ -340,7 +340,7 @@ Outcome judged(PyScene& scene, std::string name, const py::dict& others, std::ui
 
 Outcome calibrated(PyScene& scene, const std::map<std::string, double>& errors, const std::vector<double>& steps,
                    std::uint64_t samples, std::uint64_t seed, int jobs, std::string command, const py::object& progress) {
-  MeasurementOptions options{.samples = samples, .seed = seed, .jobs = jobs};
+  IdentificationOptions options{.samples = samples, .seed = seed, .jobs = jobs};
   if (!steps.empty()) options.steps = steps;
   const std::map<std::string, double*> all{{"Vdp", &options.pull_in_error},     {"Vsp", &options.static_pull_in_error},
                                            {"release", &options.release_error}, {"frequency", &options.frequency_error},
@@ -356,7 +356,7 @@ Outcome calibrated(PyScene& scene, const std::map<std::string, double>& errors, 
   const bool assumed = assume_spread(spread.file);
   Run run(progress);
   return {.json = run([&](const Watch& watch) {
-            const MeasurementStudy found = study_measurements(spread.file, options, watch);
+            const IdentificationStudy found = identify(spread.file, options, watch);
             watch.throw_if_stopped();
             nlohmann::json data = measurements_json(found, options, command);
             data["spread_assumed"] = assumed;

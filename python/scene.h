@@ -12,8 +12,8 @@
 
 #include "config/scene.h"
 #include "python/run.h"
-#include "studies/prepared.h"
-#include "studies/simulate.h"
+#include "studies/closing/prepared.h"
+#include "studies/closing/simulate.h"
 
 namespace softland::python {
 

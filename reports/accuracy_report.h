@@ -5,7 +5,7 @@
 #include <string>
 
 #include "reports/result_maker.h"
-#include "studies/accuracy.h"
+#include "studies/closing/accuracy.h"
 
 namespace softland {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "studies/accuracy.h"
+#include "studies/closing/accuracy.h"
 
 namespace softland::internal {
 

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "reports/chart.h"
+#include "reports/downsample.h"
 #include "reports/quantity.h"
-#include "reports/thin.h"
 
 namespace softland::internal {
 namespace {
@@ -78,7 +78,7 @@ json chart_json(const Picture& picture, std::size_t rows) {
   for (const auto& [name, table] : picture.tables) {
     std::vector<const std::vector<double>*> columns;
     for (const auto& [key, column] : table) columns.push_back(&column);
-    const std::vector<std::size_t> kept = thinned(columns, rows);
+    const std::vector<std::size_t> kept = downsampled(columns, rows);
     for (const auto& [key, column] : table)
       tables[name][key] = packed(column, kept, logarithmic.contains(name) || key == "value");
   }

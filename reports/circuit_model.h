@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 
 namespace softland {
 

@@ -1,12 +1,12 @@
-// How the figures of the nominal device change with what varies (studies/derivatives.h): a part of the report of `softland
-// robustness`.
+// How the figures of the nominal device change with what varies (studies/devices/derivatives.h): a part of the report of
+// `softland robustness`.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "studies/derivatives.h"
-#include "studies/robustness.h"
+#include "studies/devices/derivatives.h"
+#include "studies/devices/robustness.h"
 
 namespace softland::internal {
 

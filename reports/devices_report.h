@@ -5,7 +5,7 @@
 #include <string>
 
 #include "reports/result.h"
-#include "studies/for_devices.h"
+#include "studies/search/for_devices.h"
 
 namespace softland {
 

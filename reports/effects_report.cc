@@ -53,7 +53,7 @@ std::string omissions_text(const Effects& effects) {
   };
   std::string text =
       row("left out", "", cells([](const Figure& f) { return fmt::format("{:>10}", f.symbol); }), "rhs") + "  size\n";
-  for (const Omission& o : effects.omissions) {
+  for (const EffectAblation& o : effects.omissions) {
     const auto changed = [&](const Figure& f) {
       return fmt::format("{:>10}", internal::relative_change(change(f, o.metrics, own.metrics)));
     };
@@ -91,7 +91,7 @@ json effects_json(const PreparedScene& prepared, const Effects& effects, const P
   json not_compared = json::array();
   for (const NotCompared& n : effects.not_compared) not_compared.push_back({{"choice", n.choice}, {"reason", n.reason}});
   json left_out = json::array();
-  for (const Omission& o : effects.omissions) {
+  for (const EffectAblation& o : effects.omissions) {
     left_out.push_back({{"effect", o.what.effect},
                         {"choice", o.what.choice},
                         {"magnitude", named(o.what.magnitude)},

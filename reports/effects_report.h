@@ -5,7 +5,7 @@
 #include <string>
 
 #include "reports/result_maker.h"
-#include "studies/effects.h"
+#include "studies/closing/effects.h"
 
 namespace softland {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "studies/robustness.h"
+#include "studies/devices/robustness.h"
 
 namespace softland::internal {
 

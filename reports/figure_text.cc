@@ -7,7 +7,7 @@
 
 #include "reports/closing_clauses.h"
 #include "reports/quantity.h"
-#include "studies/optimize.h"
+#include "studies/search/optimize.h"
 
 namespace softland::internal {
 namespace {

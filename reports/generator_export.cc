@@ -12,7 +12,7 @@
 #include "reports/closing_clauses.h"
 #include "reports/quantity.h"
 #include "reports/result_maker.h"
-#include "studies/simulate.h"
+#include "studies/closing/simulate.h"
 
 namespace softland {
 namespace {

@@ -9,7 +9,7 @@
 #include "base/watch.h"
 #include "config/scene.h"
 #include "exchange/generator.h"
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 #include "waveforms/signal.h"
 
 namespace softland {

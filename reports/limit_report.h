@@ -5,7 +5,7 @@
 #include <string>
 
 #include "reports/result_maker.h"
-#include "studies/limit.h"
+#include "studies/search/limit.h"
 
 namespace softland {
 

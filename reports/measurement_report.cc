@@ -59,7 +59,7 @@ std::string row(const Prediction& p, bool drives_piezo) {
 
 }  // namespace
 
-json measurements_json(const MeasurementStudy& study, const MeasurementOptions& options, const std::string& command) {
+json measurements_json(const IdentificationStudy& study, const IdentificationOptions& options, const std::string& command) {
   json figures = json::array();
   for (const MeasurableFigure& f : study.figures) {
     figures.push_back({{"name", f.name},
@@ -103,7 +103,7 @@ json measurements_json(const MeasurementStudy& study, const MeasurementOptions& 
                      command);
 }
 
-std::string measurements_text(const MeasurementStudy& study, const MeasurementOptions& options, std::size_t most) {
+std::string measurements_text(const IdentificationStudy& study, const IdentificationOptions& options, std::size_t most) {
   std::string text;
   if (study.interrupted) text += "Interrupted: not all is judged.\n\n";
   text +=

@@ -4,14 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "studies/measurements.h"
+#include "studies/search/identification.h"
 
 namespace softland {
 
-[[nodiscard]] nlohmann::json measurements_json(const MeasurementStudy& study, const MeasurementOptions& options,
+[[nodiscard]] nlohmann::json measurements_json(const IdentificationStudy& study, const IdentificationOptions& options,
                                                const std::string& command);
 /// Pairs that close devices no better than the better one of their figures are left out, and so are all beyond `most` rows.
-[[nodiscard]] std::string measurements_text(const MeasurementStudy& study, const MeasurementOptions& options,
+[[nodiscard]] std::string measurements_text(const IdentificationStudy& study, const IdentificationOptions& options,
                                             std::size_t most = 24);
 
 }  // namespace softland

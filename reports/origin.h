@@ -6,7 +6,7 @@
 
 #include "reports/result.h"
 #include "store/study_store.h"
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 
 namespace softland {
 

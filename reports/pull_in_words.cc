@@ -11,8 +11,8 @@
 
 #include "model/pull_in.h"
 #include "reports/quantity.h"
-#include "studies/closed_state.h"
-#include "studies/static_excess.h"
+#include "studies/closing/closed_state.h"
+#include "studies/closing/static_excess.h"
 
 namespace softland {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/watch.h"
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 
 namespace softland {
 
@@ -15,7 +15,7 @@ inline constexpr const char* no_open_state = "no pull-in voltage: the switch has
 
 /// Pull-in of electrode `k` under the bias of the other drives (bias_of()): {"status", "pull_in": {"static_V", ...}}, and
 /// {"bias_V": {NAME: ...}} of those that do not stand at 0, "bias_factor" of the dispersion force; of a bridge that stretches
-/// "static_excess" (studies/static_excess.h).
+/// "static_excess" (studies/closing/static_excess.h).
 [[nodiscard]] nlohmann::json pull_in_of(const PreparedScene& prepared, std::size_t k, const Watch& watch);
 
 /// The same of voltages that are known.

@@ -10,11 +10,11 @@
 
 #include "base/printable.h"
 #include "reports/chart.h"
+#include "reports/downsample.h"
 #include "reports/json_number.h"
 #include "reports/quantity.h"
 #include "reports/svg.h"
 #include "reports/text.h"
-#include "reports/thin.h"
 
 namespace softland {
 namespace {
@@ -106,7 +106,7 @@ std::string recording_svg(const Recording& recording) {
   for (std::size_t k = 0; k < recording.channels.size(); ++k) {
     const Channel& channel = recording.channels[k];
     const std::string table = fmt::format("channel-{}", k + 1), name = printable_line(channel.name);
-    for (const std::size_t row : internal::thinned({&channel.values}, most_rows)) {
+    for (const std::size_t row : internal::downsampled({&channel.values}, most_rows)) {
       drawn.tables[table]["x"].push_back(x[row]);
       drawn.tables[table]["y"].push_back(channel.values[row] / (channel.is_voltage ? channel.per_si : 1));
     }

@@ -32,7 +32,7 @@ constexpr const char* plain_words = "plain opening";
 constexpr std::size_t release_label_width = 44, release_number_width = 16;
 constexpr double curve_tolerance = 1e-4;  // of the largest voltage, where a drive is no straight line
 
-json figures_json(const ReleaseFigures& f) {
+json figures_json(const OpeningFigures& f) {
   return {{"status", to_string(f.status)},
           {"release_time_s", json_number(f.release_time)},
           {"settling_time_s", json_number(f.settling_time)},
@@ -42,7 +42,7 @@ json figures_json(const ReleaseFigures& f) {
 }
 
 // Drives that are voltages, with their signals.
-std::map<std::string, Signal> voltages(const Release& r, const Opening& o) {
+std::map<std::string, Signal> voltages(const OpeningResult& r, const Opening& o) {
   std::map<std::string, Signal> all;
   const std::vector<std::string> names = r.given.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
@@ -51,13 +51,14 @@ std::map<std::string, Signal> voltages(const Release& r, const Opening& o) {
   return all;
 }
 
-double hold_of(const Release& r, const std::string& drive) {
+double hold_of(const OpeningResult& r, const std::string& drive) {
   const std::vector<std::string> names = r.given.drive_names();
   return r.holds[static_cast<std::size_t>(std::find(names.begin(), names.end(), drive) - names.begin())];
 }
 
 // A drive from its hold level on.
-std::vector<std::pair<double, double>> line_of(const Release& r, const std::string& drive, const Signal& signal, double end) {
+std::vector<std::pair<double, double>> line_of(const OpeningResult& r, const std::string& drive, const Signal& signal,
+                                               double end) {
   const double hold = hold_of(r, drive);
   const double size = std::max({std::abs(hold), signal.peak(), 1e-9});
   std::vector<std::pair<double, double>> points = polyline(signal, end, curve_tolerance * size, 0);
@@ -67,7 +68,7 @@ std::vector<std::pair<double, double>> line_of(const Release& r, const std::stri
   return points;
 }
 
-json opening_json(const Release& r, const Opening& o) {
+json opening_json(const OpeningResult& r, const Opening& o) {
   json waveforms = json::object();
   for (const auto& [drive, signal] : voltages(r, o)) {
     json points = json::array();
@@ -93,7 +94,7 @@ std::string gain(double plain, double best) {
   return internal::times(plain / best) + " less";
 }
 
-std::string quantity_row(const Release& r, const std::string& name, double ReleaseFigures::*member, std::string_view unit,
+std::string quantity_row(const OpeningResult& r, const std::string& name, double OpeningFigures::*member, std::string_view unit,
                          bool lower) {
   const double plain = r.plain.figures.*member;
   if (!r.best) return release_row(name, quantity(plain, unit), "");
@@ -101,9 +102,9 @@ std::string quantity_row(const Release& r, const std::string& name, double Relea
   return release_row(name, quantity(plain, unit), quantity(best, unit), lower ? gain(plain, best) : "");
 }
 
-std::string finding(const Release& r) {
-  const ReleaseFigures& plain = r.plain.figures;
-  const auto ends = [](const ReleaseFigures& f) {
+std::string finding(const OpeningResult& r) {
+  const OpeningFigures& plain = r.plain.figures;
+  const auto ends = [](const OpeningFigures& f) {
     if (!std::isfinite(f.release_time)) return std::string("stays closed");
     return std::isfinite(f.settling_time) ? fmt::format("is open for good after {}", quantity(f.settling_time, "s"))
                                           : std::string("still swings at the end of the window");
@@ -114,7 +115,7 @@ std::string finding(const Release& r) {
 }
 
 // Where the figures are from, what confirms them.
-std::string remarks(const Release& r) {
+std::string remarks(const OpeningResult& r) {
   std::string words = fmt::format(
       "Open for good: the contact point stays within {} of its open position ({} of the contact gap). Residual vibration: how "
       "far it "
@@ -131,7 +132,7 @@ std::string remarks(const Release& r) {
   return words;
 }
 
-internal::CurveTable gap_table(const Release& r, const Opening& o) {
+internal::CurveTable gap_table(const OpeningResult& r, const Opening& o) {
   internal::CurveTable table;
   const ResultCurve curve = curve_of(o.trajectory, r.given.scene.metrics);
   table["time_s"] = curve.time;
@@ -148,7 +149,7 @@ internal::Chart over_time(const std::string& id, const std::string& title, const
 }
 
 // Until the braked switch is quiet and a little longer.
-double shown_until(const Release& r, double window) {
+double shown_until(const OpeningResult& r, double window) {
   constexpr double longer = 3;
   if (!r.best) return window;
   const double end = std::fmax(r.best->voltages_end, r.best->figures.settling_time);
@@ -167,7 +168,7 @@ json openings_json(const DeviceOpenings& o) {
           {"overshoot_m", json_number(o.overshoot)}};
 }
 
-json devices_json(const std::optional<ReleaseOnDevices>& found) {
+json devices_json(const std::optional<OpeningsOnDevices>& found) {
   if (!found) return nullptr;
   return {{"count", found->devices},
           {"spread_assumed", found->spread_assumed},
@@ -177,7 +178,7 @@ json devices_json(const std::optional<ReleaseOnDevices>& found) {
 }
 
 // What 95 % of the devices do under either opening.
-std::string devices_text(const ReleaseOnDevices& found) {
+std::string devices_text(const OpeningsOnDevices& found) {
   const auto value = [](double v, const char* unit) { return std::isfinite(v) ? quantity(v, unit) : std::string("∞"); };
   const auto row = [&](const char* name, double DeviceOpenings::*figure, const char* unit) {
     return release_row(name, value(found.plain.*figure, unit), value(found.best.*figure, unit));
@@ -195,7 +196,7 @@ std::string devices_text(const ReleaseOnDevices& found) {
 
 }  // namespace
 
-json release_json(const Release& r, const Provenance& provenance) {
+json release_json(const OpeningResult& r, const Provenance& provenance) {
   json checks = json::array();
   for (const ConfirmingOpening& c : r.checks) checks.push_back({{"name", c.name}, {"figures", figures_json(c.figures)}});
   json holds = json::object();
@@ -221,14 +222,14 @@ json release_json(const Release& r, const Provenance& provenance) {
                      r.given, provenance.command);
 }
 
-std::string release_text(const Release& r) {
+std::string release_text(const OpeningResult& r) {
   std::string text = r.interrupted ? "Interrupted: what follows is the best so far.\n\n" : "";
   text += wrapped(finding(r)) + "\n\n";
   text += release_row("", plain_words, r.best ? "found" : "");
-  text += quantity_row(r, "leaves its contact", &ReleaseFigures::release_time, "s", false);
-  text += quantity_row(r, "open for good", &ReleaseFigures::settling_time, "s", true);
-  text += quantity_row(r, "residual vibration", &ReleaseFigures::residual_vibration, "m", true);
-  text += quantity_row(r, "furthest beyond its open position", &ReleaseFigures::overshoot, "m", true);
+  text += quantity_row(r, "leaves its contact", &OpeningFigures::release_time, "s", false);
+  text += quantity_row(r, "open for good", &OpeningFigures::settling_time, "s", true);
+  text += quantity_row(r, "residual vibration", &OpeningFigures::residual_vibration, "m", true);
+  text += quantity_row(r, "furthest beyond its open position", &OpeningFigures::overshoot, "m", true);
   text += release_row("touches again", std::to_string(r.plain.figures.touches),
                       r.best ? std::to_string(r.best->figures.touches) : "");
   if (r.best) {
@@ -240,7 +241,7 @@ std::string release_text(const Release& r) {
   return text + "\n" + wrapped(remarks(r)) + "\n";
 }
 
-std::string release_svg(const Release& r) {
+std::string release_svg(const OpeningResult& r) {
   const double window = r.plain.trajectory.points.empty() ? r.window : r.plain.trajectory.points.back().time;
   const double shown = shown_until(r, window);
   struct Drawn {
@@ -278,7 +279,7 @@ std::string release_svg(const Release& r) {
   return svg_page(finding(r), r.given.scene.title, drawn, 1);
 }
 
-std::string release_csv(const Release& r) {
+std::string release_csv(const OpeningResult& r) {
   const Opening& o = r.best ? *r.best : r.plain;
   const std::map<std::string, Signal> signals = voltages(r, o);
   const std::string whole = csv(signals, o.voltages_end);

@@ -5,16 +5,16 @@
 #include <string>
 
 #include "reports/result_maker.h"
-#include "studies/release.h"
+#include "studies/search/opening.h"
 
 namespace softland {
 
-[[nodiscard]] nlohmann::json release_json(const Release& release, const Provenance& provenance);
-[[nodiscard]] std::string release_text(const Release& release);
+[[nodiscard]] nlohmann::json release_json(const OpeningResult& release, const Provenance& provenance);
+[[nodiscard]] std::string release_text(const OpeningResult& release);
 /// Gap of the plain opening and of the best, and the drives.
-[[nodiscard]] std::string release_svg(const Release& release);
+[[nodiscard]] std::string release_svg(const OpeningResult& release);
 /// The drives of the best opening, or where there is none of the plain one, from the hold levels on: a header
 /// `time_s,<drive>,...` [s, V], straight lines between the rows; rows of the same time are a jump.
-[[nodiscard]] std::string release_csv(const Release& release);
+[[nodiscard]] std::string release_csv(const OpeningResult& release);
 
 }  // namespace softland

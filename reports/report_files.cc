@@ -6,7 +6,7 @@
 #include "reports/html.h"
 #include "reports/result_json.h"
 #include "reports/svg.h"
-#include "studies/sent_signals.h"
+#include "studies/closing/sent_signals.h"
 #include "waveforms/export.h"
 
 namespace softland {

@@ -14,9 +14,9 @@
 #include "config/scene.h"
 #include "model/closing.h"
 #include "objectives/figures.h"
-#include "studies/certify.h"
-#include "studies/closed_state.h"
-#include "studies/hold_window.h"
+#include "studies/closing/certify.h"
+#include "studies/closing/closed_state.h"
+#include "studies/devices/hold_window.h"
 #include "studies/stored_search/seed_study.h"
 
 namespace softland {

@@ -11,10 +11,10 @@
 #include "base/require.h"
 #include "integrators/quintic.h"
 #include "reports/devices_report.h"
+#include "reports/downsample.h"
 #include "reports/made_with.h"
 #include "reports/result_reader.h"
-#include "reports/thin.h"
-#include "studies/omissions.h"
+#include "studies/closing/effect_ablation.h"
 #include "version.h"
 #include "waveforms/export.h"
 
@@ -35,7 +35,7 @@ Points at_most_rows(Points all) {
   std::vector<double> levels;
   for (const auto& [time, level] : all) levels.push_back(level);
   Points kept;
-  for (const std::size_t row : internal::thinned({&levels}, most_curve_rows)) kept.push_back(all[row]);
+  for (const std::size_t row : internal::downsampled({&levels}, most_curve_rows)) kept.push_back(all[row]);
   return kept;
 }
 
@@ -90,7 +90,7 @@ Result started(const PreparedScene& p, const Provenance& provenance) {
   if (p.model.has_contact()) r.closed_state = closed_state(p, p.signals());
   if (p.effects) {
     r.effects = ResultEffects{.left_out = {}, .influence = p.effects->choice.influence};
-    for (const Omission& o : p.effects->choice.left_out)
+    for (const EffectAblation& o : p.effects->choice.left_out)
       r.effects->left_out.push_back({.effect = o.what.effect, .influence = o.influence});
   }
   return r;
@@ -98,7 +98,7 @@ Result started(const PreparedScene& p, const Provenance& provenance) {
 
 // Of a long run the rows that draw the same picture: files stay readable however long it was.
 void keep_most_rows(ResultCurve& c) {
-  const std::vector<std::size_t> rows = internal::thinned({&c.gap, &c.velocity, &c.force}, most_curve_rows);
+  const std::vector<std::size_t> rows = internal::downsampled({&c.gap, &c.velocity, &c.force}, most_curve_rows);
   if (rows.size() == c.time.size()) return;
   for (std::vector<double>* column : {&c.time, &c.gap, &c.velocity, &c.force}) {
     std::vector<double> kept;
@@ -155,7 +155,7 @@ Points drawn_evaluations(Points all) {
   std::vector<double> values;
   for (const auto& [index, value] : all) values.push_back(value);
   Points kept;
-  for (const std::size_t row : internal::thinned({&values}, most_evaluations)) kept.push_back(all[row]);
+  for (const std::size_t row : internal::downsampled({&values}, most_evaluations)) kept.push_back(all[row]);
   return kept;
 }
 

@@ -5,9 +5,9 @@
 #include <string_view>
 
 #include "reports/result.h"
-#include "studies/for_devices.h"
-#include "studies/robust_optimize.h"
-#include "studies/simulate.h"
+#include "studies/closing/simulate.h"
+#include "studies/search/for_devices.h"
+#include "studies/search/robust_optimize.h"
 
 namespace softland {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 
 namespace softland::internal {
 

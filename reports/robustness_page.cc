@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "reports/box_and_chaos_report.h"
 #include "reports/derivatives_report.h"
 #include "reports/device_scatter.h"
 #include "reports/escape.h"
 #include "reports/estimates.h"
 #include "reports/origin.h"
-#include "reports/other_ways_report.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/robustness_report.h"

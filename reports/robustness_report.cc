@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include "reports/box_and_chaos_report.h"
 #include "reports/derivatives_report.h"
 #include "reports/estimates.h"
 #include "reports/json_number.h"
 #include "reports/origin.h"
-#include "reports/other_ways_report.h"
 #include "reports/result_json.h"
 #include "reports/robustness_words.h"
-#include "studies/closed_state.h"
-#include "studies/other_ways.h"
+#include "studies/closing/closed_state.h"
+#include "studies/devices/box_and_chaos.h"
 #include "waveforms/export.h"
 
 namespace softland {
@@ -146,7 +146,7 @@ void add_details(RobustnessReport& report, bool other_ways_too, const Watch& wat
   report.derivatives = derivatives(report.nominal, internal::exactly_measured(report.nominal, last), {}, watch);
   report.windows = hold_windows(report.nominal, report.options, watch);
   report.courses = device_courses(report.nominal, last, report.found, report.options);
-  if (other_ways_too) report.other_ways = other_ways(report.nominal, last, report.options, {}, watch);
+  if (other_ways_too) report.box_and_chaos = box_and_chaos(report.nominal, last, report.options, {}, watch);
   report.interrupted = watch.stopped();
 }
 

@@ -9,10 +9,10 @@
 
 #include "base/watch.h"
 #include "reports/result_maker.h"
-#include "studies/derivatives.h"
-#include "studies/hold_window.h"
-#include "studies/other_ways.h"
-#include "studies/robustness.h"
+#include "studies/devices/box_and_chaos.h"
+#include "studies/devices/derivatives.h"
+#include "studies/devices/hold_window.h"
+#include "studies/devices/robustness.h"
 
 namespace softland {
 
@@ -25,9 +25,9 @@ struct RobustnessReport {
   Sensitivity sensitivity = {};
   Derivatives derivatives = {};
   std::vector<DeviceCourse> courses = {};
-  std::optional<OtherWays> other_ways = {};  ///< of the last drive as well
-  HoldWindows windows = {};                  ///< of hold levels, whatever the drive
-  bool interrupted = found.interrupted;      ///< in the study, or in what was to be known beside it
+  std::optional<BoxAndChaos> box_and_chaos = {};  ///< of the last drive as well
+  HoldWindows windows = {};                       ///< of hold levels, whatever the drive
+  bool interrupted = found.interrupted;           ///< in the study, or in what was to be known beside it
 };
 
 /// What is known of the last drive beside its figures, `other_ways_too` at the cost of further searches; nothing where the work

@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
+#include "reports/box_and_chaos_report.h"
 #include "reports/derivatives_report.h"
 #include "reports/estimates.h"
-#include "reports/other_ways_report.h"
 #include "reports/quantity.h"
 #include "reports/robustness_report.h"
 #include "reports/robustness_words.h"

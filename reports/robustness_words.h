@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "studies/hold_window.h"
-#include "studies/robustness.h"
+#include "studies/devices/hold_window.h"
+#include "studies/devices/robustness.h"
 
 namespace softland::internal {
 

@@ -10,7 +10,7 @@
 #include "reports/result.h"
 #include "reports/result_maker.h"
 #include "reports/robustness_report.h"
-#include "studies/found_search.h"
+#include "studies/search/found_search.h"
 
 namespace softland {
 

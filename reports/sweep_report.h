@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/sweep.h"
+#include "studies/closing/sweep.h"
 
 namespace softland {
 

@@ -13,8 +13,8 @@
 #include "config/scene.h"
 #include "reports/result_json.h"
 #include "reports/tuning_log.h"
-#include "studies/search_setting.h"
-#include "studies/sent_signals.h"
+#include "studies/closing/sent_signals.h"
+#include "studies/search/search_setting.h"
 #include "waveforms/export.h"
 
 namespace softland {

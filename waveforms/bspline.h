@@ -28,8 +28,8 @@ template <>
 struct FamilyOf<BSpline> {
   static constexpr std::string_view name = "bspline";
   static constexpr auto parameters = std::to_array<Parameter<BSpline>>({
-      {"levels", Meaning::level, &BSpline::levels, true, "four or more that draw the curve; the last is held for ever"},
-      {"duration", Meaning::time, &BSpline::duration, true, "of the curve"},
+      {"levels", ParameterKind::level, &BSpline::levels, true, "four or more that draw the curve; the last is held for ever"},
+      {"duration", ParameterKind::time, &BSpline::duration, true, "of the curve"},
   });
 };
 

@@ -37,17 +37,18 @@ template <>
 struct FamilyOf<Chirp> {
   static constexpr std::string_view name = "chirp";
   static constexpr auto parameters = std::to_array<Parameter<Chirp>>({
-      {"base", Meaning::level, &Chirp::base, false, "what the sine swings about"},
-      {"rise_time", Meaning::time, &Chirp::rise_time, false, "linear rise of the base, from 0 V or `before`"},
-      {"amplitude", Meaning::swing, &Chirp::amplitude, true,
+      {"base", ParameterKind::level, &Chirp::base, false, "what the sine swings about"},
+      {"rise_time", ParameterKind::time, &Chirp::rise_time, false, "linear rise of the base, from 0 V or `before`"},
+      {"amplitude", ParameterKind::swing, &Chirp::amplitude, true,
        "at the start; or a percentage of the base; for the piezo, of the main hold level"},
-      {"angular_frequency", Meaning::angular_frequency, &Chirp::angular_frequency, true, "of the sine at the start"},
-      {"frequency_ratio", Meaning::ratio, &Chirp::frequency_ratio, false, "frequency at the end over that at the start"},
-      {"phase", Meaning::angle, &Chirp::phase, false, "of the sine at the start"},
-      {"start", Meaning::time, &Chirp::start, false, "when the sine begins"},
-      {"end", Meaning::end_time, &Chirp::end, false, "when the sine ends; absent: never"},
-      {"fade", Meaning::time, &Chirp::fade, false, "linear fade in after start and out before end"},
-      {"decay_time", Meaning::end_time, &Chirp::decay_time, false, "in which the amplitude falls by 1/e; absent: it does not"},
+      {"angular_frequency", ParameterKind::angular_frequency, &Chirp::angular_frequency, true, "of the sine at the start"},
+      {"frequency_ratio", ParameterKind::ratio, &Chirp::frequency_ratio, false, "frequency at the end over that at the start"},
+      {"phase", ParameterKind::angle, &Chirp::phase, false, "of the sine at the start"},
+      {"start", ParameterKind::time, &Chirp::start, false, "when the sine begins"},
+      {"end", ParameterKind::end_time, &Chirp::end, false, "when the sine ends; absent: never"},
+      {"fade", ParameterKind::time, &Chirp::fade, false, "linear fade in after start and out before end"},
+      {"decay_time", ParameterKind::end_time, &Chirp::decay_time, false,
+       "in which the amplitude falls by 1/e; absent: it does not"},
   });
 };
 

@@ -31,15 +31,15 @@ template <>
 struct FamilyOf<Harmonic> {
   static constexpr std::string_view name = "harmonic";
   static constexpr auto parameters = std::to_array<Parameter<Harmonic>>({
-      {"base", Meaning::level, &Harmonic::base, false, "what the sine swings about"},
-      {"rise_time", Meaning::time, &Harmonic::rise_time, false, "linear rise of the base, from 0 V or `before`"},
-      {"amplitude", Meaning::swing, &Harmonic::amplitude, true,
+      {"base", ParameterKind::level, &Harmonic::base, false, "what the sine swings about"},
+      {"rise_time", ParameterKind::time, &Harmonic::rise_time, false, "linear rise of the base, from 0 V or `before`"},
+      {"amplitude", ParameterKind::swing, &Harmonic::amplitude, true,
        "or a percentage of the base; for the piezo, of the main hold level"},
-      {"angular_frequency", Meaning::angular_frequency, &Harmonic::angular_frequency, true, "of the sine"},
-      {"phase", Meaning::angle, &Harmonic::phase, false, "of the sine at t = 0"},
-      {"start", Meaning::time, &Harmonic::start, false, "when the sine begins"},
-      {"end", Meaning::end_time, &Harmonic::end, false, "when the sine ends; absent: never"},
-      {"fade", Meaning::time, &Harmonic::fade, false, "linear fade in after start and out before end"},
+      {"angular_frequency", ParameterKind::angular_frequency, &Harmonic::angular_frequency, true, "of the sine"},
+      {"phase", ParameterKind::angle, &Harmonic::phase, false, "of the sine at t = 0"},
+      {"start", ParameterKind::time, &Harmonic::start, false, "when the sine begins"},
+      {"end", ParameterKind::end_time, &Harmonic::end, false, "when the sine ends; absent: never"},
+      {"fade", ParameterKind::time, &Harmonic::fade, false, "linear fade in after start and out before end"},
   });
 };
 

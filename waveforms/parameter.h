@@ -10,7 +10,7 @@
 namespace softland {
 
 /// What a parameter is of the signal: this decides its unit, and how a scene may give it.
-enum class Meaning {
+enum class ParameterKind {
   level,              ///< [V]
   swing,              ///< [V] about a level; a scene may give a percentage of that level
   time,               ///< [s]
@@ -24,7 +24,7 @@ enum class Meaning {
 template <class Family>
 struct Parameter {
   std::string_view name;
-  Meaning meaning;
+  ParameterKind kind;
   std::variant<double Family::*, std::vector<double> Family::*> member;
   bool required = false;
   std::string_view about = {};

@@ -28,9 +28,9 @@ template <>
 struct FamilyOf<SCurve> {
   static constexpr std::string_view name = "s-curve";
   static constexpr auto parameters = std::to_array<Parameter<SCurve>>({
-      {"levels", Meaning::level, &SCurve::levels, true, "n levels; the last is held for ever"},
-      {"times", Meaning::time, &SCurve::times, false, "n - 1 times at which the edge to the next level begins"},
-      {"edge", Meaning::time, &SCurve::edge, false, "duration of every edge, half a cosine"},
+      {"levels", ParameterKind::level, &SCurve::levels, true, "n levels; the last is held for ever"},
+      {"times", ParameterKind::time, &SCurve::times, false, "n - 1 times at which the edge to the next level begins"},
+      {"edge", ParameterKind::time, &SCurve::edge, false, "duration of every edge, half a cosine"},
   });
 };
 

@@ -300,6 +300,12 @@ double Signal::resolving_step(double time) const {
   return step;
 }
 
+double last_breakpoint(std::span<const Signal> signals) {
+  double last = 0;
+  for (const Signal& signal : signals) last = std::max(last, signal.pieces().back().begin);
+  return last;
+}
+
 Signal scaled(const Signal& signal, double factor) {
   std::vector<SignalPiece> pieces = signal.pieces();
   for (SignalPiece& piece : pieces) {

@@ -82,6 +82,8 @@ class Signal {
 [[nodiscard]] std::vector<double> hold_levels(std::span<const Signal> signals);
 /// What each stands at before t = 0 [V].
 [[nodiscard]] std::vector<double> values_before(std::span<const Signal> signals);
+/// When the last piece of any of them begins [s].
+[[nodiscard]] double last_breakpoint(std::span<const Signal> signals);
 
 /// The signal times a factor, a finite number.
 [[nodiscard]] Signal scaled(const Signal& signal, double factor);

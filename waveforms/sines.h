@@ -31,12 +31,12 @@ template <>
 struct FamilyOf<Sines> {
   static constexpr std::string_view name = "sines";
   static constexpr auto parameters = std::to_array<Parameter<Sines>>({
-      {"base", Meaning::level, &Sines::base, false, "what the sines swing about"},
-      {"rise_time", Meaning::time, &Sines::rise_time, false, "linear rise of the base, from 0 V or `before`"},
-      {"amplitudes", Meaning::swing, &Sines::amplitudes, true,
+      {"base", ParameterKind::level, &Sines::base, false, "what the sines swing about"},
+      {"rise_time", ParameterKind::time, &Sines::rise_time, false, "linear rise of the base, from 0 V or `before`"},
+      {"amplitudes", ParameterKind::swing, &Sines::amplitudes, true,
        "of the sines of 1, 2, 3 ... half waves; or percentages of the base; for the piezo, of the main hold level"},
-      {"start", Meaning::time, &Sines::start, false, "when the sines begin"},
-      {"duration", Meaning::time, &Sines::duration, true, "of the sines"},
+      {"start", ParameterKind::time, &Sines::start, false, "when the sines begin"},
+      {"duration", ParameterKind::time, &Sines::duration, true, "of the sines"},
   });
 };
 

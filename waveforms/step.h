@@ -19,8 +19,8 @@ template <>
 struct FamilyOf<Step> {
   static constexpr std::string_view name = "step";
   static constexpr auto parameters = std::to_array<Parameter<Step>>({
-      {"level", Meaning::level, &Step::level, true, "held for ever"},
-      {"rise_time", Meaning::time, &Step::rise_time, false, "linear rise, from 0 V or `before`"},
+      {"level", ParameterKind::level, &Step::level, true, "held for ever"},
+      {"rise_time", ParameterKind::time, &Step::rise_time, false, "linear rise, from 0 V or `before`"},
   });
 };
 

@@ -25,8 +25,8 @@ struct FamilyOf<Table> {
   static constexpr std::string_view name = "table";
   static constexpr bool from_file = true;
   static constexpr auto parameters = std::to_array<Parameter<Table>>({
-      {"times", Meaning::time, &Table::time, true, "of the rows, from 0 s on"},
-      {"voltages", Meaning::level, &Table::voltage, true, "of the rows; linear between them"},
+      {"times", ParameterKind::time, &Table::time, true, "of the rows, from 0 s on"},
+      {"voltages", ParameterKind::level, &Table::voltage, true, "of the rows; linear between them"},
   });
 };
 

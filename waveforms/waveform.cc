@@ -1,22 +1,24 @@
 #include "waveforms/waveform.h"
 
+#include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 namespace softland {
 namespace {
 
-double factor_of(Meaning meaning, double volts, double time) {
-  switch (meaning) {
-    case Meaning::level:
-    case Meaning::swing:
+double factor_of(ParameterKind kind, double volts, double time) {
+  switch (kind) {
+    case ParameterKind::level:
+    case ParameterKind::swing:
       return volts;
-    case Meaning::time:
-    case Meaning::end_time:
+    case ParameterKind::time:
+    case ParameterKind::end_time:
       return time;
-    case Meaning::angular_frequency:
+    case ParameterKind::angular_frequency:
       return 1 / time;
-    case Meaning::angle:
-    case Meaning::ratio:
+    case ParameterKind::angle:
+    case ParameterKind::ratio:
       break;
   }
   return 1;
@@ -25,7 +27,7 @@ double factor_of(Meaning meaning, double volts, double time) {
 template <class Family>
 void scale(Family& family, double volts, double time) {
   for (const Parameter<Family>& parameter : FamilyOf<Family>::parameters) {
-    const double factor = factor_of(parameter.meaning, volts, time);
+    const double factor = factor_of(parameter.kind, volts, time);
     if (const auto* one = std::get_if<double Family::*>(&parameter.member)) {
       family.** one *= factor;
     } else {
@@ -49,6 +51,15 @@ std::vector<Signal> signals_of(const std::vector<Waveform>& waveforms) {
   std::vector<Signal> signals;
   for (const Waveform& waveform : waveforms) signals.push_back(signal(waveform));
   return signals;
+}
+
+DriverLimits limits_for(const Waveform& waveform, DriverLimits limits) {
+  if (!std::holds_alternative<Own>(waveform)) return limits;
+  constexpr double of_slew = 1e-3;
+  const double missed = own_waveform_accuracy * std::max(std::abs(limits.min_voltage), std::abs(limits.max_voltage));
+  return {.min_voltage = limits.min_voltage - missed,
+          .max_voltage = limits.max_voltage + missed,
+          .max_slew = limits.max_slew * (1 + of_slew)};
 }
 
 Waveform scaled(Waveform waveform, double volts, double time) {

@@ -11,6 +11,7 @@
 #include "waveforms/bspline.h"
 #include "waveforms/chirp.h"
 #include "waveforms/harmonic.h"
+#include "waveforms/limits.h"
 #include "waveforms/own_waveform.h"
 #include "waveforms/pulse.h"
 #include "waveforms/s_curve.h"
@@ -29,6 +30,9 @@ inline constexpr std::size_t families_of_scenes = std::variant_size_v<Waveform> 
 /// the parameter, its value and the rule.
 [[nodiscard]] Signal signal(const Waveform& waveform, double before = 0);
 [[nodiscard]] std::vector<Signal> signals_of(const std::vector<Waveform>& waveforms);
+/// The limits of a driver that the signal of a waveform is held against: of an own one, which is followed to
+/// own_waveform_accuracy, wider by as much, and its slew by 1e-3.
+[[nodiscard]] DriverLimits limits_for(const Waveform& waveform, DriverLimits limits);
 /// The waveform with its voltages times `volts` and its times times `time` (frequencies over it), both positive.
 [[nodiscard]] Waveform scaled(Waveform waveform, double volts, double time);
 /// step | harmonic | pulse | table | s-curve | chirp | bspline | sines; of an own waveform its name

@@ -1,5 +1,5 @@
 // What accuracy costs in time.
-#include "studies/accuracy.h"
+#include "studies/closing/accuracy.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "apps/scenes.h"
 #include "apps/verbs/verbs.h"
 #include "reports/accuracy_report.h"
-#include "studies/choices.h"
+#include "studies/closing/auto_settings.h"
 
 namespace softland::apps {
 namespace {

@@ -25,7 +25,7 @@
 #include "config/assumed_spread.h"
 #include "config/units.h"
 #include "reports/measurement_report.h"
-#include "studies/measurements.h"
+#include "studies/search/identification.h"
 
 namespace softland::apps {
 namespace {
@@ -39,7 +39,7 @@ struct CalibrateRequest {
 };
 
 // "Vdp:1 %,time:0.5 %"
-void read_errors(const std::string& list, MeasurementOptions& options) {
+void read_errors(const std::string& list, IdentificationOptions& options) {
   const std::array<std::pair<std::string_view, double*>, 6> errors{{{"Vdp", &options.pull_in_error},
                                                                     {"Vsp", &options.static_pull_in_error},
                                                                     {"release", &options.release_error},
@@ -89,7 +89,7 @@ std::vector<double> read_steps(const std::string& list) {
 }
 
 int calibrate_verb(const Common& c, const CalibrateRequest& request) {
-  MeasurementOptions options{.jobs = job_count(request.jobs)};
+  IdentificationOptions options{.jobs = job_count(request.jobs)};
   options.samples = sample_count(request.samples, options.samples, fewest_measured, most_measured);
   options.seed = seed_of(request.seed, options.seed);
   if (!request.errors.empty()) read_errors(request.errors, options);
@@ -98,7 +98,7 @@ int calibrate_verb(const Common& c, const CalibrateRequest& request) {
   const bool spread_assumed = assume_spread(file);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   static_cast<void>(claim_places(c, {}));
-  const MeasurementStudy study = study_measurements(file, options, work->watch());
+  const IdentificationStudy study = identify(file, options, work->watch());
   work.reset();
   nlohmann::json j = measurements_json(study, options, c.command);
   j["spread_assumed"] = spread_assumed;

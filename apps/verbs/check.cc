@@ -26,10 +26,10 @@
 #include "reports/quantity.h"
 #include "reports/result_json.h"
 #include "reports/text.h"
-#include "studies/choices.h"
-#include "studies/closed_state.h"
-#include "studies/sent_signals.h"
-#include "studies/simulate.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/closed_state.h"
+#include "studies/closing/sent_signals.h"
+#include "studies/closing/simulate.h"
 
 namespace softland::apps {
 namespace {

@@ -1,5 +1,5 @@
 // Which effects matter in a scene.
-#include "studies/effects.h"
+#include "studies/closing/effects.h"
 
 #include <optional>
 
@@ -9,7 +9,7 @@
 #include "apps/scenes.h"
 #include "apps/verbs/verbs.h"
 #include "reports/effects_report.h"
-#include "studies/choices.h"
+#include "studies/closing/auto_settings.h"
 
 namespace softland::apps {
 namespace {

@@ -1,5 +1,5 @@
 // The limit of what any drive waveform can do.
-#include "studies/limit.h"
+#include "studies/search/limit.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@
 #include "base/shell_word.h"
 #include "config/units.h"
 #include "reports/limit_report.h"
-#include "studies/sent_signals.h"
+#include "studies/closing/sent_signals.h"
 #include "waveforms/export.h"
 
 namespace softland::apps {

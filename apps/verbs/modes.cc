@@ -24,7 +24,7 @@
 #include "reports/mode_table_report.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
-#include "studies/choices.h"
+#include "studies/closing/auto_settings.h"
 
 namespace softland::apps {
 namespace {

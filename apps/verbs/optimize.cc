@@ -1,5 +1,5 @@
 // The search for a waveform, of the nominal device or of devices that differ.
-#include "studies/optimize.h"
+#include "studies/search/optimize.h"
 
 #include <fmt/format.h>
 
@@ -34,8 +34,8 @@
 #include "reports/search_report.h"
 #include "reports/seeds_report.h"
 #include "reports/text.h"
-#include "studies/limit.h"
-#include "studies/robust_optimize.h"
+#include "studies/search/limit.h"
+#include "studies/search/robust_optimize.h"
 #include "studies/stored_search/seed_study.h"
 #include "waveforms/export.h"
 

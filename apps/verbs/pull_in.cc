@@ -25,10 +25,10 @@
 #include "reports/pull_in_words.h"
 #include "reports/quantity.h"
 #include "reports/sweep_report.h"
-#include "studies/choices.h"
-#include "studies/search_space.h"
-#include "studies/static_excess.h"
-#include "studies/sweep.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/static_excess.h"
+#include "studies/closing/sweep.h"
+#include "studies/search/search_space.h"
 
 namespace softland::apps {
 namespace {

@@ -1,6 +1,4 @@
 // The waveform that opens a closed switch without leaving it to swing.
-#include "studies/release.h"
-
 #include <fmt/format.h>
 
 #include <limits>
@@ -20,6 +18,7 @@
 #include "config/units.h"
 #include "reports/release_report.h"
 #include "sampling/points.h"
+#include "studies/search/opening.h"
 
 namespace softland::apps {
 namespace {
@@ -44,10 +43,10 @@ double share_of(const std::string& text) {
   return q.value;
 }
 
-ReleaseOptions options_of(const ReleaseRequest& request) {
+OpeningOptions options_of(const ReleaseRequest& request) {
   const Named<Actuator>* actuator = find_named(actuators, request.actuator);
   require(actuator != nullptr, [&] { return fmt::format("--actuator {}: must be {}", request.actuator, listed(actuators)); });
-  ReleaseOptions options{.actuator = actuator->value, .band = share_of(request.band)};
+  OpeningOptions options{.actuator = actuator->value, .band = share_of(request.band)};
   if (request.budget) options.max_evaluations = whole_number<long>("--budget", *request.budget, 1);
   options.devices = sample_count(request.samples, options.devices, 0, SamplePoints::largest_size);
   options.seed = seed_of(request.seed, options.seed);
@@ -56,12 +55,12 @@ ReleaseOptions options_of(const ReleaseRequest& request) {
 }
 
 int release_verb(const Common& c, const ReleaseRequest& request) {
-  const ReleaseOptions options = options_of(request);
+  const OpeningOptions options = options_of(request);
   const SceneFile file = load_scene(c);
   const std::vector<std::string> files{"release.json", "release.svg", "release.csv", "release.toml"};
   std::optional<ResultFolder> folder = claim_places(c, files);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Release found = release(file, options, work->watch());
+  const OpeningResult found = search_opening(file, options, work->watch());
   work.reset();
   const nlohmann::json data = release_json(found, {.command = c.command});
   std::string text = release_text(found);

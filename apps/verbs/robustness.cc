@@ -1,5 +1,5 @@
 // How drives do on devices that differ as [spread] says.
-#include "studies/robustness.h"
+#include "studies/devices/robustness.h"
 
 #include <fmt/format.h>
 
@@ -22,8 +22,8 @@
 #include "config/calibration_words.h"
 #include "reports/report_files.h"
 #include "reports/robustness_report.h"
-#include "studies/choices.h"
-#include "studies/other_ways.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/devices/box_and_chaos.h"
 
 namespace softland::apps {
 namespace {
@@ -35,7 +35,7 @@ struct RobustnessRequest {
   std::vector<std::string> results;  ///< whose drives are judged as well
   std::string points = "sobol";
   std::string calibration;             ///< what is measured on every device; empty: what the scene says
-  bool other_ways = false;             ///< ranges over a box, and polynomial chaos, beside the sample
+  bool box_and_chaos = false;          ///< ranges over a box, and polynomial chaos, beside the sample
   std::optional<std::string> samples;  ///< default: 2000
   std::optional<std::string> seed;     ///< default: 1
   std::optional<std::string> jobs;     ///< default: one per core
@@ -69,7 +69,7 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
 
   const Robustness found = robustness(nominal, drives, options, work->watch());
   RobustnessReport report{.nominal = nominal, .found = found, .options = options, .command = c.command};
-  add_details(report, request.other_ways, work->watch());
+  add_details(report, request.box_and_chaos, work->watch());
   nlohmann::json j = robustness_json(report);
   j["spread_assumed"] = spread_assumed;
   std::string text = (spread_assumed ? std::string(assumed_words) + "\n" : std::string()) + robustness_text(report);
@@ -81,8 +81,8 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
       folder->write(fmt::format("worst-{}.toml", i + 1), scene_of_device(nominal, last, last.worst[i], options).text());
     std::vector<std::string> left{"robustness.html", "robustness.json", "devices.csv",
                                   "worst-*.toml (the worst devices of the last drive, for `softland simulate`)"};
-    if (report.other_ways && !report.other_ways->ranges.empty()) {
-      for (const FigureRange& range : report.other_ways->ranges) {
+    if (report.box_and_chaos && !report.box_and_chaos->ranges.empty()) {
+      for (const FigureRange& range : report.box_and_chaos->ranges) {
         if (!range.most.values.empty())
           folder->write(box_file(range.key), scene_of_device(nominal, last, range.most, options).text());
       }
@@ -108,10 +108,10 @@ void add_robustness(Verb& verb) {
   verb.with_points(request->points);
   verb.option("--calibrate", request->calibration, "LIST",
               "measured on every device before it is driven, as for optimize; the report says what each measurement is worth");
-  verb.flag("--other-ways", request->other_ways,
+  verb.flag("--other-ways", request->box_and_chaos,
             fmt::format("beside the sample, for the last drive: the worst and the best device of a box, by search, and "
                         "polynomial chaos; {} closings more",
-                        2 * explained_figures.size() * OtherWaysOptions{}.closings_per_search));
+                        2 * explained_figures.size() * BoxAndChaosOptions{}.closings_per_search));
   verb.with_seed(request->seed, "same devices");
   verb.with_jobs(request->jobs);
   verb.with_out("folder for robustness.html, robustness.json, devices.csv and the worst devices as scenes");

@@ -17,11 +17,11 @@
 #include "apps/verbs/verbs.h"
 #include "reports/quantity.h"
 #include "reports/result_maker.h"
-#include "studies/certify.h"
-#include "studies/choices.h"
-#include "studies/effects.h"
-#include "studies/omissions.h"
-#include "studies/timing.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/certify.h"
+#include "studies/closing/effect_ablation.h"
+#include "studies/closing/effects.h"
+#include "studies/closing/timing.h"
 
 namespace softland::apps {
 namespace {

@@ -26,7 +26,7 @@
 #include "config/bench.h"
 #include "reports/tuning_report.h"
 #include "reports/tuning_session.h"
-#include "studies/search_setting.h"
+#include "studies/search/search_setting.h"
 #include "studies/tuning/tuner.h"
 
 namespace softland::apps {

@@ -19,26 +19,26 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
     key.range = range;
     if (!key.required) key.fallback = key.type == KeyType::quantities ? "[]" : fallback;
   };
-  switch (parameter.meaning) {
-    case Meaning::level:
+  switch (parameter.kind) {
+    case ParameterKind::level:
       if (!key.required) key.fallback = factor ? "1.0" : "'0 V'";
       break;
-    case Meaning::swing:
+    case ParameterKind::swing:
       if (!factor) key.dimensions.push_back(dimension::none);  // a percentage
       break;
-    case Meaning::time:
+    case ParameterKind::time:
       take(dimension::time, not_negative, "'0 s'");
       break;
-    case Meaning::end_time:
+    case ParameterKind::end_time:
       take(dimension::time, positive, {});
       break;
-    case Meaning::angle:
+    case ParameterKind::angle:
       take(dimension::angle, any, "'0 rad'");
       break;
-    case Meaning::ratio:
+    case ParameterKind::ratio:
       take(dimension::none, positive, "1.0");
       break;
-    case Meaning::angular_frequency: {
+    case ParameterKind::angular_frequency: {
       take(dimension::angular_frequency, positive, {});
       Key other = std::move(Key(key)).instead(key.name);
       other.name = frequency_key;

@@ -8,11 +8,11 @@
 
 #include "integrators/stepper.h"
 #include "model/closing.h"
-#include "model/closing/course.h"
 #include "model/closing/energy_audit.h"
 #include "model/closing/equations.h"
 #include "model/closing/events.h"
 #include "model/closing/force_record.h"
+#include "model/closing/pending_knots.h"
 #include "model/closing/resting_plate.h"
 #include "model/closing/step_motion.h"
 #include "model/closing/tolerances.h"

@@ -15,12 +15,12 @@
 #include "config/aim.h"
 #include "model/pull_in.h"
 #include "objectives/figures.h"
-#include "studies/certify.h"
-#include "studies/choices.h"
-#include "studies/optimize.h"
-#include "studies/robustness.h"
-#include "studies/search_request.h"
-#include "studies/search_space.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/certify.h"
+#include "studies/devices/robustness.h"
+#include "studies/search/optimize.h"
+#include "studies/search/search_request.h"
+#include "studies/search/search_space.h"
 #include "waveforms/export.h"
 
 namespace softland {

@@ -24,8 +24,8 @@
 #include "base/watch.h"
 #include "config/plan.h"
 #include "objectives/figures.h"
+#include "studies/devices/row_status.h"
 #include "studies/exploration/pull_in_memory.h"
-#include "studies/row_status.h"
 
 namespace softland {
 

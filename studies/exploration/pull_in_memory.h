@@ -8,7 +8,7 @@
 #include <mutex>
 #include <string>
 
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 
 namespace softland {
 

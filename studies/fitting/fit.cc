@@ -21,8 +21,8 @@
 #include "config/schema.h"
 #include "model/constants.h"
 #include "sampling/points.h"
-#include "studies/choices.h"
-#include "studies/search_space.h"
+#include "studies/closing/actuator.h"
+#include "studies/closing/auto_settings.h"
 
 namespace softland {
 namespace {

@@ -2,10 +2,10 @@
 //
 //   minimise  sum over data of rho(((y_i(x) - m_i) / s_i)^2) + (z - mean)^T R^-1 (z - mean)
 //
-// y_i(x) what an instrument reads of the device (studies/instruments.h), m_i what was measured, s_i its error, rho a robust loss
-// (least_squares.h). z are the unknowns in scales of their own: one standard deviation of [spread], whose correlations R count,
-// or, for a key that it does not have, a tenth of the scene's value, with no prior. Distributions other than the normal one count
-// with their mean and standard deviation.
+// y_i(x) what an instrument reads of the device (studies/devices/instruments.h), m_i what was measured, s_i its error, rho a
+// robust loss (least_squares.h). z are the unknowns in scales of their own: one standard deviation of [spread], whose
+// correlations R count, or, for a key that it does not have, a tenth of the scene's value, with no prior. Distributions other
+// than the normal one count with their mean and standard deviation.
 //
 // Unknowns are those of each device, or shared by all. The searches begin at the nominal device and at points of low discrepancy
 // spread over the prior; the best end counts. Standard errors are those of the linearised problem there.
@@ -22,9 +22,9 @@
 
 #include "base/watch.h"
 #include "config/bench.h"
+#include "studies/devices/instruments.h"
 #include "studies/fitting/estimate.h"
 #include "studies/fitting/least_squares.h"
-#include "studies/instruments.h"
 
 namespace softland {
 

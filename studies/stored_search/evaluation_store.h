@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "store/study_store.h"
-#include "studies/evaluation_memory.h"
+#include "studies/search/evaluation_memory.h"
 
 namespace softland {
 

@@ -12,7 +12,7 @@
 #include "base/executor.h"
 #include "base/watch.h"
 #include "studies/exploration/exploration.h"
-#include "studies/robust_optimize.h"
+#include "studies/search/robust_optimize.h"
 
 namespace softland {
 namespace {

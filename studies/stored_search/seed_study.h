@@ -10,7 +10,7 @@
 
 #include "objectives/figures.h"
 #include "store/study_store.h"
-#include "studies/optimize.h"
+#include "studies/search/optimize.h"
 #include "studies/stored_search/evaluation_store.h"
 #include "studies/stored_search/stored_search.h"
 

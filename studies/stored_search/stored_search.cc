@@ -11,7 +11,7 @@
 #include "base/require.h"
 #include "base/shortened.h"
 #include "store/study_store.h"
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 
 namespace softland {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "config/scene.h"
-#include "studies/search_request.h"
+#include "studies/search/search_request.h"
 
 namespace softland {
 

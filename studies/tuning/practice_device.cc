@@ -12,7 +12,7 @@
 #include "config/assumed_spread.h"
 #include "model/closing.h"
 #include "model/gas/gas_law.h"
-#include "studies/choices.h"
+#include "studies/closing/auto_settings.h"
 
 namespace softland {
 namespace {

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "config/scene.h"
-#include "studies/ensemble.h"
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
+#include "studies/devices/ensemble.h"
 #include "studies/tuning/contact_record.h"
 #include "waveforms/waveform.h"
 

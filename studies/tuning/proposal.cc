@@ -12,7 +12,7 @@
 #include "base/require.h"
 #include "optimizers/problem.h"
 #include "sampling/statistics.h"
-#include "studies/plain_step.h"
+#include "studies/closing/plain_step.h"
 
 namespace softland {
 

@@ -14,9 +14,9 @@
 #include "base/standard_normal.h"
 #include "config/assumed_spread.h"
 #include "objectives/rebounds.h"
-#include "studies/choices.h"
-#include "studies/plain_step.h"
-#include "studies/search_setting.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/plain_step.h"
+#include "studies/search/search_setting.h"
 
 namespace softland {
 namespace {

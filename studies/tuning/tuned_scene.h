@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "base/watch.h"
-#include "studies/ensemble.h"
+#include "studies/devices/ensemble.h"
 #include "studies/tuning/tuner.h"
 #include "studies/tuning/wafer.h"
 

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 #include "tests/support/invariants.h"
 
 namespace softland {

@@ -34,10 +34,10 @@ TEST(Ipopt, SolvesFromTwoThreadsAtOnce) {
 }
 
 OptimizerResult solve_alone(const Problem& problem, const OptimizerOptions& options) {
-  internal::Ledger ledger(problem, options);
-  ledger.run({{.budget = 100,
+  internal::EvaluationRecord record(problem, options);
+  record.run({{.budget = 100,
                .body = [](internal::BudgetedObjective& budgeted) { (void)internal::run_ipopt({.start = {0.5}}, budgeted); }}});
-  return ledger.result(false, "");
+  return record.result(false, "");
 }
 
 TEST(Ipopt, WaitsForAnotherSolveNoLongerThanItsTimeBudget) {

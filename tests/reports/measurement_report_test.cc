@@ -26,8 +26,8 @@ Prediction judged(const std::string& name, std::vector<std::size_t> figures, dou
           .rebound_height = {.value = 1e-9, .interval = {0.5e-9, 2e-9}}};
 }
 
-MeasurementStudy study() {
-  MeasurementStudy s{.devices = 4};
+IdentificationStudy study() {
+  IdentificationStudy s{.devices = 4};
   s.figures = {{.name = "Vdp", .unit = "V", .nominal = 14, .error = 0.01, .values = {13, 14, 15, Metrics::unset}},
                {.name = "frequency", .unit = "Hz", .nominal = 1e4, .error = 0, .values = {9e3, 1e4, 1.1e4, 1e4}}};
   s.references = {judged("nothing", {}, 0.5)};
@@ -47,7 +47,7 @@ TEST(MeasurementReport, OfATerminalRanksWhatIsMeasured) {
 }
 
 TEST(MeasurementReport, AsJsonHoldsEveryPredictionAndSaysWhatIsNotJudged) {
-  MeasurementStudy stopped = study();
+  IdentificationStudy stopped = study();
   stopped.interrupted = true;
   const nlohmann::json j = measurements_json(stopped, {.seed = 7}, "softland calibrate out");
   EXPECT_EQ(j["kind"], "calibrate");

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "reports/search_report.h"
-#include "studies/sent_signals.h"
+#include "studies/closing/sent_signals.h"
 #include "waveforms/export.h"
 
 namespace softland {

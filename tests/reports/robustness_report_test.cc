@@ -13,9 +13,9 @@
 #include <sstream>
 #include <string>
 
-#include "reports/other_ways_report.h"
+#include "reports/box_and_chaos_report.h"
 #include "reports/text.h"
-#include "studies/choices.h"
+#include "studies/closing/auto_settings.h"
 
 namespace softland::robustness_report_test {
 namespace {
@@ -30,7 +30,7 @@ struct Study {
   Sensitivity sensitivity;
   Derivatives derivatives;
   std::vector<DeviceCourse> courses;
-  std::optional<OtherWays> other_ways;
+  std::optional<BoxAndChaos> box_and_chaos;
 
   [[nodiscard]] RobustnessReport report() const {
     return {.nominal = nominal,
@@ -40,7 +40,7 @@ struct Study {
             .sensitivity = sensitivity,
             .derivatives = derivatives,
             .courses = courses,
-            .other_ways = other_ways};
+            .box_and_chaos = box_and_chaos};
   }
 };
 
@@ -59,7 +59,7 @@ const Study& study() {
     s.sensitivity = sensitivity(s.nominal, s.found.drives.back(), 32, s.options);
     s.derivatives = derivatives(s.nominal, internal::exactly_measured(s.nominal, s.found.drives.back()));
     s.courses = device_courses(s.nominal, s.found.drives.back(), s.found, s.options);
-    s.other_ways = other_ways(s.nominal, s.found.drives.back(), s.options, {.closings_per_search = 10, .most_taught = 40});
+    s.box_and_chaos = box_and_chaos(s.nominal, s.found.drives.back(), s.options, {.closings_per_search = 10, .most_taught = 40});
     return s;
   }();
   return made;
@@ -75,7 +75,7 @@ TEST(RobustnessReport, OfATerminalHasEveryDriveAndWhatMeasuringIsWorth_optimized
     EXPECT_THAT(text, HasSubstr(words));
   RobustnessReport bare = study().report();
   bare.sensitivity = {};
-  bare.other_ways = {};
+  bare.box_and_chaos = {};
   bare.derivatives = {};
   EXPECT_THAT(robustness_text(bare), Not(HasSubstr("Share of the variance")));
   EXPECT_THAT(robustness_text(bare), Not(HasSubstr("Other ways")));
@@ -104,7 +104,7 @@ TEST(RobustnessReport, AsJsonHoldsWhatTheStudyFound_optimized) {
   EXPECT_EQ(derived["standard_deviation"], touch.deviation);
   EXPECT_EQ(j["derivatives"]["grazes"], study().derivatives.grazes());
   for (const DriveRobustness& d : study().found.drives) EXPECT_EQ(d.outcomes.size(), 64U);
-  const OtherWays& ways = study().other_ways.value();
+  const BoxAndChaos& ways = study().box_and_chaos.value();
   const nlohmann::json& box = j["other_ways"]["box"];
   EXPECT_EQ(box["closings"], ways.closings);
   EXPECT_EQ(box["figures"]["major_bounce_height_m"]["most"]["value"], ways.ranges[2].most.figure);
@@ -114,14 +114,14 @@ TEST(RobustnessReport, AsJsonHoldsWhatTheStudyFound_optimized) {
 
 TEST(RobustnessReport, SaysWhereChaosFails_optimized) {
   RobustnessReport report = study().report();
-  OtherWays ways = study().other_ways.value();
+  BoxAndChaos ways = study().box_and_chaos.value();
   ways.left_out = 3;
   ways.chaos[0].q2_unseen = 0.95;
   ways.chaos[1].q2 = 0.99;  // the other devices know better
   ways.chaos[1].q2_unseen = 0.4;
   ways.chaos[2].q2 = ways.chaos[2].q2_unseen = Metrics::unset;
   ways.ranges[2].most.figure = std::numeric_limits<double>::infinity();
-  report.other_ways = ways;
+  report.box_and_chaos = ways;
   std::string text = robustness_text(report);
   std::replace(text.begin(), text.end(), '\n', ' ');
   EXPECT_THAT(text, HasSubstr("3 of them do not close; mean, deviation and quantile of chaos go on"));
@@ -171,7 +171,7 @@ TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge_optimized) {
   const Signal drive = prepare(own).signals().front();
   EXPECT_EQ(drive.pieces().back().begin, std::max(0.0, shown));
   // So is what is found in a box, whose numbers are those that the times are drawn by.
-  OtherWays ways;
+  BoxAndChaos ways;
   ways.ranges.push_back({.key = "major_bounce_height_m", .most = {.values = {0.75}}});
   const double in_box = internal::other_ways_json(
       ways, jittered.found.drives[0],
@@ -343,7 +343,7 @@ TEST(RobustnessReport, SharesAreNeverBeyondAll) {
   EXPECT_THAT(robustness_text(s.report()), HasSubstr("0.0 % / 100 %"));
   EXPECT_THAT(robustness_text(s.report()), Not(HasSubstr("110 %")));
   EXPECT_THAT(robustness_html(s.report()), HasSubstr("100 % (90 to 100)"));
-  for (FigureChaos& c : s.other_ways->chaos) c.q2 = c.q2_unseen = -0.5;
+  for (FigureChaos& c : s.box_and_chaos->chaos) c.q2 = c.q2_unseen = -0.5;
   EXPECT_THAT(robustness_text(s.report()), Not(HasSubstr("150 %")));
 }
 

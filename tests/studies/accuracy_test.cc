@@ -1,5 +1,5 @@
 // What accuracy costs: the study of a small scene.
-#include "studies/accuracy.h"
+#include "studies/closing/accuracy.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "scenes.h"
-#include "studies/simulate.h"
+#include "studies/closing/simulate.h"
 
 namespace softland {
 namespace {

@@ -1,13 +1,13 @@
 // modes = "auto".
-#include "studies/auto_modes.h"
+#include "studies/closing/auto_modes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scenes.h"
-#include "studies/choices.h"
-#include "studies/omissions.h"
-#include "studies/simulate.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/effect_ablation.h"
+#include "studies/closing/simulate.h"
 
 namespace softland {
 namespace {

@@ -1,5 +1,5 @@
 // Landings of an undamped switch of one degree of freedom.
-#include "studies/bang_bang.h"
+#include "studies/search/bang_bang.h"
 
 #include <gtest/gtest.h>
 

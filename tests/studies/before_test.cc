@@ -8,9 +8,9 @@
 #include "biased.h"
 #include "model/pull_in.h"
 #include "scenes.h"
-#include "studies/ensemble.h"
-#include "studies/prepared.h"
-#include "studies/simulate.h"
+#include "studies/closing/prepared.h"
+#include "studies/closing/simulate.h"
+#include "studies/devices/ensemble.h"
 
 namespace softland::before_test {
 namespace {

@@ -9,11 +9,11 @@
 #include "biased.h"
 #include "model/pull_in.h"
 #include "scenes.h"
-#include "studies/certify.h"
-#include "studies/ensemble.h"
+#include "studies/closing/certify.h"
+#include "studies/closing/prepared.h"
+#include "studies/closing/simulate.h"
+#include "studies/devices/ensemble.h"
 #include "studies/exploration/pull_in_memory.h"
-#include "studies/prepared.h"
-#include "studies/simulate.h"
 
 namespace softland::bias_test {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/optimize.h"
+#include "studies/search/optimize.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {

@@ -1,5 +1,5 @@
 // Figures of merit with errors to rely on, and clouds in the place of those that have none.
-#include "studies/certify.h"
+#include "studies/closing/certify.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -11,8 +11,8 @@
 
 #include "model/constants.h"
 #include "scenes.h"
-#include "studies/choices.h"
-#include "studies/open_state.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/open_state.h"
 #include "tests/support/random_scenes.h"
 
 namespace softland {

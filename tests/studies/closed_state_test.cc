@@ -1,5 +1,5 @@
 // Whether a closed switch stays closed: by the tangent of its closed equilibrium, against closings that are followed long enough.
-#include "studies/closed_state.h"
+#include "studies/closing/closed_state.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -15,8 +15,8 @@
 #include "model/closing.h"
 #include "model/constants.h"
 #include "model/pull_in.h"
-#include "studies/ensemble.h"
-#include "studies/simulate.h"
+#include "studies/closing/simulate.h"
+#include "studies/devices/ensemble.h"
 #include "tests/studies/scenes.h"
 
 namespace softland::closed_state_test {

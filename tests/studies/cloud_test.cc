@@ -1,5 +1,5 @@
 // A closing repeated under imperceptibly perturbed drives.
-#include "studies/cloud.h"
+#include "studies/closing/cloud.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 
 #include "scenes.h"
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 
 namespace softland {
 namespace {

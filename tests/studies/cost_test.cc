@@ -10,7 +10,7 @@
 
 #include "model/closing.h"
 #include "scenes.h"
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 
 namespace softland {
 namespace {

@@ -1,5 +1,5 @@
 // Exact derivatives of the figures by parameters of the device, against differences of tight closings of devices built anew.
-#include "studies/derivatives.h"
+#include "studies/devices/derivatives.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 
 #include "objectives/cost_slope.h"
 #include "scenes.h"
-#include "studies/robustness.h"
-#include "studies/search_setting.h"
+#include "studies/devices/robustness.h"
+#include "studies/search/search_setting.h"
 
 namespace softland::derivatives_test {
 namespace {

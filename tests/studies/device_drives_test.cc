@@ -1,5 +1,5 @@
 // Errors of the drives, device by device.
-#include "studies/device_drives.h"
+#include "studies/devices/device_drives.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include "model/closing.h"
 #include "sampling/statistics.h"
 #include "scenes.h"
-#include "studies/robust_cost.h"
-#include "studies/robustness.h"
+#include "studies/devices/robustness.h"
+#include "studies/search/robust_cost.h"
 
 namespace softland::device_drives_test {
 namespace {

@@ -1,5 +1,5 @@
 // The closing of a scene repeated with every law.
-#include "studies/effects.h"
+#include "studies/closing/effects.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "model/gas/gas_law.h"
 #include "scenes.h"
-#include "studies/simulate.h"
+#include "studies/closing/simulate.h"
 
 namespace softland {
 namespace {

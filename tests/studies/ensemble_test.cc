@@ -1,5 +1,5 @@
 // Devices of a spread, and how drives do on them.
-#include "studies/ensemble.h"
+#include "studies/devices/ensemble.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include "model/closing.h"
 #include "sampling/statistics.h"
 #include "scenes.h"
-#include "studies/robustness.h"
+#include "studies/devices/robustness.h"
 
 namespace softland::ensemble_test {
 namespace {

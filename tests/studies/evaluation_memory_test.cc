@@ -1,5 +1,5 @@
 // A search that remembers, whatever searches: it ends with the same bits and simulates nothing twice.
-#include "studies/evaluation_memory.h"
+#include "studies/search/evaluation_memory.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "scenes.h"
-#include "studies/optimize.h"
-#include "studies/robust_optimize.h"
-#include "studies/search_setting.h"
+#include "studies/search/optimize.h"
+#include "studies/search/robust_optimize.h"
+#include "studies/search/search_setting.h"
 
 namespace softland::evaluation_memory_test {
 namespace {

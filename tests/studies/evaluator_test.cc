@@ -1,5 +1,5 @@
 // Figures as a function of numbers of a scene.
-#include "studies/evaluator.h"
+#include "studies/devices/evaluator.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/require.h"
-#include "studies/choices.h"
+#include "studies/closing/auto_settings.h"
 
 namespace softland {
 namespace {

@@ -14,10 +14,10 @@
 #include "base/require.h"
 #include "objectives/figures.h"
 #include "scenes.h"
-#include "studies/certify.h"
-#include "studies/choices.h"
-#include "studies/optimize.h"
-#include "studies/robustness.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/certify.h"
+#include "studies/devices/robustness.h"
+#include "studies/search/optimize.h"
 
 namespace softland {
 namespace {

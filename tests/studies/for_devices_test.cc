@@ -1,5 +1,5 @@
 // The search for devices, with short stages.
-#include "studies/for_devices.h"
+#include "studies/search/for_devices.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "studies/choices.h"
+#include "studies/closing/auto_settings.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes.h"
-#include "studies/optimize.h"
+#include "studies/search/optimize.h"
 
 namespace softland {
 namespace {

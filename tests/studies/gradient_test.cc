@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "objectives/cost_slope.h"
-#include "studies/search_setting.h"
+#include "studies/search/search_setting.h"
 
 namespace softland {
 namespace {

@@ -1,5 +1,5 @@
 // A search led by one cost and finished by another, on functions.
-#include "studies/guided_search.h"
+#include "studies/search/guided_search.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The hold levels that keep devices closed: of ranges that are given, and of devices one by one.
-#include "studies/hold_window.h"
+#include "studies/devices/hold_window.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "studies/ensemble.h"
+#include "studies/devices/ensemble.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {

@@ -1,6 +1,6 @@
 // What instruments read of devices: against the functions of the model, and their slopes against differences of devices built
 // anew.
-#include "studies/instruments.h"
+#include "studies/devices/instruments.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include "model/constants.h"
 #include "model/pull_in.h"
 #include "scenes.h"
-#include "studies/choices.h"
+#include "studies/closing/auto_settings.h"
 
 namespace softland::instruments_test {
 namespace {

@@ -10,8 +10,8 @@
 #include "model/ensemble/lane_drives.h"
 #include "sampling/statistics.h"
 #include "scenes.h"
-#include "studies/ensemble.h"
-#include "studies/simulate.h"
+#include "studies/closing/simulate.h"
+#include "studies/devices/ensemble.h"
 #include "waveforms/driver.h"
 #include "waveforms/waveform.h"
 

@@ -1,5 +1,5 @@
 // The limit of what any waveform can do: against closed forms, kept values of an independent calculation, and simulations.
-#include "studies/limit.h"
+#include "studies/search/limit.h"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 #include "base/gauss.h"
 #include "integrators/roots.h"
 #include "model/constants.h"
-#include "studies/choices.h"
-#include "studies/free_flight.h"
-#include "studies/plain_step.h"
-#include "studies/search_setting.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/plain_step.h"
+#include "studies/search/free_flight.h"
+#include "studies/search/search_setting.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {

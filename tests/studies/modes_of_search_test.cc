@@ -1,6 +1,6 @@
 // Landings that do not belong to the modes of their scene: gentle edges, the worst of beams, and the other ways in which a winner
 // is simulated.
-#include "studies/modes_of_search.h"
+#include "studies/search/modes_of_search.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 
 #include "base/random.h"
 #include "model/constants.h"
-#include "studies/choices.h"
-#include "studies/confirmation.h"
-#include "studies/optimize.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/confirmation.h"
+#include "studies/search/optimize.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {

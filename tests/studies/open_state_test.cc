@@ -1,5 +1,5 @@
 // A switch that stays open: where it rests, how it gets there, and whether it was meant to close.
-#include "studies/open_state.h"
+#include "studies/closing/open_state.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include "biased.h"
 #include "model/pull_in.h"
 #include "scenes.h"
-#include "studies/certify.h"
-#include "studies/simulate.h"
+#include "studies/closing/certify.h"
+#include "studies/closing/simulate.h"
 
 namespace softland::open_state_test {
 namespace {

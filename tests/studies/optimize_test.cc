@@ -1,5 +1,5 @@
 // The search as a whole, on small budgets: what it promises whoever wins.
-#include "studies/optimize.h"
+#include "studies/search/optimize.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <filesystem>
 
 #include "scenes.h"
-#include "studies/search_setting.h"
+#include "studies/search/search_setting.h"
 
 namespace softland {
 namespace {

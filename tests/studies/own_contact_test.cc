@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "scenes.h"
-#include "studies/derivatives.h"
-#include "studies/optimize.h"
-#include "studies/robustness.h"
+#include "studies/devices/derivatives.h"
+#include "studies/devices/robustness.h"
+#include "studies/search/optimize.h"
 
 namespace softland {
 namespace {

@@ -13,12 +13,12 @@
 #include <utility>
 
 #include "objectives/own_objective.h"
-#include "studies/for_devices.h"
-#include "studies/optimize.h"
-#include "studies/robust_cost.h"
-#include "studies/robustness.h"
-#include "studies/search_setting.h"
-#include "studies/simulate.h"
+#include "studies/closing/simulate.h"
+#include "studies/devices/robustness.h"
+#include "studies/search/for_devices.h"
+#include "studies/search/optimize.h"
+#include "studies/search/robust_cost.h"
+#include "studies/search/search_setting.h"
 #include "tests/studies/scenes.h"
 #include "waveforms/own_waveform.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "studies/simulate.h"
+#include "studies/closing/simulate.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {

@@ -1,5 +1,5 @@
 // A scene made ready to run.
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The race over devices, on a beam of two modes and few devices.
-#include "studies/race.h"
+#include "studies/search/race.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

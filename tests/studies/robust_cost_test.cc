@@ -1,5 +1,5 @@
 // What a device costs in a robust search: every figure over that of the plain step on the nominal device.
-#include "studies/robust_cost.h"
+#include "studies/search/robust_cost.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "studies/robustness.h"
+#include "studies/devices/robustness.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {

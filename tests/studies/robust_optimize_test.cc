@@ -1,5 +1,5 @@
 // A search over devices that differ, on small budgets: what it promises whoever wins.
-#include "studies/robust_optimize.h"
+#include "studies/search/robust_optimize.h"
 
 #include <gtest/gtest.h>
 

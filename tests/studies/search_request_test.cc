@@ -1,5 +1,5 @@
 // A search from words: which are filled in, what they come to, and how those that break a rule are refused.
-#include "studies/search_request.h"
+#include "studies/search/search_request.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "studies/found_search.h"
+#include "studies/search/found_search.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {

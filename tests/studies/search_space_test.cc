@@ -1,5 +1,5 @@
 // What a search may vary, and that nothing it can reach leaves the driver's limits.
-#include "studies/search_space.h"
+#include "studies/search/search_space.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -15,9 +15,9 @@
 #include <string_view>
 
 #include "scenes.h"
-#include "studies/bang_bang.h"
-#include "studies/optimize.h"
-#include "studies/swing.h"
+#include "studies/search/bang_bang.h"
+#include "studies/search/optimize.h"
+#include "studies/search/swing.h"
 #include "waveforms/signal_slopes.h"
 
 namespace softland {

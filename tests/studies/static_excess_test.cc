@@ -1,5 +1,5 @@
 // How much too high few modes make the pull-in voltage of a bridge, against finite differences of the whole beam.
-#include "studies/static_excess.h"
+#include "studies/closing/static_excess.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 
 #include "base/decompositions.h"
 #include "model/constants.h"
-#include "studies/auto_modes.h"
-#include "studies/choices.h"
+#include "studies/closing/auto_modes.h"
+#include "studies/closing/auto_settings.h"
 #include "tests/studies/scenes.h"
 
 namespace softland::static_excess_test {

@@ -14,8 +14,8 @@
 
 #include "base/require.h"
 #include "store/study_store.h"
-#include "studies/found_search.h"
-#include "studies/robust_optimize.h"
+#include "studies/search/found_search.h"
+#include "studies/search/robust_optimize.h"
 #include "studies/stored_search/evaluation_store.h"
 #include "studies/stored_search/seed_study.h"
 #include "tests/studies/scenes.h"

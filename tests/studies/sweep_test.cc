@@ -1,5 +1,5 @@
 // The static course of a voltage that is swept up and down again.
-#include "studies/sweep.h"
+#include "studies/closing/sweep.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "biased.h"
 #include "scenes.h"
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 
 namespace softland::sweep_test {
 namespace {

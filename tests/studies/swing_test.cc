@@ -1,5 +1,5 @@
 // The quickest single swing onto the contact.
-#include "studies/swing.h"
+#include "studies/search/swing.h"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 #include "model/constants.h"
 #include "objectives/metrics.h"
 #include "scenes.h"
-#include "studies/bang_bang.h"
-#include "studies/joint_swings.h"
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
+#include "studies/search/bang_bang.h"
+#include "studies/search/joint_swings.h"
 
 namespace softland {
 namespace {

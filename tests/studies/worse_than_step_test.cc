@@ -1,5 +1,5 @@
 // Whether a drive is worse than the plain step, on outcomes that are made up.
-#include "studies/worse_than_step.h"
+#include "studies/search/worse_than_step.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/literals.h"
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 #include "tests/support/devices.h"
 #include "tests/support/random_scenes.h"
 

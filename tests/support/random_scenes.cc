@@ -16,7 +16,7 @@
 #include "model/forces/electrostatic.h"
 #include "model/gas/gas_law.h"
 #include "model/pull_in.h"
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 
 namespace softland::test {
 namespace {

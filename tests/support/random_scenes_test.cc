@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "studies/prepared.h"
+#include "studies/closing/prepared.h"
 
 namespace softland::test {
 namespace {

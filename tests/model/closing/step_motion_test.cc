@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "model/closing/course.h"
 #include "model/closing/events.h"
+#include "model/closing/pending_knots.h"
 #include "model/closing/touch_record.h"
 #include "tests/model/gold.h"
 

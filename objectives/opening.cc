@@ -1,0 +1,88 @@
+#include "objectives/opening.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/quintic.h"
+#include "integrators/roots.h"
+
+namespace softland {
+namespace {
+
+// Follows the distance from the open position from one turn to the next.
+class InBand {
+ public:
+  explicit InBand(const OpeningBand& band) : band_(band) {}
+
+  void follow(const TrajectoryPoint& a, const TrajectoryPoint& b) {
+    if (!(b.time > a.time)) return;
+    const Quintic curve(a.time, a.position, a.velocity, a.acceleration, b.time, b.position, b.velocity, b.acceleration);
+    if (band_.drives_end > a.time && band_.drives_end < b.time) reach_end_of_drives(curve.position(band_.drives_end));
+    double from = a.time, at_from = a.position;
+    const auto advance = [&](double to, double at_to) {
+      leave_band(curve, from, at_from, to, at_to);
+      from = to, at_from = at_to;
+    };
+    reach(a.time, a.position);
+    for (const double turn : curve.turns()) {
+      reach(turn, curve.position(turn));
+      advance(turn, curve.position(turn));
+    }
+    reach(b.time, b.position);
+    advance(b.time, b.position);
+  }
+
+  [[nodiscard]] BandFigures figures() const {
+    return {
+        .settled_from = inside_ ? settled_from_ : OpeningFigures::unset, .below = below_, .above = above_, .residual = residual_};
+  }
+
+ private:
+  void reach(double time, double position) {
+    below_ = std::max(below_, band_.open_position - position);
+    above_ = std::max(above_, position - band_.open_position);
+    if (time >= band_.drives_end) reach_end_of_drives(position);
+  }
+  void reach_end_of_drives(double position) { residual_ = std::fmax(residual_, std::abs(position - band_.open_position)); }
+  // A monotone piece: it may enter the band on one side and leave it on the other.
+  void leave_band(const Quintic& curve, double from, double at_from, double to, double at_to) {
+    const double middle = band_.open_position;
+    const bool begins_inside = std::abs(at_from - middle) <= band_.width;
+    inside_ = std::abs(at_to - middle) <= band_.width;
+    if (!inside_ || begins_inside) return;
+    const double edge = at_from > middle ? middle + band_.width : middle - band_.width;
+    settled_from_ = bracketed_zero([&](double t) { return curve.position(t) - edge; }, from, to);
+  }
+
+  const OpeningBand& band_;
+  bool inside_ = false;
+  double settled_from_ = 0, below_ = 0, above_ = 0, residual_ = OpeningFigures::unset;
+};
+
+}  // namespace
+
+BandFigures band_figures(const Trajectory& course, const OpeningBand& band) {
+  InBand open(band);
+  for (std::size_t i = 1; i < course.points.size(); ++i) open.follow(course.points[i - 1], course.points[i]);
+  return open.figures();
+}
+
+OpeningFigures release_figures(const Trajectory& opening, const OpeningBand& band) {
+  OpeningFigures figures{.status = opening.status};
+  if (opening.status != Status::done) return figures;
+  const BandFigures course = band_figures(opening, band);
+  if (!opening.touches.empty()) {
+    figures.release_time = opening.touches.back().end;
+    figures.touches = static_cast<int>(opening.touches.size()) - 1;
+  }
+  const bool open = std::isfinite(figures.release_time);
+  figures.overshoot = course.below;
+  if (open) {
+    figures.residual_vibration = course.residual;
+    figures.settling_time = course.settled_from;
+  }
+  if (!std::isfinite(figures.settling_time)) figures.status = Status::not_settled;
+  return figures;
+}
+
+}  // namespace softland

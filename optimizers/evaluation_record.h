@@ -1,0 +1,180 @@
+// The record of one minimisation: every evaluation is made, counted and remembered here, never by a library.
+//
+// Work comes in rounds of tasks. A task is sequential and has a fixed budget; the tasks of a round run in parallel. The order of
+// evaluations is (round, task, position within the task), whatever thread made them when: "first", "best so far" and "already
+// seen" refer to it, so that results do not depend on the number of jobs. When a task reaches the target, later tasks of the
+// round are cut and left out, earlier ones complete: this is what running the tasks one after the other would have given.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "optimizers/problem.h"
+
+namespace softland::internal {
+
+/// A point of the search: the variables that are free to move, each scaled to [0, 1].
+using Point = std::vector<double>;
+
+/// Thrown out of a BudgetedObjective to end a library's run; backends translate it to whatever ends theirs.
+struct Cut {};
+
+/// What a search is told about a point. For an infeasible one the value is a finite penalty above all values seen before.
+struct Answer {
+  double value;
+  bool feasible;
+};
+
+/// {what is to be minimised, g_1, ... g_n}
+struct Values {
+  std::vector<double> all;
+  bool feasible;
+};
+
+struct PointHash {
+  std::size_t operator()(const Point& point) const noexcept;
+};
+using Memory = std::unordered_map<Point, Answer, PointHash>;
+using Numbers = std::unordered_map<Point, std::vector<double>, PointHash>;
+/// What the gradients of the problem at one point count as, in evaluations.
+inline constexpr long evaluations_of_gradient = 3;
+
+class EvaluationRecord;
+
+/// The evaluations of one task, made by one thread. Libraries are given nothing but this.
+class BudgetedObjective {
+ public:
+  /// Throws Cut when the share of the budget is used up, the minimisation is over, or the search goes in circles (many times only
+  /// points it knows). A point that was seen before is answered from memory and costs nothing.
+  Answer operator()(std::span<const double> point);
+  /// With the conditions of the problem; the value alone where it has none. At an infeasible point no condition is broken. Throws
+  /// Cut.
+  Values values(std::span<const double> point);
+  /// Of the values, one after the other. Those of the problem where it has them, else central differences; these are one-sided at
+  /// the bounds and next to infeasible points; 0 where nothing around is feasible. Throws Cut.
+  void gradients(std::span<const double> point, std::span<double> gradients);
+  /// Of the problem.
+  [[nodiscard]] std::size_t conditions() const;
+
+  /// Whether a further evaluation would be refused for good.
+  [[nodiscard]] bool over() const;
+  /// To be called before every run of a library: circles are counted anew.
+  void begin_search() { repeats_ = 0; }
+  [[nodiscard]] long evaluations() const { return static_cast<long>(records_.size()); }
+  /// The lowest feasible value this task has found; infinite without one.
+  [[nodiscard]] double best_of_task() const { return best_of_task_; }
+  [[nodiscard]] const Point& best_point_of_task() const { return best_point_of_task_; }
+
+ private:
+  friend class EvaluationRecord;
+  struct Record {
+    Point point;
+    Answer answer;
+    double value;  ///< as the objective gave it
+  };
+  BudgetedObjective(EvaluationRecord& record, std::size_t task, long budget, long first_index);
+
+  Answer remember(const Point& point, double value);
+  [[nodiscard]] bool known_gradients(const Point& point, std::span<double> gradients);
+  [[nodiscard]] double penalty() const;
+
+  EvaluationRecord& record_;
+  std::size_t task_;
+  long budget_;
+  long first_index_;
+  bool cut_ = false;
+  long repeats_ = 0;
+  double best_seen_;
+  double worst_seen_;
+  double best_of_task_ = std::numeric_limits<double>::infinity();
+  Point best_point_of_task_;
+  Memory memory_;
+  std::vector<Record> records_;
+  Numbers values_;     ///< with conditions
+  Numbers gradients_;  ///< of the problem
+  std::optional<std::string> first_exception_;
+};
+
+class EvaluationRecord {
+ public:
+  struct Task {
+    long budget;
+    std::function<void(BudgetedObjective&)> body;  ///< may leave by Cut; any other exception is a failure
+  };
+  struct Known {
+    Point point;
+    Answer answer;
+  };
+
+  /// Keeps references to both.
+  EvaluationRecord(const Problem& problem, const OptimizerOptions& options);
+
+  [[nodiscard]] std::size_t dimension() const { return free_.size(); }
+  [[nodiscard]] bool has_gradient() const { return gradient_of_problem() != nullptr; }
+  [[nodiscard]] bool goes_on() const { return options_.goes_on; }
+  [[nodiscard]] bool smooth() const { return options_.smooth; }
+  [[nodiscard]] std::uint64_t seed() const { return options_.seed; }
+  [[nodiscard]] const std::vector<Point>& starts() const { return starts_; }
+  /// Runs the tasks, with budgets cut from the end to what remains. Returns the number of new evaluations.
+  long run(const std::vector<Task>& tasks);
+  [[nodiscard]] long remaining() const {
+    return options_.max_evaluations - evaluations_ - evaluations_of_gradient * static_cast<long>(gradients_.size());
+  }
+  [[nodiscard]] bool over() const { return remaining() <= 0 || target_reached_ || outside_ != Termination::not_run; }
+  /// Everything evaluated in the rounds so far, in order.
+  [[nodiscard]] const std::vector<Known>& known() const { return known_; }
+  /// Whether work on the current round is to end early for a reason that is not the evaluation budget. Cheap; for waiting loops.
+  [[nodiscard]] bool cut_off(std::size_t task);
+
+  /// The result; `message` is what the last search said, `converged` that it ended by itself.
+  [[nodiscard]] OptimizerResult result(bool converged, const std::string& message) const;
+
+ private:
+  friend class BudgetedObjective;
+  double evaluate(BudgetedObjective& budgeted, const Point& point);
+  [[nodiscard]] const std::function<std::vector<double>(std::span<const double>)>& gradient_of_problem() const {
+    return problem_.conditions.count > 0 ? problem_.conditions.gradients : problem_.gradient;
+  }
+  [[nodiscard]] std::vector<double> values(BudgetedObjective& budgeted, const Point& point, const Answer& answer) const;
+  [[nodiscard]] std::vector<double> gradients(BudgetedObjective& budgeted, const Point& point) const;
+  [[nodiscard]] std::vector<double> to_user(const Point& point) const;
+  [[nodiscard]] Point to_point(std::span<const double> x) const;
+  void report(long index, double value, const std::vector<double>& x);
+  void settle(const std::vector<BudgetedObjective>& strands);
+  void end_from_outside(Termination reason);
+
+  const Problem& problem_;
+  const OptimizerOptions& options_;
+  std::chrono::steady_clock::time_point begin_;
+  std::vector<std::size_t> free_;  ///< indices of the variables with lower < upper
+  std::vector<Point> starts_;
+  std::unordered_map<Point, std::vector<double>, PointHash> exact_;  ///< user's digits of the starts: scaling would round them
+
+  // Between rounds only.
+  std::vector<Known> known_;
+  Memory memory_;
+  Numbers values_, gradients_;
+  double best_seen_ = std::numeric_limits<double>::infinity();
+  double worst_seen_ = -std::numeric_limits<double>::infinity();
+  long evaluations_ = 0;
+  long next_index_ = 0;
+  bool target_reached_ = false;
+  OptimizerResult best_;
+
+  // Shared by the threads of a round.
+  std::atomic<std::size_t> target_task_;
+  std::atomic<Termination> outside_ = Termination::not_run;
+  std::mutex report_mutex_;
+  double live_best_ = std::numeric_limits<double>::infinity();
+  std::string failure_;
+};
+
+}  // namespace softland::internal

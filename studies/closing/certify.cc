@@ -1,0 +1,185 @@
+#include "studies/closing/certify.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "base/require.h"
+#include "studies/closing/effect_ablation.h"
+#include "studies/closing/open_state.h"
+
+namespace softland {
+namespace {
+
+constexpr double shared = 0.01;  // of the tolerance, relative to a figure: what both runs may miss alike
+constexpr double parted = 0.1;   // relative difference of a rebound's height from which runs have parted
+
+// Whether the drives' last digits decide a figure of the closing and of a better one, or whether it has one at all.
+bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, const Metrics& own, const Metrics& better,
+                     const MetricsOptions& options) {
+  std::vector<double> values;
+  for (const Metrics& m : cloud) values.push_back(figure.counted(m, options));
+  // What a loose tolerance does to the values of these two is an error, not a condition.
+  const bool own_has = std::isfinite(figure.value(own)), better_has = std::isfinite(figure.value(better));
+  const auto have = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }) + own_has + better_has;
+  if (have == 0 || cloud.empty()) return false;
+  return have < static_cast<std::ptrdiff_t>(cloud.size() + 2) || ill_conditioned(spread(std::move(values)));
+}
+
+// Figures of the closing with each pull-in voltage that its drives are written in higher, and lower, by the error of that
+// voltage: a multiple of what a finer quadrature changes, and the width of its bracket.
+std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switch& fine, const SwitchOptions& quadrature,
+                                      const ClosingOptions& options, const Watch& watch) {
+  const Scene& written = prepared.effects ? prepared.effects->described : prepared.scene;
+  std::vector<Metrics> found;
+  for (const std::string& name : written.need_pull_in) {
+    const auto& electrodes = written.device.electrodes;
+    const auto at = std::find_if(electrodes.begin(), electrodes.end(), [&](const Electrode& e) { return e.name == name; });
+    const auto k = static_cast<std::size_t>(at - electrodes.begin());
+    const Switch model(written.device, quadrature);
+    const std::vector<double> bias = bias_of(written, k);
+    const StaticPullIn statically = static_pull_in(model, k, bias);
+    const DynamicPullIn dynamically = dynamic_pull_in(model, k, statically, bias, watch);
+    const ElectrodePullIn& own = prepared.pull_in.at(name);
+    const double by_static = error_safety * std::abs(statically.voltage - own.statically.voltage);
+    const double by_dynamic = error_safety * std::abs(dynamically.voltage - own.dynamically.voltage) +
+                              dynamic_pull_in_precision * own.dynamically.voltage;
+    for (const double sign : {-1.0, 1.0}) {
+      std::map<std::string, PullInVoltages> units = prepared.voltage_units();
+      units[name].static_pull_in += sign * by_static;
+      units[name].dynamic_pull_in += sign * by_dynamic;
+      PreparedScene moved = prepared;
+      try {
+        moved.drives = written.drives(units);
+      } catch (const InvalidInput&) {  // a drive at a limit of its driver, or no better voltage: the error is not known
+        found.emplace_back();
+        continue;
+      }
+      const std::vector<Signal> signals = moved.signals();
+      const Hold hold = hold_of(fine, signals);
+      ClosingOptions own = options;
+      own.steady_force = hold.steady_force(prepared.scene.metrics);
+      Trajectory t = simulate_closing(fine, signals, own);
+      set_rest(t, fine, signals, hold);
+      found.push_back(metrics(t, prepared.scene.metrics));
+      set_open_figures(found.back(), t, fine, signals);
+    }
+  }
+  return found;
+}
+
+// What one run did, rebound by rebound, with the touch before each.
+struct Course {
+  std::vector<Rebound> rebounds;
+  std::vector<double> impacts;  // [m/s]
+};
+
+Course course(const Trajectory& run) {
+  Course c{.rebounds = rebounds(run), .impacts = {}};
+  std::size_t touch = 0;
+  for (const Rebound& r : c.rebounds) {
+    while (touch + 1 < run.touches.size() && run.touches[touch + 1].begin <= r.begin) ++touch;
+    c.impacts.push_back(touch < run.touches.size() ? run.touches[touch].impact_velocity : Metrics::unset);
+  }
+  return c;
+}
+
+}  // namespace
+
+std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, const MetricsOptions& options) {
+  std::vector<Course> courses;
+  for (const Trajectory& run : runs) courses.push_back(course(run));
+  if (courses.empty()) return std::nullopt;
+  const Course& first = courses.front();
+  const auto named = [&](std::size_t k, bool at_threshold) {
+    const Rebound& r = first.rebounds[k];
+    return GrazingRebound{.number = static_cast<int>(k) + 1,
+                          .time = r.begin,
+                          .height = r.height,
+                          .impact_velocity = first.impacts[k],
+                          .at_threshold = at_threshold};
+  };
+  // Gentle touches are the ones that a hair's breadth makes or unmakes.
+  const auto gentlest = [&](std::size_t count) {
+    const auto found = std::min_element(first.impacts.begin(), first.impacts.begin() + static_cast<std::ptrdiff_t>(count));
+    return named(static_cast<std::size_t>(found - first.impacts.begin()), false);
+  };
+  for (std::size_t k = 0; k < first.rebounds.size(); ++k) {
+    const double own = first.rebounds[k].height;
+    const bool counts = own > options.significant_rebound;
+    bool apart = false, across = false;
+    for (const Course& other : courses) {
+      const double height = k < other.rebounds.size() ? other.rebounds[k].height : Metrics::unset;
+      apart = apart || !(std::abs(height - own) <= parted * own);
+      across = across || (height > options.significant_rebound) != counts;
+    }
+    if (apart) return gentlest(k + 1);
+    if (across) return named(k, true);
+  }
+  const bool others_go_on = std::any_of(courses.begin(), courses.end(),
+                                        [&](const Course& other) { return other.rebounds.size() > first.rebounds.size(); });
+  if (!others_go_on || first.rebounds.empty()) return std::nullopt;
+  return gentlest(first.rebounds.size());
+}
+
+Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
+  Closing c = simulate(prepared, true, watch);
+  if (!c.judge) return c;
+  if (c.judge->status != Status::done) {
+    c.warnings.emplace_back("the figures could not be certified: there is no other run to judge them by");
+    return c;
+  }
+  const std::vector<Signal> signals = prepared.signals();
+  // The better one of the run and its judge.
+  const bool judge_is_better = c.judge->tolerance < c.tolerance;
+  const SwitchOptions& quadrature = judge_is_better ? c.judge->quadrature : c.quadrature;
+  const Switch fine(prepared.scene.device, quadrature);
+  const ClosingOptions options{.duration = prepared.duration,
+                               .tolerance = std::min(c.judge->tolerance, c.tolerance),
+                               .steady_force = prepared.scene.metrics.steady_force * c.trajectory.hold_force,
+                               .stop = watch.stop};
+  const Metrics& better = c.judge->metrics;
+  const std::vector<Metrics> moved = at_other_pull_in(prepared, fine, quadrature, options, watch);
+  std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options, {.jobs = jobs}, watch);
+  if (watch.stopped()) {
+    c.metrics.status = Status::interrupted;
+    c.warnings.insert(c.warnings.begin(), "interrupted before the figures were certified");
+    return c;
+  }
+  std::erase_if(cloud, [](const Trajectory& t) { return t.status != Status::done; });
+  std::vector<Metrics> runs;
+  for (Trajectory& t : cloud) {
+    t.hold_force = c.trajectory.hold_force;  // that of the closed equilibrium, which one part in 1e7 does not move
+    t.is_held = c.trajectory.is_held;
+    t.hold_capacitance = c.trajectory.hold_capacitance;
+    runs.push_back(metrics(t, prepared.scene.metrics));
+    set_open_figures(runs.back(), t, fine, signals);
+  }
+  Certificate certificate{.ill_conditioned = {}, .grazing = {}, .runs = static_cast<int>(runs.size())};
+  for (const Figure& figure : all_figures) {
+    if (!figure.has_error()) continue;
+    const double own = figure.value(c.metrics), other = figure.value(better);
+    double error = error_safety * std::abs(own - other) + shared * c.tolerance * std::abs(own);
+    const double unmoved = judge_is_better ? other : own;
+    for (std::size_t i = 0; i + 1 < moved.size(); i += 2) {  // both signs of one voltage
+      error += std::fmax(std::abs(figure.value(moved[i]) - unmoved), std::abs(figure.value(moved[i + 1]) - unmoved));
+    }
+    if (ill_conditioned(figure, runs, c.metrics, better, prepared.scene.metrics)) {
+      std::vector<double> values;
+      for (const Metrics& m : runs) values.push_back(figure.value(m));
+      const Spread cloud_spread = spread(std::move(values));
+      for (const double value : {cloud_spread.low, cloud_spread.high}) error = std::fmax(error, std::abs(own - value));
+      certificate.ill_conditioned.push_back({figure, cloud_spread});
+    }
+    c.errors[figure] = figure.is_count() ? std::ceil(error - 0.5) : error;
+  }
+  allow_for_residual(c.errors, c.trajectory);
+  if (!certificate.ill_conditioned.empty()) certificate.grazing = grazing_rebound(cloud, prepared.scene.metrics);
+  c.certificate = std::make_shared<const Certificate>(std::move(certificate));
+  return c;
+}
+
+}  // namespace softland

@@ -1,0 +1,234 @@
+#include "studies/closing/effect_ablation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/closing.h"
+#include "model/forces/electrostatic.h"
+#include "model/gas/gas_law.h"
+#include "studies/closing/closing_progress.h"
+#include "studies/closing/timing.h"
+
+namespace softland {
+namespace {
+
+// Force on the first mode at rest under 1 V on one electrode.
+double force_at_rest(const Device& described, std::size_t electrode) {
+  const Switch model(described);
+  Switch::Workspace work = model.workspace();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
+  Eigen::VectorXd with(model.modes()), without(model.modes());
+  std::vector<double> volts(model.drives(), 0.0);
+  model.accelerations(rest.data(), rest.data(), volts, false, work, without.data());
+  volts[electrode] = 1;
+  model.accelerations(rest.data(), rest.data(), volts, false, work, with.data());
+  return with[0] - without[0];
+}
+
+double first_frequency(const Device& device) { return Switch(device).angular_frequencies()[0]; }
+
+Metrics closing(const PreparedScene& p, const Watch& watch, double done = 0, double share = 1) {
+  return metrics(simulate_closing(p.model, p.signals(),
+                                  {.duration = p.duration,
+                                   .tolerance = p.tolerance,
+                                   .stop = watch.stop,
+                                   .observer = observer(watch, "closings without each effect", p.duration, done, share)}),
+                 p.scene.metrics);
+}
+
+void add_omissible_structure(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
+  const Device& d = prepared.scene.device;
+  const Structure& s = d.structure;
+  if (s.kind != StructureKind::plate && s.modes > 1) {
+    list.push_back(
+        {.effect = "structure.modes",
+         .magnitude = {.name = "highest mode", .unit = "rad/s", .value = prepared.model.angular_frequencies()[s.modes - 1]},
+         .group = {.name = "over the first",
+                   .value = prepared.model.angular_frequencies()[s.modes - 1] / prepared.model.angular_frequencies()[0]},
+         .instead = 1,
+         .automatic = false});
+  }
+  if (s.damping_ratio > 0) {
+    list.push_back({.effect = "structure.damping_ratio",
+                    .magnitude = {.name = "quality factor", .value = 1 / (2 * s.damping_ratio)},
+                    .group = {.name = "damping ratio", .value = s.damping_ratio},
+                    .instead = 0.0});
+  }
+  if (s.kind == StructureKind::clamped_clamped && s.stretching) {
+    list.push_back({.effect = "structure.stretching",
+                    .magnitude = {.name = "contact gap", .unit = "m", .value = d.gap.contact},
+                    .group = {.name = "(gap / thickness)^2", .value = std::pow(d.gap.contact / s.thickness, 2)},
+                    .instead = false});
+  }
+  if (s.kind == StructureKind::clamped_clamped && s.residual_stress != 0) {
+    Device without = d;
+    without.structure.residual_stress = 0;
+    list.push_back({.effect = "structure.residual_stress",
+                    .magnitude = {.name = "stress", .unit = "Pa", .value = s.residual_stress},
+                    .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(without) - 1},
+                    .instead = 0.0});
+  }
+  if (d.surface) {
+    Device without = d;
+    without.surface.reset();
+    list.push_back({.effect = "surface",
+                    .magnitude = {.name = "elastic modulus", .unit = "N/m", .value = d.surface->elastic_modulus},
+                    .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(without) - 1},
+                    .instead = {}});
+  }
+}
+
+void add_omissible_fringing(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
+  const Device& d = prepared.scene.device;
+  for (std::size_t k = 0; k < d.electrodes.size(); ++k) {
+    const Electrode& e = d.electrodes[k];
+    if (e.fringing == Fringing::none) continue;
+    Device without = d;
+    without.electrodes[k].fringing = Fringing::none;
+    list.push_back({.effect = "electrode." + e.name + ".fringing",
+                    .magnitude = {.name = "force added, at rest", .value = force_at_rest(d, k) / force_at_rest(without, k) - 1},
+                    .group = {.name = "gap / width", .value = d.gap.electrode / d.structure.width},
+                    .instead = std::string(name_of(fringing_laws, Fringing::none))});
+  }
+}
+
+void add_omissible_gas(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
+  const Device& d = prepared.scene.device;
+  const double width = d.structure.width, closed = d.gap.electrode - d.gap.contact;
+  const double omega = prepared.model.angular_frequencies()[0];
+  list.push_back(
+      {.effect = "gas",
+       .magnitude = {.name = "damping, closed", .unit = "N s/m^2", .value = damping_per_length(*prepared.model.gas(), closed)},
+       .group = {.name = "squeeze number, closed"},
+       .instead = {}});
+  if (const FilmState* const film = film_of(*d.gas)) list.back().group.value = squeeze_number(*film, width, closed, omega);
+  if (!std::isnan(far_gap(*d.gas))) {
+    list.push_back({.effect = "gas.far_gap",
+                    .magnitude = {.name = "damping, at rest",
+                                  .unit = "N s/m^2",
+                                  .value = damping_per_length(*prepared.model.gas(), far_gap(*d.gas))},
+                    .group = {.name = "(near / far gap)^3", .value = std::pow(d.gap.electrode / far_gap(*d.gas), 3)},
+                    .instead = {}});
+  }
+  if (!std::isnan(film_length(*d.gas))) {
+    list.push_back({.effect = "gas.film_length",
+                    .magnitude = {.name = "damping kept", .value = end_flow(width / film_length(*d.gas))},
+                    .group = {.name = "width / length", .value = width / film_length(*d.gas)},
+                    .instead = {}});
+  }
+}
+
+void add_omissible_contact(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
+  const Device& d = prepared.scene.device;
+  const Contact& contact = *d.contact;
+  if (contact.distribution == ContactDistribution::pad) {
+    const double rise = 1.5 * d.gap.contact / d.structure.length * contact.pad_length;  // of a uniform beam bent by its end
+    list.push_back({.effect = "contact.distribution",
+                    .magnitude = {.name = "tilt of the pad", .unit = "m", .value = rise},
+                    .group = {.name = "over the interference", .value = rise / prepared.model.penetration_scale()},
+                    .instead = std::string(name_of(contact_distributions, ContactDistribution::centre)),
+                    .automatic = false});
+  }
+  if (const double damping = number_of(contact.model, "damping", 0); damping > 0) {
+    list.push_back({.effect = "contact.damping",
+                    .magnitude = {.name = "damping", .unit = "s/m", .value = damping},
+                    .group = {.name = "1 - restitution, at 0.1 m/s", .value = 0.1 * damping},
+                    .instead = {}});
+  }
+}
+
+}  // namespace
+
+std::vector<OmissibleEffect> omissible_effects(const PreparedScene& prepared) {
+  const Device& d = prepared.scene.device;
+  std::vector<OmissibleEffect> list;
+  add_omissible_structure(prepared, list);
+  add_omissible_fringing(prepared, list);
+  if (d.gas) add_omissible_gas(prepared, list);
+  if (d.contact) add_omissible_contact(prepared, list);
+  if (d.dispersion && !prepared.drives.waveforms.contains(std::string(dispersion_drive))) {
+    const double bent = prepared.model.rest() ? prepared.model.contact_deflection(prepared.model.rest()->data()) : d.gap.contact;
+    list.push_back({.effect = "dispersion",
+                    .magnitude = {.name = "deflection at rest", .unit = "m", .value = bent},
+                    .group = {.name = "over the contact gap", .value = bent / d.gap.contact},
+                    .instead = {}});
+  }
+  const SceneFile scene = prepared.resolved();
+  for (OmissibleEffect& effect : list) effect.choice = scene.written(effect.effect).value();
+  return list;
+}
+
+PreparedScene without(const PreparedScene& prepared, const std::vector<OmissibleEffect>& effects) {
+  const SceneFile frozen = prepared.resolved();
+  SceneFile file = frozen.again(prepared.scene.file.name());
+  file.assign("simulate.effects", std::string("all"));
+  for (const OmissibleEffect& e : effects) {
+    // A key of a section that goes goes with it.
+    const bool inside = std::any_of(effects.begin(), effects.end(),
+                                    [&](const OmissibleEffect& other) { return e.effect.starts_with(other.effect + "."); });
+    if (inside) continue;
+    if (e.instead) {
+      file.assign(e.effect, *e.instead);
+    } else {
+      file.erase(e.effect);
+    }
+  }
+  PreparedScene p = prepare(file);
+  p.scene.warnings = prepared.scene.warnings;
+  p.pull_in = prepared.pull_in;
+  p.drives = prepared.drives;
+  p.loads = prepared.loads;
+  p.duration = prepared.duration;
+  p.tolerance = prepared.tolerance;
+  return p;
+}
+
+double influence(const Metrics& own, const Metrics& other, const MetricsOptions& options) {
+  if (!std::isfinite(own.initial_contact_time)) return std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (const Figure& figure : compared_figures)
+    most = std::max(most, relative_difference(figure.counted(other, options), figure.counted(own, options)));
+  return most;
+}
+
+std::vector<EffectAblation> ablate_effects(const PreparedScene& prepared, const Metrics& own, bool timed, const Watch& watch) {
+  std::vector<EffectAblation> list;
+  std::vector<OmissibleEffect> effects = omissible_effects(prepared);
+  for (OmissibleEffect& effect : effects) {
+    const double share = 1.0 / static_cast<double>(effects.size());
+    const PreparedScene p = without(prepared, {effect});
+    EffectAblation o{.what = std::move(effect),
+                     .metrics = closing(p, watch, static_cast<double>(list.size()) * share, share),
+                     .influence = 0,
+                     .rhs_seconds = Metrics::unset};
+    o.influence = influence(own, o.metrics, prepared.scene.metrics);
+    if (watch.stopped()) break;
+    if (timed) o.rhs_seconds = right_hand_side_seconds(p.model, p.signals(), p.duration);
+    list.push_back(std::move(o));
+  }
+  return list;
+}
+
+EffectsChoice negligible_effects(const PreparedScene& prepared, double tolerance, const Watch& watch) {
+  EffectsChoice choice;
+  const Metrics own = closing(prepared, watch);
+  for (EffectAblation& o : ablate_effects(prepared, own, false, watch)) {
+    if (o.what.automatic && o.influence <= tolerance) choice.left_out.push_back(std::move(o));
+  }
+  watch.throw_if_stopped();
+  std::sort(choice.left_out.begin(), choice.left_out.end(),
+            [](const EffectAblation& a, const EffectAblation& b) { return a.influence < b.influence; });
+  for (; !choice.left_out.empty(); choice.left_out.pop_back()) {
+    std::vector<OmissibleEffect> effects;
+    for (const EffectAblation& o : choice.left_out) effects.push_back(o.what);
+    choice.influence = influence(own, closing(without(prepared, effects), watch), prepared.scene.metrics);
+    watch.throw_if_stopped();
+    if (choice.influence <= tolerance) return choice;
+  }
+  choice.influence = 0;
+  return choice;
+}
+
+}  // namespace softland

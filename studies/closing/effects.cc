@@ -1,0 +1,99 @@
+#include "studies/closing/effects.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/require.h"
+#include "model/closing.h"
+#include "model/gas/gas_law.h"
+#include "studies/closing/closing_progress.h"
+#include "studies/closing/timing.h"
+
+namespace softland {
+namespace {
+
+// Why this gas cannot surround the device; empty when it can.
+std::string refusal(Device device, const Gas& gas) {
+  device.gas = gas;
+  try {
+    validate(device);
+  } catch (const InvalidInput& wrong) {
+    return wrong.what();
+  }
+  return {};
+}
+
+Effect closing_with(const PreparedScene& prepared, const std::optional<Gas>& gas, const Watch& watch, double done, double share) {
+  Device described = prepared.scene.device;
+  described.gas = gas;
+  const Switch model(described, prepared.quadrature);
+  const std::vector<Signal> signals = prepared.signals();
+  const Trajectory t =
+      simulate_closing(model, signals,
+                       {.duration = prepared.duration,
+                        .tolerance = prepared.tolerance,
+                        .stop = watch.stop,
+                        .observer = observer(watch, "closings with every gas law", prepared.duration, done, share)});
+  Effect e{.section = "gas",
+           .choice = "none",
+           .magnitude = {.name = "damping per length, closed", .unit = "N s/m^2", .value = 0},
+           .group = {.name = "Knudsen number, closed"},
+           .metrics = metrics(t, prepared.scene.metrics),
+           .rhs_seconds = watch.stopped() ? Metrics::unset : right_hand_side_seconds(model, signals, prepared.duration),
+           .warnings = t.warnings};
+  if (!gas) return e;
+  const double closed = described.gap.electrode - described.gap.contact;
+  e.choice = name_of(*gas);
+  e.magnitude.value = damping_per_length(*model.gas(), closed);
+  if (const FilmState* const film = film_of(*gas)) e.group.value = mean_free_path(*film) / closed;
+  return e;
+}
+
+}  // namespace
+
+const Effect& Effects::own(const std::string& section) const {
+  return *std::find_if(list.begin(), list.end(), [&](const Effect& e) { return e.in_scene && e.section == section; });
+}
+
+double Effects::spread(const std::string& section, const Figure& figure) const {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const Effect& e : list) {
+    if (e.section != section || e.choice == "none") continue;
+    const double value = figure.value(e.metrics);
+    if (!std::isfinite(value)) return Metrics::unset;
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  return (most - least) / figure.value(own(section).metrics);
+}
+
+Effects compare_effects(const PreparedScene& prepared, const Watch& watch) {
+  const std::optional<Gas>& own = prepared.scene.device.gas;
+  Effects found{.window = prepared.duration};
+  std::vector<std::optional<Gas>> laws{std::nullopt};
+  for_each_law<Gas>([&]<class Law>(std::type_identity<Law>) {
+    const bool in_scene = own && std::holds_alternative<Law>(*own);
+    // A damper and a slit are not there for the taking: only where the scene describes them.
+    if ((std::is_same_v<Law, LinearGas> || std::is_same_v<Law, StripSlitGas>)&&!in_scene) return;
+    const Gas gas = in_scene ? *own : under(own.value_or(Gas{}), Gas(Law{}));
+    if (const std::string reason = refusal(prepared.scene.device, gas); !reason.empty()) {
+      found.not_compared.push_back({.choice = std::string(Law::name), .reason = reason});
+      return;
+    }
+    laws.emplace_back(gas);
+  });
+  for (const std::optional<Gas>& law : laws) {
+    const double share = 1.0 / static_cast<double>(laws.size());
+    Effect e = closing_with(prepared, law, watch, static_cast<double>(found.list.size()) * share, share);
+    if (watch.stopped()) break;
+    e.in_scene = law.has_value() == own.has_value() && (!own || law->index() == own->index());
+    found.list.push_back(std::move(e));
+  }
+  const bool own_is_there = std::any_of(found.list.begin(), found.list.end(), [](const Effect& e) { return e.in_scene; });
+  if (!own_is_there) throw Interrupted();
+  found.omissions = ablate_effects(prepared, found.own("gas").metrics, true, watch);
+  found.interrupted = watch.stopped();
+  return found;
+}
+
+}  // namespace softland

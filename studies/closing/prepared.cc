@@ -1,0 +1,272 @@
+#include "studies/closing/prepared.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/engineering.h"
+#include "model/closing.h"
+#include "model/constants.h"
+#include "model/timoshenko.h"
+
+namespace softland {
+
+std::vector<std::string> PreparedScene::drive_names() const {
+  std::vector<std::string> names;
+  for (const Electrode& e : scene.device.electrodes) names.push_back(e.name);
+  if (scene.device.dispersion) names.emplace_back(dispersion_drive);
+  if (scene.device.piezo) names.emplace_back(piezo_drive);
+  return names;
+}
+
+std::vector<Waveform> PreparedScene::in_drive_order(const std::map<std::string, Waveform>& waveforms) const {
+  std::vector<Waveform> result;
+  for (const std::string& name : drive_names()) {
+    const auto found = waveforms.find(name);
+    result.push_back(found == waveforms.end() ? Waveform(Step{.level = 0}) : found->second);
+  }
+  return result;
+}
+
+double PreparedScene::before(const std::string& drive) const {
+  const auto found = drives.before.find(drive);
+  return found == drives.before.end() ? 0 : found->second;
+}
+
+std::vector<double> PreparedScene::values_before() const {
+  std::vector<double> values;
+  for (const std::string& name : drive_names()) values.push_back(before(name));
+  return values;
+}
+
+Signal PreparedScene::told(std::size_t k, const Waveform& waveform) const { return signal(waveform, values_before()[k]); }
+
+std::vector<Signal> PreparedScene::told(const std::vector<Waveform>& waveforms) const {
+  const std::vector<double> before = values_before();
+  std::vector<Signal> signals;
+  for (std::size_t k = 0; k < before.size(); ++k) signals.push_back(signal(waveforms[k], before[k]));
+  return signals;
+}
+
+std::vector<Signal> PreparedScene::signals() const { return driven(in_drive_order(drives.waveforms)); }
+
+SourceErrors PreparedScene::errors(std::size_t k) const {
+  if (drives.errors.empty()) return {};
+  const auto found = drives.errors.find(drive_names()[k]);
+  return found == drives.errors.end() ? SourceErrors{} : found->second;
+}
+
+DriverModel PreparedScene::source(std::size_t k) const {
+  if (drives.models.empty()) return {};
+  const std::string name = drive_names()[k];
+  const auto found = drives.models.find(name);
+  if (found == drives.models.end()) return {};
+  DriverModel source = found->second;
+  if (const auto load = loads.find(name); load != loads.end()) source.load = load->second;
+  return source;
+}
+
+DriverLimits PreparedScene::limits(std::size_t k) const {
+  const auto found = drives.limits.find(drive_names()[k]);
+  return found == drives.limits.end() ? DriverLimits{} : found->second;
+}
+
+Signal PreparedScene::told_samples(std::size_t k, const Signal& told) const {
+  return softland::told_samples(told, source(k), limits(k), duration);
+}
+
+Signal PreparedScene::driven(std::size_t k, const Signal& told, const SourceErrors& errors) const {
+  const DriverModel own = source(k);
+  if (own.is_ideal()) return errors.are_none() ? told : with_errors(told, errors);
+  return softland::driven(told, own, limits(k), duration, errors);
+}
+
+std::vector<Signal> PreparedScene::driven(std::vector<Signal> told) const {
+  for (std::size_t k = 0; k < told.size(); ++k) told[k] = driven(k, told[k]);
+  return told;
+}
+
+std::map<std::string, PullInVoltages> PreparedScene::voltage_units() const {
+  std::map<std::string, PullInVoltages> units;
+  for (const auto& [name, p] : pull_in) {
+    units[name] = {.static_pull_in = p.statically.voltage, .dynamic_pull_in = p.dynamically.voltage};
+  }
+  return units;
+}
+
+std::string begins_elsewhere(const std::map<std::string, Waveform>& waveforms, const std::map<std::string, double>& before,
+                             const PreparedScene& scene) {
+  for (const auto& [drive, waveform] : waveforms) {
+    const auto found = before.find(drive);
+    const double own = found == before.end() ? 0 : found->second, due = scene.before(drive);
+    if (own != due)
+      return fmt::format(
+          "the drive '{}' stands at {} before its waveform, and at {} in the scene: both have to begin at one rest", drive,
+          engineering(own, "V"), engineering(due, "V"));
+  }
+  return {};
+}
+
+// The cheapest that deliver on random scenes: results/accuracy.md.
+double tolerance_for(double accuracy, bool stiff) { return std::clamp(accuracy / 10, 1e-12, stiff ? 1e-4 : 1e-3); }
+
+SwitchOptions quadrature_for(double accuracy, int modes) {
+  constexpr double points_per_digit = 4, fewest = 8;  // and two to a mode, which has about half a wave more than the last
+  return {.points_per_length = std::max({fewest, points_per_digit * -std::log10(accuracy), 2.0 * modes + 4})};
+}
+
+namespace {
+
+constexpr double longest_window = 1e3;  // [s], as the longest simulate.duration
+
+/// At most, of a waveform's sine in the window.
+double periods_of(const Waveform& waveform, double window) {
+  const auto lasts = [&](const auto& sine) { return std::min(sine.end, window) - sine.start; };
+  if (const auto* sine = std::get_if<Harmonic>(&waveform))
+    return sine->amplitude == 0 ? 0 : sine->angular_frequency / (2 * pi) * lasts(*sine);
+  if (const auto* chirp = std::get_if<Chirp>(&waveform))
+    return chirp->amplitude == 0 ? 0
+                                 : chirp->angular_frequency * std::max(1.0, chirp->frequency_ratio) / (2 * pi) * lasts(*chirp);
+  return 0;
+}
+
+/// The window of a scene that names none [s]: it shows the closing of steps to the hold levels, which gas may slow down, and what
+/// follows. Steps that do not close the switch in ten times that window are not waited for, nor in a thousand times where their
+/// levels leave no open equilibrium: just above pull-in a damped switch creeps.
+double default_window(const Switch& model, const std::vector<Signal>& signals) {
+  constexpr double periods = 6, closings = 4, loose = 1e-4;
+  constexpr long most_steps = 100'000;
+  const double usual = periods * 2 * pi / model.angular_frequencies()[0];
+  if (!(usual <= longest_window)) return usual;
+  std::vector<Signal> steps;
+  for (const Signal& signal : signals) steps.push_back(Signal::constant(signal.hold_level(), signal.before()));
+  const double longest = model.open_equilibrium(hold_levels(steps)) ? 10 : 1000;
+  const Trajectory closing = simulate_closing(
+      model, steps, {.duration = longest * usual, .tolerance = loose, .after_contact = 0, .max_steps = most_steps});
+  return closing.touches.empty() ? usual : std::max(usual, closings * closing.touches.front().begin);
+}
+
+/// The drives but for what sampling and filters make of them.
+std::vector<Signal> without_sources(const PreparedScene& p) {
+  std::vector<Signal> signals = p.told(p.in_drive_order(p.drives.waveforms));
+  for (std::size_t k = 0; k < signals.size(); ++k) {
+    if (const SourceErrors errors = p.errors(k); !errors.are_none()) signals[k] = with_errors(signals[k], errors);
+  }
+  return signals;
+}
+
+/// Windows and waveforms that no computer would see the end of.
+void check_window(const PreparedScene& p) {
+  const SceneFile& file = p.scene.file;
+  if (!(p.duration <= longest_window)) {
+    file.refuse("structure.kind",
+                fmt::format("the window, where simulate.duration is absent six periods of the first mode or more, is {} "
+                            "and must be at most {}: what moves is too soft or too heavy",
+                            engineering(p.duration, "s"), engineering(longest_window, "s")));
+  }
+  constexpr double most_periods = 1e5;
+  for (const auto& [name, waveform] : p.drives.waveforms) {
+    const double periods = periods_of(waveform, p.duration);
+    if (!(periods > most_periods)) continue;
+    const std::string section = "waveform." + name + ".";
+    const bool in_hertz = file.written(section + "frequency").has_value();
+    file.refuse(section + (in_hertz ? "frequency" : "angular_frequency"),
+                fmt::format("makes {} periods in the window of {}; there may be {}", engineering(periods, "", 3),
+                            engineering(p.duration, "s"), engineering(most_periods, "")));
+  }
+}
+
+/// Every source charges its electrode on the open switch.
+void load_sources(PreparedScene& p) {
+  const Switch& model = p.model;
+  std::vector<double> open(static_cast<std::size_t>(model.modes()), 0.0);
+  if (const auto rest = p.rest()) std::copy_n(rest->data(), open.size(), open.begin());
+  Switch::Workspace work = model.workspace();
+  const std::vector<std::string> names = p.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto found = p.drives.models.find(names[k]);
+    if (found == p.drives.models.end() || !found->second.source_resistance) continue;
+    p.loads[names[k]] = model.capacitance(k, open.data(), work);
+  }
+}
+
+/// Sources that take more samples than a run can follow.
+void check_sources(const PreparedScene& p) {
+  constexpr double most_samples = 1e5;
+  for (const auto& [name, model] : p.drives.models) {
+    if (!model.sample_rate || *model.sample_rate * p.duration <= most_samples) continue;
+    p.scene.file.refuse(
+        "driver." + name + ".sample_rate",
+        fmt::format("takes {} samples in the window of {}; there may be {}", engineering(*model.sample_rate * p.duration, "", 3),
+                    engineering(p.duration, "s"), engineering(most_samples, "")));
+  }
+}
+
+}  // namespace
+
+std::vector<double> bias_of(const Scene& scene, std::size_t drive) {
+  std::vector<double> bias = scene.standing;
+  bias[drive] = 0;
+  return bias;
+}
+
+namespace {
+
+// ", under piezo at 0.3 V": what the other drives stand at, where that is not 0.
+std::string under_bias(const PreparedScene& p, std::size_t electrode) {
+  const std::vector<double> bias = bias_of(p.scene, electrode);
+  const std::vector<std::string> names = p.drive_names();
+  std::string words;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (bias[k] == 0) continue;
+    constexpr int digits = 5;
+    words += words.empty() ? ", under " : " and ";
+    words += names[k] == dispersion_drive
+                 ? fmt::format("dispersion force at a factor of {}", engineering(1 + bias[k], "", digits))
+                 : fmt::format("{} at {}", names[k], engineering(bias[k], "V", digits));
+  }
+  return words;
+}
+
+}  // namespace
+
+ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch) {
+  ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
+  found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, watch);
+  return found;
+}
+
+PreparedScene prepare(const SceneFile& file, bool default_limits, const Watch& watch, const PullInFinder& find_pull_in) {
+  const Scene scene = read_scene(file);
+  const double accuracy = scene.simulate.tolerance > 0 ? SimulateOptions{}.accuracy : scene.simulate.accuracy;
+  const SwitchOptions quadrature = quadrature_for(accuracy, scene.device.structure.modes);
+  PreparedScene p{.scene = scene, .model = Switch(scene.device, quadrature), .quadrature = quadrature};
+  if (std::string warning = slenderness_warning(scene.device.structure); !warning.empty()) {
+    p.scene.warnings.push_back(std::move(warning));
+  }
+  for (std::size_t k = 0; k < scene.device.electrodes.size(); ++k) {
+    const std::string& name = scene.device.electrodes[k].name;
+    const bool needed = std::find(scene.need_pull_in.begin(), scene.need_pull_in.end(), name) != scene.need_pull_in.end();
+    if (!needed && !default_limits) continue;
+    const ElectrodePullIn found = find_pull_in(p.model, k, bias_of(scene, k), watch);
+    watch.throw_if_stopped();
+    const bool ok = found.dynamically.status == Status::done;
+    if (needed && !ok) {
+      file.refuse("electrode." + name + ".span",
+                  "its pull-in voltage is needed for the unit Vsp or Vdp, but none could be found" + under_bias(p, k));
+    }
+    if (ok) p.pull_in.emplace(name, found);
+  }
+  p.drives = scene.drives(p.voltage_units());
+  load_sources(p);
+  p.duration = scene.simulate.duration > 0 ? scene.simulate.duration : default_window(p.model, without_sources(p));
+  check_window(p);
+  check_sources(p);
+  p.tolerance =
+      scene.simulate.tolerance > 0 ? scene.simulate.tolerance : tolerance_for(scene.simulate.accuracy, p.model.film_states() > 0);
+  return p;
+}
+
+}  // namespace softland

@@ -1,0 +1,36 @@
+#include "studies/closing/sent_signals.h"
+
+#include <cstddef>
+
+#include "waveforms/export.h"
+
+namespace softland {
+
+std::map<std::string, Signal> named_signals(const PreparedScene& p) {
+  std::map<std::string, Signal> all;
+  const std::vector<std::string> names = p.drive_names();
+  const std::vector<Signal> signals = p.signals();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] != dispersion_drive) all.emplace(names[k], signals[k]);
+  }
+  return all;
+}
+
+SentSignals sent_signals(const PreparedScene& p, const std::vector<Waveform>& waveforms, Sent sent) {
+  SentSignals all;
+  const std::vector<std::string> names = p.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] == dispersion_drive) continue;
+    const Signal told = p.told(k, waveforms[k]);
+    all.signals.emplace(names[k], sent == Sent::output ? p.driven(k, told) : p.told_samples(k, told));
+    if (const auto rate = p.source(k).sample_rate; rate && sent == Sent::told) all.sample_rates.emplace(names[k], *rate);
+  }
+  return all;
+}
+
+std::string told_csv(const PreparedScene& p) {
+  const SentSignals sent = sent_signals(p, p.in_drive_order(p.drives.waveforms));
+  return csv(sent.signals, p.duration, sent.sample_rates);
+}
+
+}  // namespace softland

@@ -1,0 +1,99 @@
+// One closing, with figures of merit and their errors, as accurate as the scene asks for.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/watch.h"
+#include "model/closing.h"
+#include "model/pull_in.h"
+#include "objectives/figures.h"
+#include "studies/closing/closed_state.h"
+#include "studies/closing/prepared.h"
+
+namespace softland {
+
+struct Certificate;
+
+/// The run that judges another: a hundredth of its tolerance, twice its quadrature points. Where rounding leaves no room for
+/// that, or such a run fails, a hundred times its tolerance and half its points: the difference is then the error of the judge.
+struct Judge {
+  Status status = Status::not_run;
+  std::string message = {};  ///< why, where it is not done
+  Metrics metrics;
+  double tolerance = 0;
+  SwitchOptions quadrature;
+};
+
+struct Closing {
+  Trajectory trajectory;
+  bool is_thinned = false;             ///< the trajectory lacks knots: it draws the picture, and no more (CourseRecorder)
+  std::vector<Rebound> rebounds = {};  ///< of all knots
+  Metrics metrics;
+  /// Absolute error estimates: the difference to the judge's and what rounding leaves, that of the drive energy at least the
+  /// residual of the energies, or what certify() makes of it. NaN where
+  /// not estimated: t_p, t_b and N_B have none but from certify(), nor what comes after the runs part in a rebound's height,
+  /// since no two runs tell the range of a chaotic figure.
+  FigureValues errors;
+  double tolerance = 0;        ///< of the integrator, in the run that the figures are of
+  SwitchOptions quadrature;    ///< of that run
+  std::optional<Judge> judge;  ///< of that run, where errors are estimated
+  /// A touch that does not last: the hold levels neither keep the switch closed (its closed equilibrium is unstable, or there is
+  /// none) nor leave it an open equilibrium to go back to.
+  bool is_pulled_through = false;
+  std::vector<std::string> warnings;                    ///< of the scene, of the laws, and of ill-conditioned figures
+  std::shared_ptr<const Certificate> certificate = {};  ///< from certify() only
+};
+
+/// A stated error is this often the difference of two runs, of which the tighter one errs as well.
+inline constexpr double stated_safety = 2;
+
+/// What a run misses in the balance of its energies its drives may have given: no error of the drive energy is less.
+void allow_for_residual(FigureValues& errors, const Trajectory& run);
+
+/// Below this a peak contact force is as good as none [N]: a hundredth of what bends the beam by the contact gap.
+[[nodiscard]] double least_peak_force(const PreparedScene& prepared);
+
+/// What is to be warned of where a trajectory is not held.
+inline constexpr std::string_view not_held =
+    "the hold levels do not keep the switch closed: it has no closed equilibrium under them. They are below its release "
+    "voltage, or so high that the electrode pulls the beam past the contact";
+
+/// What is to be warned of where the hold levels of these drives do not keep a switch closed whose closed state under them is
+/// `state`; empty where they do.
+[[nodiscard]] std::string hold_warning(const Switch& model, const std::vector<Signal>& signals, const ClosedState& state);
+
+/// What the hold levels of drives do to a closed switch.
+struct Hold {
+  std::optional<ClosedEquilibrium> closed;  ///< if there is one
+  double force = Metrics::unset;            ///< of the contact, where it is stable [N]
+  /// Whether anything holds the switch: not where it has a contact and no such equilibrium, unless the contact may hold on by
+  /// adhesion, nor where it is unstable.
+  bool is_held = true;
+  /// ClosingOptions::steady_force [N]; NaN where nothing holds the switch.
+  [[nodiscard]] double steady_force(const MetricsOptions& options) const { return options.steady_force * force; }
+};
+/// `near`: the equilibrium of a switch and drives little different, from which this one is found sooner.
+[[nodiscard]] Hold hold_of(const Switch& model, const std::vector<Signal>& signals,
+                           const std::optional<ClosedEquilibrium>& near = {});
+/// Sets hold force and whether anything holds the switch.
+void set_hold(Trajectory& trajectory, const Hold& hold);
+/// The same, and the capacitance where the hold levels leave the switch.
+void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold);
+
+/// Peak voltage and peak slew of these drives in the window.
+void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const std::vector<Signal>& signals);
+
+/// Runs the scene's own waveforms. With `estimate_errors` a second, tighter run measures the error of each figure; where a scene
+/// asks for an accuracy that t_i, v_i, B_H or the peak force do not have (relative; B_H to at least the significant rebound, the
+/// force to at least least_peak_force()), tolerance and quadrature are tightened until they have, or until that no longer
+/// helps. No run is its own judge, and no error is 0. Asked to stop, the status of the figures is interrupted: they are those of
+/// the last run that was complete, without errors, or of the part of the first one that was run. A switch that is not held (see
+/// set_hold()) has not settled, however quiet it is at the end of the window. One that has not touched, and was not meant to (see
+/// stays_open()), has the status `open`.
+[[nodiscard]] Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watch& watch = {});
+
+}  // namespace softland

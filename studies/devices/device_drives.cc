@@ -1,0 +1,202 @@
+#include "studies/devices/device_drives.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "waveforms/export.h"
+
+namespace softland {
+namespace {
+
+// Over all drives.
+std::uint64_t number_of_edge(std::size_t drive, std::size_t edge) {
+  constexpr std::uint64_t most_edges = std::uint64_t{1} << 32;  // of one drive
+  return drive * most_edges + edge;
+}
+
+// Straight pieces come out exact.
+Waveform as_table(const Signal& signal, double window) {
+  const bool ends_on_sine = signal.pieces().back().oscillates();
+  const double last = signal.pieces().back().begin;
+  Table table;
+  for (const auto& [time, voltage] : polyline(signal, ends_on_sine ? std::max(last, window) : last, 1e-4 * signal.peak(), 0)) {
+    table.time.push_back(time);
+    table.voltage.push_back(voltage);
+  }
+  return table;
+}
+
+// Null for jitter, which is none of one number.
+double* member_of(SourceErrors& errors, DriveError error) {
+  switch (error) {
+    case DriveError::gain:
+      return &errors.gain;
+    case DriveError::offset:
+      return &errors.offset;
+    case DriveError::delay:
+      return &errors.delay;
+    case DriveError::jitter:
+      break;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Device& device, const DeviceUnits& units) {
+  std::vector<Waveform> own = waveforms;
+  const std::size_t piezo = device.piezo ? own.size() - 1 : own.size();
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const double factor = k < device.electrodes.size() ? units.volts : k == piezo ? units.piezo : 1;
+    own[k] = scaled(std::move(own[k]), factor, units.time);
+  }
+  return own;
+}
+
+// What a source is told, and what its errors make of it. The jitter of a source that takes samples moves the edges that it
+// samples, its other errors come after; that of another comes with them, and a gain that varies stands in the waveform, which
+// every family can express.
+struct DeviceDrives::Driven {
+  std::vector<Waveform> waveforms;
+  std::vector<Signal> signals;  // told
+  std::vector<SourceErrors> errors;
+  double origin = 0;  // of the clock [s]
+
+  // Told with jitter, and when that begins on the clock of the waveform [s].
+  [[nodiscard]] std::pair<Signal, double> jittered(std::size_t k) const {
+    const SourceErrors jitter{.edges = errors[k].edges};
+    const double begin = std::min(0.0, first_edge(signals[k], jitter));
+    return {jitter.are_none() ? signals[k] : with_errors(signals[k], jitter, begin), begin};
+  }
+  // What is left for a source that takes samples.
+  [[nodiscard]] SourceErrors after_samples(std::size_t k) const {
+    return {.gain = errors[k].gain, .offset = errors[k].offset, .delay = errors[k].delay - origin + jittered(k).second};
+  }
+};
+
+DeviceDrives::DeviceDrives(const PreparedScene& nominal) : nominal_(&nominal) {
+  const std::vector<std::string> names = nominal.drive_names();
+  sources_.resize(names.size());
+  const std::vector<SpreadVariable>& variables = nominal.scene.spread.variables;
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    for (std::size_t j = 0; j < variables[i].keys.size(); ++j) {
+      const VariedKey& key = variables[i].keys[j];
+      if (!key.drive) continue;
+      const auto drive = static_cast<std::size_t>(std::find(names.begin(), names.end(), key.drive->name) - names.begin());
+      sources_[drive].push_back({.variable = i, .key = j, .error = key.drive->error});
+      has_errors_ = true;
+    }
+  }
+}
+
+std::vector<double> DeviceDrives::shown(std::vector<double> values) const {
+  const std::vector<SpreadVariable>& variables = nominal_->scene.spread.variables;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!variables[i].is_drawn_per_edge) continue;
+    const auto has_it = [&](const std::vector<Source>& sources) {
+      return std::any_of(sources.begin(), sources.end(), [&](const Source& source) { return source.variable == i; });
+    };
+    const auto drive = std::find_if(sources_.begin(), sources_.end(), has_it) - sources_.begin();
+    values[i] = DeviceSpread::jitter(variables[i], values[i], number_of_edge(static_cast<std::size_t>(drive), 0));
+  }
+  return values;
+}
+
+// Of an error but jitter [SI unit].
+double DeviceDrives::value(const Source& source, const std::vector<double>& values) const {
+  const SpreadVariable& variable = nominal_->scene.spread.variables[source.variable];
+  return DeviceSpread::value(variable, variable.keys[source.key], values[source.variable]);
+}
+
+SourceErrors DeviceDrives::errors(std::size_t k, const std::vector<double>& values) const {
+  SourceErrors errors = nominal_->errors(k);
+  for (const Source& source : sources_[k]) {
+    if (double* const member = member_of(errors, source.error)) *member = value(source, values);
+  }
+  return errors;
+}
+
+SourceErrors DeviceDrives::errors_by(std::size_t k, std::size_t i) const {
+  SourceErrors slopes{.gain = 0};
+  const SpreadVariable& variable = nominal_->scene.spread.variables[i];
+  for (const Source& source : sources_[k]) {
+    if (source.variable != i) continue;
+    if (double* const member = member_of(slopes, source.error))
+      *member = variable.is_factor ? variable.keys[source.key].nominal : 1;
+  }
+  return slopes;
+}
+
+DeviceDrives::Driven DeviceDrives::driven(const std::vector<Waveform>& nominal, const DeviceUnits& units,
+                                          const std::vector<double>& values) const {
+  const std::vector<SpreadVariable>& variables = nominal_->scene.spread.variables;
+  Driven all{.waveforms = in_units(nominal, nominal_->scene.device, units), .signals = {}, .errors = {}};
+  all.errors.resize(nominal.size());
+  for (std::size_t k = 0; k < nominal.size(); ++k) {
+    SourceErrors& errors = all.errors[k] = nominal_->errors(k);
+    for (const Source& source : sources_[k]) {
+      if (source.error == DriveError::gain) errors.gain = value(source, values);
+    }
+    if (has_errors(k) && !nominal_->source(k).sample_rate)
+      all.waveforms[k] = scaled(std::move(all.waveforms[k]), std::exchange(errors.gain, 1), 1);
+    all.signals.push_back(nominal_->told(k, all.waveforms[k]));
+    for (const Source& source : sources_[k]) {
+      switch (source.error) {
+        case DriveError::gain:
+          break;
+        case DriveError::offset:
+          errors.offset = value(source, values);
+          break;
+        case DriveError::delay:
+          errors.delay = value(source, values);
+          break;
+        case DriveError::jitter:
+          errors.edges.resize(edge_count(all.signals[k]));
+          for (std::size_t edge = 0; edge < errors.edges.size(); ++edge)
+            errors.edges[edge] =
+                DeviceSpread::jitter(variables[source.variable], values[source.variable], number_of_edge(k, edge));
+          break;
+      }
+    }
+    all.origin = std::min(all.origin, first_edge(all.signals[k], errors));
+  }
+  return all;
+}
+
+std::vector<Signal> DeviceDrives::signals(const std::vector<Waveform>& nominal, const DeviceUnits& units,
+                                          const std::vector<double>& values) const {
+  const Driven all = driven(nominal, units, values);
+  std::vector<Signal> own;
+  for (std::size_t k = 0; k < all.signals.size(); ++k) {
+    own.push_back(nominal_->source(k).sample_rate
+                      ? nominal_->driven(k, all.jittered(k).first, all.after_samples(k))
+                      : nominal_->driven(k, with_errors(all.signals[k], all.errors[k], all.origin), SourceErrors{}));
+  }
+  return own;
+}
+
+std::vector<DeviceDrives::Written> DeviceDrives::written(const std::vector<Waveform>& nominal, const DeviceUnits& units,
+                                                         const std::vector<double>& values) const {
+  const Driven all = driven(nominal, units, values);
+  std::vector<Written> drives;
+  for (std::size_t k = 0; k < all.signals.size(); ++k) {
+    Written& one = drives.emplace_back(Written{.waveform = all.waveforms[k]});
+    const auto write = [&](const Signal& own) {
+      if (own.pieces() != all.signals[k].pieces()) one.waveform = as_table(own, nominal_->duration);
+    };
+    if (nominal_->source(k).sample_rate) {
+      write(all.jittered(k).first);
+      one.errors = all.after_samples(k);
+      one.errors.delay = std::max(0.0, one.errors.delay);
+    } else if (has_errors(k) || all.errors[k].are_none()) {
+      write(with_errors(all.signals[k], all.errors[k], all.origin));
+    } else {
+      one.errors = all.errors[k];
+      one.errors.delay -= all.origin;
+    }
+  }
+  return drives;
+}
+
+}  // namespace softland

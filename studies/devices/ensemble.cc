@@ -1,0 +1,515 @@
+#include "studies/devices/ensemble.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "base/executor.h"
+#include "base/random.h"
+#include "base/require.h"
+#include "model/constants.h"
+#include "model/pull_in.h"
+#include "studies/closing/actuator.h"
+#include "studies/closing/simulate.h"
+
+namespace softland {
+namespace {
+
+constexpr std::size_t chunk = 128;  // devices of one task: many to a lane, few between two looks at a Watch
+
+// The figures of a lane.
+class LaneFigures final : public LandingObserver {
+ public:
+  explicit LaneFigures(const MetricsOptions& options) : figures_(options) {}
+  void touch(const Touch& touch) override {
+    if (!course_.touched) course_.first_touch = touch.begin, course_.impact_velocity = touch.impact_velocity;
+    course_.touched = true;
+    figures_.touch(touch);
+  }
+  void rebound(double begin, double end, double height) override {
+    course_.above = std::isnan(end);
+    figures_.rebound({.begin = begin, .end = end, .height = height});
+  }
+  [[nodiscard]] DeviceOutcome outcome(const Switch& model, const FleetEnd& end) {
+    course_.last_time = end.time;
+    const Trajectory run{.status = Status::done,
+                         .contact_gap = model.device().gap.contact,
+                         .in_contact_period = model.in_contact_period(),
+                         .steady_force_time = end.steady_force_time,
+                         .least_force_after_touch = end.least_force_after_touch,
+                         .energy = {.source_work = end.drive_energy}};
+    return {.metrics = figures_.metrics(run, course_)};
+  }
+
+ private:
+  LandingFigures figures_;
+  LandingFigures::Course course_;
+};
+
+// Devices that classes are made of.
+constexpr std::uint64_t reference_seed = random_bits(0, Stream::classes, 0);
+std::size_t reference_size(const Calibration& calibration) {
+  constexpr std::size_t fewest = 512, of_a_class = 8;
+  return calibration.classes ? std::max(fewest, of_a_class * static_cast<std::size_t>(*calibration.classes)) : 0;
+}
+
+}  // namespace
+
+Ensemble::Ensemble(const PreparedScene& nominal, std::uint64_t size, std::function<void(std::uint64_t, std::span<double>)> point)
+    : nominal_(&nominal), size_(size), point_(std::move(point)), resolved_(nominal.resolved()) {
+  require(!nominal.scene.spread.empty(), [&] {
+    return fmt::format("{}: there is no [spread]: nothing tells how devices differ (see softland new)",
+                       nominal.scene.file.name());
+  });
+  reads_anew_ = nominal.scene.device.structure.kind == StructureKind::plate;  // its length follows its area and width
+  for (const SpreadVariable& variable : nominal.scene.spread.variables) {
+    for (const VariedKey& key : variable.keys) reads_anew_ = reads_anew_ || (!key.member && !key.drive);
+  }
+}
+
+Ensemble::Ensemble(const PreparedScene& nominal, std::uint64_t size, std::uint64_t seed, PointSet points)
+    : Ensemble(nominal, size,
+               [all = SamplePoints(points, std::max<std::size_t>(1, nominal.scene.spread.variables.size()), seed, Stream::spread,
+                                   size)](std::uint64_t k, std::span<double> u) { all.point(k, u); }) {}
+
+Ensemble::Ensemble(const PreparedScene& nominal, const SobolDesign& design)
+    : Ensemble(nominal, design.evaluations(), [design](std::uint64_t k, std::span<double> u) { design.point(k, u); }) {}
+
+std::vector<double> Ensemble::point(std::uint64_t k) const {
+  std::vector<double> u(nominal_->scene.spread.variables.size());
+  point_(k, u);
+  return u;
+}
+
+std::vector<double> Ensemble::values(std::uint64_t k) const {
+  std::vector<double> values = point(k);
+  nominal_->scene.spread.to_values(values);
+  return values;
+}
+
+SceneFile Ensemble::scene(const std::vector<double>& values) const {
+  SceneFile file = resolved_;
+  file.erase("spread");
+  const DeviceSpread& spread = nominal_->scene.spread;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (const VariedKey& key : spread.variables[i].keys) {
+      if (key.drive) continue;
+      file.assign(key.path,
+                  Quantity{.value = DeviceSpread::value(spread.variables[i], key, values[i]), .dimension = key.measured_in},
+                  key.element);
+    }
+  }
+  return file;
+}
+
+SampledDevice DeviceBuilder::device(std::vector<double> values) {
+  SampledDevice sampled{.values = std::move(values), .model = {}, .refusal = {}};
+  for (std::size_t i = 0; i < sampled.values.size(); ++i) {
+    const SpreadVariable& variable = ensemble_->nominal().scene.spread.variables[i];
+    for (const VariedKey& key : variable.keys) {
+      if (const std::string rule = key.refusal(DeviceSpread::value(variable, key, sampled.values[i])); !rule.empty()) {
+        sampled.refusal = fmt::format("{} {}", key.name(), rule);
+        return sampled;
+      }
+    }
+  }
+  try {
+    describe(sampled);
+  } catch (const InvalidInput& error) {
+    sampled.model.reset();
+    sampled.refusal = error.what();
+  }
+  return sampled;
+}
+
+void DeviceBuilder::describe(SampledDevice& device) {
+  const PreparedScene& nominal = ensemble_->nominal();
+  if (!ensemble_->reads_anew()) {
+    for (std::size_t i = 0; i < device.values.size(); ++i) {
+      const SpreadVariable& variable = nominal.scene.spread.variables[i];
+      for (const VariedKey& key : variable.keys) {
+        if (!key.drive) key.member(scratch_) = DeviceSpread::value(variable, key, device.values[i]);
+      }
+    }
+    device.model.emplace(scratch_.device, nominal.quadrature, &nominal.model);
+    return;
+  }
+  device.model.emplace(read_scene(ensemble_->scene(device.values)).device, nominal.quadrature, &nominal.model);
+}
+
+double closing_time(const Switch& model, std::size_t drive, double step, Bias bias, double duration) {
+  std::vector<Signal> signals;
+  for (const double standing : bias) signals.push_back(Signal::standing(standing));
+  signals[drive] = Signal::constant(step);
+  const Trajectory end =
+      simulate_closing(model, signals, {.duration = duration, .tolerance = EnsembleRun{}.tolerance, .after_contact = 0});
+  return end.touches.empty() ? Metrics::unset : end.touches.front().begin;
+}
+
+DeviceMeter::DeviceMeter(const PreparedScene& nominal, const Gauges& gauges, double precision)
+    : nominal_(&nominal), gauges_(gauges), precision_(precision) {
+  require(!gauges.piezo || piezo_unit(nominal.model) > 0, [&] {
+    return fmt::format("{}: piezo cannot be measured: {}", nominal.scene.file.name(),
+                       nominal.model.has_piezo() ? "it does not move the contact point" : "there is no [piezo]");
+  });
+  if (!gauges.pull_in && !gauges.closing_time) return;
+  require(has_pulling_electrode(nominal.scene.device), [&] {
+    return fmt::format("{}: {} cannot be measured: there is no electrode that pulls in", nominal.scene.file.name(),
+                       gauges.pull_in ? "Vdp" : "a closing time");
+  });
+  const std::string name = searched_electrode(nominal.scene.device);
+  electrode_ = searched_drive(nominal.scene.device);
+  pull_in_ = pull_in(nominal.model);
+  require(std::isfinite(pull_in_), [&] { return fmt::format("electrode '{}' has no pull-in voltage to calibrate by", name); });
+  if (gauges.closing_time) learn_times();
+}
+
+double DeviceMeter::time_of(const Switch& model, double step) const {
+  return softland::closing_time(model, electrode_, step, bias_of(nominal_->scene, electrode_), periods_to_close / frequency());
+}
+
+// The nominal device under steps from 0.75 to 1.19 times closing_step over the factor of the volts.
+void DeviceMeter::learn_times() {
+  constexpr double least = 0.75, most = 1.19;
+  constexpr int steps = 88;
+  for (int n = 0; n <= steps; ++n) {
+    const double volts = least + (most - least) * n / steps;
+    const double time = time_of(nominal_->model, closing_step * pull_in_ / volts);
+    if (std::isfinite(time) && (told_.empty() || time > told_.back().time)) told_.push_back({.time = time, .volts = volts});
+  }
+  require(told_.size() > 2, [&] {
+    return fmt::format("{}: no step to {} Vdp closes the switch: its closing time cannot be measured",
+                       nominal_->scene.file.name(), closing_step);
+  });
+}
+
+double DeviceMeter::closing_time() const {
+  return gauges_.closing_time ? time_of(nominal_->model, closing_step * pull_in_) : Metrics::unset;
+}
+
+// Between two steps of the nominal device on a line; beyond them on the last line.
+DeviceUnits DeviceMeter::told_by(double time) const {
+  if (!std::isfinite(time)) return {.volts = Metrics::unset, .time = 1};
+  const auto above = std::ranges::upper_bound(told_, time, {}, &ToldVolts::time);
+  const auto next = std::clamp<std::ptrdiff_t>(above - told_.begin(), 1, static_cast<std::ptrdiff_t>(told_.size()) - 1);
+  const ToldVolts &a = told_[static_cast<std::size_t>(next - 1)], &b = told_[static_cast<std::size_t>(next)];
+  const double slope = (b.volts - a.volts) / (b.time - a.time), volts = a.volts + slope * (time - a.time);
+  return {.volts = volts, .time = 1, .volts_by_time = slope / volts};
+}
+
+double DeviceMeter::piezo_unit(const Switch& model) { return std::abs(model.piezo_deflection()) / model.device().gap.contact; }
+
+double DeviceMeter::frequency() const { return nominal_->model.angular_frequencies()[0] / (2 * pi); }
+
+double DeviceMeter::pull_in(const Switch& model) const {
+  constexpr double looser = 10;  // the integrator: no measurement is as good
+  const std::vector<double> bias = bias_of(nominal_->scene, electrode_);
+  const StaticPullIn statically = static_pull_in(model, electrode_, bias);
+  return dynamic_pull_in(model, electrode_, statically, bias, {}, looser * precision_, precision_).voltage;
+}
+
+DeviceUnits DeviceMeter::exact(const Switch& model) const {
+  DeviceUnits units = gauges_.closing_time ? told_by(time_of(model, closing_step * pull_in_))
+                      : gauges_.pull_in    ? DeviceUnits{.volts = pull_in(model) / pull_in_}
+                                           : DeviceUnits{};
+  units.time = nominal_->model.angular_frequencies()[0] / model.angular_frequencies()[0];
+  if (const double unit = piezo_unit(nominal_->model); unit > 0) units.piezo = unit / piezo_unit(model);
+  return units;
+}
+
+DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed, std::uint64_t k) {
+  constexpr double least_volts = 0.1;  // no instrument reads less than nothing
+  const auto reading = [&](double error, Stream stream, std::uint64_t counter) {
+    return std::max(least_volts, 1 + error * random_normal(seed, stream, counter));
+  };
+  DeviceUnits units;
+  if (calibration.pull_in_error) units.volts = exact.volts * reading(*calibration.pull_in_error, Stream::measurement, 2 * k);
+  if (calibration.time_error)
+    units.volts = std::max(least_volts, exact.volts * (1 + exact.volts_by_time * *calibration.time_error *
+                                                               random_normal(seed, Stream::measurement, 2 * k)));
+  if (calibration.frequency_error)
+    units.time = exact.time / reading(*calibration.frequency_error, Stream::measurement, 2 * k + 1);
+  if (calibration.piezo_error) units.piezo = exact.piezo / reading(*calibration.piezo_error, Stream::piezo_measurement, k);
+  return units;
+}
+
+namespace {
+
+// Without error.
+std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const Gauges& gauges, std::size_t size, int jobs,
+                                         const Watch& watch) {
+  const DeviceMeter meter(nominal, gauges);
+  const Ensemble ensemble(nominal, size, reference_seed);
+  std::vector<DeviceUnits> units(ensemble.size());
+  std::atomic<std::size_t> done = 0;
+  std::mutex telling;
+  constexpr std::size_t together = 16;
+  const std::size_t chunks = (size + together - 1) / together;
+  const auto task = [&](std::size_t c) {
+    DeviceBuilder builder(ensemble);
+    for (std::size_t k = c * together; k < std::min(size, (c + 1) * together) && !watch.stopped(); ++k) {
+      const SampledDevice device = builder.device(k);
+      units[k] = device.model ? meter.exact(*device.model) : DeviceUnits{.volts = Metrics::unset, .time = Metrics::unset};
+    }
+    const std::scoped_lock lock(telling);
+    watch.tell("devices that classes are made of", static_cast<double>(++done) / static_cast<double>(chunks));
+  };
+  run_tasks(chunks, jobs, task, watch.stop);
+  watch.throw_if_stopped();
+  return units;
+}
+
+// Relative errors of volts and time count alike.
+SpacePoint logarithms(const DeviceUnits& units) { return {std::log(units.volts), std::log(units.time), std::log(units.piezo)}; }
+DeviceUnits units_at(const SpacePoint& point) {
+  return {.volts = std::exp(point[0]), .time = std::exp(point[1]), .piezo = std::exp(point[2])};
+}
+
+}  // namespace
+
+KnownUnits::KnownUnits(const Calibration& calibration, std::span<const DeviceUnits> reference) : calibration_(calibration) {
+  if (!calibration.classes) return;
+  std::vector<SpacePoint> points;
+  for (std::size_t k = 0; k < std::min(reference.size(), reference_size(calibration)); ++k) {
+    const SpacePoint point = logarithms(DeviceMeter::measured(reference[k], calibration, reference_seed, k));
+    if (is_finite(point)) points.push_back(point);
+  }
+  require(!points.empty(), "no device of the spread can be measured: there is nothing to sort into classes");
+  classes_ = classes_of(points, static_cast<std::size_t>(*calibration.classes), reference_seed);
+}
+
+DeviceUnits KnownUnits::of(const DeviceUnits& exact, std::uint64_t seed, std::uint64_t k) const {
+  return of(DeviceMeter::measured(exact, calibration_, seed, k));
+}
+
+DeviceUnits KnownUnits::of(const DeviceUnits& measured) const {
+  if (classes_.centres.empty() || !measured.are_known()) return measured;
+  return units_at(classes_.centres[classes_.nearest(logarithms(measured))]);
+}
+
+std::vector<KnownUnits::Class> KnownUnits::classes() const {
+  std::vector<Class> all;
+  for (std::size_t i = 0; i < classes_.centres.size(); ++i)
+    all.push_back({.centre = units_at(classes_.centres[i]), .share = classes_.shares[i]});
+  return all;
+}
+
+KnownUnits KnownUnits::without_errors() const {
+  KnownUnits exact = *this;
+  Calibration& all = exact.calibration_;
+  for (std::optional<double>* error : {&all.pull_in_error, &all.frequency_error, &all.piezo_error, &all.time_error}) {
+    if (*error) *error = 0;
+  }
+  return exact;
+}
+
+std::vector<KnownUnits> known_units(const PreparedScene& nominal, std::span<const Calibration> calibrations, int jobs,
+                                    const Watch& watch) {
+  // Volts that a closing time tells are others than those of Vdp.
+  std::map<bool, std::vector<DeviceUnits>> references;  // whether they are told by it
+  for (const bool by_time : {false, true}) {
+    std::size_t size = 0;
+    Gauges gauges;
+    for (const Calibration& one : calibrations) {
+      if (one.time_error.has_value() != by_time) continue;
+      size = std::max(size, reference_size(one));
+      if (one.classes) gauges = gauges | Gauges::of(one);
+    }
+    if (size > 0) references[by_time] = reference_units(nominal, gauges, size, jobs, watch);
+  }
+  std::vector<KnownUnits> known;
+  for (const Calibration& one : calibrations) known.emplace_back(one, references[one.time_error.has_value()]);
+  return known;
+}
+
+DeviceUnits deviation_of_units(const PreparedScene& nominal, bool need_pull_in, int jobs, const Watch& watch) {
+  constexpr std::size_t devices = 128;  // a deviation within 6 %
+  DeviceUnits squares{.volts = 0, .time = 0, .piezo = 0};
+  double known = 0;
+  for (const DeviceUnits& one : reference_units(nominal, {.pull_in = need_pull_in}, devices, jobs, watch)) {
+    if (!one.are_known() || !std::isfinite(one.time)) continue;
+    ++known;
+    squares.volts += (one.volts - 1) * (one.volts - 1);
+    squares.time += (one.time - 1) * (one.time - 1);
+    squares.piezo += (one.piezo - 1) * (one.piezo - 1);
+  }
+  return {.volts = std::sqrt(squares.volts / known),
+          .time = std::sqrt(squares.time / known),
+          .piezo = std::sqrt(squares.piezo / known)};
+}
+
+double DeviceOutcome::of(const Figure& figure) const {
+  const double value = closed() ? figure.value(metrics) : Metrics::unset;
+  return std::isfinite(value) ? value : figure.worst;
+}
+
+DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal>& signals, const MetricsOptions& options,
+                           const ClosingOptions& run) {
+  if (!device.model) return {.metrics = {}, .failure = device.refusal};
+  MetricsObserver observer(device.model->device().gap.contact, options);
+  const Trajectory end = observe_closing(*device.model, signals, run, observer);
+  DeviceOutcome outcome{.metrics = observer.metrics(end)};
+  if (outcome.metrics.status == Status::numerical_failure || outcome.metrics.status == Status::collapsed_at_rest)
+    outcome.failure = end.message.empty() ? std::string(to_string(outcome.metrics.status)) : end.message;
+  return outcome;
+}
+
+std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings, const MetricsOptions& options,
+                                         Vectors vectors) {
+  std::vector<DeviceOutcome> outcomes(closings.size());
+  std::vector<FleetClosing> in_lanes;
+  std::vector<std::size_t> places;
+  std::vector<LaneFigures> figures(closings.size(), LaneFigures(options));
+  for (std::size_t i = 0; i < closings.size(); ++i) {
+    const auto& [device, signals, run, measures_drive_energy] = closings[i];
+    if (vectors == Vectors::none || !device->model) continue;
+    places.push_back(i);
+    in_lanes.push_back({.model = &*device->model,
+                        .drives = *signals,
+                        .duration = run.duration,
+                        .after_contact = run.after_contact,
+                        .no_end_before = run.no_end_before,
+                        .no_contact_before = run.no_contact_before,
+                        .steady_force = run.steady_force,
+                        .measures_drive_energy = measures_drive_energy,
+                        .observer = &figures[i]});
+  }
+  std::vector<bool> done(closings.size(), false);
+  if (!in_lanes.empty()) {
+    const std::vector<FleetEnd> ends = close_in_lanes(in_lanes, closings.front().run.tolerance, vectors);
+    for (std::size_t n = 0; n < ends.size(); ++n) {
+      if (!ends[n].followed) continue;
+      done[places[n]] = true;
+      outcomes[places[n]] = figures[places[n]].outcome(*in_lanes[n].model, ends[n]);
+    }
+  }
+  for (std::size_t i = 0; i < closings.size(); ++i) {
+    if (!done[i]) outcomes[i] = close_device(*closings[i].device, *closings[i].signals, options, closings[i].run);
+  }
+  return outcomes;
+}
+
+namespace {
+
+// A device that is quiet at the end of the window has not settled where its hold levels do not keep it closed.
+void judge_hold(DeviceOutcome& outcome, const Hold& hold) {
+  Metrics& m = outcome.metrics;
+  if (!outcome.closed() || !m.settled || hold.is_held) return;
+  outcome.is_held = m.settled = false;
+  m.status = Status::not_settled;
+  m.permanent_contact_time = m.bounce_time = Metrics::unset;
+}
+
+}  // namespace
+
+std::vector<DeviceOutcome> close_driven(std::span<const DrivenDevice> devices, const MetricsOptions& options,
+                                        const ClosingOptions& run, const std::optional<ClosedEquilibrium>& near,
+                                        bool measures_drive_energy, Vectors vectors) {
+  std::vector<DeviceClosing> closings;
+  std::vector<Hold> holds;
+  for (const auto& [device, signals, duration] : devices) {
+    holds.push_back(device->model ? hold_of(*device->model, *signals, near) : Hold{});
+    closings.push_back({.device = device, .signals = signals, .run = run, .measures_drive_energy = measures_drive_energy});
+    closings.back().run.duration = duration;
+    closings.back().run.steady_force = holds.back().steady_force(options);
+  }
+  std::vector<DeviceOutcome> outcomes = close_devices(closings, options, vectors);
+  for (std::size_t i = 0; i < outcomes.size(); ++i) judge_hold(outcomes[i], holds[i]);
+  return outcomes;
+}
+
+DeviceCloser::DeviceCloser(const PreparedScene& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
+                           const std::atomic<bool>* stop)
+    : nominal_(&nominal),
+      drives_(&drives),
+      options_{.duration = run.duration, .tolerance = run.tolerance, .stop = stop},
+      seed_(run.seed),
+      vectors_(run.vectors),
+      measures_drive_energy_(run.measures_drive_energy),
+      device_drives_(nominal) {
+  Gauges gauges;
+  bool is_measured = false;
+  for (const EnsembleDrive& drive : drives) {
+    gauges = gauges | Gauges::of(drive.known.calibration());
+    is_measured = is_measured || !drive.known.calibration().is_empty();
+  }
+  if (is_measured) meter_.emplace(nominal, gauges);
+  for (const EnsembleDrive& drive : drives) {
+    nominal_signals_.push_back(nominal.driven(drive.waveforms));
+    nominal_closed_.push_back(closed_equilibrium(nominal.model, hold_levels(nominal_signals_.back())));
+  }
+}
+
+std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const SampledDevice> devices,
+                                                                 std::uint64_t first) const {
+  std::vector<DeviceUnits> exact(devices.size());
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    if (meter_ && devices[i].model) exact[i] = meter_->exact(*devices[i].model);
+  }
+  std::vector<std::vector<DeviceOutcome>> outcomes(drives_->size(), std::vector<DeviceOutcome>(devices.size()));
+  const auto stopped = [&] { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); };
+  for (std::size_t d = 0; d < outcomes.size() && !stopped(); ++d) {
+    const EnsembleDrive& drive = (*drives_)[d];
+    std::vector<std::vector<Signal>> own(devices.size());
+    std::vector<DrivenDevice> driven;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+      const std::vector<Signal>* signals = &nominal_signals_[d];
+      const DeviceUnits units = devices[i].model ? drive.known.of(exact[i], seed_, first + i) : DeviceUnits{};
+      if (!units.are_known()) {
+        outcomes[d][i].failure = not_measured;
+        continue;
+      }
+      if (devices[i].model && device_drives_.differ(units)) {
+        own[i] = device_drives_.signals(drive.waveforms, units, devices[i].values);
+        signals = &own[i];
+      }
+      places.push_back(i);
+      driven.push_back({.device = &devices[i], .signals = signals, .duration = options_.duration});
+    }
+    std::vector<DeviceOutcome> closed =
+        close_driven(driven, nominal_->scene.metrics, options_, nominal_closed_[d], measures_drive_energy_, vectors_);
+    for (std::size_t n = 0; n < places.size(); ++n) outcomes[d][places[n]] = std::move(closed[n]);
+  }
+  return outcomes;
+}
+
+std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, const std::vector<EnsembleDrive>& drives,
+                                                  const EnsembleRun& run, const Watch& watch) {
+  const DeviceCloser closer(ensemble.nominal(), drives, run, watch.stop);
+  std::vector<std::vector<DeviceOutcome>> outcomes(drives.size(), std::vector<DeviceOutcome>(ensemble.size()));
+  std::mutex telling;
+  std::atomic<std::size_t> done = 0;
+  const auto task = [&](std::size_t c) {
+    DeviceBuilder builder(ensemble);
+    const std::size_t first = c * chunk;
+    std::vector<SampledDevice> devices;
+    for (std::size_t k = first; k < std::min<std::size_t>(ensemble.size(), first + chunk); ++k)
+      devices.push_back(builder.device(k));
+    std::vector<std::vector<DeviceOutcome>> closed = closer(devices, first);
+    for (std::size_t d = 0; d < drives.size(); ++d)
+      std::move(closed[d].begin(), closed[d].end(), outcomes[d].begin() + static_cast<std::ptrdiff_t>(first));
+    done += devices.size();
+    const std::scoped_lock lock(telling);
+    watch.tell("devices of the spread", static_cast<double>(done) / static_cast<double>(ensemble.size()));
+  };
+  const std::size_t chunks = (ensemble.size() + chunk - 1) / chunk;
+  std::size_t complete = std::min<std::size_t>(ensemble.size(), chunk * run_tasks(chunks, run.jobs, task, watch.stop));
+  // Asked to stop, some chunks hold devices that were not begun, or not ended.
+  const auto missing = [](const DeviceOutcome& o) {
+    return o.failure.empty() && (o.metrics.status == Status::not_run || o.metrics.status == Status::interrupted);
+  };
+  for (const auto& of_drive : outcomes) {
+    const auto first = std::find_if(of_drive.begin(), of_drive.begin() + static_cast<std::ptrdiff_t>(complete), missing);
+    complete = static_cast<std::size_t>(first - of_drive.begin());
+  }
+  for (auto& of_drive : outcomes) of_drive.resize(complete);
+  return outcomes;
+}
+
+}  // namespace softland

@@ -1,0 +1,558 @@
+#include "studies/devices/evaluator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+#include <variant>
+
+#include "base/executor.h"
+#include "base/require.h"
+#include "config/schema.h"
+#include "config/units.h"
+#include "model/constants.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/devices/derivatives.h"
+#include "studies/devices/row_status.h"
+#include "waveforms/limits.h"
+
+namespace softland {
+namespace {
+
+constexpr std::size_t rows_of_task = 64;  // rows of one task: many to a lane, few between two looks at a Watch
+
+// "electrode.main.span[2]" as its path and 2; without an element 0.
+std::pair<std::string, std::size_t> key_and_element(const std::string& key) {
+  const std::size_t open = key.rfind('[');
+  if (open == std::string::npos || !key.ends_with("]")) return {key, 0};
+  const std::string inside = key.substr(open + 1, key.size() - open - 2);
+  const bool is_number = !inside.empty() && inside.size() < 6 && inside.find_first_not_of("0123456789") == std::string::npos;
+  return is_number ? std::pair(key.substr(0, open), std::stoul(inside)) : std::pair(key, std::size_t{0});
+}
+
+// "waveform.main.level" as main and level.
+std::optional<std::pair<std::string, std::string>> waveform_key(const std::string& path) {
+  constexpr std::string_view before = "waveform.";
+  if (!path.starts_with(before)) return std::nullopt;
+  const std::size_t dot = path.rfind('.');
+  if (dot < before.size()) return std::nullopt;
+  return std::pair(path.substr(before.size(), dot - before.size()), path.substr(dot + 1));
+}
+
+// The parameter of a waveform; null where its family has none of that name. Calls with_names for a message.
+double* waveform_parameter(Waveform& waveform, const std::string& name, std::size_t element, std::vector<std::string_view>& names,
+                           ParameterKind& kind) {
+  return std::visit(
+      [&]<class Family>(Family& family) -> double* {
+        for (const Parameter<Family>& one : FamilyOf<Family>::parameters) {
+          names.push_back(one.name);
+          if (one.name != name) continue;
+          kind = one.kind;
+          if (const auto* number = std::get_if<double Family::*>(&one.member)) return element == 0 ? &(family.**number) : nullptr;
+          auto& list = family.*std::get<std::vector<double> Family::*>(one.member);
+          return element >= 1 && element <= list.size() ? &list[element - 1] : nullptr;
+        }
+        return nullptr;
+      },
+      waveform);
+}
+
+std::string unit_of_parameter(ParameterKind kind, const std::string& drive) {
+  switch (kind) {
+    case ParameterKind::level:
+    case ParameterKind::swing:
+      return drive == dispersion_drive ? "" : "V";
+    case ParameterKind::time:
+    case ParameterKind::end_time:
+      return "s";
+    case ParameterKind::angular_frequency:
+      return "rad/s";
+    case ParameterKind::angle:
+      return "rad";
+    case ParameterKind::ratio:
+      break;
+  }
+  return "";
+}
+
+// What the scene writes at a key; none where it writes no quantity there.
+std::optional<Quantity> written_quantity(const SceneFile& file, const std::string& path, std::size_t element) {
+  std::optional<std::string> text = file.written(path);
+  if (!text) return std::nullopt;
+  if (element > 0) {
+    const nlohmann::json list = nlohmann::json::parse(*text, nullptr, false);
+    if (!list.is_array() || element > list.size()) return std::nullopt;
+    const nlohmann::json& one = list[element - 1];
+    text = one.is_string() ? one.get<std::string>() : one.dump();
+  }
+  try {
+    return parse_quantity(*text);
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+}
+
+std::string spread_entry(const std::string& key) { return fmt::format("spread.\"{}\"", key); }
+
+// A scene in which these keys vary, each by its own value: to vary by a factor would cost the last bit.
+SceneFile scene_that_varies(SceneFile file, const std::vector<std::string>& keys) {
+  file.erase("spread");
+  file.erase("calibration");
+  for (const std::string& key : keys) file.set(spread_entry(key) + R"(={distribution="normal",cov="1 %"})");
+  for (const SpreadVariable& variable : read_scene(file).spread.variables) {
+    const VariedKey& key = variable.keys.front();
+    if (key.measured_in == dimension::none) continue;
+    const double width = key.nominal == 0 ? 1e-9 : std::abs(key.nominal) / 100;
+    file.set(spread_entry(variable.name) +
+             fmt::format(R"(={{distribution="normal",standard_deviation="{}"}})", quantity_text(width, key.measured_in)));
+  }
+  return file;
+}
+
+}  // namespace
+
+struct Evaluator::Row {
+  SampledDevice own;                      // of the row, unless it is the nominal one
+  const SampledDevice* device = nullptr;  // to be closed
+  std::vector<Signal> signals;            // of the row, where they differ from the scene's
+  std::string refusal = {};
+  double duration = 0;
+  bool has_signals = false;
+};
+
+bool Evaluator::measured(const Figure& figure) {
+  const auto is = [&](Figure::Member member) { return figure.member == member; };
+  return figure.of_devices || is(&Metrics::bounce_time) || is(&Metrics::first_rebound_time) || is(&Metrics::drive_energy) ||
+         is(&Metrics::settled);
+}
+
+Evaluator::Evaluator(const SceneFile& file, std::vector<std::string> keys, std::vector<Figure> figures,
+                     const EvaluatorOptions& options, const Watch& watch)
+    : keys_(std::move(keys)), figures_(std::move(figures)), options_(options) {
+  require(!keys_.empty(), "evaluator: there is no key to vary");
+  require(!figures_.empty(), "evaluator: there is no figure to tell");
+  require(options.tolerance > 0 && options.tolerance <= 0.1, "evaluator: the tolerance must be above 0 and at most 0.1");
+  for (const Figure& figure : figures_)
+    require(measured(figure), [&] {
+      return fmt::format("evaluator: {} is not measured of devices in lanes: simulate() tells it", figure.quantity());
+    });
+  for (std::size_t i = 0; i < keys_.size(); ++i)
+    require(std::find(keys_.begin(), keys_.begin() + static_cast<std::ptrdiff_t>(i), keys_[i]) ==
+                keys_.begin() + static_cast<std::ptrdiff_t>(i),
+            [&] { return fmt::format("evaluator: the key '{}' stands twice", keys_[i]); });
+  units_.resize(keys_.size());
+  values_.assign(keys_.size(), Metrics::unset);
+  vary_device(file, watch);
+  waveforms_ = nominal_->in_drive_order(nominal_->drives.waveforms);
+  if (options_.volts == VoltsOf::nominal) {
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      if (waveform_key(key_and_element(keys_[i]).first)) read_waveform_key(i);
+    }
+  }
+  signals_ = nominal_->driven(waveforms_);
+  closed_ = closed_equilibrium(nominal_->model, hold_levels(signals_));
+  drives_ = std::make_unique<DeviceDrives>(*nominal_);
+}
+
+// Reads which columns are of the device, and makes the scene ready.
+void Evaluator::vary_device(const SceneFile& file, const Watch& watch) {
+  if (options_.volts == VoltsOf::each) {
+    SceneFile scene = file;
+    scene.erase("spread");
+    scene.erase("calibration");
+    nominal_ = std::make_unique<PreparedScene>(prepare_and_choose(scene, false, watch));
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      const auto [path, element] = key_and_element(keys_[i]);
+      require(!path.starts_with("metrics."),
+              [&] { return fmt::format("evaluator: {} cannot vary: all rows are judged alike", keys_[i]); });
+      const std::optional<Quantity> given = written_quantity(scene, path, element);
+      require(given.has_value(), [&] {
+        return fmt::format("{}: {} holds no number that could vary: write it in the scene first", scene.name(), keys_[i]);
+      });
+      values_[i] = given->value;
+      units_[i] = unit_symbol(given->dimension);
+    }
+    return;
+  }
+  std::vector<std::string> of_device;
+  for (const std::string& key : keys_) {
+    if (!waveform_key(key_and_element(key).first)) of_device.push_back(key);
+  }
+  nominal_ = std::make_unique<PreparedScene>(prepare_and_choose(scene_that_varies(file, of_device), false, watch));
+  if (of_device.empty()) return;
+  for (const SpreadVariable& variable : nominal_->scene.spread.variables) {
+    const auto column = static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), variable.name) - keys_.begin());
+    of_device_.push_back(column);
+    units_[column] = variable.keys.front().unit;
+    values_[column] = variable.keys.front().nominal;
+  }
+  ensemble_ = std::make_unique<Ensemble>(*nominal_, 1);
+}
+
+void Evaluator::read_waveform_key(std::size_t column) {
+  const auto [path, element] = key_and_element(keys_[column]);
+  const auto [drive, name] = *waveform_key(path);
+  const std::vector<std::string> drives = nominal_->drive_names();
+  const auto found = std::find(drives.begin(), drives.end(), drive);
+  require(found != drives.end(), [&] {
+    return fmt::format("{}: '{}' is not a key of this scene: no drive '{}'{}", nominal_->scene.file.name(), keys_[column], drive,
+                       internal::hint(drive, {drives.begin(), drives.end()}));
+  });
+  WaveformKey key{.column = column,
+                  .drive = static_cast<std::size_t>(found - drives.begin()),
+                  .parameter = name == "frequency" ? "angular_frequency" : name,
+                  .element = element,
+                  .factor = name == "frequency" ? 2 * pi : 1};
+  std::vector<std::string_view> names;
+  ParameterKind kind{};
+  const double* const number = waveform_parameter(waveforms_[key.drive], key.parameter, element, names, kind);
+  require(number != nullptr, [&] {
+    return fmt::format("{}: '{}' is not a number of the waveform there, which is a {}{}", nominal_->scene.file.name(),
+                       keys_[column], family(waveforms_[key.drive]), internal::hint(name, names));
+  });
+  units_[column] = name == "frequency" ? "Hz" : unit_of_parameter(kind, drive);
+  values_[column] = *number / key.factor;
+  of_waveforms_.push_back(std::move(key));
+}
+
+std::vector<Waveform> Evaluator::waveforms_of(std::span<const double> values) const {
+  std::vector<Waveform> all = waveforms_;
+  for (const WaveformKey& key : of_waveforms_) {
+    std::vector<std::string_view> names;
+    ParameterKind kind{};
+    *waveform_parameter(all[key.drive], key.parameter, key.element, names, kind) = key.factor * values[key.column];
+  }
+  return all;
+}
+
+// Why a driver cannot give what a row asks of it; empty where it can.
+std::string Evaluator::violation_of(const std::vector<Waveform>& own) const {
+  const std::vector<std::string> names = nominal_->drive_names();
+  for (const WaveformKey& key : of_waveforms_) {
+    const auto limits = nominal_->drives.limits.find(names[key.drive]);
+    if (limits == nominal_->drives.limits.end()) continue;
+    const std::string why = violation(nominal_->told(key.drive, own[key.drive]), limits->second);
+    if (!why.empty()) return why;
+  }
+  return {};
+}
+
+SceneFile Evaluator::scene_of(std::span<const double> values) const {
+  SceneFile file = nominal_->scene.file;
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    const auto [path, element] = key_and_element(keys_[i]);
+    const std::optional<Quantity> given = written_quantity(file, path, element);
+    file.assign(path, Quantity{.value = values[i], .dimension = given->dimension}, element);
+  }
+  return file;
+}
+
+void Evaluator::build_anew(Row& row, std::span<const double> values) const {
+  PreparedScene prepared = prepare_and_choose(scene_of(values));
+  row.signals = prepared.signals();
+  row.has_signals = true;
+  row.duration = prepared.duration;
+  row.own.model.emplace(std::move(prepared.model));
+  row.device = &row.own;
+}
+
+void Evaluator::build_device(Row& row, std::span<const double> values, DeviceBuilder& builder) const {
+  row.duration = nominal_->duration;
+  std::vector<double> varied(of_device_.size());
+  for (std::size_t i = 0; i < varied.size(); ++i) {
+    const SpreadVariable& variable = nominal_->scene.spread.variables[i];
+    varied[i] = values[of_device_[i]] / (variable.is_factor ? variable.keys.front().nominal : 1);
+  }
+  row.own = builder.device(std::move(varied));
+  row.device = &row.own;
+  row.refusal = row.own.refusal;
+}
+
+std::unique_ptr<DeviceBuilder> Evaluator::take_builder() const {
+  const std::scoped_lock lock(builders_lock_);
+  if (builders_.empty()) return std::make_unique<DeviceBuilder>(*ensemble_);
+  std::unique_ptr<DeviceBuilder> one = std::move(builders_.back());
+  builders_.pop_back();
+  return one;
+}
+
+std::vector<Evaluator::Row> Evaluator::built(std::span<const double> rows, std::size_t first, std::size_t count) const {
+  std::vector<Row> all(count);
+  std::unique_ptr<DeviceBuilder> builder = ensemble_ ? take_builder() : nullptr;
+  for (std::size_t i = 0; i < count; ++i) {
+    Row& row = all[i];
+    const std::span<const double> values = rows.subspan((first + i) * keys_.size(), keys_.size());
+    if (!std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) {
+      row.refusal = "a number of the row is not finite";
+      continue;
+    }
+    try {
+      if (options_.volts == VoltsOf::each) {
+        build_anew(row, values);
+        continue;
+      }
+      if (builder) {
+        build_device(row, values, *builder);
+      } else {
+        row.duration = nominal_->duration;
+        row.own.model.emplace(nominal_->model);
+        row.device = &row.own;
+      }
+      if (!row.refusal.empty() || (of_waveforms_.empty() && !drives_->differ({}))) continue;
+      const std::vector<Waveform> own = waveforms_of(values);
+      row.refusal = violation_of(own);
+      if (!row.refusal.empty()) continue;
+      row.signals = drives_->signals(own, {}, row.own.values);
+      row.has_signals = true;
+    } catch (const InvalidInput& error) {
+      row.refusal = error.what();
+    }
+  }
+  if (builder) {
+    const std::scoped_lock lock(builders_lock_);
+    builders_.push_back(std::move(builder));
+  }
+  return all;
+}
+
+void Evaluator::evaluate(std::span<const double> rows, std::span<double> figures, std::span<RowEnd> ends, int jobs,
+                         const Watch& watch) const {
+  const std::size_t count = ends.size();
+  require(rows.size() == count * keys_.size() && figures.size() == count * figures_.size(), [&] {
+    return fmt::format("evaluator: rows of {} numbers and {} figures do not fit each other", keys_.size(), figures_.size());
+  });
+  const bool measures_energy = std::any_of(
+      figures_.begin(), figures_.end(), [](const Figure& one) { return one.member == Figure::Member(&Metrics::drive_energy); });
+  std::atomic<std::size_t> done = 0;
+  std::mutex telling;
+  const auto task = [&](std::size_t c) {
+    const std::size_t first = c * rows_of_task, size = std::min(rows_of_task, count - first);
+    const std::vector<Row> built_rows = built(rows, first, size);
+    std::vector<DrivenDevice> driven;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < size; ++i) {
+      const Row& row = built_rows[i];
+      if (!row.refusal.empty()) {
+        ends[first + i] = {.status = std::string(infeasible), .reason = row.refusal};
+        std::fill_n(figures.begin() + static_cast<std::ptrdiff_t>((first + i) * figures_.size()), figures_.size(),
+                    Metrics::unset);
+        continue;
+      }
+      places.push_back(first + i);
+      driven.push_back({.device = row.device, .signals = row.has_signals ? &row.signals : &signals_, .duration = row.duration});
+    }
+    const std::vector<DeviceOutcome> closed = close_driven(
+        driven, nominal_->scene.metrics, {.duration = nominal_->duration, .tolerance = options_.tolerance, .stop = watch.stop},
+        options_.volts == VoltsOf::nominal ? closed_ : std::nullopt, measures_energy, vectors_in_use());
+    for (std::size_t n = 0; n < places.size(); ++n) {
+      const DeviceOutcome& outcome = closed[n];
+      ends[places[n]] = {.status = std::string(to_string(outcome.metrics.status)), .reason = outcome.failure};
+      for (std::size_t f = 0; f < figures_.size(); ++f)
+        figures[places[n] * figures_.size() + f] = figures_[f].value(outcome.metrics);
+    }
+    done += size;
+    const std::scoped_lock lock(telling);
+    watch.tell("rows", static_cast<double>(done) / static_cast<double>(count));
+  };
+  run_tasks((count + rows_of_task - 1) / rows_of_task, jobs, task, watch.stop);
+  watch.throw_if_stopped();
+}
+
+namespace {
+
+// Which drives have volts in the unit Vdp, that follow the device, and which in volts.
+struct WrittenVolts {
+  bool in_volts = false, in_pull_in = false, in_other_units = false;
+};
+WrittenVolts written_volts(const SceneFile& file, const PreparedScene& there) {
+  WrittenVolts found;
+  for (const auto& [drive, waveform] : there.drives.waveforms) {
+    if (drive == dispersion_drive || drive == piezo_drive) continue;
+    const auto look = [&, &drive = drive](std::string_view name, std::size_t element) {
+      const std::optional<Quantity> given = written_quantity(file, fmt::format("waveform.{}.{}", drive, name), element);
+      if (!given || given->value == 0) return;
+      bool& of_unit = given->dimension == dimension::voltage           ? found.in_volts
+                      : given->dimension == dimension::dynamic_pull_in ? found.in_pull_in
+                                                                       : found.in_other_units;
+      of_unit = true;
+    };
+    std::visit(
+        [&]<class Family>(const Family& family) {
+          for (const Parameter<Family>& one : FamilyOf<Family>::parameters) {
+            if (one.kind != ParameterKind::level && one.kind != ParameterKind::swing) continue;
+            if (std::get_if<double Family::*>(&one.member) != nullptr) {
+              look(one.name, 0);
+            } else {
+              for (std::size_t k = 1; k <= (family.*std::get<std::vector<double> Family::*>(one.member)).size(); ++k)
+                look(one.name, k);
+            }
+          }
+        },
+        waveform);
+  }
+  return found;
+}
+
+// The figures' row of derivatives; throws where there is none.
+const FigureDerivatives& derived(const Derivatives& found, const Figure& figure) {
+  require(found.why_none.empty(), [&] { return "jacobian: no derivatives here: " + found.why_none; });
+  const auto of = std::find_if(found.figures.begin(), found.figures.end(),
+                               [&](const FigureDerivatives& one) { return one.key == figure.key; });
+  require(of != found.figures.end(), [&] { return fmt::format("jacobian: {} has no slope: it jumps", figure.quantity()); });
+  require(of->is_known(),
+          [&] { return fmt::format("jacobian: {} has no derivative here: {}", figure.quantity(), of->why_none); });
+  return *of;
+}
+
+void require_derived(const Derivatives::Variable& variable) {
+  require(variable.why_none.empty(),
+          [&] { return fmt::format("jacobian: no derivative by {}: {}", variable.name, variable.why_none); });
+}
+
+}  // namespace
+
+// The scene of a row, in volts, with all that a derivative by its columns needs.
+struct Evaluator::Place {
+  PreparedScene scene;                 ///< its [spread] is that of the columns of the device
+  std::vector<std::size_t> of_device;  ///< columns, in the order of its variables
+  std::vector<WaveformKey> of_waveforms;
+  KnownUnits known;  ///< by which volts follow the device
+};
+
+Evaluator::Place Evaluator::place_of(std::span<const double> row, const Watch& watch) const {
+  std::vector<std::string> device_keys;
+  for (const std::string& key : keys_) {
+    if (!waveform_key(key_and_element(key).first)) device_keys.push_back(key);
+  }
+  const auto with_columns = [&](PreparedScene scene, std::vector<WaveformKey> of_waveforms, KnownUnits known) {
+    Place place{.scene = std::move(scene), .of_waveforms = std::move(of_waveforms), .known = std::move(known)};
+    for (const SpreadVariable& variable : place.scene.scene.spread.variables)
+      place.of_device.push_back(static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), variable.name) - keys_.begin()));
+    return place;
+  };
+  if (options_.volts == VoltsOf::nominal) {
+    SceneFile file = nominal_->resolved();
+    file.erase("spread");
+    for (std::size_t i = 0; i < of_device_.size(); ++i) {
+      const VariedKey& key = nominal_->scene.spread.variables[i].keys.front();
+      file.assign(key.path, Quantity{.value = row[of_device_[i]], .dimension = key.measured_in}, key.element);
+    }
+    PreparedScene there = prepare(scene_that_varies(file, device_keys), false, watch);
+    const std::vector<std::string> names = there.drive_names();
+    const std::vector<Waveform> own = waveforms_of(row);
+    const std::string why = violation_of(own);
+    require(why.empty(), [&] { return "jacobian: " + why; });
+    for (std::size_t k = 0; k < names.size(); ++k) there.drives.waveforms[names[k]] = own[k];
+    return with_columns(std::move(there), of_waveforms_, {});
+  }
+  const SceneFile file = scene_of(row);
+  const PreparedScene in_volts = prepare_and_choose(file, false, watch);
+  KnownUnits known;
+  if (!device_keys.empty()) {
+    const WrittenVolts volts = written_volts(file, in_volts);
+    require(!volts.in_other_units && !(volts.in_volts && volts.in_pull_in),
+            "jacobian: volts that follow the pull-in voltage of each row have an exact derivative where all of them are written "
+            "in Vdp, or none");
+    const std::vector<std::string> drives = in_volts.drive_names();
+    const auto electrodes =
+        std::ranges::count_if(drives, [](const std::string& name) { return name != piezo_drive && name != dispersion_drive; });
+    require(!volts.in_pull_in || electrodes == 1, "jacobian: volts in Vdp of several electrodes have no exact derivative");
+    if (volts.in_pull_in) known = KnownUnits({.pull_in_error = 0.0});
+  }
+  PreparedScene there = prepare(scene_that_varies(in_volts.resolved(), device_keys), false, watch);
+  return with_columns(std::move(there), keys_of_row(in_volts, row), std::move(known));
+}
+
+// The parameters of waveforms among the columns, by the units that they are written in.
+std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& in_volts, std::span<const double> row) const {
+  std::vector<WaveformKey> all;
+  std::vector<Waveform> waveforms = in_volts.in_drive_order(in_volts.drives.waveforms);
+  const std::vector<std::string> drives = in_volts.drive_names();
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    const auto [path, element] = key_and_element(keys_[i]);
+    const auto named = waveform_key(path);
+    if (!named) continue;
+    const auto& [drive, name] = *named;
+    WaveformKey key{.column = i,
+                    .drive = static_cast<std::size_t>(std::find(drives.begin(), drives.end(), drive) - drives.begin()),
+                    .parameter = name == "frequency" ? "angular_frequency" : name,
+                    .element = element};
+    std::vector<std::string_view> names;
+    ParameterKind kind{};
+    const double* const number =
+        key.drive < drives.size() ? waveform_parameter(waveforms[key.drive], key.parameter, element, names, kind) : nullptr;
+    require(number != nullptr, [&] { return fmt::format("jacobian: {} is no number of a waveform in volts", keys_[i]); });
+    require(row[i] != 0, [&] { return fmt::format("jacobian: {} is 0, which does not tell its unit", keys_[i]); });
+    key.factor = *number / row[i];
+    all.push_back(std::move(key));
+  }
+  return all;
+}
+
+// Figures by parameters of waveforms.
+void Evaluator::derive_by_waveforms(const Place& place, std::span<const double> row, Eigen::MatrixXd& all,
+                                    const Watch& watch) const {
+  const std::vector<Waveform> here = place.scene.in_drive_order(place.scene.drives.waveforms);
+  std::vector<WaveformParameter> parameters;
+  for (const WaveformKey& key : place.of_waveforms) {
+    require(!place.scene.source(key.drive).bits, [&] {
+      return fmt::format("jacobian: no derivative by {}: its source rounds to so many bits, and jumps", keys_[key.column]);
+    });
+    const Signal told = place.scene.told(key.drive, here[key.drive]);
+    Waveform one = here[key.drive];
+    std::vector<std::string_view> names;
+    ParameterKind kind{};
+    const double number = std::abs(*waveform_parameter(one, key.parameter, key.element, names, kind));
+    const bool is_time = kind == ParameterKind::time || kind == ParameterKind::end_time;
+    const bool is_voltage = kind == ParameterKind::level || kind == ParameterKind::swing;
+    const double size = std::max(number, is_voltage ? told.peak() : is_time ? told.pieces().back().begin : 0);
+    parameters.push_back({.name = keys_[key.column], .value = row[key.column], .size = size > 0 ? size / key.factor : 1});
+  }
+  const auto signals = [&](std::span<const double> x) {
+    std::vector<Waveform> moved = here;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const WaveformKey& key = place.of_waveforms[k];
+      std::vector<std::string_view> names;
+      ParameterKind kind{};
+      *waveform_parameter(moved[key.drive], key.parameter, key.element, names, kind) = key.factor * x[k];
+    }
+    return place.scene.driven(moved);
+  };
+  const Derivatives found = derivatives_by_waveforms(place.scene, parameters, signals, {}, watch);
+  watch.throw_if_stopped();
+  for (std::size_t f = 0; f < figures_.size(); ++f) {
+    const FigureDerivatives& of = derived(found, figures_[f]);
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      require_derived(found.variables[k]);
+      all(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(place.of_waveforms[k].column)) = of.by_variable[k];
+    }
+  }
+}
+
+Eigen::MatrixXd Evaluator::jacobian(std::span<const double> row, const Watch& watch) const {
+  require(row.size() == keys_.size(), [&] { return fmt::format("jacobian: a row has {} numbers", keys_.size()); });
+  const Place place = place_of(row, watch);
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(figures_.size()), static_cast<Eigen::Index>(keys_.size()));
+  if (!place.of_waveforms.empty()) derive_by_waveforms(place, row, all, watch);
+  if (place.of_device.empty()) return all;
+  const PreparedScene& there = place.scene;
+  const Derivatives found =
+      derivatives(there, {.waveforms = there.in_drive_order(there.drives.waveforms), .known = place.known}, {}, watch);
+  watch.throw_if_stopped();
+  for (std::size_t f = 0; f < figures_.size(); ++f) {
+    const FigureDerivatives& of = derived(found, figures_[f]);
+    for (std::size_t i = 0; i < place.of_device.size(); ++i) {
+      const SpreadVariable& variable = there.scene.spread.variables[i];
+      require_derived(found.variables[i]);
+      all(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(place.of_device[i])) =
+          of.by_variable[i] / (variable.is_factor ? variable.keys.front().nominal : 1);
+    }
+  }
+  return all;
+}
+
+}  // namespace softland

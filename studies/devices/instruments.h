@@ -1,0 +1,103 @@
+// What instruments read of a device, and how it changes with what the device may differ in.
+//
+//   pull_in       static pull-in voltage [V]: a slow ramp closes the switch (model/pull_in.h)
+//   release       voltage at which a slow ramp opens it again [V]
+//   frequency     of small undamped vibrations of the open switch about its rest at a level [Hz]
+//   capacitance   of an electrode of the open switch at rest at a level [F]
+//   closing_time  first touch under a step to a level, or under waveforms [s]
+//   contact       times of the first edges of the contact's state under waveforms [s]: touch, first opening, next touch
+//   position      of the contact point, over times, under waveforms [m]: towards the contact, from its place in the straight beam
+//   velocity      likewise [m/s]
+//
+// Voltages and levels are those that the source is told: its gain and offset stand between them and the switch,
+// V = gain * told + offset. The other drives stand at their bias (bias_of()), at 0 V for frequencies and capacitances. One
+// mechanism for what `fit` fits, and for what `calibrate` measures on its devices.
+//
+// Slopes of the first four are those of model/static_slopes.h, those of the first touch of model/linearized_closing.h. There is
+// no exact derivative of the rest: differences of closings on either side.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "base/choice.h"
+#include "studies/devices/nearby_devices.h"
+
+namespace softland {
+
+enum class Measurable { pull_in, release, frequency, capacitance, closing_time, contact, position, velocity };
+
+struct MeasurableRow {
+  Measurable value;
+  std::string_view name;
+  std::string_view unit;   ///< SI
+  std::string_view words;  ///< for people
+};
+inline constexpr std::array measurables{
+    MeasurableRow{Measurable::pull_in, "pull_in", "V", "pull-in voltage"},
+    MeasurableRow{Measurable::release, "release", "V", "release voltage"},
+    MeasurableRow{Measurable::frequency, "frequency", "Hz", "resonance"},
+    MeasurableRow{Measurable::capacitance, "capacitance", "F", "capacitance"},
+    MeasurableRow{Measurable::closing_time, "closing_time", "s", "closing time"},
+    MeasurableRow{Measurable::contact, "contact", "s", "contact record"},
+    MeasurableRow{Measurable::position, "position", "m", "position"},
+    MeasurableRow{Measurable::velocity, "velocity", "m/s", "velocity"},
+};
+static_assert(is_complete<measurables>());
+[[nodiscard]] inline const MeasurableRow& row_of(Measurable what) { return measurables[static_cast<std::size_t>(what)]; }
+
+struct Instrument {
+  Measurable what = Measurable::pull_in;
+  std::size_t drive = 0;                 ///< among Switch::drives()
+  double level = 0;                      ///< told [V]
+  std::size_t mode = 0;                  ///< of a frequency, from 0
+  std::vector<Waveform> waveforms = {};  ///< of every drive, told; empty: a step of `drive` to the level
+  std::vector<double> times = {};        ///< of a position or velocity [s]
+  std::size_t edges = 1;                 ///< of a contact
+
+  /// The numbers that it reads.
+  [[nodiscard]] std::size_t size() const;
+};
+
+/// A figure of a switch whose drive gets `level` itself: of one number, and no closing under waveforms. NaN where the switch does
+/// not have it. `duration`: in which a step must close it [s].
+[[nodiscard]] double read(const Instrument& instrument, const Switch& model, Bias bias, double duration);
+
+/// Reads devices of a scene by the values of what varies.
+class DeviceReader {
+ public:
+  /// Of a scene whose [spread] has no jitter. Keeps a reference.
+  explicit DeviceReader(const PreparedScene& nominal) : nominal_(nominal), near_(nominal) {}
+
+  /// Goes to the device with these values, as DeviceSpread::to_values. False where there is none such.
+  [[nodiscard]] bool move_to(const std::vector<double>& values);
+
+  struct Reading {
+    Eigen::VectorXd values;  ///< as many as the instrument reads; NaN where the device does not have them
+    Eigen::MatrixXd slopes;  ///< a row each, a column to each varying quantity; empty where none were asked for
+  };
+  [[nodiscard]] Reading read(const Instrument& instrument, bool with_slopes);
+
+ private:
+  [[nodiscard]] std::vector<double> terminal_values(const Instrument& instrument) const;
+  [[nodiscard]] SwitchSlopes& slopes();
+  [[nodiscard]] Reading static_voltage(const Instrument& instrument, bool with_slopes);
+  [[nodiscard]] Reading at_rest(const Instrument& instrument, bool with_slopes);
+  [[nodiscard]] Reading touch(const Instrument& instrument, bool with_slopes);
+  [[nodiscard]] Reading of_motion(const Instrument& instrument, bool with_slopes);
+  [[nodiscard]] Eigen::VectorXd followed(const Instrument& instrument, const Switch& model,
+                                         const std::vector<Signal>& signals) const;
+  [[nodiscard]] double duration() const;
+  [[nodiscard]] std::vector<Waveform> waveforms_of(const Instrument& instrument) const;
+
+  const PreparedScene& nominal_;
+  NearbyDevices near_;
+  std::optional<Switch> model_;
+  std::optional<SwitchSlopes> slopes_;
+};
+
+}  // namespace softland

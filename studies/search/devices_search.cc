@@ -1,0 +1,383 @@
+#include "studies/search/devices_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <span>
+#include <utility>
+
+#include "base/executor.h"
+#include "base/require.h"
+#include "config/assumed_spread.h"
+#include "sampling/statistics.h"
+#include "studies/search/family_search.h"
+#include "studies/search/modes_of_search.h"
+#include "studies/search/worse_than_step.h"
+
+namespace softland {
+namespace {
+
+constexpr std::uint64_t devices_of_choice = 512;
+constexpr std::size_t most_of_race = 3;                       // placed, by either measure
+constexpr double most_times = 5, most_times_of_landings = 7;  // the plain step's closing time, of 95 %
+constexpr double margin = 0.98;                               // of the step's figures, in the choice
+constexpr double more_open = 0.005;                           // of the devices
+constexpr double ranked_by_share = 0.25;                      // of the devices land without a rebound
+constexpr std::uint64_t measured_devices = 128;               // of a search in measured units
+constexpr double coarse_error = 0.01, fine_error = 0.002;     // of measurements, relative
+constexpr double least_times_of_error = 20;
+constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative
+constexpr std::size_t devices_by_error = 256;                                     // of the verdict
+constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2;
+constexpr double least_of_race = 0.4, end_of_race = 0.75;  // of a budget of time
+
+bool closes(const DeviceOutcome& o) { return o.closed(); }
+
+// The settings of the families that the scene has room for, and their names joined by +.
+std::pair<std::vector<SearchSetting>, std::string> settings_of_race(const SceneFile& file, const OptimizeOptions& options,
+                                                                    const std::string& wanted, const Watch& watch) {
+  const bool chosen = !wanted.empty();
+  const std::vector<std::string> names = families_of(chosen ? wanted : std::string(raced_families));
+  if (chosen) return {search_settings(file, options.target, options.actuator, wanted, watch), wanted};
+  std::vector<SearchSetting> settings{search_setting(file, options.target, options.actuator, names.front(), watch)};
+  std::string kept = names.front();
+  for (std::size_t k = 1; k < names.size(); ++k) {
+    try {
+      SearchSpace space(settings.front().given, options.actuator, names[k], settings.front().scale.step.initial_contact_time);
+      settings.push_back(settings.front());
+      settings.back().space = std::move(space);
+      kept += "+" + names[k];
+    } catch (const InvalidInput&) {
+      continue;
+    }
+  }
+  return {std::move(settings), kept};
+}
+
+// More devices that land, where half of them do in either; else the softer impacts.
+bool lands_better(const DevicesRow& a, const DevicesRow& b) {
+  const double lands = std::max(a.judged.bounce_free.value, b.judged.bounce_free.value);
+  if (lands >= lands_half) return a.judged.bounce_free.value > b.judged.bounce_free.value;
+  return quantile_95(a.judged.outcomes, judged_figures[0]) < quantile_95(b.judged.outcomes, judged_figures[0]);
+}
+
+bool same_candidate(const ChosenFrom& a, const ChosenFrom& b) {
+  return a.family == b.family && a.parameters == b.parameters && !a.parameters.empty();
+}
+
+}  // namespace
+
+double quantile_95(const std::vector<DeviceOutcome>& outcomes, std::string_view key) {
+  std::vector<double> values;
+  for (const DeviceOutcome& o : outcomes) values.push_back(o.of(figure_of(key)));
+  return sample_quantile(values, 0.95);
+}
+
+double share_of(const std::vector<DeviceOutcome>& outcomes, bool (*holds)(const DeviceOutcome&)) {
+  return static_cast<double>(std::ranges::count_if(outcomes, holds)) / static_cast<double>(outcomes.size());
+}
+
+DevicesSearch::Bounds::Bounds(const std::vector<DeviceOutcome>& step)
+    : first_touch(quantile_95(step, key_of(&Metrics::initial_contact_time))), open(1 - share_of(step, closes)) {
+  for (const std::string_view key : judged_figures) figures.push_back(quantile_95(step, key));
+}
+
+bool DevicesSearch::Bounds::keeps(const std::vector<DeviceOutcome>& own, double significant, bool in_time) const {
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const double value = quantile_95(own, judged_figures[i]);
+    if (judged_figures[i] == key_of(&Metrics::major_bounce_height) && value <= significant) continue;
+    if (value > margin * figures[i]) return false;
+  }
+  if (1 - share_of(own, closes) > open + more_open) return false;
+  const double times = share_of(own, is_bounce_free) >= lands_half ? most_times_of_landings : most_times;
+  return !in_time || !std::isfinite(first_touch) ||
+         quantile_95(own, key_of(&Metrics::initial_contact_time)) <= times * first_touch;
+}
+
+DevicesSearch::DevicesSearch(const SceneFile& file, const OptimizeOptions& options, const ForDevicesOptions& devices,
+                             std::function<void(std::string_view what, double part)> tell)
+    : options_(options), devices_(devices), watch_{.stop = options.stop, .progress = std::move(tell)} {
+  SceneFile varied = file;
+  spread_assumed_ = assume_spread(varied);
+  auto [settings, families] = settings_of_race(varied, options, devices.families, watch_);
+  const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, families);
+  settings_ = begins_gently(gentle, options.starts) ? gentle : std::move(settings);
+  names_ = families_of(families);
+  known_ = known_units(first().given, std::array{first().given.scene.calibration}, options.jobs, watch_).front();
+}
+
+std::vector<std::string> DevicesSearch::parameter_names() const {
+  std::string families;
+  for (const std::string& name : names_) families += (families.empty() ? "" : "+") + name;
+  return searched_names(settings_, families);
+}
+
+double DevicesSearch::seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+void DevicesSearch::run(std::size_t before) {
+  before_ = before;
+  race_families();
+  choose();
+  if (!gave_up_ && known_->calibration().is_empty()) measure_ahead();
+}
+
+void DevicesSearch::race_families() {
+  watch_.tell("building devices", 0);
+  cost_.emplace(first(), tail_aim_,
+                own_devices(first(), *known_, raced_devices, options_.seed, which_searched, options_.jobs, watch_));
+  const double begun = seconds();
+  const std::vector<DeviceOutcome> step = closed(*cost_, {});
+  reserve_for_verdict((seconds() - begun) / static_cast<double>(step.size()));
+  make_aims(step);
+  watch_.tell("searching for the devices", 0);
+  raced_ = race(settings_, *cost_, aims_, race_options());
+  closings_ += raced_.closings;
+  watch_.throw_if_stopped();
+}
+
+void DevicesSearch::make_aims(const std::vector<DeviceOutcome>& step) {
+  conditions_ = beside_step(devices_.conditions, step);
+  no_harder_than_step_ = no_harder_than(step, first().given.scene.metrics.significant_rebound);
+  const double step_time = quantile_95(step, key_of(&Metrics::initial_contact_time));
+  const std::span<const Figure> figures = device_figures;
+  tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
+  aims_ = {.tail = tail_aim_, .share = {.measure = parse_robust_measure("yield", figures), .conditions = conditions_}};
+  if (!std::isfinite(step_time) || says_when_to_close()) return;
+  const auto bound = [&](double times) {
+    return parse_criterion(fmt::format("initial_contact_time < {:.17g} s", times * step_time), figures);
+  };
+  aims_.tail.conditions.push_back(bound(most_times));
+  aims_.share.conditions.push_back(bound(most_times_of_landings));
+}
+
+// A condition of the user's takes the place of the usual bound.
+bool DevicesSearch::says_when_to_close() const {
+  return std::ranges::any_of(
+      conditions_, [](const Criterion& one) { return one.figure.member == Figure::Member(&Metrics::initial_contact_time); });
+}
+
+// Of a budget of time the searches leave what the verdict takes, where they keep a part; `closing`: of one device [s].
+void DevicesSearch::reserve_for_verdict(double closing) {
+  constexpr double rows = 20;  // over a search's window: three over the whole one, three in measured units, and the front
+  const double verdict = rows * static_cast<double>(devices_.verdict) * closing, all = options_.max_seconds;
+  race_end_ = std::clamp(all - verdict, least_of_race * all, end_of_race * all);
+}
+
+RaceOptions DevicesSearch::race_options() {
+  return {.closings = devices_.closings,
+          .seed = options_.seed,
+          .jobs = options_.jobs,
+          .stop = options_.stop,
+          .memory = options_.memory,
+          .first = before_,
+          .all = before_ + parameter_names().size(),
+          .out_of_time = [this] { return gave_up_ || seconds() > race_end_; },
+          .progress = [this](double part) { watch_.tell("searching for the devices", part); }};
+}
+
+std::vector<DeviceOutcome> DevicesSearch::closed(const RobustCost& cost, const std::map<std::string, Waveform>& waveforms) {
+  closings_ += static_cast<long>(cost.devices());
+  return cost.close(first().drives(waveforms), 0, cost.devices(), options_.jobs);
+}
+
+std::map<std::string, Waveform> DevicesSearch::all_drives(std::map<std::string, Waveform> searched) const {
+  const PreparedScene& step = first().baseline_scene;
+  searched.insert(step.drives.waveforms.begin(), step.drives.waveforms.end());
+  return searched;
+}
+
+ChosenFrom DevicesSearch::candidate_of(const Racer& racer) const {
+  ChosenFrom c{.measure = racer.measure,
+               .family = names_[racer.family],
+               .waveforms = racer.waveforms,
+               .parameters = {},
+               .variables = settings_[racer.family].space.variables(),
+               .closings = racer.closings};
+  for (std::size_t i = 0; i < racer.x.size(); ++i) c.parameters[c.variables[i].name] = racer.x[i];
+  return c;
+}
+
+// What the race came to, on other devices, beside the plain step.
+void DevicesSearch::choose() {
+  watch_.tell("choosing on other devices", 0);
+  others_.emplace(first(), tail_aim_,
+                  own_devices(first(), *known_, devices_of_choice, options_.seed, which_chosen, options_.jobs, watch_));
+  bounds_.emplace(closed(*others_, {}));
+  std::vector<ChosenFrom> pool;
+  for (const bool by_share : {false, true}) {
+    std::ranges::stable_sort(raced_.racers, {}, [&](const Racer& r) { return by_share ? r.share : r.tail; });
+    for (std::size_t i = 0; i < std::min(most_of_race, raced_.racers.size()); ++i) {
+      ChosenFrom one = candidate_of(raced_.racers[i]);
+      if (std::ranges::none_of(pool, [&](const ChosenFrom& other) { return same_candidate(one, other); }))
+        pool.push_back(std::move(one));
+    }
+  }
+  for (ChosenFrom& one : pool) place(std::move(one));
+}
+
+void DevicesSearch::place(ChosenFrom one) {
+  watch_.throw_if_stopped();
+  const std::vector<DeviceOutcome> outcomes = closed(*others_, one.waveforms);
+  one.bounce_free = share_of(outcomes, is_bounce_free);
+  one.tail = others_->value(outcomes, aims_.tail);
+  one.first_touch = quantile_95(outcomes, key_of(&Metrics::initial_contact_time));
+  one.impact_speed = quantile_95(outcomes, key_of(&Metrics::largest_impact_velocity));
+  const bool lands = one.bounce_free >= lands_half;
+  const double rank = lands ? -one.bounce_free : one.tail, significant = first().given.scene.metrics.significant_rebound;
+  const bool keeps = bounds_->keeps(outcomes, significant, !says_when_to_close()) && hold(conditions_, outcomes);
+  placed_.push_back({std::move(one), keeps, lands, rank});
+}
+
+std::vector<ChosenFrom> DevicesSearch::placed() const {
+  std::vector<Placed> sorted = placed_;
+  std::ranges::stable_sort(sorted, [](const Placed& a, const Placed& b) {
+    if (a.keeps != b.keeps) return a.keeps;
+    if (a.lands_half != b.lands_half) return a.lands_half;
+    return a.rank < b.rank;
+  });
+  std::vector<ChosenFrom> all;
+  for (Placed& one : sorted) all.push_back(std::move(one.candidate));
+  return all;
+}
+
+std::size_t DevicesSearch::good_enough() const {
+  return static_cast<std::size_t>(std::ranges::count_if(placed_, &Placed::keeps));
+}
+
+// What rows in measured units will ask of the devices of the verdict.
+void DevicesSearch::measure_ahead() {
+  try {
+    meter_.emplace(first().given, Gauges{.closing_time = true});
+  } catch (const InvalidInput&) {
+    return;  // no electrode that pulls in
+  }
+  (void)gauged({.pull_in_error = coarse_error});
+  if (tells_time()) (void)gauged({.time_error = usual_time_error});
+}
+
+// A recipe for what is known precisely: of a switch too quick for the instrument it has to be searched apart.
+bool DevicesSearch::tells_time() const { return meter_->closing_time() > least_times_of_error * usual_time_error; }
+
+InMeasuredUnits DevicesSearch::in_measured_units(const ChosenFrom& winner, const std::map<std::string, Waveform>& drawing) {
+  const Calibration coarse{.pull_in_error = coarse_error};
+  const Calibration both{.pull_in_error = coarse_error, .frequency_error = coarse_error};
+  const Calibration fine{.pull_in_error = fine_error, .frequency_error = fine_error};
+  const Calibration by_time{.time_error = usual_time_error};
+  if (!meter_) return {};
+  InMeasuredUnits all{.pull_in = meter_->pull_in(), .closing_time = meter_->closing_time()};
+  const bool times = tells_time();
+  const auto found = searched_in(winner, drawing, std::array{coarse, times ? by_time : fine});
+  if (!found[0]) return all;
+  all.rows = {row_of("Vdp to 1 %", *found[0], coarse, true), row_of("Vdp and period to 1 %", *found[0], both, false)};
+  if (found[1]) all.rows.push_back(row_of("Vdp and period to 0.2 %", *found[1], fine, !times));
+  if (found[1] && times) all.rows.push_back(row_of("closing time to 50 ns", *found[1], by_time, true));
+  std::vector waveforms{*found[0]};
+  if (found[1]) waveforms.push_back(*found[1]);
+  all.by_error = judged_by_error(waveforms);
+  const bool time_wins = found[1] && times && lands_better(all.rows.back(), all.rows.front());
+  all.best = time_wins ? all.rows.size() - 1 : 0;
+  all.best_waveforms = time_wins ? *found[1] : *found[0];
+  return all;
+}
+
+// For each of these calibrations, side by side; none where a search came to nothing.
+std::array<DevicesSearch::Found, 2> DevicesSearch::searched_in(const ChosenFrom& winner,
+                                                               const std::map<std::string, Waveform>& drawing,
+                                                               const std::array<Calibration, 2>& calibrations) {
+  const auto family = std::ranges::find(names_, winner.family);
+  const std::size_t k = family == names_.end() ? 0 : static_cast<std::size_t>(family - names_.begin());
+  const std::vector<KnownUnits> known = known_units(first().given, calibrations, options_.jobs, watch_);
+  std::array<Found, 2> all;
+  std::array<std::atomic<double>, 2> parts{};
+  std::array<long, 2> closings{};
+  run_tasks(
+      all.size(), options_.jobs,
+      [&](std::size_t i) {
+        const RobustCost cost(
+            first(), aims_.tail,
+            own_devices(first(), known[i], measured_devices, options_.seed, which_measured, options_.jobs, watch_));
+        RaceOptions own = race_options();
+        own.memory = nullptr;  // whose keys do not tell units
+        own.progress = [&, i](double part) {
+          parts[i] = part;
+          watch_.tell("searching for devices that are measured", (parts[0] + parts[1]) / 2);
+        };
+        const auto searched = [&](const RaceAims& aims) {
+          RaceResult found =
+              race_alone(settings_[k], k, cost, aims, winner.bounce_free >= ranked_by_share, {winner.waveforms, drawing}, own);
+          closings[i] += found.closings;
+          return found;
+        };
+        RaceResult found = searched(aims_);
+        if (!found.racers.empty() && is_harder_than_step(cost, found.racers.front().waveforms)) found = searched(no_harder());
+        if (!found.racers.empty()) all[i] = found.racers.front().waveforms;
+      },
+      options_.stop);
+  closings_ += closings[0] + closings[1];
+  watch_.throw_if_stopped();
+  return all;
+}
+
+// On the devices of a search in measured units.
+bool DevicesSearch::is_harder_than_step(const RobustCost& cost, const std::map<std::string, Waveform>& waveforms) const {
+  const std::vector<DeviceOutcome> outcomes = cost.close(first().drives(waveforms), 0, cost.devices(), 1);
+  return !hold(no_harder_than_step_, outcomes);
+}
+
+RaceAims DevicesSearch::no_harder() const {
+  RaceAims aims = aims_;
+  for (RobustAim* aim : {&aims.tail, &aims.share}) std::ranges::copy(no_harder_than_step_, std::back_inserter(aim->conditions));
+  return aims;
+}
+
+DevicesRow DevicesSearch::row_of(const char* name, const std::map<std::string, Waveform>& waveforms, const Calibration& knowledge,
+                                 bool searched_for_it) {
+  const KnownUnits known = known_units(first().given, std::array{knowledge}, options_.jobs, watch_).front();
+  const RobustCost fresh = verdict_devices(known);
+  std::vector<DeviceOutcome> outcomes = closed(fresh, waveforms);
+  watch_.throw_if_stopped();
+  return {.name = name,
+          .knowledge = knowledge,
+          .searched_for_it = searched_for_it,
+          .judged_whole = false,
+          .judged = internal::summarised({.name = name, .waveforms = all_drives(waveforms), .calibration = knowledge}, known,
+                                         std::move(outcomes))};
+}
+
+// What the better of these waveforms reaches where Vdp is known with ever larger errors.
+std::vector<KnownVdp> DevicesSearch::judged_by_error(const std::vector<std::map<std::string, Waveform>>& waveforms) {
+  std::vector<KnownVdp> judged;
+  const GaugedEnsemble& all = gauged({.pull_in_error = coarse_error});
+  const auto end = static_cast<std::ptrdiff_t>(std::min(devices_by_error, all.devices.size()));
+  const GaugedEnsemble few{.devices = {all.devices.begin(), all.devices.begin() + end},
+                           .exact = {all.exact.begin(), all.exact.begin() + end}};
+  for (const double error : errors_of_pull_in) {
+    const Calibration knowledge{.pull_in_error = error};
+    const RobustCost fresh(first(), aims_.tail, known_as(few, KnownUnits(knowledge), options_.seed));
+    KnownVdp best{.error = error};
+    for (const auto& waveform : waveforms) {
+      const std::vector<DeviceOutcome> outcomes = closed(fresh, waveform);
+      best.bounce_free = std::fmax(best.bounce_free, share_of(outcomes, is_bounce_free));
+      best.impact_speed = std::fmin(best.impact_speed, quantile_95(outcomes, judged_figures[0]));
+    }
+    watch_.throw_if_stopped();
+    judged.push_back(best);
+  }
+  return judged;
+}
+
+RobustCost DevicesSearch::verdict_devices(const KnownUnits& known) {
+  return {first(), aims_.tail, known_as(gauged(known.calibration()), known, options_.seed)};
+}
+
+// The devices of the verdict, gauged once for all that is known of them.
+const GaugedEnsemble& DevicesSearch::gauged(const Calibration& knowledge) {
+  std::optional<GaugedEnsemble>& all = knowledge.time_error ? gauged_by_time_ : gauged_by_pull_in_;
+  if (!all)
+    all = gauge_all(Ensemble(first().given, devices_.verdict, options_.seed), Gauges::of(knowledge), options_.jobs, watch_);
+  return *all;
+}
+
+}  // namespace softland

@@ -1,0 +1,176 @@
+// What is searched over devices: a race of families by two measures (race.h), a choice among candidates on devices that it has
+// not seen, and searches in units that are measured on every device. The race does not need the drawing's waveform.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/search/optimize.h"
+#include "studies/search/race.h"
+#include "studies/search/robust_optimize.h"
+
+namespace softland {
+
+struct ForDevicesOptions {
+  std::vector<Criterion> conditions = {};  ///< on figures of device_figures, that 95 % of the devices have to fulfil
+  std::uint64_t verdict = 2000;            ///< fresh devices
+  /// Families of the race; empty: raced_families, as far as the scene has room for them.
+  std::string families = {};
+  long closings = race_closings;  ///< of the race
+};
+
+/// A row of the first table: drives of one kind on the fresh devices.
+struct DevicesRow {
+  std::string name;             ///< "plain step", "for the drawing", "for the devices", "Vdp to 1 %"
+  Calibration knowledge = {};   ///< what is measured on every device
+  bool searched_for_it = true;  ///< else the waveform was made for another knowledge
+  bool judged_whole = true;     ///< over the whole window of a closing, else over that of a search
+  DriveRobustness judged = {};
+};
+
+/// What is reached in units of a Vdp that is measured with an error, on the first of the fresh devices, each figure by the better
+/// of the waveforms that were searched in measured units.
+struct KnownVdp {
+  double error = 0;                                                    ///< of Vdp, standard deviation, relative
+  double bounce_free = Metrics::unset, impact_speed = Metrics::unset;  ///< share of the devices; 95 % quantile [m/s]
+};
+
+/// A candidate of the choice.
+struct ChosenFrom {
+  std::string measure, family;  ///< "cvar:0.9", "knots:6"; measure "drawing" for what the nominal search tried
+  std::map<std::string, Waveform> waveforms;
+  std::map<std::string, double> parameters;  ///< by drive.name; empty for what the nominal search tried
+  std::vector<Variable> variables;
+  long closings = 0;
+  double bounce_free = 0, tail = 0;                                    ///< on the devices of the choice
+  double first_touch = Metrics::unset, impact_speed = Metrics::unset;  ///< 95 % quantiles there [s], [m/s]
+};
+
+/// The share of devices of which most land, which decides where it is as much.
+inline constexpr double lands_half = 0.5;
+
+/// The 95 % quantile of a figure of device_figures.
+[[nodiscard]] double quantile_95(const std::vector<DeviceOutcome>& outcomes, std::string_view key);
+[[nodiscard]] double share_of(const std::vector<DeviceOutcome>& outcomes, bool (*holds)(const DeviceOutcome&));
+
+/// What is reached with measured devices.
+struct InMeasuredUnits {
+  double pull_in = Metrics::unset;       ///< Vdp of the nominal device, where its devices can be measured [V]
+  double closing_time = Metrics::unset;  ///< of the nominal device, under the step that is measured [s]
+  std::vector<DevicesRow> rows = {};
+  std::vector<KnownVdp> by_error = {};
+  std::size_t best = 0;                                 ///< of the rows
+  std::map<std::string, Waveform> best_waveforms = {};  ///< of the searched drives, in these units
+};
+
+class DevicesSearch {
+ public:
+  /// Keeps references to the options. `tell` may be called from any thread. Throws as optimize() does.
+  DevicesSearch(const SceneFile& file, const OptimizeOptions& options, const ForDevicesOptions& devices,
+                std::function<void(std::string_view what, double part)> tell);
+
+  /// The setting of the first family: its scene is the given one with the spread that is looked at.
+  [[nodiscard]] const SearchSetting& first() const { return settings_.front(); }
+  [[nodiscard]] const KnownUnits& known() const { return *known_; }
+  [[nodiscard]] bool spread_assumed() const { return spread_assumed_; }
+  /// The parameters of all families.
+  [[nodiscard]] std::vector<std::string> parameter_names() const;
+  /// Since it was made.
+  [[nodiscard]] double seconds() const;
+
+  /// Races, places what the race came to, and measures the devices of the verdict. `before`: parameters in front of those of the
+  /// race, among those of the memory. Throws Interrupted where it is told to stop.
+  void run(std::size_t before);
+  /// From any thread: run() ends soon, with nothing that is of use.
+  void give_up() { gave_up_ = true; }
+
+  // After run().
+  /// On the first of the raced devices.
+  [[nodiscard]] const RobustCost& cost() const { return *cost_; }
+  [[nodiscard]] const RaceAims& aims() const { return aims_; }
+  [[nodiscard]] const std::vector<Criterion>& conditions() const { return conditions_; }
+  /// Judges a candidate on the devices of the choice.
+  void place(ChosenFrom candidate);
+  /// Those that were placed: first, the best first, those that are good enough.
+  [[nodiscard]] std::vector<ChosenFrom> placed() const;
+  [[nodiscard]] std::size_t good_enough() const;
+  /// Searches in measured units from a winner, and from what lands the drawing: precisely measured devices need little else. No
+  /// rows where there is nothing to measure.
+  [[nodiscard]] InMeasuredUnits in_measured_units(const ChosenFrom& winner, const std::map<std::string, Waveform>& drawing);
+  /// Devices of the verdict as they are known, for closings over the window of a search.
+  [[nodiscard]] RobustCost verdict_devices(const KnownUnits& known);
+  /// The outcomes of all devices of a cost; they count as closings.
+  [[nodiscard]] std::vector<DeviceOutcome> closed(const RobustCost& cost, const std::map<std::string, Waveform>& waveforms);
+  /// The searched drives of a candidate, and the others as in the plain step.
+  [[nodiscard]] std::map<std::string, Waveform> all_drives(std::map<std::string, Waveform> searched) const;
+  [[nodiscard]] long closings() const { return closings_; }
+
+ private:
+  // What the choice asks of a candidate beside its rank.
+  struct Bounds {
+    std::vector<double> figures;  // 95 % quantiles of the plain step, of judged_figures
+    double first_touch, open;     // likewise, and its share of devices that do not close
+
+    explicit Bounds(const std::vector<DeviceOutcome>& step);
+    /// `in_time`: whether it has to close in a usual time.
+    [[nodiscard]] bool keeps(const std::vector<DeviceOutcome>& own, double significant, bool in_time) const;
+  };
+  struct Placed {
+    ChosenFrom candidate;
+    bool keeps, lands_half;
+    double rank;
+  };
+  using Found = std::optional<std::map<std::string, Waveform>>;
+
+  void race_families();
+  void make_aims(const std::vector<DeviceOutcome>& step);
+  [[nodiscard]] bool says_when_to_close() const;
+  void reserve_for_verdict(double closing);
+  [[nodiscard]] RaceOptions race_options();
+  void choose();
+  [[nodiscard]] ChosenFrom candidate_of(const Racer& racer) const;
+  void measure_ahead();
+  [[nodiscard]] bool tells_time() const;
+  [[nodiscard]] std::array<Found, 2> searched_in(const ChosenFrom& winner, const std::map<std::string, Waveform>& drawing,
+                                                 const std::array<Calibration, 2>& calibrations);
+  [[nodiscard]] bool is_harder_than_step(const RobustCost& cost, const std::map<std::string, Waveform>& waveforms) const;
+  [[nodiscard]] RaceAims no_harder() const;
+  [[nodiscard]] DevicesRow row_of(const char* name, const std::map<std::string, Waveform>& waveforms,
+                                  const Calibration& knowledge, bool searched_for_it);
+  [[nodiscard]] std::vector<KnownVdp> judged_by_error(const std::vector<std::map<std::string, Waveform>>& waveforms);
+  [[nodiscard]] const GaugedEnsemble& gauged(const Calibration& knowledge);
+
+  const OptimizeOptions& options_;
+  const ForDevicesOptions& devices_;
+  Watch watch_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  bool spread_assumed_ = false;
+  std::vector<SearchSetting> settings_;
+  std::vector<std::string> names_;  // of the families
+  std::optional<KnownUnits> known_;
+  std::size_t before_ = 0;
+  std::atomic<bool> gave_up_ = false;
+  double race_end_ = 0;                // since the beginning [s]
+  std::vector<Criterion> conditions_;  // with limits of their own
+  RobustAim tail_aim_;
+  RaceAims aims_;
+  std::vector<Criterion> no_harder_than_step_;  // in volts
+  std::optional<RobustCost> cost_, others_;     // of the race, and of the choice
+  RaceResult raced_;
+  std::optional<Bounds> bounds_;
+  std::vector<Placed> placed_;                                        // in the order in which they came
+  std::optional<GaugedEnsemble> gauged_by_pull_in_, gauged_by_time_;  // the devices of the verdict
+  std::optional<DeviceMeter> meter_;                                  // none where there is nothing to measure
+  long closings_ = 0;
+};
+
+}  // namespace softland

@@ -1,0 +1,326 @@
+#include "studies/search/for_devices.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <iterator>
+#include <utility>
+
+#include "base/executor.h"
+#include "base/require.h"
+#include "studies/closing/plain_step.h"
+#include "studies/search/family_search.h"
+#include "studies/search/worse_than_step.h"
+
+namespace softland {
+namespace {
+
+constexpr std::size_t scouted_on = 16, ranked_on = 64;  // devices: candidates of the nominal search
+constexpr std::size_t kept_of_scouted = 24;             // by either measure
+constexpr std::size_t most_of_ranked = 2;               // by either measure
+constexpr std::size_t most_judged = 3;                  // winners, until one is not worse than the plain step
+constexpr std::size_t most_of_front = 6;
+constexpr double end_of_drawing = 0.3;  // of a budget of time
+
+constexpr const char *plain_step_row = "plain step", *for_the_drawing = "for the drawing", *for_the_devices = "for the devices";
+
+class DevicesStudy {
+ public:
+  DevicesStudy(const SceneFile& file, const OptimizeOptions& options, const ForDevicesOptions& devices)
+      : file_(file),
+        options_(options),
+        devices_(devices),
+        watch_{.stop = options.stop, .progress = [this](std::string_view what, double part) { tell(what, part); }},
+        searched_(file, options, devices, watch_.progress) {}
+
+  ForDevicesResult run() {
+    drawing_options_ = options_of_drawing();
+    OptimizeResult drawing = searched_for_drawing();
+    result_.emplace(ForDevicesResult{
+        .varied = first().given, .drawing = drawing, .best = std::move(drawing), .spread_assumed = searched_.spread_assumed()});
+    try {
+      if (result_->drawing.best_scene && !stopped()) {
+        choose_of_all();
+        judge();
+      }
+    } catch (const Interrupted&) {  // what there is stands
+    }
+    searched_.give_up();
+    result_->closings += searched_.closings();
+    result_->interrupted = stopped();
+    return *std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] const SearchSetting& first() const { return searched_.first(); }
+  [[nodiscard]] bool stopped() const { return options_.stop != nullptr && *options_.stop; }
+  // While the drawing is searched for, that is what is told.
+  void tell(std::string_view what, double part) const {
+    if (options_.on_preparation && !searches_drawing_) options_.on_preparation(what, part);
+  }
+
+  OptimizeResult searched_for_drawing() {
+    try {
+      OptimizeResult drawing = optimize(file_, drawing_options_);
+      searches_drawing_ = false;
+      return drawing;
+    } catch (...) {
+      searched_.give_up();
+      throw;
+    }
+  }
+
+  // The nominal search keeps what devices may do better with, and tells of its parameters among those of all searches.
+  OptimizeOptions options_of_drawing() {
+    OptimizeOptions own = options_;
+    own.keep_tried = true;
+    if (std::isfinite(own.max_seconds)) own.max_seconds = end_of_drawing * own.max_seconds - searched_.seconds();
+    own.max_seconds = std::max(own.max_seconds, 1e-3);
+    own.on_start = [this](const std::vector<std::string>& names) {
+      std::vector<std::string> all = names;
+      for (const std::string& name : searched_.parameter_names()) all.push_back(std::string(raced_prefix) + name);
+      if (options_.on_start) options_.on_start(all);
+      if (options_.memory != nullptr) {  // which may be there from now on only
+        block_of_drawing_.emplace(0, names.size(), all.size());
+        memory_of_drawing_.emplace(*options_.memory, *block_of_drawing_);
+        drawing_options_.memory = &*memory_of_drawing_;
+      }
+      search_beside(names.size());
+    };
+    return own;
+  }
+
+  // The search for the drawing leaves a core idle at times.
+  void search_beside(std::size_t before) {
+    searches_drawing_ = true;
+    beside_ =
+        std::async(options_.jobs > 1 ? std::launch::async : std::launch::deferred, [this, before] { searched_.run(before); });
+  }
+
+  void choose_of_all() {
+    beside_.get();
+    for (ChosenFrom& one : ranked_again()) searched_.place(std::move(one));
+    result_->candidates = searched_.placed();
+  }
+
+  [[nodiscard]] std::map<std::string, Waveform> drawing_waveforms() const {
+    return first().space.searched(result_->drawing.best_scene->drives.waveforms);
+  }
+
+  // Of what the nominal search has tried the best on devices.
+  std::vector<ChosenFrom> ranked_again() {
+    std::vector<ChosenFrom> all;
+    for (TriedWaveform& one : result_->drawing.tried)
+      all.push_back(
+          {.measure = "drawing", .family = one.family, .waveforms = std::move(one.waveforms), .parameters = {}, .variables = {}});
+    result_->drawing.tried.clear();
+    all = best_on(std::move(all), scouted_on, kept_of_scouted);
+    all = best_on(std::move(all), ranked_on, most_of_ranked);
+    ChosenFrom drawing{.measure = "drawing",
+                       .family = result_->drawing.family,
+                       .waveforms = drawing_waveforms(),
+                       .parameters = result_->drawing.parameters,
+                       .variables = result_->drawing.variables};
+    all.insert(all.begin(), std::move(drawing));
+    return all;
+  }
+
+  // The best `kept` by either measure.
+  std::vector<ChosenFrom> best_on(std::vector<ChosenFrom> all, std::size_t devices, std::size_t kept) {
+    struct Ranked {
+      double tail, share;
+      std::size_t number;
+    };
+    std::vector<Ranked> ranked(all.size());
+    run_tasks(
+        all.size(), options_.jobs,
+        [&](std::size_t i) {
+          const std::vector<DeviceOutcome> outcomes = searched_.cost().close(first().drives(all[i].waveforms), 0, devices, 1);
+          ranked[i] = {searched_.cost().value(outcomes, searched_.aims().tail),
+                       searched_.cost().value(outcomes, searched_.aims().share), i};
+        },
+        options_.stop);
+    watch_.throw_if_stopped();
+    result_->closings += static_cast<long>(all.size() * devices);
+    std::vector<ChosenFrom> best;
+    std::vector<bool> taken(all.size(), false);
+    for (const bool by_share : {false, true}) {
+      std::ranges::stable_sort(ranked, {}, [&](const Ranked& r) { return by_share ? r.share : r.tail; });
+      for (std::size_t i = 0; i < std::min(kept, ranked.size()); ++i) {
+        if (taken[ranked[i].number]) continue;
+        taken[ranked[i].number] = true;
+        best.push_back(all[ranked[i].number]);
+      }
+    }
+    return best;
+  }
+
+  void judge() {
+    const InMeasuredUnits measured = searched_.in_measured_units(result_->candidates.front(), drawing_waveforms());
+    tell("verdict on fresh devices", 0);
+    result_->verdict = robustness(
+        first().given, {{.name = for_the_drawing, .waveforms = searched_.all_drives(drawing_waveforms())}, of_candidate(0)},
+        verdict_options(), watch_);
+    result_->interrupted = result_->verdict.interrupted;
+    add_row(plain_step_row, plain_step(first().given, options_.actuator));
+    add_row(for_the_drawing, drawing_waveforms());
+    add_row(for_the_devices, result_->candidates.front().waveforms);
+    decide();
+    add(measured);
+    front();
+    result_->windows = hold_windows(first().given, verdict_options(), watch_);
+  }
+
+  void add(const InMeasuredUnits& measured) {
+    result_->pull_in = measured.pull_in;
+    result_->closing_time = measured.closing_time;
+    result_->by_error = measured.by_error;
+    if (measured.rows.empty()) return;
+    std::ranges::copy(measured.rows, std::back_inserter(result_->rows));
+    const DevicesRow& best = measured.rows[measured.best];
+    result_->calibrated_row = best.name;
+    result_->calibrated = with_waveforms(result_->drawing.baseline_scene, first().space.searched(measured.best_waveforms));
+    result_->calibrated->set(best.knowledge.time_error ? fmt::format("calibration.{}.error=\"50 ns\"", measured_time)
+                                                       : fmt::format("calibration.{}.error=\"1 %\"", measured_pull_in));
+  }
+
+  [[nodiscard]] RobustnessOptions verdict_options() const {
+    return {.samples = devices_.verdict,
+            .seed = options_.seed,
+            .jobs = options_.jobs,
+            .measures_drive_energy = options_.target.measures_drive_energy()};
+  }
+  [[nodiscard]] NamedDrive of_candidate(std::size_t n) const {
+    return {.name = for_the_devices,
+            .waveforms = searched_.all_drives(result_->candidates[n].waveforms),
+            .calibration = searched_.known().calibration()};
+  }
+
+  // The row of a drive that is judged, by its name or as one that is driven alike.
+  void add_row(const char* name, const std::map<std::string, Waveform>& waveforms) {
+    const std::vector<DriveRobustness>& drives = result_->verdict.drives;
+    auto found = std::ranges::find(drives, std::string_view(name), &DriveRobustness::name);
+    if (found == drives.end()) {
+      const PreparedScene& given = first().given;
+      const std::vector<Signal> own = given.told(given.in_drive_order(searched_.all_drives(waveforms)));
+      found = std::ranges::find_if(drives, [&](const DriveRobustness& other) {
+        return same_drives(own, given.told(given.in_drive_order(other.waveforms)));
+      });
+    }
+    if (found != drives.end()) result_->rows.push_back({.name = name, .knowledge = found->known.calibration(), .judged = *found});
+  }
+
+  [[nodiscard]] DevicesRow& row_of_devices() {
+    return *std::ranges::find(result_->rows, std::string_view(for_the_devices), &DevicesRow::name);
+  }
+
+  // The first candidate that is not worse than the plain step wins; where there is none, the step does.
+  void decide() {
+    const double significant = first().given.scene.metrics.significant_rebound;
+    std::vector<DriveRobustness>& drives = result_->verdict.drives;
+    const DriveRobustness step = drives.front();
+    const auto worse = [&] {
+      return softland::worse_in(row_of_devices().judged.outcomes, step.outcomes, significant, options_.seed);
+    };
+    std::size_t n = 0;
+    for (result_->worse_in = worse();
+         !result_->worse_in.empty() && n + 1 < std::min(searched_.good_enough(), most_judged) && !stopped();
+         result_->worse_in = worse()) {
+      Robustness next = robustness(first().given, {of_candidate(++n)}, verdict_options(), watch_);
+      result_->interrupted = next.interrupted;
+      row_of_devices().judged = next.drives.back();
+      if (drives.back().name == for_the_devices) drives.pop_back();
+      drives.push_back(std::move(next.drives.back()));
+    }
+    result_->plain_step_wins = !result_->worse_in.empty();
+    if (result_->plain_step_wins) {
+      row_of_devices().judged = step;
+      win(plain_step(first().given, options_.actuator));
+    } else {
+      result_->chosen = result_->candidates[n];
+      win(result_->candidates[n].waveforms);
+      result_->best.family = result_->candidates[n].family;
+      result_->best.prefix.clear();
+      result_->best.parameters = result_->candidates[n].parameters;
+      result_->best.variables = result_->candidates[n].variables;
+    }
+    for (const Criterion& condition : searched_.conditions()) {
+      const Yield share = share_that_fulfils(row_of_devices().judged.outcomes, condition);
+      result_->conditions.push_back({.condition = condition, .share = share, .holds = share.value >= constrained_share});
+    }
+  }
+
+  // On the nominal device.
+  void win(const std::map<std::string, Waveform>& waveforms) {
+    OptimizeResult& best = result_->best;
+    const OptimizeResult& drawing = result_->drawing;
+    best.best_scene =
+        read_back(with_waveforms(drawing.baseline_scene, first().space.searched(waveforms)), "best.toml", drawing.scene);
+    best.best = simulate(*best.best_scene, true, watch_);
+    best.checks = confirm(*best.best_scene);
+    const Metrics& m = best.best->metrics;
+    best.goal_met = goal_met(options_.target, m, drawing.baseline.metrics);
+    best.confirmed = best.goal_met && std::ranges::all_of(best.checks, [](const ConfirmingRun& run) {
+                       return run.varied == Varied::gas || (run.metrics.settled && run.metrics.bounce_count == 0);
+                     });
+    best.better_than_baseline = !result_->plain_step_wins;
+    best.best_cost = searched_.cost().value(row_of_devices().judged.outcomes, searched_.aims().tail);
+    best.baseline_cost = searched_.cost().value(result_->verdict.drives.front().outcomes, searched_.aims().tail);
+  }
+
+  // The candidates of which none closes sooner and more softly, on the devices of the verdict.
+  void front() {
+    std::vector<const ChosenFrom*> kept;
+    for (const ChosenFrom& one : result_->candidates) {
+      const bool beaten = std::ranges::any_of(result_->candidates, [&](const ChosenFrom& other) {
+        return other.first_touch <= one.first_touch && other.impact_speed <= one.impact_speed &&
+               (other.first_touch < one.first_touch || other.impact_speed < one.impact_speed);
+      });
+      if (!beaten && std::isfinite(one.first_touch) && kept.size() < most_of_front) kept.push_back(&one);
+    }
+    const RobustCost fresh = searched_.verdict_devices(searched_.known());
+    for (const ChosenFrom* one : kept) {
+      watch_.throw_if_stopped();
+      const std::vector<DeviceOutcome> outcomes = searched_.closed(fresh, one->waveforms);
+      result_->front.push_back({.first_touch = quantile_95(outcomes, key_of(&Metrics::initial_contact_time)),
+                                .impact_speed = quantile_95(outcomes, key_of(&Metrics::largest_impact_velocity)),
+                                .bounce_free = share_of(outcomes, is_bounce_free),
+                                .measure = one->measure,
+                                .waveform = one->family});
+    }
+    std::ranges::stable_sort(result_->front, {}, &FrontPoint::first_touch);
+  }
+
+  const SceneFile& file_;
+  const OptimizeOptions& options_;
+  const ForDevicesOptions& devices_;
+  Watch watch_;
+  std::atomic<bool> searches_drawing_ = false;
+  DevicesSearch searched_;
+  OptimizeOptions drawing_options_;
+  std::optional<ParameterBlock> block_of_drawing_;  // its parameters among those of all searches
+  std::optional<MemoryOfFamily> memory_of_drawing_;
+  std::optional<ForDevicesResult> result_;  // once there is a drawing
+  std::future<void> beside_;                // the last: what it uses outlives it
+};
+
+}  // namespace
+
+void share_budget(OptimizeOptions& options, ForDevicesOptions& devices) {
+  constexpr long share_of_drawing = 5;  // one part of so many
+  const long all = options.max_evaluations;
+  options.max_evaluations = std::max(1L, all / share_of_drawing);
+  devices.closings = all - options.max_evaluations;
+}
+
+ForDevicesResult optimize_for_devices(const SceneFile& file, const OptimizeOptions& options, const ForDevicesOptions& devices) {
+  require(
+      options.own_waveforms.empty(),
+      "own waveforms are searched for the drawing, or over devices by one measure: the race of families over devices does not "
+      "take them");
+  return DevicesStudy(file, options, devices).run();
+}
+
+}  // namespace softland

@@ -1,0 +1,77 @@
+// The search for a waveform that devices can use: that for the drawing first, then a race over devices, and a verdict on devices
+// that no stage has seen.
+//
+//   1  the search on the nominal device (optimize.h): the drawing's waveform
+//   2  beside it, as neither needs what the other finds, a race over families and measures (race.h) and a choice among what it
+//      came to on 512 other devices, beside the plain step
+//   3  what the nominal search tried ranked again on 16 devices, the best of it on 64, and these on the devices of the choice
+//   4  searches in units that are measured on every device: Vdp to 1 %, and the closing time of one slow step to 50 ns (of
+//      switches for which that is no time, Vdp and period to 0.2 %); again, under conditions, where one finds what is harder
+//      than the plain step
+//   5  verdict on 2000 fresh devices: plain step, drawing and winner over the whole window; measured units over that of a search,
+//      which moves 95 % quantiles by less than 0.4 %
+//
+// What wins: of the candidates that are not worse than the plain step, that close in at most five times its 95 % time (seven
+// where half the devices land) and leave no more devices open than it does (and half a percent), the one with most devices that
+// land without a rebound, where that is at least half of them; else that of the least tail of the cost. Where the verdict finds
+// the winner worse than the plain step the next one is judged; where all are, the plain step wins.
+//
+// The stages are counted in closings, so that the result is a function of scene, options and seed.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/devices/hold_window.h"
+#include "studies/search/devices_search.h"
+
+namespace softland {
+
+/// What names of parameters of the race begin with, among those of all searches.
+inline constexpr std::string_view raced_prefix = "devices.";
+
+/// Shares a budget of closings, which is that of everything together: a fifth of options.max_evaluations is for the drawing, the
+/// rest for the race.
+void share_budget(OptimizeOptions& options, ForDevicesOptions& devices);
+
+/// A candidate on the fresh devices.
+struct FrontPoint {
+  double first_touch = Metrics::unset, impact_speed = Metrics::unset;  ///< 95 % quantiles [s], [m/s]
+  double bounce_free = Metrics::unset;                                 ///< share of the devices
+  std::string measure, waveform;                                       ///< how it was searched
+};
+
+struct ForDevicesResult {
+  PreparedScene varied;  ///< the scene with the spread that was looked at
+  OptimizeResult drawing;
+  /// On the nominal device: the waveform that wins; best_scene is none where the search was interrupted before the choice.
+  OptimizeResult best;
+  bool plain_step_wins = false;
+  bool spread_assumed = false;              ///< the scene says nothing of how devices differ
+  std::optional<ChosenFrom> chosen;         ///< none where the plain step wins
+  std::vector<ChosenFrom> candidates = {};  ///< the best first
+  Robustness verdict;                       ///< of plain step, drawing and winner
+  std::vector<DevicesRow> rows = {};
+  std::vector<std::string_view> worse_in = {};   ///< of the winner: see worse_in()
+  std::vector<FrontPoint> front = {};            ///< by first touch
+  std::vector<KnownVdp> by_error = {};           ///< the least error first; none where Vdp is not measured
+  HoldWindows windows = {};                      ///< of hold levels
+  std::optional<SceneFile> calibrated = {};      ///< in units that are measured on every device, with its [calibration]
+  std::string calibrated_row = {};               ///< the row that it is of
+  double pull_in = Metrics::unset;               ///< Vdp of the nominal device, where there is a calibrated waveform [V]
+  double closing_time = Metrics::unset;          ///< of the nominal device, under the step that is measured [s]
+  std::vector<FulfilledCondition> conditions{};  ///< of the winner
+  long closings = 0;                             ///< of devices, in all searches
+  bool interrupted = false;
+};
+
+/// Options of the nominal search as optimize(), whose max_seconds is that of everything. Throws as
+/// optimize() does. on_start hears of the parameters of all searches, those of the race with raced_prefix.
+[[nodiscard]] ForDevicesResult optimize_for_devices(const SceneFile& file, const OptimizeOptions& options,
+                                                    const ForDevicesOptions& devices);
+
+}  // namespace softland

@@ -1,0 +1,525 @@
+#include "studies/search/limit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "base/require.h"
+#include "model/closing.h"
+#include "model/constants.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/plain_step.h"
+#include "studies/search/free_flight.h"
+#include "studies/search/search_setting.h"
+
+namespace softland {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr int first_knots = 48;       // intervals of the controls before they are refined
+constexpr double piece_angle = 0.75;  // of the fastest mode in a piece of the mesh
+// Of the optimum and a simulation: relative, of the time of the touch, or of the gap as far as one misses it.
+constexpr double agreement = 1e-4;
+constexpr double longest_swing = 3;       // periods of the first mode
+constexpr double softness = 0.2;          // of the permitted speed: how much faster a simulation may touch
+constexpr double catch_tolerance = 1e-6;  // of the integrator, where catches are compared
+constexpr int refinements = 3;            // of the knots: each halves their shortest interval
+constexpr int most_meshes = 3;            // each half as wide as the one before
+
+// Of the gap: how near every mode comes to its place in the closed equilibrium.
+constexpr std::array rest_rooms = {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003};
+constexpr long nearing_iterations = 100;  // of Ipopt from one to the next: where there is a way it takes about thirty
+
+std::vector<double> uniform_knots(int intervals) {
+  std::vector<double> knots;
+  for (int k = 0; k <= intervals; ++k) knots.push_back(static_cast<double>(k) / intervals);
+  return knots;
+}
+
+// The controls as tables of volts against time, which pull from the touch on.
+std::map<std::string, Waveform> tables_of(const FreeFlight& flight, const ControlledCourse& course) {
+  const double end = course.time * flight.time_unit();
+  std::map<std::string, Table> tables;
+  const auto add = [&](double time, const std::map<std::string, double>& volts) {
+    for (const auto& [name, value] : volts) {
+      Table& table = tables[name];
+      table.time.push_back(time);
+      table.voltage.push_back(value);
+    }
+  };
+  const auto columns = course.controls.cols();
+  const auto at = [&](Index column) { return flight.volts(course.controls.col(column)); };
+  if (flight.ramps()) {
+    for (Index k = 0; k < columns; ++k) add(course.knots[static_cast<std::size_t>(k)] * end, at(k));
+  } else {
+    // What differs by less than the solver's own error is one level.
+    constexpr double same = 1e-9;
+    Index level = 0;
+    add(0, at(0));
+    for (Index k = 1; k < columns; ++k) {
+      if ((course.controls.col(k) - course.controls.col(level)).cwiseAbs().maxCoeff() < same) continue;
+      const double time = course.knots[static_cast<std::size_t>(k)] * end;
+      add(time, at(level));
+      add(time, at(k));
+      level = k;
+    }
+    add(end, at(level));
+  }
+  std::map<std::string, Waveform> waveforms;
+  for (auto& [name, table] : tables) waveforms.emplace(name, std::move(table));
+  return waveforms;
+}
+
+// What follows the touch: full pull from one time to another [s], then the hold levels.
+struct Catch {
+  double begin = 0, end = 0;  // after the touch
+};
+
+std::map<std::string, Waveform> with_catch(const FreeFlight& flight, const LeastTime& found, const Catch& pulled,
+                                           const std::map<std::string, Waveform>& held) {
+  std::map<std::string, Waveform> caught = found.waveforms;
+  const std::map<std::string, double> pull = flight.volts(flight.pull());
+  const double touch = found.course.time * flight.time_unit();
+  for (auto& [name, waveform] : caught) {
+    auto& table = std::get<Table>(waveform);
+    const auto hold_of = held.find(name);
+    const double hold = hold_of == held.end() ? 0 : signal(hold_of->second).hold_level();
+    const auto pass_to = [&](double time, double volts) {
+      const double begin = std::max(time, table.time.back()), from = table.voltage.back();
+      table.time.insert(table.time.end(), {begin, begin + std::abs(volts - from) / flight.max_slew(name)});
+      table.voltage.insert(table.voltage.end(), {from, volts});
+    };
+    if (pulled.end > pulled.begin) pass_to(touch + pulled.begin, pull.at(name));
+    pass_to(touch + pulled.end, hold);
+  }
+  return caught;
+}
+
+// The drives under searched waveforms; what is not searched is that of the plain step, else of the scene.
+std::vector<Signal> driven(const PreparedScene& prepared, std::map<std::string, Waveform> searched,
+                           const std::map<std::string, Waveform>& plain) {
+  searched.insert(plain.begin(), plain.end());
+  searched.insert(prepared.drives.waveforms.begin(), prepared.drives.waveforms.end());
+  return prepared.driven(prepared.in_drive_order(searched));
+}
+
+struct Arrival {
+  double time = std::numeric_limits<double>::quiet_NaN(), velocity = time;
+};
+
+Arrival arrival(const PreparedScene& prepared, const std::map<std::string, Waveform>& searched, Actuator actuator,
+                double window) {
+  const ClosingOptions options{.duration = window, .tolerance = std::min(prepared.tolerance, 1e-8), .after_contact = 0};
+  const Trajectory run = simulate_closing(prepared.model, driven(prepared, searched, plain_step(prepared, actuator)), options);
+  const Metrics m = metrics(run);
+  return {m.initial_contact_time, m.impact_velocity};
+}
+
+// One search for a least time: the problem, its best course so far, and what is told of it.
+class LeastTimeSearch {
+ public:
+  LeastTimeSearch(const PreparedScene& prepared, const LeastTimeOptions& options)
+      : prepared_(prepared), options_(options), flight_(prepared, options.actuator, options.peak) {
+    result_.permitted = options.impact_velocity;
+    if (options.actuator == Actuator::pzt) return;
+    const DriverLimits& limits = prepared.drives.limits.at(searched_electrode(prepared.scene.device));
+    result_.peak = std::min(options.peak, std::max(std::abs(limits.max_voltage), std::abs(limits.min_voltage)));
+  }
+
+  LeastTime from_swing() {
+    std::optional<ControlledCourse> swing = flight_.swing(longest_time());
+    if (!swing) return ended(Status::no_contact, "full pull does not bring the switch to its contact");
+    return from(std::move(*swing), longest_time());
+  }
+
+  // Waveforms of courses ever nearer to rest, on the first knots and mesh; from the touch on they hold as the plain ones.
+  std::vector<std::map<std::string, Waveform>> ways_to_rest(const std::map<std::string, Waveform>& plain) {
+    std::vector<std::map<std::string, Waveform>> all;
+    std::optional<ControlledCourse> swing = flight_.swing(longest_time());
+    const std::optional<FreeFlight::Landing> landing = flight_.landing();
+    if (!swing || !landing) return all;
+    course_ = std::move(*swing);
+    pose(longest_time(), landing);
+    (void)come_to_rest(landing->state, [&] {
+      const LeastTime way{.waveforms = tables_of(flight_, course_), .course = course_};
+      all.push_back(with_catch(flight_, way, {}, plain));
+      options_.watch.tell("landings at rest to begin with", static_cast<double>(all.size()) / rest_rooms.size());
+    });
+    return all;
+  }
+
+  LeastTime from_start() {
+    result_.from_start = true;
+    const std::vector<Signal> signals = driven(prepared_, options_.start, plain_step(prepared_, options_.actuator));
+    std::optional<ControlledCourse> flown = flight_.flown(signals, first_knots, prepared_.duration);
+    if (!flown) return ended(Status::no_contact, "the waveform to start with does not bring the switch to its contact");
+    const double longest = 2 * flown->time * flight_.time_unit();
+    return from(std::move(*flown), longest);
+  }
+
+ private:
+  [[nodiscard]] double longest_time() const { return longest_swing * 2 * pi / prepared_.model.angular_frequencies()[0]; }
+
+  LeastTime from(ControlledCourse guess, double longest) {
+    course_ = std::move(guess);
+    std::optional<FreeFlight::Landing> landing;
+    if (options_.at_rest) {
+      landing = flight_.landing();
+      if (!landing) return ended(Status::no_contact, "the hold levels do not keep the switch closed");
+    }
+    pose(longest, landing);
+    if (landing) {
+      const Status status = come_to_rest(landing->state);
+      if (status != Status::done) return ended(status, status == Status::interrupted ? std::string() : result_.message);
+    }
+    if (const Status status = improve_with_finer_knots(); status != Status::done) return ended(status, result_.message);
+    return refine_until_simulated();
+  }
+
+  LeastTime ended(Status status, std::string why) {
+    result_.status = status;
+    result_.message = std::move(why);
+    return result_;
+  }
+
+  void pose(double longest, const std::optional<FreeFlight::Landing>& landing) {
+    const double speed = options_.impact_velocity / flight_.speed_unit();
+    const double fastest = prepared_.model.angular_frequencies().maxCoeff() * flight_.time_unit();
+    problem_ = {
+        .system = &flight_,
+        .start = flight_.start(),
+        .bounds = flight_.bounds(),
+        .on_the_way = {{.row = flight_.tip(), .upper = 1}},
+        .at_the_end = {{.row = flight_.tip(), .lower = 1, .upper = 1}, {.row = flight_.tip_speed(), .lower = 0, .upper = speed}},
+        .shortest = course_.time / 10,
+        .longest = longest / flight_.time_unit(),
+        .knots = uniform_knots(first_knots),
+        .longest_piece = piece_angle / (fastest * course_.time),
+        .stop = options_.watch.stop};
+    // A beam stays at rest where the drives have come to the levels under which it does.
+    for (Index k = 0; landing && flight_.ramps() && k < flight_.controls(); ++k)
+      problem_.bounds[static_cast<std::size_t>(k)].after = landing->controls[k];
+  }
+
+  // A failure leaves the last course.
+  Status improve() {
+    ControlledCourse course = solve(problem_, course_);
+    result_.message = course.message;
+    if (course.interrupted) return Status::interrupted;
+    if (!course.converged) return Status::numerical_failure;
+    course_ = std::move(course);
+    return Status::done;
+  }
+
+  Status improve_with_finer_knots() {
+    const double finest = 1.0 / (first_knots * std::exp2(refinements));
+    for (;;) {
+      if (const Status status = improve(); status != Status::done) return status;
+      std::vector<double> knots = refined_knots(course_, problem_.bounds, finest);
+      if (knots.size() == problem_.knots.size()) return Status::done;
+      problem_.knots = std::move(knots);
+    }
+  }
+
+  // The modes are brought to rest little by little: at once Ipopt finds no way.
+  Status come_to_rest(const VectorXd& landed, const std::function<void()>& nearer = {}) {
+    const Index n = flight_.states();
+    for (Index r = 0; r < n; ++r) problem_.at_the_end.push_back({.row = VectorXd::Unit(n, r)});
+    const auto leave = [&](double room) {
+      for (Index r = 0; r < n; ++r) {
+        StateCondition& mode = problem_.at_the_end[static_cast<std::size_t>(r) + 2];
+        mode.lower = landed[r] - room;
+        mode.upper = landed[r] + room;
+      }
+    };
+    const long usual = problem_.max_iterations;
+    for (const double room : rest_rooms) {
+      leave(room);
+      const Status status = improve();
+      if (status == Status::interrupted) return status;
+      if (status != Status::done) break;
+      result_.room = room;
+      problem_.max_iterations = nearing_iterations;
+      if (nearer) nearer();
+    }
+    problem_.max_iterations = usual;
+    if (std::isnan(result_.room)) return Status::numerical_failure;
+    leave(result_.room);
+    return Status::done;
+  }
+
+  // On finer meshes, until a simulation of the waveform touches when and as softly as the optimum does.
+  LeastTime refine_until_simulated() {
+    for (int mesh = 1;; ++mesh) {
+      result_.course = course_;
+      result_.time = course_.time * flight_.time_unit();
+      result_.impact_velocity = flight_.tip_speed().dot(course_.states.col(course_.states.cols() - 1)) * flight_.speed_unit();
+      result_.waveforms =
+          with_catch(flight_, {.waveforms = tables_of(flight_, course_), .course = course_}, {.end = result_.time}, {});
+      const Arrival touch = arrival(prepared_, result_.waveforms, options_.actuator, 2 * result_.time);
+      result_.simulated_time = touch.time;
+      result_.simulated_velocity = touch.velocity;
+      const double apart = std::abs(touch.time - result_.time);
+      const double missed = apart * std::max(touch.velocity, result_.impact_velocity);
+      bool near = apart <= agreement * result_.time || missed <= agreement * prepared_.scene.device.gap.contact;
+      const bool as_soft = touch.velocity <= result_.impact_velocity + softness * options_.impact_velocity;
+      // A contact point that comes to rest beside its plane may graze it before.
+      near = near || (options_.at_rest && as_soft && touch.time < result_.time);
+      if ((near && as_soft) || (near && mesh == most_meshes)) return ended(Status::done, {});
+      if (mesh == most_meshes) return ended(Status::numerical_failure, "a simulation of the waveform touches at another time");
+      problem_.longest_piece /= 2;
+      const Status status = improve();
+      if (status != Status::done) return ended(near && status != Status::interrupted ? Status::done : status, {});
+    }
+  }
+
+  const PreparedScene& prepared_;
+  const LeastTimeOptions& options_;
+  FreeFlight flight_;
+  ControlProblem problem_;
+  ControlledCourse course_;
+  LeastTime result_;
+};
+
+}  // namespace
+
+LeastTime least_time(const PreparedScene& prepared, const LeastTimeOptions& options) {
+  require(options.impact_velocity > 0 && std::isfinite(options.impact_velocity),
+          "the permitted impact velocity must be positive");
+  LeastTime swung = LeastTimeSearch(prepared, options).from_swing();
+  if (options.start.empty() || options.watch.stopped()) return swung;
+  LeastTime started = LeastTimeSearch(prepared, options).from_start();
+  const bool better = started.status == Status::done && (swung.status != Status::done || started.time < swung.time);
+  return better ? started : swung;
+}
+
+std::vector<std::map<std::string, Waveform>> landings_at_rest(const PreparedScene& prepared, Actuator actuator,
+                                                              double impact_velocity, const Watch& watch) {
+  constexpr int most_modes_followed = 4;
+  constexpr std::array ramps = {1.0 / 9, 1.0 / 18};  // periods of the first mode from one end of a range to the other
+  const double period = 2 * pi / prepared.model.angular_frequencies()[0];
+  std::vector<std::map<std::string, Waveform>> found;
+  if (prepared.model.modes() > most_modes_followed) return found;
+  for (std::size_t k = 0; k < ramps.size() && !watch.stopped(); ++k) {
+    const double ramp = ramps[k];
+    const Watch own{.stop = watch.stop, .progress = [&](std::string_view what, double part) {
+                      watch.tell(what, (static_cast<double>(k) + part) / ramps.size());
+                    }};
+    own.tell("landings at rest to begin with", 0);
+    PreparedScene smooth = prepared;
+    for (auto& [name, limits] : smooth.drives.limits)
+      limits.max_slew = std::min(limits.max_slew, (limits.max_voltage - limits.min_voltage) / (ramp * period));
+    try {
+      const LeastTimeOptions options{.actuator = actuator, .impact_velocity = impact_velocity, .watch = own};
+      std::ranges::move(LeastTimeSearch(smooth, options).ways_to_rest(plain_step(prepared, actuator)), std::back_inserter(found));
+    } catch (const InvalidInput&) {
+      return {};  // free_flight.h says of what
+    }
+  }
+  return found;
+}
+
+namespace {
+
+// A catch that begins at once presses a beam whose modes are just swinging back from the contact: times that of the touch.
+constexpr std::array catch_delays = {0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04};
+
+// What can follow the touch of a way to it.
+class AfterTouch {
+ public:
+  AfterTouch(const PreparedScene& prepared, const LeastTime& way, Actuator actuator)
+      : prepared_(prepared),
+        flight_(prepared, actuator, std::isfinite(way.peak) ? way.peak : std::numeric_limits<double>::infinity()),
+        plain_(plain_step(prepared, actuator)),
+        way_(way),
+        until_touch_(way) {
+    until_touch_.waveforms = tables_of(flight_, way.course);
+  }
+
+  // The one that rebounds least, of those that begin after a delay and end up to a few times the time of the touch later.
+  [[nodiscard]] Catch best_catch(double delay, const Watch& watch) const {
+    constexpr double longest = 3, step = 0.1;  // times that of the touch
+    const double period = 2 * pi / prepared_.model.angular_frequencies()[0];
+    Catch best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k * step <= longest && !watch.stopped() && least > 0; ++k) {
+      const Catch other{.begin = delay * way_.time, .end = (delay + k * step) * way_.time};
+      const std::vector<Signal> signals = driven(prepared_, with_catch(flight_, until_touch_, other, plain_), plain_);
+      const ClosingOptions options{.duration = way_.time + other.end + period, .tolerance = catch_tolerance};
+      const Metrics m = metrics(simulate_closing(prepared_.model, signals, options), prepared_.scene.metrics);
+      if (m.major_bounce_height < least) best = other, least = m.major_bounce_height;
+    }
+    return best;
+  }
+
+  [[nodiscard]] LimitLanding landing(const Catch& pulled) const {
+    std::map<std::string, Waveform> all = with_catch(flight_, until_touch_, pulled, plain_);
+    all.insert(plain_.begin(), plain_.end());
+    PreparedScene scene = read_back(with_waveforms(prepared_, all), "best.toml", prepared_);
+    Closing closing = simulate(scene, false);
+    const auto soft = [](const Metrics& m) { return m.status == Status::done && m.settled && m.bounce_count == 0; };
+    LimitLanding landing{.way = way_,
+                         .catch_delay = pulled.begin,
+                         .catch_time = pulled.end,
+                         .scene = std::move(scene),
+                         .closing = std::move(closing)};
+    if (!soft(landing.closing.metrics)) return landing;
+    landing.checks = confirm(landing.scene);
+    landing.bounce_free =
+        std::ranges::all_of(landing.checks, [&](const ConfirmingRun& c) { return c.varied == Varied::gas || soft(c.metrics); });
+    return landing;
+  }
+
+ private:
+  const PreparedScene& prepared_;
+  FreeFlight flight_;
+  std::map<std::string, Waveform> plain_;
+  const LeastTime& way_;
+  LeastTime until_touch_;  // with waveforms that end there
+};
+
+bool goes_before(const LimitLanding& a, const std::optional<LimitLanding>& b) {
+  if (!b) return true;
+  if (a.bounce_free != b->bounce_free) return a.bounce_free;
+  const Metrics &own = a.closing.metrics, &other = b->closing.metrics;
+  return a.bounce_free ? own.permanent_contact_time < other.permanent_contact_time
+                       : own.major_bounce_height < other.major_bounce_height;
+}
+
+// All least times and landings of one limit, each told as it begins.
+class LimitStudy {
+ public:
+  LimitStudy(Limit& result, const Watch& watch)
+      : result_(result),
+        watch_(watch),
+        usual_{.actuator = result.options.actuator,
+               .impact_velocity = result.impact_velocity,
+               .start = result.options.start,
+               .watch = watch},
+        parts_(static_cast<double>(3 + (may_be_quicker() ? quicker.size() : 0) + (result.options.curves ? speeds.size() : 0) +
+                                   (has_peaks() ? peaks.size() : 0))) {}
+
+  void run() {
+    if (next("least time of a touch")) result_.touch = at_speed(1);
+    if (next("a landing after it")) land(result_.touch, true);
+    for (const double more : quicker) {
+      if (may_be_quicker() && next("quicker landings")) land(at_speed(more), true);
+    }
+    if (next("least time at rest")) {
+      LeastTimeOptions at_rest = usual_;
+      at_rest.at_rest = true;
+      result_.rest = least_time(result_.given, at_rest);
+      land(result_.rest, false);
+    }
+    if (result_.options.curves) {
+      for (const double share : speeds) {
+        if (next("over the permitted speed")) result_.over_velocity.push_back(at_speed(share));
+      }
+    }
+    if (has_peaks()) over_peaks();
+  }
+
+ private:
+  static constexpr std::array quicker = {10.0, 3.0};  // times the permitted speed
+  static constexpr std::array speeds = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
+  static constexpr std::array peaks = {0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95};
+
+  // A speed that was asked for holds for the landing too.
+  [[nodiscard]] bool may_be_quicker() const { return !result_.options.impact_velocity; }
+  [[nodiscard]] bool has_peaks() const { return result_.options.curves && result_.options.actuator != Actuator::pzt; }
+
+  bool next(std::string_view what) {
+    watch_.tell(what, done_++ / parts_);
+    return !watch_.stopped();
+  }
+
+  const LeastTime& at_speed(double share) {
+    const auto found = known_.find(share);
+    if (found != known_.end()) return found->second;
+    LeastTimeOptions other = usual_;
+    other.impact_velocity *= share;
+    return known_.emplace(share, least_time(result_.given, other)).first->second;
+  }
+
+  // Of several catches the first whose landing is confirmed.
+  void land(const LeastTime& way, bool catches) {
+    if (way.status != Status::done) return;
+    const AfterTouch after(result_.given, way, result_.options.actuator);
+    for (const double delay : catch_delays) {
+      if (watch_.stopped()) return;
+      LimitLanding landing = after.landing(catches ? after.best_catch(delay, watch_) : Catch{});
+      const bool is_last = !catches || landing.bounce_free;
+      if (goes_before(landing, result_.landing)) result_.landing = std::move(landing);
+      if (is_last) return;
+    }
+  }
+
+  void over_peaks() {
+    for (const double share : peaks) {
+      if (!next("over the peak voltage")) return;
+      LeastTimeOptions lower = usual_;
+      lower.peak = share * result_.touch.peak;
+      result_.over_peak.push_back(least_time(result_.given, lower));
+    }
+    if (!watch_.stopped()) result_.over_peak.push_back(result_.touch);
+  }
+
+  Limit& result_;
+  const Watch& watch_;
+  LeastTimeOptions usual_;
+  double parts_, done_ = 0;
+  std::map<double, LeastTime> known_;  // by the speed over the permitted one
+};
+
+}  // namespace
+
+namespace {
+
+// An electrode with a face on either side whose far face is the nearer one pushes the switch off its contact at any voltage.
+void refuse_what_pulls_away(const PreparedScene& given, Actuator actuator) {
+  if (actuator == Actuator::pzt || !has_pulling_electrode(given.scene.device)) return;
+  const std::size_t k = searched_drive(given.scene.device);
+  if (static_pull_in(given.model, k, bias_of(given.scene, k)).status != Status::no_contact) return;
+  given.scene.file.refuse("electrode." + given.scene.device.electrodes[k].name + ".gap", pulls_away);
+}
+
+}  // namespace
+
+Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& watch) {
+  PreparedScene given = prepare_and_choose(file, true, watch);
+  require(given.model.has_contact(), "limit needs a [contact] section: without contact there is nothing to land on");
+  refuse_what_pulls_away(given, options.actuator);
+  const std::vector<std::string> names = given.drive_names();
+  for (const auto& [name, waveform] : options.start) {
+    require(std::find(names.begin(), names.end(), name) != names.end(),
+            fmt::format("the waveform to start with is of a drive \"{}\", which the switch does not have", name));
+  }
+  const std::string elsewhere = begins_elsewhere(options.start, options.before, given);
+  require(elsewhere.empty(), [&] { return "the waveform to start with: " + elsewhere; });
+  Limit result{.given = std::move(given), .options = options};
+  const PreparedScene& prepared = result.given;
+  result.closed_state = closed_state(prepared, prepared.signals());
+  result.hold_warning = hold_warning(prepared.model, prepared.signals(), result.closed_state);
+  result.step =
+      simulate(read_back(with_waveforms(prepared, plain_step(prepared, options.actuator)), "step.toml", prepared), false, watch)
+          .metrics;
+  watch.throw_if_stopped();
+  constexpr double soft = 0.01;  // of the plain step's impact velocity
+  require_request(options.impact_velocity || std::isfinite(result.step.impact_velocity),
+                  [] { return "the plain step does not touch: give " + requested("impact-velocity"); });
+  result.impact_velocity = options.impact_velocity.value_or(soft * result.step.impact_velocity);
+
+  LimitStudy(result, watch).run();
+  result.interrupted = watch.stopped();
+  return result;
+}
+
+}  // namespace softland

@@ -1,0 +1,390 @@
+#include "studies/search/opening.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "base/engineering.h"
+#include "base/executor.h"
+#include "base/require.h"
+#include "config/assumed_spread.h"
+#include "model/closing.h"
+#include "model/constants.h"
+#include "model/pull_in.h"
+#include "sampling/statistics.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/closed_state.h"
+#include "studies/closing/simulate.h"
+#include "studies/devices/ensemble.h"
+#include "studies/search/search_setting.h"
+#include "studies/search/verification.h"
+
+namespace softland {
+namespace {
+
+using Line = std::vector<std::pair<double, double>>;  // [s, V]
+
+constexpr int pulses = 2;                   // of every drive that brakes
+constexpr double time_share = 0.3;          // of the time in periods, beside the vibration in contact gaps
+constexpr double outside_share = 5;         // of the vibration beyond the band, on top
+constexpr double stays_closed = 10;         // cost of a switch that stays closed
+constexpr double touched_again = 0.5;       // cost of every touch after the switch has let go
+constexpr double opening_tolerance = 1e-5;  // of the integrator
+constexpr double seen_for = 1;              // periods after the drives stand in which a candidate's vibration is measured
+constexpr double watched_for = 3;           // the same, at least, of a run that is believed
+
+// The source of a drive has stood at its hold level for so many of its time constants.
+constexpr double settled_after = 50;
+
+// What follows a breakpoint of a signal that stood still before it.
+Signal later_part(const Signal& signal, double from) {
+  std::vector<SignalPiece> pieces;
+  const std::size_t first = signal.piece_at(from);
+  for (std::size_t k = first; k < signal.pieces().size(); ++k) {
+    SignalPiece piece = signal.pieces()[k];
+    if (k == first && piece.begin < from) piece = {.begin = from, .value = signal.voltage(from)};
+    piece.begin -= from;
+    pieces.push_back(std::move(piece));
+  }
+  return Signal(std::move(pieces));
+}
+
+// A drive that may brake, and its parameters among those of a point.
+struct Brake {
+  std::size_t drive = 0;
+  std::size_t first = 0;  // of its parameters: edge, then wait, level, duration of every pulse
+  DriverLimits limits;
+};
+
+class ReleaseSearch {
+ public:
+  ReleaseSearch(const PreparedScene& given, const OpeningOptions& options)
+      : given_(given),
+        options_(options),
+        gap_(given.scene.device.gap.contact),
+        period_(2 * pi / given.model.angular_frequencies()[0]),
+        names_(given.drive_names()),
+        told_holds_(hold_levels(signals_of(given.in_drive_order(given.drives.waveforms)))) {
+    add_brakes();
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      told_plain_.push_back({{0, told_holds_[k]}, {fall_time(k, told_holds_[k]), 0}});
+      plain_.push_back(driven(k, told_plain_.back()));
+    }
+  }
+
+  /// Every drive to 0 V at once.
+  [[nodiscard]] const std::vector<Signal>& plain() const { return plain_; }
+  [[nodiscard]] std::vector<Signal> signals(std::span<const double> x) const {
+    std::vector<Signal> all = plain_;
+    for (const Brake& brake : brakes_) all[brake.drive] = driven(brake.drive, points(brake, x));
+    return all;
+  }
+
+  /// The scene with what its drives are told, each from its hold level on; of no point that of the plain opening.
+  [[nodiscard]] SceneFile scene(std::span<const double> x) const {
+    std::vector<Line> told = told_plain_;
+    for (const Brake& brake : brakes_) {
+      if (!x.empty()) told[brake.drive] = points(brake, x);
+    }
+    std::map<std::string, Waveform> waveforms;
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      if (names_[k] == dispersion_drive) continue;  // which no source drives
+      Table table;
+      for (const auto& [time, voltage] : told[k]) {
+        table.time.push_back(time);
+        table.voltage.push_back(voltage);
+      }
+      waveforms[names_[k]] = std::move(table);
+    }
+    SceneFile file = with_waveforms(given_, waveforms);
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      if (waveforms.contains(names_[k])) file.set(fmt::format("waveform.{}.before=\"{} V\"", names_[k], told_holds_[k]));
+    }
+    return file;
+  }
+
+  /// An opening of a switch, which may be a richer one of the same scene.
+  [[nodiscard]] Opening open(const Switch& model, std::span<const double> closed, std::vector<Signal> signals, double tolerance,
+                             double window, const std::atomic<bool>* stop = nullptr) const {
+    Opening o{.signals = std::move(signals), .voltages_end = 0, .trajectory = {}, .figures = {}};
+    for (const Signal& one : o.signals) o.voltages_end = std::max(o.voltages_end, one.breakpoints().back());
+    window =
+        std::isfinite(window) ? std::max(window, o.voltages_end + watched_for * period_) : o.voltages_end + seen_for * period_;
+    o.trajectory =
+        simulate_closing(model, o.signals, {.duration = window, .tolerance = tolerance, .begins_closed = closed, .stop = stop});
+    o.figures = release_figures(o.trajectory, {.open_position = model.contact_deflection(model.rest()->data()),
+                                               .width = options_.band * gap_,
+                                               .drives_end = o.voltages_end});
+    return o;
+  }
+
+  [[nodiscard]] double cost(const Opening& o) const {
+    const OpeningFigures& f = o.figures;
+    if (o.trajectory.status != Status::done) return OpeningFigures::unset;
+    if (!std::isfinite(f.release_time)) return stays_closed;
+    const double time = std::isfinite(f.settling_time) ? f.settling_time : std::max(o.voltages_end, f.release_time);
+    const double outside = std::max(0.0, f.residual_vibration / gap_ - options_.band);
+    return f.residual_vibration / gap_ + outside_share * outside + time_share * time / period_ + touched_again * f.touches;
+  }
+
+  [[nodiscard]] OptimizerResult run(std::span<const double> closed, const Watch& watch) const {
+    std::atomic<long> done = 0;
+    Problem problem;
+    problem.variables = variables_;
+    problem.starts = starts();
+    problem.objective = [&](std::span<const double> x) {
+      const double value = cost(open(given_.model, closed, signals(x), opening_tolerance, OpeningFigures::unset, watch.stop));
+      ++done;
+      return value;
+    };
+    OptimizerOptions setting{.max_evaluations = options_.max_evaluations, .seed = options_.seed, .jobs = options_.jobs};
+    setting.stop = watch.stop;
+    setting.on_evaluation = [&](const Evaluation&) {
+      watch.tell("waveforms", static_cast<double>(done) / static_cast<double>(options_.max_evaluations));
+    };
+    return minimize(problem, setting);
+  }
+
+  [[nodiscard]] std::map<std::string, double> named(const std::vector<double>& x) const {
+    std::map<std::string, double> all;
+    for (std::size_t k = 0; k < x.size(); ++k) all[variables_[k].name] = x[k];
+    return all;
+  }
+
+ private:
+  void add_brakes() {
+    const Device& device = given_.scene.device;
+    const bool electrodes = options_.actuator != Actuator::pzt, piezo = options_.actuator != Actuator::electrostatic;
+    const std::string asked = "release " + requested("actuator");
+    require_request(!electrodes || !device.electrodes.empty(),
+                    [&] { return asked + " electrostatic|both needs an electrode, and the scene has none"; });
+    require_request(!piezo || device.piezo, [&] { return asked + " pzt|both needs a [piezo] section, and the scene has none"; });
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      const bool is_electrode = k < device.electrodes.size();
+      if (!(is_electrode ? electrodes : piezo && names_[k] == piezo_drive)) continue;
+      const auto limits = given_.drives.limits.find(names_[k]);
+      if (is_electrode && limits == given_.drives.limits.end()) continue;
+      require_request(limits != given_.drives.limits.end(), [&] {
+        return asked + " pzt|both needs limits for the piezo: write min_voltage and max_voltage under [driver.piezo]";
+      });
+      add_brake(k, names_[k], limits->second);
+    }
+    require(!brakes_.empty(), "release needs a drive with limits: write max_voltage under [driver.NAME] of an electrode");
+  }
+
+  void add_brake(std::size_t drive, const std::string& name, const DriverLimits& limits) {
+    brakes_.push_back({.drive = drive, .first = variables_.size(), .limits = limits});
+    const double span = std::max(std::abs(limits.min_voltage), std::abs(limits.max_voltage));
+    const double shortest = std::max(0.005 * period_, std::max(std::abs(told_holds_[drive]), span) / limits.max_slew);
+    variables_.push_back({name + ".edge", shortest, std::max(0.1 * period_, 2 * shortest)});
+    for (int k = 1; k <= pulses; ++k) {
+      variables_.push_back({fmt::format("{}.wait_{}", name, k), 0, period_});
+      variables_.push_back({fmt::format("{}.level_{}", name, k), limits.min_voltage, limits.max_voltage});
+      variables_.push_back({fmt::format("{}.duration_{}", name, k), 0.01 * period_, period_});
+    }
+  }
+
+  // One drive brakes while the others stay at 0 V: by one pulse, or pushes first and brakes then, at different times and levels.
+  [[nodiscard]] std::vector<std::vector<double>> starts() const {
+    std::vector<std::vector<double>> all;
+    for (const Brake& b : brakes_) {
+      const double most = b.limits.max_voltage, least = b.limits.min_voltage;
+      for (const double duration : {0.1, 0.25}) {
+        for (const double level : {most, most / 2, least}) {
+          if (level == 0) continue;
+          for (const double wait : {0.1, 0.2, 0.3}) all.push_back(start(b, {wait, level, duration, 0.1, 0, 0.1}));
+        }
+        if (!(least < 0)) continue;
+        for (const double first : {0.1, 0.25}) {
+          all.push_back(start(b, {0, most, first, 0, least, duration}));
+          all.push_back(start(b, {0, least, first, 0, most, duration}));
+        }
+      }
+    }
+    return all;
+  }
+  // Times in periods.
+  [[nodiscard]] std::vector<double> start(const Brake& braking, const std::array<double, 6>& pulse_train) const {
+    std::vector<double> x;
+    for (const Brake& b : brakes_) {
+      const bool brakes = b.drive == braking.drive;
+      const auto& [wait, level, duration, next_wait, next_level, next_duration] = pulse_train;
+      x.insert(x.end(), {variables_[b.first].lower, wait * period_, brakes ? level : 0, duration * period_, next_wait * period_,
+                         brakes ? next_level : 0, next_duration * period_});
+    }
+    return x;
+  }
+
+  [[nodiscard]] Line points(const Brake& brake, std::span<const double> x) const {
+    const double edge = x[brake.first];
+    double t = edge;
+    Line all{{0, told_holds_[brake.drive]}, {t, 0}};
+    for (std::size_t k = 0; k < pulses; ++k) {
+      const auto own = x.subspan(brake.first + 1 + 3 * k, 3);
+      const double level = own[1];
+      for (const auto& [lasts, value] : {std::pair{own[0], 0.0}, {edge, level}, {own[2], level}, {edge, 0.0}}) {
+        t += lasts;
+        all.emplace_back(t, value);
+      }
+    }
+    return all;
+  }
+
+  [[nodiscard]] double fall_time(std::size_t k, double from) const {
+    const auto limits = given_.drives.limits.find(names_[k]);
+    return limits == given_.drives.limits.end() ? 0 : std::abs(from) / limits->second.max_slew;
+  }
+
+  // What the source of drive k gives when it is told these points after it has stood at the first one for long.
+  [[nodiscard]] Signal driven(std::size_t k, Line points) const {
+    const DriverModel source = given_.source(k);
+    const SourceErrors errors = given_.errors(k);
+    if (source.is_ideal() && errors.are_none()) return Signal::piecewise_linear(points);
+    double stands = period_ + errors.delay;
+    if (source.bandwidth) stands += settled_after / (2 * pi * *source.bandwidth);
+    stands += settled_after * source.charging_time();
+    if (source.sample_rate) stands = std::ceil(stands * *source.sample_rate) / *source.sample_rate;
+    for (auto& [time, voltage] : points) time += stands;
+    points.insert(points.begin(), {0, points.front().second});
+    return later_part(given_.driven(k, Signal::piecewise_linear(points)), stands);
+  }
+
+  const PreparedScene& given_;
+  const OpeningOptions& options_;
+  double gap_, period_;
+  std::vector<std::string> names_;  // of the drives
+  std::vector<double> told_holds_;  // [V]
+  std::vector<Line> told_plain_;
+  std::vector<Signal> plain_;
+  std::vector<Brake> brakes_;
+  std::vector<Variable> variables_;
+};
+
+bool is_open_with_drives(const OpeningFigures& f, double band) {
+  return f.status == Status::done && f.residual_vibration <= band;
+}
+
+// Sooner open for good; with equal ends, or none, by the vibration that is left.
+bool better(const OpeningFigures& a, const OpeningFigures& b) {
+  if (!std::isfinite(a.release_time)) return false;
+  if (!std::isfinite(b.release_time)) return true;
+  const bool a_settles = std::isfinite(a.settling_time), b_settles = std::isfinite(b.settling_time);
+  if (a_settles != b_settles) return a_settles;
+  return a_settles ? a.settling_time < b.settling_time : a.residual_vibration < b.residual_vibration;
+}
+
+double quantile_95(const std::vector<OpeningFigures>& openings, double OpeningFigures::*figure) {
+  std::vector<double> values;
+  for (const OpeningFigures& of_device : openings) {
+    const double value = of_device.*figure;
+    values.push_back(std::isnan(value) ? std::numeric_limits<double>::infinity() : value);
+  }
+  return sample_quantile(values, 0.95);
+}
+
+DeviceOpenings summarised(const std::vector<OpeningFigures>& openings, double band) {
+  const auto share = [&](const auto& holds) {
+    return static_cast<double>(std::ranges::count_if(openings, holds)) / static_cast<double>(openings.size());
+  };
+  return {.open = share([](const OpeningFigures& f) { return f.status == Status::done; }),
+          .in_band = share([&](const OpeningFigures& f) { return is_open_with_drives(f, band); }),
+          .settling_time = quantile_95(openings, &OpeningFigures::settling_time),
+          .residual_vibration = quantile_95(openings, &OpeningFigures::residual_vibration),
+          .overshoot = quantile_95(openings, &OpeningFigures::overshoot)};
+}
+
+// Both openings on devices; none where no device is held closed.
+std::optional<OpeningsOnDevices> on_devices(const ReleaseSearch& search, const OpeningResult& r, const Watch& watch) {
+  SceneFile file = r.given.scene.file;
+  OpeningsOnDevices found{.spread_assumed = assume_spread(file), .plain = {}, .best = {}};
+  const PreparedScene nominal = found.spread_assumed ? prepare(file) : r.given;
+  found.spread = nominal.scene.spread;
+  const Ensemble ensemble(nominal, r.options.devices, r.options.seed);
+  std::vector<std::optional<std::pair<OpeningFigures, OpeningFigures>>> of_device(ensemble.size());
+  std::atomic<std::size_t> done = 0;
+  run_tasks(
+      ensemble.size(), r.options.jobs,
+      [&](std::size_t k) {
+        const SampledDevice device = DeviceBuilder(ensemble).device(k);
+        watch.tell("devices", static_cast<double>(++done) / static_cast<double>(ensemble.size()));
+        if (!device.model || !device.model->rest()) return;
+        const std::optional<ClosedEquilibrium> closed = closed_equilibrium(*device.model, r.holds);
+        if (!keeps_closed(*device.model, closed)) return;
+        const std::span<const double> at = closed->coordinates();
+        const auto opened = [&](const std::vector<Signal>& signals) {
+          return search.open(*device.model, at, signals, opening_tolerance, r.window, watch.stop).figures;
+        };
+        of_device[k].emplace(opened(r.plain.signals), opened(r.best->signals));
+      },
+      watch.stop);
+  if (watch.stopped()) return std::nullopt;
+  std::vector<OpeningFigures> plain, best;
+  for (const auto& one : of_device) {
+    if (!one) continue;
+    plain.push_back(one->first);
+    best.push_back(one->second);
+  }
+  if (best.empty()) return std::nullopt;
+  found.devices = best.size();
+  found.plain = summarised(plain, r.band);
+  found.best = summarised(best, r.band);
+  return found;
+}
+
+}  // namespace
+
+OpeningResult search_opening(const SceneFile& file, const OpeningOptions& options, const Watch& watch) {
+  require(options.band > 0 && options.band < 1, fmt::format("band = {}: must be above 0 and below 1 contact gap", options.band));
+  OpeningResult r{.given = prepare_and_choose(file, true, watch), .options = options};
+  const PreparedScene& given = r.given;
+  require(given.model.has_contact(), "release needs a [contact] section to open from, and the scene has none");
+  require(given.model.rest().has_value(), "with every drive at 0 V the switch has no stable open state: it cannot be opened");
+  const ReleaseSearch search(given, options);
+  const double gap = given.scene.device.gap.contact;
+  r.holds = hold_levels(given.signals());
+  r.open_position = given.model.contact_deflection(given.model.rest()->data());
+  r.band = options.band * gap;
+  r.window = given.duration;
+  const std::optional<ClosedEquilibrium> closed = closed_equilibrium(given.model, r.holds);
+  require(keeps_closed(given.model, closed), [&] {
+    const std::string unstable = warning(closed_state(given, given.signals()));
+    return unstable.empty() ? std::string(not_held) : unstable;
+  });
+  r.contact_force = closed->contact_force;
+  const auto open = [&](std::vector<Signal> signals) {
+    return search.open(given.model, closed->coordinates(), std::move(signals), given.tolerance, r.window, watch.stop);
+  };
+  r.plain = open(search.plain());
+  watch.throw_if_stopped();
+  r.search = search.run(closed->coordinates(), watch);
+  r.interrupted = watch.stopped();
+  r.scene = search.scene(r.search.x);
+  if (r.search.x.empty()) return r;
+
+  r.best = search.open(given.model, closed->coordinates(), search.signals(r.search.x), given.tolerance, r.window);
+  r.parameters = search.named(r.search.x);
+  const auto check = [&](const std::string& name, const Switch& model, double tolerance) {
+    const std::optional<ClosedEquilibrium> its = closed_equilibrium(model, r.holds);
+    OpeningFigures figures{.status = Status::numerical_failure};
+    if (its && model.rest()) figures = search.open(model, its->coordinates(), r.best->signals, tolerance, r.window).figures;
+    r.checks.push_back({name, figures});
+  };
+  check("tolerance " + engineering(tight_tolerance, ""), given.model, tight_tolerance);
+  for (const Device& richer : with_more_modes(given.scene.device))
+    check(fmt::format("modes {}", richer.structure.modes), Switch(richer, quadrature_of_richer(given.quadrature, richer)),
+          given.tolerance);
+  r.better = better(r.best->figures, r.plain.figures);
+  const auto meets_goal = [&](const auto& run) { return is_open_with_drives(run.figures, r.band); };
+  r.goal_met = meets_goal(*r.best);
+  r.confirmed = r.goal_met && std::all_of(r.checks.begin(), r.checks.end(), meets_goal);
+  if (r.options.devices > 0 && !r.interrupted) r.on_devices = on_devices(search, r, watch);
+  r.interrupted = watch.stopped();
+  return r;
+}
+
+}  // namespace softland

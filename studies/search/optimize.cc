@@ -1,0 +1,514 @@
+#include "studies/search/optimize.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <iterator>
+#include <utility>
+
+#include "base/random.h"
+#include "studies/closing/plain_step.h"
+#include "studies/search/family_search.h"
+#include "studies/search/joint_swings.h"
+#include "studies/search/limit.h"
+#include "studies/search/modes_of_search.h"
+#include "studies/search/search_setting.h"
+#include "studies/search/verification.h"
+
+namespace softland {
+namespace {
+
+constexpr std::size_t most_candidates = 8;  // of the search, verified at the most
+constexpr std::size_t most_sure = 4;        // more, where those did not stand up
+constexpr std::size_t most_of_family = 4;   // of each family, where none was confirmed
+constexpr long fewest_for_landings = 1000;  // evaluations, for which landings at rest are worth their seconds
+constexpr double least_for_landings = 60;   // [s], likewise
+// When, in parts of a budget in seconds, the search ends, that with gentler edges, and that by the worst of beams: the rest is
+// for what verifies the winner.
+constexpr double end_of_search = 0.6, end_of_gentle = 0.75, end_of_worst = 0.85;
+constexpr double soft_touch = 0.01;            // of the plain step's impact velocity, at which they touch
+constexpr double distinct = 1.01;              // ratio of the costs of two candidates
+constexpr std::size_t families_sifted = 2;     // by the worst of beams
+constexpr long evaluations_of_the_worst = 50;  // of the budget so small a part, by the worst of beams
+constexpr long shortest_half = 100;            // evaluations that are not divided any more
+constexpr double opening = 0.6;                // share of the budget that several families divide before the best goes on
+
+// Of what is kept of the candidates: see Search::tried.
+constexpr std::size_t kept_best = 100, kept_of_ladder = 150, kept_of_family = 15;
+
+// The best of a search's improvements first, each distinctly worse than the one before: neighbours would fail for the same
+// reason.
+std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) {
+  std::vector<Evaluation> chosen;
+  for (auto e = improvements.rbegin(); e != improvements.rend() && chosen.size() < most_candidates; ++e) {
+    if (!(e->value < never_touched)) break;
+    if (chosen.empty() || e->value > distinct * chosen.back().value) chosen.push_back(*e);
+  }
+  return chosen;
+}
+
+// Of evaluations in order those that are better than all before them.
+std::vector<Evaluation> improvements_of(std::vector<Evaluation> log) {
+  std::vector<Evaluation> improvements;
+  for (Evaluation& e : log) {
+    if (std::isfinite(e.value) && (improvements.empty() || e.value < improvements.back().value))
+      improvements.push_back(std::move(e));
+  }
+  return improvements;
+}
+
+// One search: its families, and what is told of it while it runs.
+class Search {
+ public:
+  /// `options` may change until on_start has been called; `max_seconds` [s] instead of theirs.
+  Search(const std::vector<SearchSetting>& settings, const OptimizeOptions& options, double max_seconds)
+      : settings_(settings),
+        options_(options),
+        max_seconds_(max_seconds),
+        names_(families_of(options.family)),
+        progress_{.baseline_cost = settings.front().baseline_cost} {
+    const std::vector<std::string> variables = searched_names(settings, options.family);
+    std::size_t begin = 0;
+    for (const SearchSetting& setting : settings) {
+      const std::size_t size = setting.space.variables().size();
+      families_.emplace_back(setting, ParameterBlock(begin, size, variables.size()), options,
+                             [this](const Evaluation& e) { evaluated(e); });
+      begin += size;
+    }
+    if (options.on_start) options.on_start(variables);
+  }
+
+  // A scene that holds a landing already is refined, and so are landings that other searches have found: they are the first
+  // candidates, and the search starts there, or, from those of another family, at the nearest waveform of its own.
+  void begin() {
+    const SearchSetting& setting = settings_.front();
+    if (!setting.begins_plainly())
+      refine(setting.given.signals(), setting.given.drives.waveforms,
+             [&] { return prepared_with(setting.given, {}, setting.given); });
+    for (const StartingWaveforms& start : options_.starts) {
+      const std::map<std::string, Waveform> searched = setting.space.searched(start.waveforms);
+      refine(setting.given.driven(setting.drives(searched)), searched, [&] { return setting.prepared(searched); });
+    }
+    if (!is_divided(options_.max_evaluations)) begin_at_rest();
+    for (const auto& swing : joint_swings(setting.given, setting.space)) {
+      for (FamilySearch& family : families_) {
+        if (!family.point(swing).empty()) family.begin_at(swing);
+      }
+    }
+  }
+
+  void begin_at_rest() {
+    for (const auto& landing : landings_at_rest()) {
+      for (FamilySearch& family : families_) family.begin_at(landing);
+    }
+  }
+
+  // Of a search of one family.
+  void begin_at_point(const std::vector<double>& own) { families_.front().begin_at_point(own); }
+
+  // Of a piezo and of several drives, which can bring all modes to rest.
+  [[nodiscard]] std::vector<std::map<std::string, Waveform>> landings_at_rest() const {
+    const SearchSetting& setting = settings_.front();
+    const std::vector<DriveSearch>& shaped = setting.space.drives();
+    const bool can_rest = shaped.size() > 1 || shaped.front().drive == piezo_drive;
+    if (!can_rest || options_.max_evaluations < fewest_for_landings || max_seconds_ < least_for_landings) return {};
+    return softland::landings_at_rest(setting.within_limits(), options_.actuator,
+                                      soft_touch * setting.scale.step.largest_impact_velocity,
+                                      {.stop = options_.stop, .progress = options_.on_preparation});
+  }
+
+  OptimizerResult run() {
+    run_halves(options_.max_evaluations);
+    return all_;
+  }
+
+  // The landings that were given and the best of what the search came upon.
+  void verify(Verification& all) const {
+    for (const FoundWaveform& given : landings_) all.add(given);
+    std::vector<std::vector<double>> tried;
+    std::vector<long> numbers;  // theirs
+    const auto add = [&](const Evaluation& e) {
+      tried.push_back(e.x);
+      numbers.push_back(e.index);
+      all.add(found(e));
+    };
+    for (const Evaluation& e : candidates(all_.improvements)) {
+      add(e);
+      if (all.decided(e.value)) break;
+    }
+    // Neighbours ring the same modes that the scene does not have: other families may not.
+    for (std::size_t k = 0; k < families_.size() && families_.size() > 1 && !all.confirmed(); ++k) {
+      std::size_t added = 0;
+      for (const Evaluation& e : candidates(improvements_of(families_[k].log()))) {
+        if (added == most_of_family || all.decided(e.value)) break;
+        if (std::ranges::find(numbers, e.index) != numbers.end()) continue;
+        add(e);
+        ++added;
+      }
+    }
+    // Where the best by the own cost did not stand up to the full run, others that promise more than what did: the surest
+    // landings first, among which are the winners of a search for another target.
+    if (options_.target.has_own_cost()) {
+      for (const FamilySearch& family : families_) {
+        for (std::size_t k = 0; k < most_sure; ++k) {
+          const std::optional<Evaluation> e = family.surest_below(all.best_cost() / distinct, tried);
+          if (!e || !(e->value < never_touched)) break;
+          add(*e);
+        }
+      }
+    }
+  }
+
+  // Candidates of one family, the best first.
+  struct Promising {
+    std::size_t family = 0;
+    double least = std::numeric_limits<double>::infinity();
+    std::vector<std::vector<double>> points = {};  ///< of the family's own parameters
+  };
+
+  // By another cost, of every family that has any; that of the best first.
+  [[nodiscard]] std::vector<Promising> promising(const SearchSetting& other) const {
+    std::vector<Promising> all;
+    for (std::size_t k = 0; k < families_.size(); ++k) {
+      std::vector<std::pair<double, std::vector<double>>> own;
+      for (const Evaluation& e : candidates(improvements_of(families_[k].log()))) {
+        const std::map<std::string, Waveform> waveforms = families_[k].waveforms(e);
+        own.emplace_back(other.price(other.given.driven(other.drives(waveforms))).own, families_[k].own(e));
+      }
+      if (own.empty()) continue;
+      std::ranges::stable_sort(own, {}, &std::pair<double, std::vector<double>>::first);
+      all.push_back({.family = k, .least = own.front().first});
+      for (auto& [cost, point] : own) all.back().points.push_back(std::move(point));
+    }
+    std::ranges::stable_sort(all, {}, &Promising::least);
+    return all;
+  }
+
+  // The best of all candidates that touch, a ladder of those that cost more, and the best of every family.
+  [[nodiscard]] std::vector<TriedWaveform> tried() const {
+    std::vector<Evaluation> all;
+    for (const FamilySearch& family : families_) {
+      for (Evaluation& e : family.log()) {
+        if (e.value < never_touched) all.push_back(std::move(e));
+      }
+    }
+    std::ranges::stable_sort(all, {}, &Evaluation::value);
+    std::vector<TriedWaveform> kept;
+    std::vector<std::size_t> of_family(families_.size(), 0);
+    const std::size_t rung = std::max<std::size_t>(1, all.size() / kept_of_ladder);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const std::size_t k = family_of(all[i]);
+      if (i >= kept_best && i % rung != 0 && of_family[k] >= kept_of_family) continue;
+      ++of_family[k];
+      kept.push_back({.family = names_[k], .cost = all[i].value, .waveforms = families_[k].waveforms(all[i])});
+    }
+    return kept;
+  }
+
+  // What every family came to.
+  [[nodiscard]] std::vector<SearchedFamilyResult> families() const {
+    std::vector<SearchedFamilyResult> all;
+    for (std::size_t k = 0; k < families_.size(); ++k) {
+      const std::optional<GuidedSearch::Best> best = families_[k].best(Costs::own);
+      all.push_back({.family = names_[k],
+                     .evaluations = static_cast<long>(families_[k].log().size()),
+                     .cost = best ? best->cost : std::numeric_limits<double>::quiet_NaN()});
+    }
+    return all;
+  }
+
+ private:
+  [[nodiscard]] bool is_divided(long evaluations) const {
+    return options_.begins_with_half && !std::isfinite(max_seconds_) && evaluations >= 2 * shortest_half;
+  }
+
+  // What is done with half the budget is done first, where budgets are divided. False where the search is to end.
+  bool run_halves(long evaluations) {
+    if (!is_divided(evaluations)) return run_undivided(evaluations);
+    const long half = evaluations / 2;
+    if (!run_halves(half)) return false;
+    if (half < fewest_for_landings && evaluations >= fewest_for_landings) begin_at_rest();
+    return run_undivided(evaluations - half);
+  }
+
+  bool run_undivided(long evaluations) {
+    const bool has_own = options_.target.has_own_cost();
+    const double all_seconds = std::max(max_seconds_ - seconds(), max_seconds_ / 4);
+    const long before = all_.evaluations;
+    if (families_.size() == 1)
+      return go_on(0, evaluations, all_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same, before > 0);
+    // The whole search for bounce first: no winner of that is then better than one for another target.
+    const long own = has_own ? evaluations / own_share : 0;
+    const double bounce_seconds = all_seconds * (has_own ? 1 - 1.0 / own_share : 1);
+    if (!run_families(evaluations - own, bounce_seconds, has_own ? Costs::leading : Costs::same)) return false;
+    // Then the own cost, from the best points of every family, with what gradients have counted as well.
+    const long rest = evaluations - (all_.evaluations - before);
+    return !has_own || rest <= 0 || run_families(rest, max_seconds_ - seconds(), Costs::own);
+  }
+
+  // With the modes of the scene alone.
+  [[nodiscard]] double own_cost(std::size_t family, const Evaluation& e) const {
+    SearchSetting alone = settings_[family];
+    alone.richer.clear();
+    return alone.price(alone.given.driven(alone.drives(families_[family].waveforms(e)))).own;
+  }
+
+  [[nodiscard]] FoundWaveform found(const Evaluation& e) const {
+    const std::size_t k = family_of(e);
+    return {.scene = families_[k].prepared(e),
+            .cost = settings_[k].richer.empty() ? e.value : own_cost(k, e),
+            .family = names_[k],
+            .variables = settings_[k].space.variables(),
+            .parameters = families_[k].named(e)};
+  }
+
+  // Each family has a share of the budget; the best goes on with the rest. By the cost of bounce each begins at what those before
+  // it have found; by the own cost, where that would draw all into one valley, only the best does. False where the search is to
+  // end.
+  bool run_families(long all_evaluations, double all_seconds, Costs costs) {
+    const double share = opening / static_cast<double>(families_.size()), begun = seconds();
+    const auto evaluations = static_cast<long>(share * static_cast<double>(all_evaluations));
+    for (std::size_t k = 0; evaluations > 0 && k < families_.size(); ++k) {
+      if (costs != Costs::own) begin_where_others_were(k, costs);
+      if (!go_on(k, evaluations, share * all_seconds, 0, costs, false)) return false;
+    }
+    const long rest = all_evaluations - static_cast<long>(families_.size()) * evaluations;
+    if (costs == Costs::own) begin_where_others_were(leader(costs), costs);
+    return go_on(leader(costs), rest, all_seconds - (seconds() - begun), options_.more_evaluations, costs, true);
+  }
+
+  // `prepared()` is the scene under these waveforms.
+  template <class MakePrepared>
+  void refine(const std::vector<Signal>& drives, const std::map<std::string, Waveform>& waveforms, const MakePrepared& prepared) {
+    const double cost = settings_.front().price(drives).own;
+    for (FamilySearch& family : families_) family.begin_at(waveforms);
+    if (!(cost < never_touched)) return;
+    Evaluation given{.index = given_index, .value = cost, .x = {}};
+    FoundWaveform& landing = landings_.emplace_back(FoundWaveform{
+        .scene = prepared(), .cost = cost, .family = names_[0], .variables = settings_[0].space.variables(), .parameters = {}});
+    for (std::size_t k = 0; k < families_.size() && given.x.empty(); ++k) {
+      given.x = families_[k].point(waveforms);
+      if (given.x.empty()) continue;
+      landing.family = names_[k];
+      landing.variables = settings_[k].space.variables();
+      landing.parameters = families_[k].named(given);
+    }
+    if (progress_.best_cost <= cost) return;
+    progress_.best_cost = cost;
+    if (options_.on_improvement && can_be_written(waveforms)) options_.on_improvement(given, landing.scene.scene.file);
+  }
+
+  void evaluated(const Evaluation& e) {
+    ++progress_.evaluations;
+    const bool improves = std::isfinite(e.value) && !(progress_.best_cost <= e.value);
+    if (improves) progress_.best_cost = e.value;
+    if (options_.on_evaluation) options_.on_evaluation(e, progress_);
+    if (!improves || !options_.on_improvement || !(e.value < never_touched)) return;
+    if (const std::optional<SceneFile> scene = families_[family_of(e)].scene(e)) options_.on_improvement(e, *scene);
+  }
+
+  [[nodiscard]] std::size_t family_of(const Evaluation& e) const {
+    std::size_t k = 0;
+    while (!families_[k].holds(e)) ++k;
+    return k;
+  }
+
+  // The family of the least cost; of equals the first.
+  [[nodiscard]] std::size_t leader(Costs costs) const {
+    std::size_t leader = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < families_.size(); ++k) {
+      if (const auto best = families_[k].best(costs); best && best->cost < least) least = best->cost, leader = k;
+    }
+    return leader;
+  }
+
+  void begin_where_others_were(std::size_t family, Costs costs) {
+    for (std::size_t k = 0; k < families_.size(); ++k) {
+      if (k == family) continue;
+      if (const auto best = families_[k].best(costs)) families_[family].begin_at(families_[k].waveforms(best->evaluation));
+    }
+  }
+
+  // One run of a family, whose result is added to that of all. False where the search is to end.
+  bool go_on(std::size_t family, long evaluations, double time, long more, Costs costs, bool goes_on) {
+    if (!(time > 0)) return false;
+    const OptimizerResult now =
+        families_[family].run({.optimizer = options_.optimizer,
+                               .max_evaluations = evaluations,
+                               .max_seconds = time,
+                               .seed = runs_ == 0 ? options_.seed : random_bits(options_.seed, Stream::library_seed, runs_),
+                               .jobs = options_.jobs,
+                               .goes_on = goes_on,
+                               .stop = options_.stop},
+                              costs, more, next_index_);
+    ++runs_;
+    all_.termination = now.termination;
+    all_.message = families_.size() > 1 ? fmt::format("{}: {}", names_[family], now.message) : now.message;
+    all_.evaluations += now.evaluations;
+    if (all_.first_exception.empty()) all_.first_exception = now.first_exception;
+    merge();
+    return now.termination != Termination::interrupted && now.termination != Termination::failure;
+  }
+
+  // The improvements of all families, in the order in which they ran.
+  void merge() {
+    std::vector<Evaluation> log;
+    for (const FamilySearch& family : families_) {
+      std::vector<Evaluation> own = family.log();
+      std::move(own.begin(), own.end(), std::back_inserter(log));
+    }
+    std::sort(log.begin(), log.end(), [](const Evaluation& a, const Evaluation& b) { return a.index < b.index; });
+    if (!log.empty()) next_index_ = log.back().index + 1;
+    all_.improvements = improvements_of(std::move(log));
+    if (all_.improvements.empty()) return;
+    all_.x = all_.improvements.back().x;
+    all_.value = all_.improvements.back().value;
+    if (all_.termination == Termination::no_feasible_point) all_.termination = Termination::evaluation_budget;
+  }
+
+  // Since it was made.
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+
+  const std::vector<SearchSetting>& settings_;
+  const OptimizeOptions& options_;
+  double max_seconds_;
+  std::vector<std::string> names_;  // of the families
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::deque<FamilySearch> families_;
+  std::vector<FoundWaveform> landings_;
+  OptimizeProgress progress_;
+  OptimizerResult all_;
+  std::uint64_t runs_ = 0;
+  long next_index_ = 0;
+};
+
+// A search goes on where what it has found belongs to the modes of the scene: with gentle edges, then by the worst of beams. What
+// was searched with gentle edges is only sifted and polished so. These evaluations are not on record: a search that is resumed
+// makes them again.
+class SearchBeyondModes {
+ public:
+  /// `seconds` since the search began.
+  SearchBeyondModes(const OptimizeOptions& options, std::function<double()> seconds, Verification& verified)
+      : options_(options), seconds_(std::move(seconds)), verified_(verified) {
+    own_.starts.clear();
+    own_.memory = nullptr;
+    own_.more_evaluations = 0;
+    own_.begins_with_half = false;
+    own_.on_start = {};
+    own_.on_progress = {};
+    own_.on_improvement = {};
+  }
+
+  /// After a search without gentle edges, which `gentle` has; the evaluations.
+  long go_on(const Search& search, const std::vector<SearchSetting>& settings, const std::vector<SearchSetting>& gentle) {
+    if (!verified_.belongs_to_modes()) return 0;
+    if (gentle.empty()) return sift(search, settings);
+    if (!begin("searching on with gentler edges", options_.max_evaluations / 2, end_of_gentle)) return 0;
+    Search other(gentle, own_, own_.max_seconds);
+    other.begin();
+    (void)other.run();
+    other.verify(verified_);
+    return sift(other, gentle);
+  }
+
+  /// After a search with gentle edges, or whose drivers have no others; the evaluations.
+  long sift(const Search& search, const std::vector<SearchSetting>& settings) {
+    if (!verified_.belongs_to_modes() && !verified_.confirmed()) return evaluations_;
+    const std::vector<Search::Promising> all = search.promising(by_the_worst_of_modes(settings.front()));
+    for (std::size_t n = 0; n < std::min(families_sifted, all.size()); ++n) {
+      const auto& [k, least, points] = all[n];
+      if (!begin("searching on by the worst of more modes", options_.max_evaluations / evaluations_of_the_worst, end_of_worst))
+        break;
+      const std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
+      own_.family = families_of(options_.family)[k];
+      Search other(worst, own_, own_.max_seconds);
+      for (const std::vector<double>& point : points) other.begin_at_point(point);
+      (void)other.run();
+      other.verify(verified_);
+    }
+    return evaluations_;
+  }
+
+ private:
+  // False where there is no time.
+  bool begin(std::string what, long evaluations, double end) {
+    own_.max_evaluations = std::max(evaluations, 1L);
+    own_.max_seconds = end * options_.max_seconds - seconds_();
+    own_.on_evaluation = [this, what = std::move(what), begun = evaluations_](const Evaluation&, const OptimizeProgress&) {
+      ++evaluations_;
+      if (!options_.on_preparation) return;
+      const double searched = static_cast<double>(evaluations_ - begun) / static_cast<double>(own_.max_evaluations);
+      options_.on_preparation(what, std::max(searched, seconds_() / (end_of_worst * options_.max_seconds)));
+    };
+    return own_.max_seconds > 0 && (options_.stop == nullptr || !*options_.stop);
+  }
+
+  const OptimizeOptions& options_;
+  std::function<double()> seconds_;
+  OptimizeOptions own_ = options_;
+  Verification& verified_;
+  long evaluations_ = 0;
+};
+
+}  // namespace
+
+long default_budget(const Aim& target, Shaped drives) {
+  const long by_bounce = drives == Shaped::electrode ? 5000 : drives == Shaped::several ? 12000 : 20000;
+  return target.has_own_cost() ? by_bounce + by_bounce / 2 : by_bounce;
+}
+
+OptimizeOptions usual_options(const SceneFile& scene, const Aim& target, Actuator actuator) {
+  const Shaped drives = shaped_drives(scene, actuator);
+  OptimizeOptions options{.target = target, .actuator = actuator, .family = std::string(default_families(drives))};
+  options.max_evaluations = default_budget(target, drives);
+  options.more_evaluations = options.max_evaluations / 2;
+  return options;
+}
+
+double OptimizeResult::parameter(std::string_view name) const {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (!name.starts_with(prefix)) return none;
+  const auto found = parameters.find(std::string(name.substr(prefix.size())));
+  return found == parameters.end() ? none : found->second;
+}
+
+OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
+  static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
+  const auto begin = std::chrono::steady_clock::now();
+  const auto seconds = [begin] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+  const std::vector<SearchSetting> settings =
+      search_settings(file, options.target, options.actuator, options.family,
+                      {.stop = options.stop, .progress = options.on_preparation}, options.conditions, options.own_waveforms);
+  const SearchSetting& setting = settings.front();
+  setting.check_starts(options.starts);
+  const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, options.family, options.own_waveforms);
+  const bool is_gentle = begins_gently(gentle, options.starts);
+  const bool may_go_on = !with_more_modes(setting.given.scene.device).empty();
+  const double max_seconds =
+      std::max((may_go_on ? end_of_search : end_of_worst) * options.max_seconds - seconds(), options.max_seconds / 4);
+  Search search(is_gentle ? gentle : settings, options, max_seconds);
+  search.begin();
+  OptimizeResult result{.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
+  result.baseline_cost = setting.baseline_cost;
+  result.search = search.run();
+  Verification verified(setting, options);
+  search.verify(verified);
+  result.families = search.families();
+  if (options.keep_tried) result.tried = search.tried();
+  result.family = result.families.front().family;  // where there is no winner
+  result.variables = setting.space.variables();
+  SearchBeyondModes beyond(options, seconds, verified);
+  result.evaluations_of_modes = is_gentle ? beyond.sift(search, gentle) : beyond.go_on(search, settings, gentle);
+  if (options.stop != nullptr && *options.stop) result.search.termination = Termination::interrupted;
+  verified.move_to(result);
+  result.prefix = prefix_of(options.family, result.family);
+  return result;
+}
+
+}  // namespace softland

@@ -1,0 +1,83 @@
+// A race over devices: searches of several families by two measures, of which the best go on with more devices and smaller steps.
+//
+//   rung   searches                                              closings of each   devices   first step
+//   A      every family by either measure                        2000               32        0.15 of the box
+//   B      the best of every family, and the best of the rest    6000               64        0.08
+//   C      the best three                                        10 000             128       0.03
+//          the first again, where two fifths of the devices      8000               128       0.03
+//          land without a rebound, as long as that gains 1 %
+//
+// What goes on is decided on the devices of the next rung: by the share that lands without a rebound where any search has a
+// quarter of the devices there (on the last rung two fifths), else by the tail of the cost; and what was searched by the share
+// then goes on by the tail. A search begins at the best of its family's own starts, of points of the whole box, and of what it is
+// told to begin with, on 16 devices. Searches of a rung are independent of each other, so that the result depends on seed and
+// closings alone.
+//
+// Source for the halving: K. Jamieson & A. Talwalkar, "Non-stochastic best arm identification and hyperparameter optimization",
+// AISTATS 2016.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "studies/search/robust_cost.h"
+#include "studies/search/search_setting.h"
+
+namespace softland {
+
+/// Families that are raced where none is named.
+inline constexpr std::string_view raced_families = "knots:6+catch+dual-pulse+bspline:6+staircase:5";
+/// Closings of a race of five families by two measures.
+inline constexpr long race_closings = 86'000;
+/// Devices that a race looks at, at the most.
+inline constexpr std::uint64_t raced_devices = 256;
+
+/// The two measures of a race.
+struct RaceAims {
+  RobustAim tail;   ///< of the cost, as cvar:0.9
+  RobustAim share;  ///< of the devices that land without a rebound
+};
+
+/// What a search of the race came to.
+struct Racer {
+  std::size_t family = 0;  ///< its number among the settings
+  std::string measure;
+  std::vector<double> x;
+  std::map<std::string, Waveform> waveforms;  ///< of the searched drives [V]
+  long closings = 0;                          ///< of the searches that led to it
+  double bounce_free = 0;                     ///< share of the devices of its last rung
+  double tail = std::numeric_limits<double>::infinity(), share = std::numeric_limits<double>::infinity();  ///< its costs there
+};
+
+struct RaceOptions {
+  long closings = race_closings;  ///< rungs are as much longer or shorter
+  std::uint64_t seed = 1;
+  int jobs = 1;  ///< threads; does not change the result
+  const std::atomic<bool>* stop = nullptr;
+  EvaluationMemory* memory = nullptr;         ///< asked in the parameters of all families: see ParameterBlock
+  std::size_t first = 0, all = 0;             ///< where these parameters stand among those of the memory
+  std::function<bool()> out_of_time = {};     ///< may be null
+  std::function<void(double)> progress = {};  ///< told the part that is done, from any thread
+};
+
+struct RaceResult {
+  std::vector<Racer> racers;  ///< the ends of all rungs, the last rung first
+  long closings = 0;
+};
+
+/// `settings` differ in their family alone; `cost` is on raced_devices of them.
+[[nodiscard]] RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims,
+                              const RaceOptions& options);
+
+/// One search through all rungs, of one family by one measure. `begun`: waveforms to begin with as well.
+[[nodiscard]] RaceResult race_alone(const SearchSetting& setting, std::size_t family, const RobustCost& cost,
+                                    const RaceAims& aims, bool by_share,
+                                    const std::vector<std::map<std::string, Waveform>>& begun, const RaceOptions& options);
+
+}  // namespace softland

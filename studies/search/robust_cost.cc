@@ -1,0 +1,270 @@
+#include "studies/search/robust_cost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/executor.h"
+#include "base/random.h"
+#include "model/constants.h"
+#include "sampling/risk.h"
+#include "sampling/statistics.h"
+#include "studies/closing/simulate.h"
+#include "studies/devices/robustness.h"
+
+namespace softland {
+namespace {
+
+constexpr double worst_score = RobustCost::not_closed;
+constexpr double weight_of_time = 0.02, weight_of_scores = 0.1, weight_of_violation = 10;
+constexpr double most_violation = 10;
+
+double value_of(const DeviceOutcome& outcome, const Criterion& condition) { return outcome.of(condition.figure); }
+
+// Candidates are ranked by closings of this accuracy at best; the verdict has that of the scene.
+constexpr double ranking_accuracy = 1e-4;
+
+PreparedScene for_ranking(const PreparedScene& given) {
+  PreparedScene coarse = given;
+  coarse.quadrature.points_per_length = std::min(
+      given.quadrature.points_per_length, quadrature_for(ranking_accuracy, given.scene.device.structure.modes).points_per_length);
+  coarse.model = Switch(coarse.scene.device, coarse.quadrature);
+  return coarse;
+}
+
+}  // namespace
+
+std::vector<Criterion> beside_step(std::vector<Criterion> conditions, std::span<const DeviceOutcome> of_step) {
+  for (Criterion& one : conditions) {
+    if (!one.of_step) continue;
+    std::vector<double> values;
+    for (const DeviceOutcome& o : of_step) values.push_back(value_of(o, one));
+    one = beside_step(std::move(one), sample_quantile(values, constrained_share));
+  }
+  return conditions;
+}
+
+bool fails(const DeviceOutcome& outcome) { return !outcome.closed() || !outcome.is_held; }
+
+bool fulfils(const DeviceOutcome& outcome, const Criterion& condition) { return condition.holds(value_of(outcome, condition)); }
+
+Yield share_that_fulfils(std::span<const DeviceOutcome> outcomes, const Criterion& condition) {
+  const auto good = std::ranges::count_if(outcomes, [&](const DeviceOutcome& o) { return fulfils(o, condition); });
+  return yield_of(static_cast<std::size_t>(good), outcomes.size());
+}
+
+bool hold(std::span<const Criterion> conditions, std::span<const DeviceOutcome> outcomes) {
+  return std::ranges::all_of(conditions,
+                             [&](const Criterion& one) { return share_that_fulfils(outcomes, one).value >= constrained_share; });
+}
+
+namespace {
+
+bool is_about_steady_force(const SearchSetting& setting, const RobustAim& aim) {
+  const auto is_about = [](const Criterion& one) { return one.figure.member == Figure::Member(&Metrics::steady_force_time); };
+  return setting.target.is_about(Target::steady) || setting.target.has_own_objective() ||
+         (aim.measure.yield && is_about(*aim.measure.yield)) || std::ranges::any_of(aim.conditions, is_about);
+}
+
+}  // namespace
+
+GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, int jobs, const Watch& watch) {
+  constexpr std::size_t together = 16;
+  GaugedEnsemble all{.devices = std::vector<SampledDevice>(ensemble.size()), .exact = std::vector<DeviceUnits>(ensemble.size())};
+  const DeviceMeter meter(ensemble.nominal(), gauges);
+  const auto task = [&](std::size_t chunk) {
+    DeviceBuilder builder(ensemble);
+    for (std::size_t k = chunk * together; k < std::min<std::size_t>(ensemble.size(), (chunk + 1) * together); ++k) {
+      if (watch.stopped()) return;
+      all.devices[k] = builder.device(k);
+      if (all.devices[k].model) all.exact[k] = meter.exact(*all.devices[k].model);
+    }
+  };
+  run_tasks((ensemble.size() + together - 1) / together, jobs, task, watch.stop);
+  watch.throw_if_stopped();
+  return all;
+}
+
+BuiltEnsemble known_as(GaugedEnsemble gauged, const KnownUnits& known, std::uint64_t seed) {
+  BuiltEnsemble built{.devices = std::move(gauged.devices), .units = std::vector<DeviceUnits>(gauged.exact.size())};
+  if (known.calibration().is_empty()) return built;
+  for (std::size_t k = 0; k < built.devices.size(); ++k) {
+    SampledDevice& device = built.devices[k];
+    if (!device.model) continue;
+    built.units[k] = known.of(gauged.exact[k], seed, k);
+    if (built.units[k].are_known()) continue;
+    device.refusal = not_measured;
+    device.model.reset();
+  }
+  return built;
+}
+
+BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs, const Watch& watch) {
+  return known_as(gauge_all(ensemble, Gauges::of(known.calibration()), jobs, watch), known, seed);
+}
+
+BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known, std::uint64_t count, std::uint64_t seed,
+                          std::uint64_t which, int jobs, const Watch& watch) {
+  const std::uint64_t own = random_bits(seed, Stream::fresh, which);
+  const PreparedScene nominal = for_ranking(setting.given);
+  return build_all(Ensemble(nominal, count, own), known, own, jobs, watch);
+}
+
+RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors)
+    : setting_(setting),
+      aim_(aim),
+      ensemble_(std::move(ensemble)),
+      drives_(setting.given),
+      vectors_(vectors),
+      measures_steady_force_(is_about_steady_force(setting, aim)) {
+  const Switch& model = setting.given.model;
+  const double period = 2 * pi / model.angular_frequencies()[0], in_contact = model.in_contact_period();
+  window_ = std::max(0.6 * period, 2.5 * in_contact);
+  tail_ = in_contact;
+  wait_ = std::max(setting.run.no_contact_before, period);
+  const std::vector<Signal> step = setting.baseline_scene.signals();
+  levels_ = hold_levels(step);
+  nominal_closed_ = closed_equilibrium(model, levels_);
+  if (!keeps_closed(model, nominal_closed_)) nominal_closed_.reset();
+  step_ = close_device({.values = {}, .model = model, .refusal = {}}, step, setting.given.scene.metrics,
+                       {.duration = last_breakpoint(step) + wait_ + window_,
+                        .tolerance = EnsembleRun{}.tolerance,
+                        .after_contact = window_,
+                        .steady_force = setting.run.steady_force});
+  const std::vector<Waveform> plain = setting.drives({});
+  for (std::size_t k = 0; k < devices(); ++k)
+    kept_closed_.push_back(!ensemble_.devices[k].model || is_kept_closed(k, signals(plain, k, ensemble_.units[k])));
+  if (step_.closed()) return;
+  const Metrics& imagined = setting.scale.step;
+  const double drive_energy = step_.metrics.drive_energy;
+  step_ = {};
+  step_.metrics.drive_energy = drive_energy;
+  step_.metrics.largest_impact_velocity = imagined.largest_impact_velocity;
+  step_.metrics.initial_contact_time = imagined.initial_contact_time;
+  step_.metrics.major_bounce_height = imagined.major_bounce_height;
+}
+
+std::vector<Signal> RobustCost::signals(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const {
+  return drives_.differ(units) ? drives_.signals(waveforms, units, ensemble_.devices[k].values)
+                               : setting_.given.driven(waveforms);
+}
+
+// Where the nominal device is not, nothing is asked of the others.
+bool RobustCost::is_kept_closed(std::size_t k, const std::vector<Signal>& signals) const {
+  if (!nominal_closed_) return true;
+  return hold_of(*ensemble_.devices[k].model, signals, nominal_closed_).is_held;
+}
+
+std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
+                                             int jobs) const {
+  constexpr std::size_t together = 64;  // devices of one task
+  const std::vector<Signal> nominal = setting_.given.driven(waveforms);
+  const bool same_levels = hold_levels(nominal) == levels_;
+  std::vector<DeviceOutcome> outcomes(last - first);
+  run_tasks((outcomes.size() + together - 1) / together, jobs, [&](std::size_t task) {
+    const std::size_t begin = task * together, end = std::min(outcomes.size(), begin + together);
+    std::vector<std::vector<Signal>> own(end - begin);
+    std::vector<DeviceClosing> closings;
+    for (std::size_t i = begin; i < end; ++i) {
+      const SampledDevice& device = ensemble_.devices[first + i];
+      const DeviceUnits& units = ensemble_.units[first + i];
+      std::vector<Signal>& of_device = own[i - begin];
+      if (device.model && drives_.differ(units)) of_device = drives_.signals(waveforms, units, device.values);
+      const std::vector<Signal>& signals = of_device.empty() ? nominal : of_device;
+      closings.push_back({.device = &device,
+                          .signals = &signals,
+                          .run = run(device, signals),
+                          .measures_drive_energy = setting_.target.measures_drive_energy()});
+    }
+    std::vector<DeviceOutcome> closed = close_devices(closings, setting_.given.scene.metrics, vectors_);
+    for (std::size_t i = 0; i < closed.size(); ++i) {
+      const std::size_t k = first + begin + i;
+      if (closed[i].closed()) closed[i].is_held = same_levels ? kept_closed_[k] : is_kept_closed(k, *closings[i].signals);
+    }
+    std::move(closed.begin(), closed.end(), outcomes.begin() + static_cast<std::ptrdiff_t>(begin));
+  });
+  return outcomes;
+}
+
+DeviceOutcome RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const {
+  const SampledDevice& device = ensemble_.devices[k];
+  const std::vector<Signal> signals = drives_.signals(waveforms, units, device.values);
+  return close_device(device, signals, setting_.given.scene.metrics, run(device, signals));
+}
+
+ClosingOptions RobustCost::run(const SampledDevice& device, const std::vector<Signal>& signals) const {
+  const double end = last_breakpoint(signals);
+  const Hold hold = measures_steady_force_ && device.model ? hold_of(*device.model, signals, nominal_closed_) : Hold{};
+  return {.duration = end + wait_ + window_,
+          .tolerance = EnsembleRun{}.tolerance,
+          .after_contact = window_,
+          .no_end_before = end + tail_,
+          .no_contact_before = end + wait_,
+          .steady_force = hold.steady_force(setting_.given.scene.metrics)};
+}
+
+double RobustCost::score(const DeviceOutcome& outcome) const {
+  if (fails(outcome)) return worst_score;
+  const Shares shares{.own = outcome.metrics, .step = step_.metrics, .window = window_};
+  const double score =
+      setting_.target.mean(shares.own, shares.step, [&](const TargetRow& row) { return row.in(row.robust, shares); });
+  return std::isnan(score) ? worst_score : score;
+}
+
+std::vector<double> RobustCost::scores(std::span<const DeviceOutcome> outcomes) const {
+  std::vector<Metrics> closings;
+  for (const DeviceOutcome& o : outcomes) {
+    if (!fails(o)) closings.push_back(o.metrics);
+  }
+  const std::vector<double> means =
+      setting_.target.means(closings, step_.metrics, [&](const TargetRow& row, const Metrics& closing) {
+        return row.in(row.robust, {.own = closing, .step = step_.metrics, .window = window_});
+      });
+  std::vector<double> all;
+  auto next = means.begin();
+  for (const DeviceOutcome& o : outcomes) {
+    const double score = fails(o) ? worst_score : *next++;
+    all.push_back(std::isnan(score) ? worst_score : std::min(score, worst_score));
+  }
+  return all;
+}
+
+bool RobustCost::is_told(std::span<const DeviceOutcome> outcomes) const {
+  constexpr double rounding = 1e-9;
+  if (!aim_.measure.yield && aim_.measure.risk.kind == RiskKind::mean_sigma) return !std::ranges::all_of(outcomes, fails);
+  return aim_.measure.yield ? share_that_fulfils(outcomes, *aim_.measure.yield).devices > 0
+                            : risk(scores(outcomes), aim_.measure.risk) < (1 - rounding) * worst_score;
+}
+
+// Of scores where some devices fail: their deviation would fall again where most of them do.
+double RobustCost::risk_of(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores, const Risk& measure) {
+  if (measure.kind != RiskKind::mean_sigma || std::ranges::none_of(outcomes, fails)) return risk(scores, measure);
+  std::vector<double> others;
+  for (std::size_t k = 0; k < outcomes.size(); ++k) {
+    if (!fails(outcomes[k])) others.push_back(scores[k]);
+  }
+  const double own = others.size() < 2 ? worst_score : risk(others, measure);
+  const double share = 1 - static_cast<double>(others.size()) / static_cast<double>(outcomes.size());
+  return own + (1 + measure.parameter) * worst_score * std::sqrt(share);
+}
+
+double RobustCost::value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const {
+  const std::vector<double> scores = this->scores(outcomes);
+  std::vector<double> times, of_devices;
+  for (const DeviceOutcome& o : outcomes)
+    times.push_back(o.closed() ? Shares::ratio(o.metrics.initial_contact_time, step_.metrics.initial_contact_time) : worst_score);
+  double value = aim.measure.yield
+                     ? 1 - share_that_fulfils(outcomes, *aim.measure.yield).value + weight_of_scores * sample_mean(scores)
+                     : risk_of(outcomes, scores, aim.measure.risk);
+  value += static_cast<double>(std::ranges::count_if(outcomes, fails)) / static_cast<double>(outcomes.size());
+  value += weight_of_time * sample_quantile(times, 0.5);
+  for (const Criterion& condition : aim.conditions) {
+    of_devices.clear();
+    for (const DeviceOutcome& o : outcomes)
+      of_devices.push_back(std::min(condition.violation(value_of(o, condition)), most_violation));
+    value += weight_of_violation * std::max(0.0, sample_quantile(of_devices, constrained_share));
+  }
+  return value;
+}
+
+}  // namespace softland

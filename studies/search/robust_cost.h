@@ -1,0 +1,132 @@
+// What a drive costs on devices that differ: a measure of risk over the costs of their closings, and conditions on their figures.
+//
+//   s_k   cost of the closing of device k, every figure over that of the plain step on the nominal device:
+//           bounce             (largest touch speed + highest rebound) / 2
+//           rebound            highest rebound               impact    largest touch speed
+//           count              rebounds                      settling  permanent contact, over first contact of the step
+//           energy             impact energy                 steady    steady force time, over first contact of the step
+//           of a user's own objective its value
+//         3, or more than any that closes, where the device does not close or its hold levels do not keep it closed, where its
+//         closing cannot be followed, or no such device can be described: it fails
+//   cost  R(s) + (share of devices that fail) + 0.02 (median of first contact over that of the step)
+//         + 10 (sum over the conditions: violation, where positive)
+//
+// Of mean+sigma R is that of the devices that do not fail, plus 3 (1 + factor) times the root of the share of those that do: the
+// deviation over all of them would fall again where most fail.
+//
+// R is the measure that was asked for (sampling/risk.h), or for a yield 1 less the share of devices that fulfil its condition,
+// plus a tenth of the mean of s, which leads the search where the share does not change. A condition holds when 95 % of the
+// devices fulfil it: its violation is the 95 % quantile of that of the devices (config/criterion.h).
+//
+// A closing is scored until 60 % of a period of the first mode, or two and a half in contact, after first touch, and one period
+// in contact after the last breakpoint of its drives.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "config/criterion.h"
+#include "studies/devices/ensemble.h"
+#include "studies/devices/robustness.h"
+#include "studies/search/search_setting.h"
+
+namespace softland {
+
+/// Conditions beside the plain step with limits of their own: what 95 % of the devices stay below under it. Throws InvalidInput
+/// where the step has no such figure.
+[[nodiscard]] std::vector<Criterion> beside_step(std::vector<Criterion> conditions, std::span<const DeviceOutcome> of_step);
+
+/// The share of devices that has to fulfil a condition.
+inline constexpr double constrained_share = 0.95;
+
+struct RobustAim {
+  RobustMeasure measure;
+  std::vector<Criterion> conditions;
+};
+
+/// Devices and what they would measure without error, by these gauges and their frequency.
+struct GaugedEnsemble {
+  std::vector<SampledDevice> devices;
+  std::vector<DeviceUnits> exact;  ///< of a device that cannot be described: 1
+};
+/// Throws Interrupted where `watch` asks to stop.
+[[nodiscard]] GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, int jobs, const Watch& watch = {});
+
+/// Devices that are built and measured.
+struct BuiltEnsemble {
+  std::vector<SampledDevice> devices;
+  std::vector<DeviceUnits> units;  ///< of a device's own drive, over that of the nominal one
+};
+/// The same devices as they are known, by a calibration that needs no other gauges: the errors are functions of `seed` and the
+/// number of the device. One that cannot be measured is refused.
+[[nodiscard]] BuiltEnsemble known_as(GaugedEnsemble gauged, const KnownUnits& known, std::uint64_t seed);
+/// Throws Interrupted where `watch` asks to stop.
+[[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs,
+                                      const Watch& watch = {});
+
+/// Devices of this search alone, built for candidates that are ranked: closings of an accuracy of 1e-4 at best. Which ones they
+/// are depends on `seed` and `which`. Throws Interrupted where `watch` asks to stop.
+[[nodiscard]] BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known, std::uint64_t count,
+                                        std::uint64_t seed, std::uint64_t which, int jobs, const Watch& watch);
+
+class RobustCost {
+ public:
+  /// Keeps references to `setting` and `aim`.
+  RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors = vectors_in_use());
+
+  [[nodiscard]] std::size_t devices() const { return ensemble_.devices.size(); }
+  /// The closings of devices [first, last) under their own drives; `waveforms` are those of the nominal device, one per drive.
+  [[nodiscard]] std::vector<DeviceOutcome> close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
+                                                 int jobs) const;
+  [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes) const { return value(outcomes, aim_); }
+  /// By another aim.
+  [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
+  /// Whether the measure tells these devices from such as all fail: not where as many of them fail as it looks at, or none
+  /// fulfils the condition of a yield.
+  [[nodiscard]] bool is_told(std::span<const DeviceOutcome> outcomes) const;
+
+  /// s_k of a device that does not close.
+  static constexpr double not_closed = 3;
+  [[nodiscard]] const SampledDevice& device(std::size_t k) const { return ensemble_.devices[k]; }
+  /// The closing of device k in these units instead of those it was built with.
+  [[nodiscard]] DeviceOutcome close(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const;
+  /// s_k; where its figure is not known that of a device that does not close.
+  [[nodiscard]] double score(const DeviceOutcome& outcome) const;
+
+ private:
+  [[nodiscard]] ClosingOptions run(const SampledDevice& device, const std::vector<Signal>& signals) const;
+  [[nodiscard]] std::vector<double> scores(std::span<const DeviceOutcome> outcomes) const;
+  [[nodiscard]] static double risk_of(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores,
+                                      const Risk& measure);
+
+  [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& waveforms, std::size_t k,
+                                            const DeviceUnits& units) const;
+  [[nodiscard]] bool is_kept_closed(std::size_t k, const std::vector<Signal>& signals) const;
+
+  const SearchSetting& setting_;
+  const RobustAim& aim_;
+  BuiltEnsemble ensemble_;
+  DeviceDrives drives_;
+  Vectors vectors_;
+  bool measures_steady_force_;
+  DeviceOutcome step_;                               // of the nominal device
+  std::optional<ClosedEquilibrium> nominal_closed_;  // under the hold levels; none where they do not keep it closed
+  std::vector<double> levels_;                       // those, of the nominal device
+  std::vector<bool> kept_closed_;                    // each device, under them
+  double window_, tail_, wait_;                      // after first touch, after the last breakpoint, for a touch [s]
+};
+
+/// Whether a device does not close and stay closed, cannot be followed, or cannot be described.
+[[nodiscard]] bool fails(const DeviceOutcome& outcome);
+
+/// Whether a device fulfils a condition.
+[[nodiscard]] bool fulfils(const DeviceOutcome& outcome, const Criterion& condition);
+/// The share of devices that does.
+[[nodiscard]] Yield share_that_fulfils(std::span<const DeviceOutcome> outcomes, const Criterion& condition);
+/// Whether constrained_share of the devices fulfils each of the conditions.
+[[nodiscard]] bool hold(std::span<const Criterion> conditions, std::span<const DeviceOutcome> outcomes);
+
+}  // namespace softland

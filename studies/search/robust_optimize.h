@@ -1,0 +1,70 @@
+// The search for a drive that does well on devices as they come from manufacturing.
+//
+// The same devices for all candidates. Starts are those of the family, the best of two searches on the nominal device, the
+// waveform of the scene, those that the search is told to start with, and points of the whole box; all are tried on 8 devices,
+// the best of them on 32, and the best six of these begin CMA-ES on 32 devices; on all of them it goes on from the best two, and
+// then from the best, by smaller steps. A candidate that is worse on the first 8 or 32 devices than the median of those before it
+// is not tried on the rest, and has the cost of those. The best point of every heat is compared on 512 other devices, and what
+// wins there is judged on 2000 fresh ones over the whole window: its cost on the devices that were searched is too good by what
+// the search has learned of them by heart.
+//
+// Source for the races: O. Maron & A. W. Moore, "Hoeffding races", NIPS 1993 (the idea; our test is the median of the candidates
+// before).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string_view>
+
+#include "base/clock.h"
+#include "studies/devices/robustness.h"
+#include "studies/search/optimize.h"
+#include "studies/search/robust_cost.h"
+
+namespace softland {
+
+inline constexpr long default_closings = 60'000;
+/// The family that is searched where none is named: with the same volts for all devices, and in units that are measured on each.
+inline constexpr std::string_view default_robust_family = "knots", default_calibrated_family = "catch";
+inline constexpr std::uint64_t most_searched = 100'000;  ///< devices of a search, which are all kept
+
+struct RobustOptions {
+  RobustAim aim;
+  std::uint64_t samples = 128;                 ///< devices that are searched
+  std::uint64_t verdict = 2000;                ///< fresh ones
+  std::function<double()> clock = wall_clock;  ///< what a budget of time is held against [s]
+};
+
+struct FulfilledCondition {
+  Criterion condition;
+  Yield share;         ///< of fresh devices that fulfil it
+  bool holds = false;  ///< by constrained_share of them
+};
+
+struct RobustResult {
+  OptimizeResult found;  ///< costs are those on fresh devices
+  double cost_on_searched = Metrics::unset;
+  std::optional<Robustness> verdict;  ///< plain step and winner on the same fresh devices; none where it was interrupted
+  /// Of the fresh devices: the share that fails (robust_cost.h), and whether the measure looks further than at those.
+  double failing = Metrics::unset;
+  bool is_told = true;
+  std::optional<Yield> yield;  ///< of the condition that was to be fulfilled by as many as possible
+  std::vector<FulfilledCondition> conditions;
+  long closings = 0;  ///< of devices, in the search
+};
+
+/// `options.max_evaluations` counts closings of devices; its optimizer is not used. Throws InvalidInput as optimize() does, and
+/// for a scene without [spread].
+[[nodiscard]] RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& robust);
+
+/// What a search will vary, and the height from which on a rebound counts.
+struct SearchedParameters {
+  std::vector<std::string> names;
+  double significant_rebound = 0;  ///< [m]
+};
+/// Of optimize(), or of robust_optimize() `over_devices`; throws what these would throw before they begin.
+[[nodiscard]] SearchedParameters searched_parameters(const SceneFile& file, const OptimizeOptions& options, bool over_devices,
+                                                     const Watch& watch);
+
+}  // namespace softland

@@ -1,0 +1,206 @@
+#include "studies/search/search_request.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+
+#include "base/require.h"
+#include "base/shortened.h"
+#include "config/aim.h"
+#include "config/calibration_words.h"
+#include "config/criterion.h"
+#include "config/units.h"
+
+namespace softland {
+namespace {
+
+// What `parse` gives; its complaints name the field, and what else is said of it.
+template <class Parse>
+auto read(const std::string& field, const Parse& parse) {
+  try {
+    return parse();
+  } catch (const InvalidInput& error) {
+    throw InvalidRequest(fmt::format("{}: {}", field, error.what()));
+  }
+}
+
+std::uint64_t whole_number(std::string_view field, const std::string& text, std::uint64_t least) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  require_field(error != std::errc::result_out_of_range, field, text, [&] {
+    return fmt::format("must be a whole number from {} to {}", least, std::numeric_limits<std::uint64_t>::max());
+  });
+  require_field(error == std::errc() && end == text.data() + text.size() && value >= least, field, visible(text),
+                [&] { return fmt::format("must be a whole number from {} on", least); });
+  return value;
+}
+
+std::vector<Criterion> conditions_of(const SearchRequest& request, std::span<const Figure> figures) {
+  std::vector<Criterion> all;
+  for (const std::string& text : request.constrain)
+    all.push_back(read(requested("constrain"), [&] { return parse_criterion(text, figures); }));
+  return all;
+}
+
+// Conditions that name figures of both are for the drawing and for the devices.
+void read_shared_conditions(const SearchRequest& request, std::vector<Criterion>& drawing, std::vector<Criterion>& devices) {
+  devices = conditions_of(request, device_figures);
+  for (const std::string& text : request.constrain) {
+    try {
+      drawing.push_back(parse_criterion(text, conditioned_figures));
+    } catch (const InvalidInput&) {
+      continue;  // a figure of devices alone
+    }
+  }
+}
+
+void read_budget(const std::string& text, OptimizeOptions& options) {
+  const auto holds = [&](bool ok) {
+    require_field(ok, "budget", visible(text),
+                  [] { return "must be a whole number of evaluations such as 2500, or a time such as \"90 s\""; });
+  };
+  Quantity q;
+  try {
+    q = parse_quantity(text);
+  } catch (const InvalidInput&) {
+    holds(false);
+  }
+  if (q.dimension == dimension::time) {
+    holds(q.value > 0);
+    options.max_seconds = q.value;
+    options.max_evaluations = 1'000'000'000;
+  } else {
+    holds(q.dimension == dimension::none && q.value >= 1 && q.value <= 1e9 && q.value == std::floor(q.value));
+    options.max_evaluations = static_cast<long>(q.value);
+  }
+}
+
+std::uint64_t devices_of(const SearchRequest& request, std::uint64_t usual, std::uint64_t least) {
+  if (!request.samples) return usual;
+  const std::uint64_t devices = whole_number("samples", *request.samples, least);
+  require_field(devices <= most_searched, "samples", *request.samples,
+                [] { return fmt::format("must be at most {}", most_searched); });
+  return devices;
+}
+
+OptimizeOptions options_of(const SearchRequest& request, const SceneFile& scene, const OwnParts& own) {
+  const Named<Actuator>* actuator = find_named(actuators, request.actuator);
+  require_field(actuator != nullptr, "actuator", request.actuator, [] { return fmt::format("must be {}", listed(actuators)); });
+  const Aim target = own.objective ? Aim(own.objective)
+                                   : read(requested("target") + " " + request.target, [&] { return parse_aim(request.target); });
+  OptimizeOptions options = usual_options(scene, target, actuator->value);
+  options.family = request.waveform;
+  options.own_waveforms = own.waveforms;
+  options.optimizer = request.optimizer;
+  if (request.seed) options.seed = whole_number("seed", *request.seed, 0);
+  if (request.is_by_measure()) options.max_evaluations = default_closings;
+  if (request.is_by_measure() || request.budget) options.more_evaluations = 0;
+  if (request.robust == nominal_alone) options.conditions = conditions_of(request, conditioned_figures);
+  if (request.budget) read_budget(*request.budget, options);
+  // Other methods go on where they were; the plan of a search of one seed holds that number.
+  const bool has_one_seed = !request.seeds || *request.seeds == "1";
+  options.begins_with_half = request.robust == nominal_alone && request.budget && has_one_seed && request.optimizer == "auto";
+  return options;
+}
+
+ForDevicesOptions race_of(const SearchRequest& request, OptimizeOptions& options, const std::string& families) {
+  ForDevicesOptions race{.families = families};
+  read_shared_conditions(request, options.conditions, race.conditions);
+  race.verdict = devices_of(request, race.verdict, 100);
+  if (!request.budget) return race;
+  if (std::isfinite(options.max_seconds)) {
+    constexpr double usual_seconds = 60, most_lengths = 10;
+    race.closings = static_cast<long>(static_cast<double>(race_closings) *
+                                      std::clamp(options.max_seconds / usual_seconds, 0.25, most_lengths));
+    return race;
+  }
+  share_budget(options, race);
+  return race;
+}
+
+RobustOptions robust_of(const SearchRequest& request) {
+  RobustOptions robust;
+  robust.aim.measure =
+      read(requested("robust") + " " + request.robust, [&] { return parse_robust_measure(request.robust, device_figures); });
+  robust.aim.conditions = conditions_of(request, device_figures);
+  robust.samples = devices_of(request, robust.samples, 8);
+  require_field(request.optimizer == "auto", "optimizer", request.optimizer,
+                [] { return "a robust search has a method of its own"; });
+  return robust;
+}
+
+std::uint64_t seed_count(const SearchRequest& request, const OptimizeOptions& options) {
+  if (!request.seeds) return 1;
+  const std::string seeds = requested("seeds");
+  const std::uint64_t count = whole_number("seeds", *request.seeds, 1);
+  require_field(count <= most_seeds, "seeds", *request.seeds, [] { return fmt::format("must be at most {}", most_seeds); });
+  require_field(count - 1 <= std::numeric_limits<std::uint64_t>::max() - options.seed, "seeds", *request.seeds,
+                [&] { return fmt::format("from {} {} on there are not so many", requested("seed"), options.seed); });
+  require_request(count == 1 || request.robust != by_race, [&] {
+    return fmt::format("{}: is for searches on the nominal device, or over devices by one measure such as {} cvar:0.9", seeds,
+                       requested("robust"));
+  });
+  require_field(count == 1 || !std::isfinite(options.max_seconds), "budget", request.budget.value_or(""), [] {
+    return "searches from several seeds are compared at equal effort, so their budget is a number of evaluations";
+  });
+  return count;
+}
+
+// Devices that differ want a family that is slow and free, or, where each is driven in its own units, a quick one that holds
+// fast.
+std::string usual_families(const SearchRequest& request, const SceneFile& scene) {
+  if (request.is_by_measure())
+    return std::string(request.calibrate.empty() || request.calibrate == "none" ? default_robust_family
+                                                                                : default_calibrated_family);
+  const Named<Actuator>* actuator = find_named(actuators, request.actuator);
+  return actuator == nullptr ? std::string() : std::string(default_families(shaped_drives(scene, actuator->value)));
+}
+
+}  // namespace
+
+SearchRequest or_else(SearchRequest request, const SearchRequest& other) {
+  const auto fill = [](std::string_view, auto& own, const auto& word) {
+    if (own == std::remove_cvref_t<decltype(own)>()) own = word;
+  };
+  visit_words(fill, request, other);
+  if (request.constrain.empty()) request.constrain = other.constrain;
+  return request;
+}
+
+SearchRequest completed(SearchRequest request, const SceneFile& scene) {
+  request = or_else(std::move(request), {.target = std::string(to_string(Target::bounce)),
+                                         .actuator = std::string(name_of(actuators, Actuator::electrostatic)),
+                                         .optimizer = "auto",
+                                         .robust = std::string(request.seeds ? nominal_alone : by_race)});
+  if (request.waveform.empty()) request.waveform = usual_families(request, scene);
+  return request;
+}
+
+PlannedSearch planned(const SearchRequest& request, SceneFile scene, const std::string& families, const OwnParts& own) {
+  const bool over_devices = request.robust != nominal_alone;
+  require_request(over_devices || (request.calibrate.empty() && !request.samples), [] {
+    return fmt::format("{} and {} are for a search over devices: they say nothing with {} none", requested("calibrate"),
+                       requested("samples"), requested("robust"));
+  });
+  OptimizeOptions options = options_of(request, scene, own);
+  std::optional<RobustOptions> robust;
+  if (request.is_by_measure()) robust = robust_of(request);
+  std::optional<ForDevicesOptions> for_devices;
+  if (request.robust == by_race) for_devices = race_of(request, options, families);
+  const std::uint64_t seeds = seed_count(request, options);
+  if (over_devices) set_calibration(scene, request.calibrate);
+  return {.scene = std::move(scene),
+          .options = std::move(options),
+          .robust = std::move(robust),
+          .for_devices = std::move(for_devices),
+          .seeds = seeds};
+}
+
+}  // namespace softland

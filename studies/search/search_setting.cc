@@ -1,0 +1,383 @@
+#include "studies/search/search_setting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+#include <variant>
+
+#include "base/engineering.h"
+#include "base/require.h"
+#include "model/constants.h"
+#include "objectives/cost_slope.h"
+#include "objectives/figures.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/plain_step.h"
+
+namespace softland {
+namespace {
+
+constexpr double latest_touch = 2.5;  // times the baseline's first touch
+// Lateness that costs little: an electrode can throw and catch the beam in about the time of the step, a piezo only slows it.
+constexpr double driven_touch = 1.5, braked_touch = 2.0;
+constexpr double search_tolerance = 1e-6;  // of the integrator: costs good to about 1e-4
+constexpr double most_broken = 10;         // a condition, by a part of its limit
+// By this the worst of beams counts the touch speed beside the cost of bounce, in which a soft touch is next to nothing: what
+// modes differ in first.
+constexpr double weight_of_speed = 0.04;
+constexpr double hopeless = 0.25;  // by the cost of bounce, about 1 of the plain step: not tried with richer beams
+constexpr double golden_ratio = 1.618033988749895;
+
+// A hold level that a plain step does not close with may still close with a throw: what a closing of this beam would be like.
+Metrics imagined_step(const PreparedScene& given, double period) {
+  const double gap = given.scene.device.gap.contact;
+  Metrics step;
+  step.initial_contact_time = period / 2;
+  step.largest_impact_velocity = gap * given.model.angular_frequencies()[0];
+  step.major_bounce_height = gap;
+  step.impact_energy = step.landing_excess = given.model.bending_energy();
+  return step;
+}
+
+// Of a condition that a method follows: g. Searches end where it is 0, and are to fulfil it there.
+double excess(const Criterion& one, const Metrics& metrics) {
+  constexpr double margin = 1e-6;
+  return std::clamp(one.violation(one.figure.value(metrics)) + margin, -most_broken, most_broken);
+}
+
+// By the figure.
+double excess_rate(const Criterion& one, const Metrics& metrics) {
+  if (std::abs(excess(one, metrics)) >= most_broken) return 0;
+  const double scale = one.limit == 0 ? 1 : std::abs(one.limit);
+  return (one.comparison == Comparison::below || one.comparison == Comparison::at_most ? 1 : -1) / scale;
+}
+
+}  // namespace
+
+struct RecordedClosing {
+  RecordedClosing(const SearchSetting& setting, std::vector<Signal> under)
+      : RecordedClosing(setting, std::move(under), setting.given.model, setting.run.closed_potential) {}
+  RecordedClosing(const SearchSetting& setting, std::vector<Signal> under, const Switch& model, double closed_potential)
+      : signals(std::move(under)), observer(setting.scale.contact_gap, setting.given.scene.metrics), tape(observer) {
+    ClosingOptions run = setting.run_of(signals);
+    run.closed_potential = closed_potential;
+    metrics = observer.metrics(observe_closing(model, signals, run, tape));
+  }
+  RecordedClosing(const RecordedClosing&) = delete;
+  RecordedClosing& operator=(const RecordedClosing&) = delete;
+
+  std::vector<Signal> signals;
+  MetricsObserver observer;
+  RecordedMotion tape;
+  Metrics metrics;
+};
+
+double broken(const std::vector<Criterion>& conditions, const Metrics& metrics) {
+  double sum = 0;
+  for (const Criterion& one : conditions) sum += std::clamp(one.violation(one.figure.value(metrics)), 0.0, most_broken);
+  return sum;
+}
+
+SceneFile with_waveforms(const PreparedScene& prepared, const std::map<std::string, Waveform>& waveforms) {
+  SceneFile file = prepared.resolved();
+  for (const auto& [drive, waveform] : waveforms) file.set_waveform(drive, waveform);
+  return file;
+}
+
+bool can_be_written(const std::map<std::string, Waveform>& waveforms) {
+  return std::ranges::none_of(waveforms, [](const auto& one) { return std::holds_alternative<Own>(one.second); });
+}
+
+PreparedScene prepared_with(const PreparedScene& prepared, std::map<std::string, Waveform> waveforms,
+                            const PreparedScene& given) {
+  std::map<std::string, Waveform> own;
+  for (auto one = waveforms.begin(); one != waveforms.end();) {
+    const auto next = std::next(one);
+    if (std::holds_alternative<Own>(one->second)) own.insert(waveforms.extract(one));
+    one = next;
+  }
+  PreparedScene read = read_back(with_waveforms(prepared, waveforms), "best.toml", given);
+  own.merge(std::move(read.drives.waveforms));
+  read.drives.waveforms = std::move(own);
+  return read;
+}
+
+PreparedScene read_back(const SceneFile& file, const std::string& name, const PreparedScene& given) {
+  PreparedScene p = choose(prepare(file.again(name)));
+  p.scene.warnings = given.scene.warnings;
+  p.scene.standing = given.scene.standing;  // of the file in volts all hold levels would count
+  return p;
+}
+
+SceneFile SearchSetting::scene(const std::map<std::string, Waveform>& searched) const {
+  return with_waveforms(baseline_scene, searched);
+}
+
+PreparedScene SearchSetting::prepared(const std::map<std::string, Waveform>& searched) const {
+  return prepared_with(baseline_scene, searched, given);
+}
+
+std::vector<Waveform> SearchSetting::drives(const std::map<std::string, Waveform>& searched) const {
+  std::map<std::string, Waveform> all = searched;
+  all.insert(baseline_scene.drives.waveforms.begin(), baseline_scene.drives.waveforms.end());
+  return given.in_drive_order(all);
+}
+
+bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) const {
+  const std::vector<std::string> names = given.drive_names();
+  return std::all_of(searched.begin(), searched.end(), [&](const auto& one) {
+    const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), one.first) - names.begin());
+    const Signal told = given.told(k, one.second);
+    if (std::holds_alternative<Own>(one.second) && !space.drive(one.first).holds(told)) return false;
+    return violation(told, limits_for(one.second, limits.at(one.first))).empty();
+  });
+}
+
+// A drive that still changes after the score would open the switch again unseen.
+ClosingOptions SearchSetting::run_of(const std::vector<Signal>& signals) const {
+  ClosingOptions own = run;
+  own.no_end_before = last_breakpoint(signals) + given.model.in_contact_period();
+  own.duration = std::max(run.duration, own.no_end_before);
+  return own;
+}
+
+SearchCosts SearchSetting::price(const std::vector<Signal>& signals) const {
+  return worst_price(RecordedClosing(*this, signals));
+}
+
+SearchCosts SearchSetting::worst_price(const RecordedClosing& closing) const {
+  SearchCosts worst = price_of(closing);
+  if (richer.empty()) return worst;
+  const auto with_speed = [this](SearchCosts prices, const RecordedClosing& run) {
+    if (target.has_own_cost() || target.from_the_start() != nullptr) return prices;
+    prices.own = prices.leading += weight_of_speed * run.metrics.largest_impact_velocity / scale.step.largest_impact_velocity;
+    return prices;
+  };
+  worst = with_speed(worst, closing);
+  for (const RicherBeam& beam : richer) {
+    if (!(worst.leading < hopeless)) break;
+    const RecordedClosing run(*this, closing.signals, beam.model, beam.closed_potential);
+    const SearchCosts other = with_speed(price_of(run), run);
+    worst.leading = std::max(worst.leading, other.leading);
+    worst.own = std::max(worst.own, other.own);
+    worst.lands = worst.lands && other.lands;
+  }
+  return worst;
+}
+
+Metrics SearchSetting::with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const {
+  metrics.hold_force = baseline.metrics.hold_force;  // of the hold levels, which a search never changes
+  metrics.capacitance = baseline.metrics.capacitance;
+  set_drive_figures(metrics, given, signals);
+  return metrics;
+}
+
+SearchCosts SearchSetting::price_of(const RecordedClosing& closing) const {
+  const bool needs_all = !conditions.empty() || target.has_own_objective();
+  const Metrics figures = needs_all ? with_rest_and_drives(closing.metrics, closing.signals) : closing.metrics;
+  const auto by = [&](const Aim& one) { return cost(one, figures, scale, given.scene.metrics); };
+  SearchCosts prices{.leading = by(target.has_own_cost() ? Target::bounce : target)};
+  prices.own = target.has_own_cost() ? by(target) : prices.leading;
+  prices.lands = prices.leading < never_touched && figures.major_bounce_height <= given.scene.metrics.significant_rebound;
+  if (conditions.empty()) return prices;
+  if (!(prices.leading < never_touched)) {
+    prices.apart = {.leading = prices.leading, .own = prices.own, .excess = {}};
+    prices.apart->excess.assign(followed_conditions().size(), most_broken);
+    return prices;
+  }
+  prices.apart = {.leading = prices.leading, .own = prices.own, .excess = {}};
+  for (const Criterion& one : followed_conditions()) prices.apart->excess.push_back(excess(one, figures));
+  const double violation = broken(conditions, figures);
+  if (!(violation > 0)) return prices;
+  // Less than what separates a landing from none, and for the own cost more than any landing that fulfils them costs.
+  const double penalty = 3 * violation / (1 + violation);
+  prices.leading += penalty;
+  prices.own += target.has_own_cost() ? 1 + penalty : penalty;
+  return prices;
+}
+
+SearchCosts SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memory, LastClosing* last) const {
+  const std::map<std::string, Waveform> searched = space.waveforms(x);
+  if (!is_allowed(searched)) return {};
+  const EvaluationKey key{.x = {x.begin(), x.end()}};
+  if (memory != nullptr) {
+    if (const auto known = memory->recall(key)) return {.leading = known->leading, .own = known->cost, .lands = known->lands};
+  }
+  auto closing = std::make_shared<const RecordedClosing>(*this, given.driven(drives(searched)));
+  SearchCosts found = worst_price(*closing);
+  if (last != nullptr) *last = {.x = key.x, .closing = std::move(closing)};
+  found.leading += 0.0, found.own += 0.0;  // of zeros a memory need not keep the sign
+  if (memory != nullptr) memory->note(key, {.cost = found.own, .leading = found.leading, .lands = found.lands});
+  return found;
+}
+
+std::string SearchSetting::gradient_refusal(const Aim& aim) const {
+  if (!richer.empty()) return "the worst of several beams has no gradient";
+  if (aim.has_own_objective()) return "an own objective has no gradient";
+  for (const DriveSearch& drive : space.drives()) {
+    if (drive.own) return fmt::format("{} has no gradient", described({.waveform = drive.own}));
+  }
+  for (const TargetRow& row : targets) {
+    if (aim.is_about(row.value) && !row.no_gradient.empty()) return std::string(row.no_gradient);
+  }
+  for (const Criterion& one : conditions) {
+    const bool never_slopes = one.figure.is_count() || one.figure.conditioning == Conditioning::rest;
+    if (!never_slopes && (one.comparison == Comparison::equal || one.figure.slope == nullptr))
+      return fmt::format("the condition {} has no gradient", one.text);
+  }
+  return LinearizedClosing::refusal(given.model);
+}
+
+std::vector<Criterion> SearchSetting::followed_conditions() const {
+  std::vector<Criterion> followed;
+  for (const Criterion& one : conditions) {
+    if (one.comparison != Comparison::equal && one.figure.slope != nullptr) followed.push_back(one);
+  }
+  return followed;
+}
+
+SignalSlopes SearchSetting::signal_slopes(std::span<const double> x, const std::vector<ParameterGroup>& groups) const {
+  std::vector<double> lower, upper;
+  for (const Variable& v : space.variables()) lower.push_back(v.lower), upper.push_back(v.upper);
+  const auto signals_at = [&](std::span<const double> at) { return given.driven(drives(space.waveforms(at))); };
+  return {signals_at, x, lower, upper, groups};
+}
+
+std::vector<ParameterGroup> SearchSetting::parameter_groups() const {
+  std::vector<double> inside;  // where no two parameters are at the same part of their range, by chance or by symmetry
+  for (const Variable& v : space.variables())
+    inside.push_back(std::lerp(v.lower, v.upper, 0.3 + 0.4 * std::fmod(golden_ratio * static_cast<double>(inside.size()), 1.0)));
+  return signal_slopes(inside).groups();
+}
+
+std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const Aim& aim,
+                                               const std::vector<ParameterGroup>& groups, const LastClosing* last) const {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Criterion> followed = followed_conditions();
+  std::vector<double> gradient((1 + followed.size()) * x.size(), unknown);
+  std::shared_ptr<const RecordedClosing> closing;
+  if (last != nullptr && last->closing != nullptr && std::equal(x.begin(), x.end(), last->x.begin(), last->x.end())) {
+    closing = last->closing;
+  } else {
+    const std::map<std::string, Waveform> searched = space.waveforms(x);
+    if (!is_allowed(searched)) return gradient;
+    closing = std::make_shared<const RecordedClosing>(*this, given.driven(drives(searched)));
+  }
+  LinearizedClosing motion(given.model, closing->signals, closing->tape);
+  const CostSlopes slopes = cost_slopes(given.model, closing->signals, motion, given.scene.metrics);
+  const auto slope = cost_slope(aim, closing->metrics, scale, given.scene.metrics, slopes);
+  if (!slope) return gradient;
+  std::vector<FigureSlope> rows{*slope};
+  for (const Criterion& one : followed) rows.push_back(slopes.of[one.figure.slope]);
+  const SignalSlopes by_parameters = signal_slopes(x, groups);
+  const Eigen::MatrixXd by_x = motion.backward(rows, by_parameters);
+  const Metrics& metrics = closing->metrics;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const double rate = row == 0 ? 1 : excess_rate(followed[row - 1], metrics);
+    for (std::size_t k = 0; k < x.size(); ++k)
+      gradient[row * x.size() + k] = rate * by_x(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(k));
+    for (const std::size_t k : by_parameters.kinks()) gradient[row * x.size() + k] = unknown;
+  }
+  return gradient;
+}
+
+void SearchSetting::check_starts(const std::vector<StartingWaveforms>& starts) const {
+  for (const StartingWaveforms& start : starts) {
+    std::string reason = begins_elsewhere(start.waveforms, start.before, given);
+    if (reason.empty()) reason = space.misfit(start.waveforms);
+    require_request(reason.empty(), [&] { return fmt::format("{}: {}", start.name, reason); });
+  }
+}
+
+bool SearchSetting::begins_plainly() const { return same_drives(given.signals(), baseline_scene.signals()); }
+
+PreparedScene SearchSetting::within_limits() const {
+  PreparedScene limited = given;
+  limited.drives.limits = limits;
+  return limited;
+}
+
+SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
+                             const Watch& watch, std::vector<Criterion> conditions, const OwnWaveforms& own) {
+  for (const Criterion& one : conditions)
+    require_request(one.figure.conditioning != Conditioning::open, [&] {
+      return fmt::format("{} \"{}\": a switch that closes has no such figure", requested("constrain"), one.text);
+    });
+  PreparedScene given = prepare_and_choose(file, true, watch);
+  require(given.model.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
+  require_request(!(target.is_about(Target::force) && given.model.rigid_contact() != nullptr), [] {
+    return requested("target") + " force: an impact on a rigid contact has an impulse, and no force to lower";
+  });
+  PreparedScene baseline_scene = read_back(with_waveforms(given, plain_step(given, actuator)), "baseline.toml", given);
+  Closing baseline = simulate(baseline_scene, true, watch);
+  watch.throw_if_stopped();
+
+  std::vector<Criterion> beside;
+  for (Criterion& one : conditions) {
+    const double of_step = one.figure.value(baseline.metrics);
+    beside.push_back(beside_step(std::move(one), of_step));
+  }
+
+  const double period = 2 * pi / given.model.angular_frequencies()[0];
+  CostScale scale{.step = {},
+                  .score_window = std::max(period, 3 * given.model.in_contact_period()),
+                  .contact_gap = given.scene.device.gap.contact,
+                  .free_touch = actuator == Actuator::pzt ? braked_touch : driven_touch};
+  ClosingOptions run{.duration = given.duration, .tolerance = search_tolerance, .after_contact = scale.score_window};
+  const std::vector<Signal> plain = baseline_scene.signals();
+  const Hold hold = hold_of(given.model, plain);
+  if (hold.closed) run.closed_potential = hold.closed->potential;
+  run.steady_force = hold.steady_force(given.scene.metrics);
+  Metrics step = metrics(simulate_closing(given.model, plain, run), given.scene.metrics);
+  if (target.has_own_objective()) {
+    step.hold_force = baseline.metrics.hold_force, step.capacitance = baseline.metrics.capacitance;
+    set_drive_figures(step, given, plain);
+  }
+  scale.step = step.touched() && step.is_complete() ? step : imagined_step(given, period);
+  const double baseline_cost = cost(target, step, scale, given.scene.metrics);
+  // A landing so late that the window ends before the switch could bounce would look like a soft one.
+  run.no_contact_before =
+      std::min(latest_touch * scale.step.initial_contact_time, given.duration - 2 * given.model.in_contact_period());
+  require(run.no_contact_before > 0, [&] {
+    return fmt::format("simulate.duration = {} is too short to judge a landing: it needs more than {}",
+                       engineering(given.duration, "s", 3), engineering(2 * given.model.in_contact_period(), "s", 3));
+  });
+  run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
+  SearchSpace space(given, actuator, family, scale.step.initial_contact_time, own);
+  std::map<std::string, DriverLimits> limits = given.drives.limits;
+  return {.target = target,
+          .conditions = std::move(beside),
+          .given = std::move(given),
+          .baseline_scene = std::move(baseline_scene),
+          .baseline = std::move(baseline),
+          .scale = scale,
+          .baseline_cost = baseline_cost,
+          .run = std::move(run),
+          .space = std::move(space),
+          .limits = std::move(limits)};
+}
+
+std::vector<SearchSetting> search_settings(const SceneFile& file, const Aim& target, Actuator actuator,
+                                           const std::string& families, const Watch& watch, std::vector<Criterion> conditions,
+                                           const OwnWaveforms& own) {
+  const std::vector<std::string> names = families_of(families);
+  std::vector<SearchSetting> all = {search_setting(file, target, actuator, names.front(), watch, std::move(conditions), own)};
+  for (std::size_t k = 1; k < names.size(); ++k) {
+    all.push_back(all.front());
+    all.back().space = SearchSpace(all.front().given, actuator, names[k], all.front().scale.step.initial_contact_time, own);
+  }
+  return all;
+}
+
+std::vector<std::string> searched_names(const std::vector<SearchSetting>& settings, const std::string& families) {
+  const std::vector<std::string> names = families_of(families);
+  std::vector<std::string> all;
+  for (std::size_t k = 0; k < settings.size(); ++k) {
+    for (const Variable& v : settings[k].space.variables()) all.push_back(prefix_of(families, names[k]) + v.name);
+  }
+  return all;
+}
+
+}  // namespace softland

@@ -1,0 +1,123 @@
+// What a search may vary: the parameters of the waveforms of one or several drives, with bounds and starting points that come
+// from the scene (driver limits, natural frequencies, closing time of the plain step).
+//
+// Times below are in units of T0, the first touch of the plain step, and T1, the period of the first mode.
+//   step      rise_time in [0, 2.5 T0]
+//   pulse     level_1, level_2 within the driver's limits, time_1 and duration_2 (= time_2 - time_1) in [0.05, 1.6] T0, edge in
+//             [0.005, 0.1] T1
+//   harmonic  amplitude within the limits about the hold level, angular_frequency in [0.2 omega_1, upper], phase in [0, 2 pi],
+//             start in [0, T0], duration in [0.1, 2.5] T0, fade in [0, 0.5] of the duration. upper: the second natural frequency
+//             for an electrode, the third for the piezo (dither above them shakes without steering: Bognash 2019)
+//   catch     a pulse of three levels, each with its duration, and an edge; the third one holds the beam fast on its contact,
+//             duration_3 in [0.05, 4] T0
+//   ramp      a jump to level_1, a line to level_2 in duration in [0.5, 10] T0, an edge in [0.005, 0.5] T1
+//   staircase N levels with durations in [0.05, 3] T0 each, edge in [0.005, 1] T1
+//   knots     a broken line: a jump to level_1, straight lines to level_2 ... level_N and the hold level, all in total_time in
+//             [0.5, 10] T0, of which the lines take shares in proportion to part_1 ... part_N in [0.05, 1]
+//   coast     level_1 for duration_1, then no voltage for coast_1, both in [0.05, 1.6] T0, and an edge as of a pulse
+//   pulses    N pulses: level_k for duration_k (the first in [0.05, 1.6] T0, the others in [0.05, 4] T0), between them no voltage
+//             for coast_k in [0.05, 1.6] T0, and an edge as of a pulse; dual-pulse: two of them
+//   s-curve   a smooth rise to level_1, dwell_1 in [0.01, 3] T0 there, a smooth rise to the hold level; edge in [0.01, 3] T0
+//   dither    a harmonic that decays: decay_time in [0.05, 5] T0
+//   chirp     a harmonic whose frequency at its end is frequency_ratio in [0.25, 4] times that at its start
+//   bspline   a cubic B-spline drawn by N levels and twice the hold level, with a duration in [0.5, 10] T0
+//   sines     the hold level and N sines of 1 ... N half waves, with amplitudes up to the range of the driver, in a duration in
+//             [0.5, 4] T0; what leaves the limits is made smaller as a whole
+// An electrode on the far side, which brakes, waits before its pulses instead of coasting after them.
+// The hold level is the scene's own and never varied. A slew limit lengthens edges, rise times and fades, lets a sine begin when
+// its base has risen, and caps its amplitude.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "optimizers/problem.h"
+#include "studies/closing/actuator.h"
+#include "studies/closing/prepared.h"
+#include "waveforms/waveform.h"
+
+namespace softland {
+
+/// Which drives a search shapes, as far as its defaults depend on it.
+enum class Shaped { electrode, piezo, several };
+/// Several: an electrode and a piezo, or one with electrodes on the far side whose drivers the scene describes.
+[[nodiscard]] Shaped shaped_drives(const SceneFile& scene, Actuator actuator);
+/// What is searched where no family is named: families that together land every switch of results/comparison.md.
+[[nodiscard]] std::string_view default_families(Shaped drives);
+/// The families that "knots", or "knots+dual-pulse+staircase:5+knots:8", names. Throws InvalidInput where one is empty or named
+/// twice.
+[[nodiscard]] std::vector<std::string> families_of(const std::string& text);
+/// What the names of a family's parameters begin with: "knots." where there are several, nothing where it is the only one.
+[[nodiscard]] std::string prefix_of(const std::string& families, const std::string& family);
+
+struct SearchedFamily;
+/// Waveforms from outside softland, which a search names by their own names beside the families.
+using OwnWaveforms = std::vector<std::shared_ptr<const OwnWaveform>>;
+/// "step, pulse, ..., bspline:N or sines:N"
+[[nodiscard]] std::string listed_searched_families();
+
+/// The waveform parameters of one drive.
+struct DriveSearch {
+  std::string drive;
+  const SearchedFamily* family = nullptr;            ///< null: an own waveform
+  std::shared_ptr<const OwnWaveform> own = nullptr;  ///< instead of a family
+  std::size_t count = 0;   ///< of levels, knots, pulses or sines, where the family has any number of them
+  double hold = 0;         ///< [V]
+  double before = 0;       ///< what it stands at before t = 0 [V]
+  bool brakes = false;     ///< an electrode on the far side
+  double first_touch = 0;  ///< of the plain step [s]
+  DriverLimits limits;
+  std::vector<Variable> variables;
+  std::vector<std::vector<double>> starts;
+  [[nodiscard]] Waveform waveform(std::span<const double> x) const;
+  /// The parameters of a waveform of this family that lies within the bounds, to rounding.
+  [[nodiscard]] std::optional<std::vector<double>> parameters(const Waveform& waveform) const;
+  /// The parameters of the waveform of this family that differs least from the given one in what drives the beam, the square of
+  /// an electrode's voltage or the piezo's voltage: in the mean square, until a little after the last breakpoint. Its own where
+  /// it is of this family.
+  [[nodiscard]] std::vector<double> nearest(const Waveform& waveform) const;
+  /// Why a search cannot begin with a waveform, in words: it holds another level, or leaves the driver's limits. Empty where it
+  /// can.
+  [[nodiscard]] std::string misfit(const Waveform& waveform) const;
+  /// Whether a signal ends on the hold level, to rounding.
+  [[nodiscard]] bool holds(const Signal& signal) const;
+
+ private:
+  [[nodiscard]] bool is_within_bounds(const std::vector<double>& x) const;
+};
+
+class SearchSpace {
+ public:
+  /// `family` names that of all drives ("pulse", "knots:8") or of each ("main=step,pzt=pulse"; pulse where it says nothing);
+  /// `first_touch` of the plain step [s]; `own` may be named too. Throws InvalidInput when the scene lacks the drive, a piezo
+  /// limit, or the family cannot be searched; of an own waveform where it does not end on the hold level at its start.
+  SearchSpace(const PreparedScene& prepared, Actuator actuator, const std::string& family, double first_touch,
+              const OwnWaveforms& own = {});
+
+  [[nodiscard]] const std::vector<DriveSearch>& drives() const { return drives_; }
+  /// The one of this name, which must be among them.
+  [[nodiscard]] const DriveSearch& drive(const std::string& name) const;
+  [[nodiscard]] std::vector<Variable> variables() const;
+  [[nodiscard]] std::vector<std::vector<double>> starts() const;
+  /// Waveforms of the searched drives.
+  [[nodiscard]] std::map<std::string, Waveform> waveforms(std::span<const double> x) const;
+  /// The point that gives these waveforms, if there is one: where a search refines what was found before.
+  [[nodiscard]] std::optional<std::vector<double>> parameters(const std::map<std::string, Waveform>& waveforms) const;
+  /// The point whose waveforms differ least from these, which must not be misfits: where a search for another family begins.
+  [[nodiscard]] std::vector<double> nearest(const std::map<std::string, Waveform>& waveforms) const;
+  /// Why a search cannot begin with these waveforms, in words; empty where it can.
+  [[nodiscard]] std::string misfit(const std::map<std::string, Waveform>& waveforms) const;
+  /// Of these waveforms those of the searched drives.
+  [[nodiscard]] std::map<std::string, Waveform> searched(const std::map<std::string, Waveform>& waveforms) const;
+
+ private:
+  std::vector<DriveSearch> drives_;
+};
+
+}  // namespace softland

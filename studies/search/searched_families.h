@@ -1,0 +1,30 @@
+// The families of waveforms that a search can vary: what their variables are, where a search of them begins, and the way from a
+// point to a waveform and back. search_space.h says what they vary.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/search/search_space.h"
+
+namespace softland {
+
+/// What a search can vary of a drive.
+struct SearchedFamily {
+  std::string_view name;
+  std::string_view waveform;  ///< the family of a scene that it makes
+  std::size_t count;          ///< of levels, knots, pulses or sines, where there is a choice, if it is not given
+  void (*add)(DriveSearch&, const PreparedScene&, double first_touch);
+  Waveform (*at)(const DriveSearch&, std::span<const double> x);
+  std::optional<std::vector<double>> (*parameters)(const DriveSearch&, const Waveform&);
+};
+
+/// Sets the family of a drive, and its number of levels, knots, pulses or sines: "pulse", "knots:8". Throws InvalidInput where
+/// there is none.
+void choose_family(DriveSearch& s, const std::string& text);
+
+}  // namespace softland

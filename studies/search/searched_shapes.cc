@@ -1,0 +1,411 @@
+#include "studies/search/searched_shapes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/engineering.h"
+#include "base/require.h"
+#include "model/constants.h"
+#include "studies/search/bang_bang.h"
+#include "studies/search/swing.h"
+
+namespace softland::internal {
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+void add_variables(DriveSearch& s, const char* what, const char* unit, std::size_t count, double lower, double upper) {
+  for (std::size_t k = 1; k <= count; ++k) s.variables.push_back({fmt::format("{}_{}{}", what, k, unit), lower, upper});
+}
+
+double longest_rise(const DriveSearch& s) { return std::abs(s.hold - s.before) / s.limits.max_slew; }
+
+/// Pulses and pauses in turn, and the edge: levels, durations and pauses are where a point has them.
+struct Train {
+  std::span<const double> levels, durations, pauses;
+  double edge = 0;
+  bool pauses_first = false;
+};
+
+Waveform train(const DriveSearch& s, const Train& t) {
+  std::vector<double> levels, durations;
+  const double none = inside(s, 0);
+  for (std::size_t k = 0; k < t.levels.size(); ++k) {
+    if (t.pauses_first) levels.push_back(none), durations.push_back(t.pauses[k]);
+    levels.push_back(t.levels[k]), durations.push_back(t.durations[k]);
+    if (!t.pauses_first && k < t.pauses.size()) levels.push_back(none), durations.push_back(t.pauses[k]);
+  }
+  return pulse_of(s, levels, durations, t.edge);
+}
+
+/// The point of a train of `count` pulses, of which `pauses` follow or, for a drive that brakes, precede one.
+Parameters of_train(const DriveSearch& s, const Waveform& waveform, std::size_t count, std::size_t pauses) {
+  const auto& pulse = std::get<Pulse>(waveform);
+  if (pulse.times.size() != count + pauses) return std::nullopt;
+  std::vector<double> levels, durations, between;
+  double before = 0;
+  for (std::size_t i = 0; i < pulse.times.size(); ++i) {
+    const double duration = pulse.times[i] - before;
+    before = pulse.times[i];
+    const bool is_pause = (i % 2 == 1) != s.brakes;
+    if (is_pause && pulse.levels[i] != inside(s, 0)) return std::nullopt;
+    if (!is_pause) levels.push_back(pulse.levels[i]);
+    (is_pause ? between : durations).push_back(duration);
+  }
+  std::vector<double> x = levels;
+  x.insert(x.end(), durations.begin(), durations.end());
+  x.insert(x.end(), between.begin(), between.end());
+  x.push_back(pulse.edge);
+  return x;
+}
+
+/// Numbers of pulses and pauses of a train.
+std::size_t pauses_of(const DriveSearch& s, std::size_t count) { return s.brakes ? count : count - 1; }
+
+}  // namespace
+
+double inside(const DriveSearch& s, double voltage) { return std::clamp(voltage, s.limits.min_voltage, s.limits.max_voltage); }
+
+double lifting_voltage(const PreparedScene& p, double lift) {
+  const Eigen::VectorXd squares = p.model.angular_frequencies().cwiseAbs2();
+  const double per_volt = p.model.contact_shape().dot(p.model.piezo_shape().cwiseQuotient(squares));
+  return -lift / per_volt;
+}
+
+double first_period(const PreparedScene& p) { return 2 * pi / p.model.angular_frequencies()[0]; }
+
+Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations, double edge) {
+  Pulse pulse{.levels = {levels.begin(), levels.end()}, .times = {}, .edge = edge};
+  pulse.levels.push_back(s.hold);
+  double steps = std::abs(levels[0] - s.before);
+  for (std::size_t k = 0; k < levels.size(); ++k) steps = std::max(steps, std::abs(pulse.levels[k + 1] - pulse.levels[k]));
+  pulse.edge = std::max(edge, steps / s.limits.max_slew);
+  double time = 0;
+  for (const double duration : durations) pulse.times.push_back(time += std::max(duration, pulse.edge));
+  return pulse;
+}
+
+std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const PreparedScene& p) {
+  if (s.brakes) return std::nullopt;
+  const std::vector<std::string> names = p.drive_names();
+  std::vector<double> driven = hold_levels(p.signals());
+  std::vector<double> coasting = driven;
+  const bool is_piezo = s.drive == piezo_drive;
+  const bool low_pulls = is_piezo && lifting_voltage(p, 1) > 0;
+  ThrowAndCoast found{.pulling = low_pulls ? s.limits.min_voltage : s.limits.max_voltage,
+                      .coasting = is_piezo ? (low_pulls ? s.limits.max_voltage : s.limits.min_voltage) : inside(s, 0)};
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] == s.drive) driven[k] = found.pulling, coasting[k] = found.coasting;
+  }
+  // Of one mode where the film has states of its own.
+  if (p.model.film_states() == 0 && p.rest()) {
+    constexpr double longest = 3;  // periods
+    const std::optional<Swing> swing = quickest_swing(p.model, driven, coasting, longest * first_period(p), p.values_before());
+    if (!swing) return std::nullopt;
+    found.driven_time = swing->driven_time;
+    found.coasting_time = swing->releasing_time;
+    return found;
+  }
+  const std::optional<BangBang> landing = bang_bang(p.model, driven, coasting, p.values_before());
+  if (!landing) return std::nullopt;
+  found.driven_time = landing->driven_time;
+  found.coasting_time = landing->coasting_time;
+  return found;
+}
+
+void add_coast(DriveSearch& s, const PreparedScene& p, double t0) {
+  const double period = first_period(p);
+  s.variables = {{"level_1_V", s.limits.min_voltage, s.limits.max_voltage},
+                 {"duration_1_s", 0.05 * t0, 1.6 * t0},
+                 {"coast_1_s", 0.05 * t0, 1.6 * t0},
+                 {"edge_s", 0.005 * period, 0.1 * period}};
+  if (s.drive == piezo_drive) {
+    for (const double brake : {0.3, 0.6})
+      s.starts.push_back({inside(s, lifting_voltage(p, brake * p.scene.device.gap.contact)), 1.4 * t0, 0.5 * t0, 0.05 * period});
+  } else if (s.brakes) {
+    for (const double brake : {0.5, 0.8})
+      s.starts.push_back({inside(s, brake * s.limits.max_voltage), 0.5 * t0, 0.5 * t0, 0.01 * period});
+  } else {
+    for (const double throwing : {1.0, 1.1})
+      s.starts.push_back({inside(s, throwing * s.hold), 0.7 * t0, 0.4 * t0, 0.01 * period});
+  }
+  if (const auto landing = throw_and_coast(s, p))
+    s.starts.push_back({landing->pulling, landing->driven_time, landing->coasting_time, 0.005 * period});
+}
+
+Waveform coast_at(const DriveSearch& s, std::span<const double> x) {
+  return train(
+      s, {.levels = x.first(1), .durations = x.subspan(1, 1), .pauses = x.subspan(2, 1), .edge = x[3], .pauses_first = s.brakes});
+}
+
+Parameters of_coast(const DriveSearch& s, const Waveform& waveform) { return of_train(s, waveform, 1, 1); }
+
+void add_pulses(DriveSearch& s, const PreparedScene& p, double t0) {
+  const double period = first_period(p);
+  const std::size_t pauses = pauses_of(s, s.count);
+  add_variables(s, "level", "_V", s.count, s.limits.min_voltage, s.limits.max_voltage);
+  s.variables.push_back({"duration_1_s", 0.05 * t0, 1.6 * t0});
+  for (std::size_t k = 2; k <= s.count; ++k) s.variables.push_back({fmt::format("duration_{}_s", k), 0.05 * t0, 4 * t0});
+  add_variables(s, "coast", "_s", pauses, 0.05 * t0, 1.6 * t0);
+  s.variables.push_back({"edge_s", 0.005 * period, 0.1 * period});
+  // The first pulse throws the switch, the second holds it fast on its contact; those after it hold on.
+  const auto start = [&](double first, double later, double duration, double second, double pause, double edge) {
+    std::vector<double> x{inside(s, first)};
+    x.insert(x.end(), s.count - 1, inside(s, later));
+    x.push_back(duration);
+    x.insert(x.end(), s.count - 1, second);
+    x.push_back(std::max(pause, edge * period));
+    x.insert(x.end(), pauses - 1, s.brakes ? t0 : std::max(0.05 * t0, edge * period));
+    x.push_back(edge * period);
+    s.starts.push_back(x);
+  };
+  if (s.drive == piezo_drive) {
+    const double gap = p.scene.device.gap.contact;
+    for (const double brake : {0.3, 0.6})
+      start(lifting_voltage(p, -0.2 * gap), lifting_voltage(p, brake * gap), 0.8 * t0, 0.7 * t0, 0.05 * t0, 0.05);
+  } else if (s.brakes) {
+    for (const double brake : {0.5, 0.8}) start(brake * s.limits.max_voltage, 0, 0.5 * t0, 0.5 * t0, 0.5 * t0, 0.01);
+  } else {
+    const double high = s.limits.max_voltage;
+    start(high, high, 0.7 * t0, 1.7 * t0, 0.45 * t0, 0.01);
+    start(s.hold, s.hold, 0.85 * t0, t0, 0.4 * t0, 0.01);
+    if (const auto landing = throw_and_coast(s, p)) {
+      for (const double push : pushes)
+        start(landing->pulling, high, landing->driven_time, push * t0, landing->coasting_time, 0.005);
+    }
+  }
+}
+
+void add_dual_pulse(DriveSearch& s, const PreparedScene& p, double t0) {
+  s.count = 2;
+  add_pulses(s, p, t0);
+}
+
+Waveform pulses_at(const DriveSearch& s, std::span<const double> x) {
+  const std::size_t n = s.count;
+  return train(s, {.levels = x.first(n),
+                   .durations = x.subspan(n, n),
+                   .pauses = x.subspan(2 * n, pauses_of(s, n)),
+                   .edge = x.back(),
+                   .pauses_first = s.brakes});
+}
+
+Parameters of_pulses(const DriveSearch& s, const Waveform& waveform) {
+  return of_train(s, waveform, s.count, pauses_of(s, s.count));
+}
+
+void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0) {
+  const double period = first_period(p);
+  s.variables = {
+      {"level_1_V", s.limits.min_voltage, s.limits.max_voltage}, {"dwell_1_s", 0.01 * t0, 3 * t0}, {"edge_s", 0.01 * t0, 3 * t0}};
+  if (s.drive == piezo_drive) {
+    for (const double lift : {-0.1, 0.3})
+      s.starts.push_back({inside(s, lifting_voltage(p, lift * p.scene.device.gap.contact)), t0, 0.3 * period});
+  } else if (s.brakes) {
+    for (const double brake : {0.3, 0.6}) s.starts.push_back({inside(s, brake * s.limits.max_voltage), 0.5 * t0, 0.3 * t0});
+  } else {
+    for (const double level : {0.75, 0.95}) s.starts.push_back({inside(s, level * s.hold), 1.5 * t0, t0});
+  }
+}
+
+Waveform s_curve_at(const DriveSearch& s, std::span<const double> x) {
+  // Half a cosine is pi / 2 times as steep in its middle as a straight edge.
+  const double rise = std::max(std::abs(x[0] - s.before), std::abs(s.hold - x[0])) * pi / 2 / s.limits.max_slew;
+  const double edge = std::max(x[2], rise * (1 + 1e-12));
+  return SCurve{.levels = {x[0], s.hold}, .times = {edge + x[1]}, .edge = edge};
+}
+
+Parameters of_s_curve(const DriveSearch&, const Waveform& waveform) {
+  const auto& curve = std::get<SCurve>(waveform);
+  if (curve.levels.size() != 2) return std::nullopt;
+  return std::vector<double>{curve.levels[0], curve.times[0] - curve.edge, curve.edge};
+}
+
+double add_dither_variables(DriveSearch& s, const PreparedScene& p, double t0) {
+  const double room = std::min(s.limits.max_voltage - s.hold, s.hold - s.limits.min_voltage);
+  require(room > 0, fmt::format("driver.{}: the hold level {} stands at the driver's limit, which leaves no room for a dither",
+                                s.drive, engineering(s.hold, "V", 5)));
+  const Eigen::VectorXd& omega = p.model.angular_frequencies();
+  const Eigen::Index mode = std::min<Eigen::Index>(s.drive == piezo_drive ? 2 : 1, omega.size() - 1);
+  const double upper = omega.size() > 1 ? omega[mode] : 6 * omega[0];
+  s.variables = {{"amplitude_V", 0, room},           {"angular_frequency_rad_s", 0.2 * omega[0], upper},
+                 {"phase_rad", 0, 2 * pi},           {"start_s", 0, t0},
+                 {"duration_s", 0.1 * t0, 2.5 * t0}, {"fade", 0, 0.5}};
+  return upper;
+}
+
+SlewedDither slewed_dither(const DriveSearch& s, double amplitude, double omega, double decay, double start, double duration,
+                           double fade) {
+  // Under a slew limit the sine waits for the base, and fades for as long as its amplitude needs: the slope of the envelope
+  // adds to that of the sine. Half the duration is the longest fade; what is too steep even then is made smaller.
+  const double slew = s.limits.max_slew, rise = longest_rise(s);  // infinite, and 0, where there is no limit
+  const double turning = omega + 1 / decay;
+  const double needed = amplitude * turning < slew ? amplitude / (slew - amplitude * turning) : never;
+  const double longer = std::min(std::max(fade * duration, needed), duration / 2);
+  const double steepest = turning + (longer > 0 ? 1 / longer : 0);
+  return {.rise_time = rise, .start = std::max(start, rise), .fade = longer, .amplitude = std::min(amplitude, slew / steepest)};
+}
+
+void add_dither(DriveSearch& s, const PreparedScene& p, double t0) {
+  const double upper = add_dither_variables(s, p, t0), room = s.variables[0].upper;
+  s.variables.push_back({"decay_time_s", 0.05 * t0, 5 * t0});
+  for (const double frequency : {0.15, 0.45}) s.starts.push_back({room / 2, frequency * upper, pi, 0, 1.5 * t0, 0.2, t0});
+}
+
+Waveform dither_at(const DriveSearch& s, std::span<const double> x) {
+  const SlewedDither d = slewed_dither(s, x[0], x[1], x[6], x[3], x[4], x[5]);
+  return Chirp{.base = s.hold,
+               .rise_time = d.rise_time,
+               .amplitude = d.amplitude,
+               .angular_frequency = x[1],
+               .phase = x[2],
+               .start = d.start,
+               .end = d.start + x[4],
+               .fade = d.fade,
+               .decay_time = x[6]};
+}
+
+Parameters of_dither(const DriveSearch&, const Waveform& waveform) {
+  const auto& c = std::get<Chirp>(waveform);
+  if (c.frequency_ratio != 1 || !std::isfinite(c.decay_time)) return std::nullopt;
+  const double duration = c.end - c.start;
+  return std::vector<double>{c.amplitude, c.angular_frequency, c.phase, c.start, duration, c.fade / duration, c.decay_time};
+}
+
+void add_chirp(DriveSearch& s, const PreparedScene& p, double t0) {
+  const double upper = add_dither_variables(s, p, t0), room = s.variables[0].upper;
+  s.variables.push_back({"frequency_ratio", 0.25, 4});
+  for (const double ratio : {0.5, 2.0}) s.starts.push_back({room / 2, 0.3 * upper, pi, 0, 1.5 * t0, 0.2, ratio});
+}
+
+Waveform chirp_at(const DriveSearch& s, std::span<const double> x) {
+  const SlewedDither d = slewed_dither(s, x[0], x[1] * std::max(1.0, x[6]), never, x[3], x[4], x[5]);
+  return Chirp{.base = s.hold,
+               .rise_time = d.rise_time,
+               .amplitude = d.amplitude,
+               .angular_frequency = x[1],
+               .frequency_ratio = x[6],
+               .phase = x[2],
+               .start = d.start,
+               .end = d.start + x[4],
+               .fade = d.fade};
+}
+
+Parameters of_chirp(const DriveSearch&, const Waveform& waveform) {
+  const auto& c = std::get<Chirp>(waveform);
+  if (std::isfinite(c.decay_time)) return std::nullopt;
+  const double duration = c.end - c.start;
+  return std::vector<double>{c.amplitude, c.angular_frequency, c.phase, c.start, duration, c.fade / duration, c.frequency_ratio};
+}
+
+void add_bspline(DriveSearch& s, const PreparedScene& p, double t0) {
+  add_variables(s, "level", "_V", s.count, s.limits.min_voltage, s.limits.max_voltage);
+  s.variables.push_back({"duration_s", 0.5 * t0, 10 * t0});
+  const auto curve = [&](const auto& voltage, double duration) {
+    std::vector<double> x;
+    for (std::size_t k = 0; k < s.count; ++k)
+      x.push_back(inside(s, voltage((static_cast<double>(k) + 0.5) / static_cast<double>(s.count))));
+    x.push_back(duration * t0);
+    s.starts.push_back(x);
+  };
+  const double hold = s.hold, low = s.limits.min_voltage, high = s.limits.max_voltage;
+  if (s.drive == piezo_drive) {
+    const double gap = p.scene.device.gap.contact;
+    curve([](double) { return 0; }, 1.5);
+    curve([&](double part) { return lifting_voltage(p, (part < 0.5 ? -0.4 : 0.3) * gap); }, 2);
+  } else if (s.brakes) {
+    curve([](double) { return 0; }, 1.5);
+    curve([&](double part) { return part > 0.4 && part < 0.8 ? 0.6 * high : 0; }, 1.5);
+  } else {
+    curve([&](double part) { return (0.7 + 0.2 * part) * hold; }, 8);
+    curve([&](double part) { return part < 0.5 ? hold : 0.5 * hold; }, 1.5);
+    if (const auto landing = throw_and_coast(s, p)) {
+      const double both = landing->driven_time + landing->coasting_time, share = landing->driven_time / both;
+      curve([&](double part) { return part < share ? high : low; }, both / t0);
+    }
+  }
+}
+
+Waveform bspline_at(const DriveSearch& s, std::span<const double> x) {
+  // The first level comes at once, unless that is too quick for the driver; twice the hold level at the end leaves no corner.
+  BSpline spline{.levels = {}, .duration = x.back()};
+  if (std::isfinite(s.limits.max_slew)) spline.levels.push_back(s.before);
+  spline.levels.insert(spline.levels.end(), x.begin(), x.end() - 1);
+  spline.levels.insert(spline.levels.end(), 2, s.hold);
+  // The slope is a spline too, which stays below the largest of its own levels.
+  const std::size_t n = spline.levels.size();
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    const double part = (bspline_knot(i + 4, n) - bspline_knot(i + 1, n)) / static_cast<double>(n - 3);
+    spline.duration = std::max(spline.duration,
+                               3 * std::abs(spline.levels[i + 1] - spline.levels[i]) / (part * s.limits.max_slew) * (1 + 1e-9));
+  }
+  return spline;
+}
+
+Parameters of_bspline(const DriveSearch& s, const Waveform& waveform) {
+  const auto& spline = std::get<BSpline>(waveform);
+  if (spline.levels.size() != s.count + 2 || spline.levels[s.count] != s.hold) return std::nullopt;
+  std::vector<double> x(spline.levels.begin(), spline.levels.end() - 2);
+  x.push_back(spline.duration);
+  return x;
+}
+
+void add_sines(DriveSearch& s, const PreparedScene& p, double t0) {
+  const double range = s.limits.max_voltage - s.limits.min_voltage;
+  add_variables(s, "amplitude", "_V", s.count, -range, range);
+  s.variables.push_back({"duration_s", 0.5 * t0, 4 * t0});
+  const auto start = [&](double first, double second, double duration) {
+    std::vector<double> x(s.count, 0.0);
+    x[0] = first, x[1] = second;
+    x.push_back(duration * t0);
+    s.starts.push_back(x);
+  };
+  if (s.drive == piezo_drive) {
+    const double volts = std::abs(lifting_voltage(p, 0.3 * p.scene.device.gap.contact)),
+                 sign = lifting_voltage(p, 1) > 0 ? 1 : -1;
+    start(0, -sign * std::min(volts, 0.4 * range), 2);
+    start(sign * std::min(volts, 0.4 * range), 0, 2);
+  } else if (s.brakes) {
+    start(0.2 * range, 0, 1.5);
+    start(0.1 * range, -0.1 * range, 1.5);
+  } else {
+    start(-0.3 * s.hold, 0.1 * s.hold, 1.8);
+    start(-0.5 * s.hold, 0.3 * s.hold, 1.5);
+  }
+}
+
+Waveform sines_at(const DriveSearch& s, std::span<const double> x) {
+  Sines sines{.base = s.hold,
+              .rise_time = longest_rise(s),
+              .amplitudes = {x.begin(), x.end() - 1},
+              .start = longest_rise(s),
+              .duration = x.back()};
+  // What leaves the limits is made smaller as a whole: a band stays a band.
+  Sines alone = sines;
+  alone.base = 0;
+  const Signal swing = signal(alone);
+  const auto [minimum, up] = swing.range();
+  const double down = -minimum, steepest = std::isfinite(s.limits.max_slew) ? swing.peak_slew() : 0;
+  double share = 1;
+  if (up > s.limits.max_voltage - s.hold) share = std::min(share, (s.limits.max_voltage - s.hold) / up);
+  if (down > s.hold - s.limits.min_voltage) share = std::min(share, (s.hold - s.limits.min_voltage) / down);
+  if (steepest > s.limits.max_slew) share = std::min(share, s.limits.max_slew / steepest);
+  constexpr double precision = 1e-7;  // of the extrema, over the sum of all amplitudes
+  if (share < 1) {
+    for (double& amplitude : sines.amplitudes) amplitude *= share * (1 - precision);
+  }
+  return sines;
+}
+
+Parameters of_sines(const DriveSearch& s, const Waveform& waveform) {
+  const auto& sines = std::get<Sines>(waveform);
+  if (sines.amplitudes.size() != s.count) return std::nullopt;
+  std::vector<double> x = sines.amplitudes;
+  x.push_back(sines.duration);
+  return x;
+}
+
+}  // namespace softland::internal

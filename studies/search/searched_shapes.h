@@ -1,0 +1,77 @@
+// Variables, starting points and waveforms of the searched families that are trains of pulses or curves; their rows stand in
+// searched_families.cc, and search_space.h says what they vary.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "studies/search/search_space.h"
+
+namespace softland::internal {
+
+using Parameters = std::optional<std::vector<double>>;
+
+/// The voltage within the limits of the drive.
+[[nodiscard]] double inside(const DriveSearch& s, double voltage);
+/// Voltage [V] whose static effect on the contact point alone is `lift` away from the contact [m]: of the piezo.
+[[nodiscard]] double lifting_voltage(const PreparedScene& p, double lift);
+/// [s]
+[[nodiscard]] double first_period(const PreparedScene& p);
+/// A pulse of these levels and then the hold level, whose durations are at least those of its edges, as long as the driver asks
+/// for.
+[[nodiscard]] Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations,
+                                double edge);
+
+/// Full pull and then none, as it lands the switch (swing.h), or its first mode without damping (bang_bang.h) where the gas film
+/// is compressible; the other drives stand at their hold levels.
+struct ThrowAndCoast {
+  double pulling = 0, coasting = 0;           ///< [V]
+  double driven_time = 0, coasting_time = 0;  ///< [s]
+};
+/// How long a pull after the landing lasts where searches begin: while the modes that still ring decay, in first touches of the
+/// plain step.
+inline constexpr std::array pushes = {0.5, 1.0, 2.0, 3.5};
+/// Nothing where there is no such landing, and for a drive that pulls away from the contact.
+[[nodiscard]] std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const PreparedScene& p);
+
+/// A single pulse, coasting without voltage, the hold level. A drive that brakes waits before its pulse instead.
+void add_coast(DriveSearch& s, const PreparedScene& p, double t0);
+/// s.count pulses between which the switch coasts; the hold level follows the last one. A drive that brakes waits before the
+/// first.
+void add_pulses(DriveSearch& s, const PreparedScene& p, double t0);
+void add_dual_pulse(DriveSearch& s, const PreparedScene& p, double t0);
+[[nodiscard]] Waveform coast_at(const DriveSearch& s, std::span<const double> x);
+[[nodiscard]] Waveform pulses_at(const DriveSearch& s, std::span<const double> x);
+[[nodiscard]] Parameters of_coast(const DriveSearch& s, const Waveform& waveform);
+[[nodiscard]] Parameters of_pulses(const DriveSearch& s, const Waveform& waveform);
+
+void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0);
+void add_dither(DriveSearch& s, const PreparedScene& p, double t0);
+void add_chirp(DriveSearch& s, const PreparedScene& p, double t0);
+void add_bspline(DriveSearch& s, const PreparedScene& p, double t0);
+void add_sines(DriveSearch& s, const PreparedScene& p, double t0);
+[[nodiscard]] Waveform s_curve_at(const DriveSearch& s, std::span<const double> x);
+[[nodiscard]] Waveform dither_at(const DriveSearch& s, std::span<const double> x);
+[[nodiscard]] Waveform chirp_at(const DriveSearch& s, std::span<const double> x);
+[[nodiscard]] Waveform bspline_at(const DriveSearch& s, std::span<const double> x);
+[[nodiscard]] Waveform sines_at(const DriveSearch& s, std::span<const double> x);
+[[nodiscard]] Parameters of_s_curve(const DriveSearch& s, const Waveform& waveform);
+[[nodiscard]] Parameters of_dither(const DriveSearch& s, const Waveform& waveform);
+[[nodiscard]] Parameters of_chirp(const DriveSearch& s, const Waveform& waveform);
+[[nodiscard]] Parameters of_bspline(const DriveSearch& s, const Waveform& waveform);
+[[nodiscard]] Parameters of_sines(const DriveSearch& s, const Waveform& waveform);
+
+/// Amplitude, frequency, phase and start of a dither about the hold level: variables and their bounds. Throws InvalidInput where
+/// the limits leave it no room. The highest frequency [rad/s] is returned.
+double add_dither_variables(DriveSearch& s, const PreparedScene& p, double t0);
+/// How a slew limit changes a dither of this amplitude, whose angle turns by at most `omega` [rad/s] and which decays in `decay`
+/// [s]: the duration of its fades, and its amplitude.
+struct SlewedDither {
+  double rise_time = 0, start = 0, fade = 0, amplitude = 0;
+};
+[[nodiscard]] SlewedDither slewed_dither(const DriveSearch& s, double amplitude, double omega, double decay, double start,
+                                         double duration, double fade);
+
+}  // namespace softland::internal

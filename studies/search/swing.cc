@@ -1,0 +1,96 @@
+#include "studies/search/swing.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+struct Flight {
+  bool touched = false;
+  std::vector<VectorXd> states;  // one per step
+};
+
+// Flies from rest under full pull, and from a time on under full release, until the contact point arrives or turns back.
+class PullAndRelease {
+ public:
+  PullAndRelease(const Switch& model, Eigen::VectorXd rest, std::vector<double> pulling, std::vector<double> releasing,
+                 double step, double longest)
+      : model_(model),
+        rest_(std::move(rest)),
+        pulling_(std::move(pulling)),
+        releasing_(std::move(releasing)),
+        step_(step),
+        longest_(longest),
+        work_(model.workspace()) {}
+
+  Flight fly(double release_at) {
+    const Index n = model_.modes();
+    const double gap = model_.device().gap.contact;
+    Flight flight;
+    VectorXd x(2 * n), k1(2 * n), k2 = k1, k3 = k1, k4 = k1;
+    x << rest_, VectorXd::Zero(n);
+    flight.states.push_back(x);
+    for (double t = 0; t < longest_;) {
+      const bool pulls = t < release_at;
+      const double h = pulls ? std::min(step_, release_at - t) : step_;
+      const std::vector<double>& drives = pulls ? pulling_ : releasing_;
+      rates(x, drives, k1);
+      rates(x + h / 2 * k1, drives, k2);
+      rates(x + h / 2 * k2, drives, k3);
+      rates(x + h * k3, drives, k4);
+      x += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+      t += h;
+      flight.states.push_back(x);
+      flight.touched = model_.contact_deflection(x.data()) >= gap;
+      if (flight.touched || !x.allFinite()) break;
+      if (!pulls && model_.contact_deflection(x.data() + n) < 0) break;
+    }
+    return flight;
+  }
+
+ private:
+  void rates(const VectorXd& at, const std::vector<double>& drives, VectorXd& result) {
+    const Index n = model_.modes();
+    result.head(n) = at.tail(n);
+    model_.accelerations(at.data(), at.data() + n, drives, false, work_, result.data() + n);
+  }
+
+  const Switch& model_;
+  Eigen::VectorXd rest_;
+  std::vector<double> pulling_, releasing_;  // [V]
+  double step_, longest_;                    // [s]
+  Switch::Workspace work_;
+};
+
+}  // namespace
+
+std::optional<Swing> quickest_swing(const Switch& model, const std::vector<double>& pulling, const std::vector<double>& releasing,
+                                    double longest, std::span<const double> before) {
+  require(pulling.size() == model.drives() && releasing.size() == model.drives(), "a swing needs a value for every drive");
+  require(model.film_states() == 0, "the quickest swing is not known where the gas film is compressible");
+  const std::optional<VectorXd> rest = model.open_equilibrium(before);
+  require(rest.has_value(), "a switch without an open state has no swing");
+  constexpr double step_angle = 0.05;  // of the fastest mode in a step
+  Swing swing{.step = step_angle / model.angular_frequencies().maxCoeff()};
+  PullAndRelease drives(model, *rest, pulling, releasing, swing.step, longest);
+  const Flight full = drives.fly(longest);
+  if (!full.touched) return std::nullopt;
+  double low = 0, high = static_cast<double>(full.states.size()) * swing.step;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = (low + high) / 2;
+    (drives.fly(middle).touched ? high : low) = middle;
+  }
+  swing.states = drives.fly(high).states;
+  swing.driven_time = high;
+  // All steps but the one that ends at the release have one length: its share is too small to matter where a search begins.
+  swing.releasing_time = std::max(0.0, static_cast<double>(swing.states.size() - 1) * swing.step - high);
+  return swing;
+}
+
+}  // namespace softland

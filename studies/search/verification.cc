@@ -1,0 +1,122 @@
+#include "studies/search/verification.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "objectives/figures.h"
+#include "studies/closing/confirmation.h"
+#include "studies/search/modes_of_search.h"
+
+namespace softland {
+namespace {
+
+// The target's own figure, infinite where the closing has none; of a sum, the mean of figures over their units of
+// the baseline.
+double figure(const Aim& aim, const Metrics& m, const Metrics& baseline) {
+  if (aim.has_own_objective() && !m.touched()) return std::numeric_limits<double>::infinity();
+  const double value = aim.mean(m, baseline, [&](const TargetRow& row) {
+    const double own = figure_of(row.figure).value(m), unit = figure_of(row.unit).value(baseline);
+    return aim.is_sum() && unit > 0 ? own / unit : own;
+  });
+  return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+Verification::Verification(const SearchSetting& setting, const OptimizeOptions& options)
+    : worst_(by_the_worst_of_modes(setting)),
+      given_(setting.given),
+      baseline_(setting.baseline.metrics),
+      target_(options.target),
+      conditions_(setting.conditions),
+      watch_{.progress = options.on_preparation} {}
+
+bool Verification::Verified::better_than(const Verified& other) const {
+  return std::tuple(-static_cast<int>(belief), broken, figure, cost) <
+         std::tuple(-static_cast<int>(other.belief), other.broken, other.figure, other.cost);
+}
+
+std::optional<Varied> Verification::undone_by(const PreparedScene& scene) const {
+  for (const OtherWay& way : other_numerics(scene)) {
+    if (!met(simulated(scene, way).metrics)) return way.varied;
+  }
+  return std::nullopt;
+}
+
+void Verification::add(FoundWaveform candidate) {
+  const double cost = candidate.cost;
+  Closing closing = simulate(candidate.scene, true, watch_);
+  const Metrics& m = closing.metrics;
+  Verified now{.found = std::move(candidate),
+               .closing = closing,
+               .cost = cost,
+               .figure = figure(target_, m, baseline_),
+               .broken = broken(conditions_, m),
+               .belief = met(m)                             ? Belief::meets_goal
+                         : m.settled && m.bounce_count == 0 ? Belief::lands
+                         : m.settled                        ? Belief::settles
+                                                            : Belief::touches};
+  if (!target_.is_sum() && (target_.is_about(Target::bounce) || target_.is_about(Target::rebound)))
+    now.figure = std::max(now.figure, given_.scene.metrics.significant_rebound);
+  if (now.belief == Belief::meets_goal) {
+    now.failed = undone_by(now.found.scene);
+    if (!now.failed) now.belief = Belief::confirmed, now.cost = worst_.price(now.found.scene.signals()).own;
+  }
+  if (!best_ || now.better_than(*best_)) best_ = std::move(now);
+}
+
+double Verification::best_cost() const { return best_ ? best_->cost : std::numeric_limits<double>::infinity(); }
+
+bool Verification::decided(double cost) const { return confirmed() && best_->cost <= cost; }
+
+void Verification::move_to(OptimizeResult& result) {
+  if (!best_) return;
+  result.goal_met = best_->belief >= Belief::meets_goal;
+  result.confirmed = best_->belief == Belief::confirmed;
+  const Metrics& m = best_->closing.metrics;
+  // Where the plain step does not bounce either, what is left to gain is in the cost.
+  const double own = figure(target_, m, baseline_), of_step = figure(target_, baseline_, baseline_);
+  // What has not settled can only be better than a plain step that touches and has not settled either.
+  const bool may_be_better = (target_.from_the_start() != nullptr && m.touched()) || m.settled ||
+                             (!baseline_.settled && std::isfinite(baseline_.initial_contact_time));
+  result.better_than_baseline =
+      may_be_better && (own < of_step || (own == of_step && result.goal_met && best_->found.cost < result.baseline_cost));
+  for (const Criterion& one : conditions_) {
+    if (softland::broken({one}, m) > 0) result.broken_conditions.push_back(one.text);
+  }
+  result.checks = confirm(best_->found.scene);
+  result.best_scene = std::move(best_->found.scene);
+  result.best = std::move(best_->closing);
+  result.family = std::move(best_->found.family);
+  result.variables = std::move(best_->found.variables);
+  result.parameters = std::move(best_->found.parameters);
+  result.best_cost = best_->found.cost;
+}
+
+// Of a confirming run nothing is known that is not of the motion: its hold force and drives are those of the winner.
+bool Verification::met(const Metrics& m) const { return goal_met(target_, m, baseline_) && !(broken(known(m), m) > 0); }
+
+std::vector<Criterion> Verification::known(const Metrics& m) const {
+  std::vector<Criterion> all;
+  for (const Criterion& one : conditions_) {
+    if (std::isfinite(one.figure.value(m))) all.push_back(one);
+  }
+  return all;
+}
+
+bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline) {
+  if (target.from_the_start() != nullptr)
+    return best.touched() && figure(target, best, baseline) < figure(target, baseline, baseline);
+  if (!best.settled || best.bounce_count > 0) return false;
+  if (!target.has_own_cost()) return true;
+  // The plain step bounces for many times its closing: what counts is how soon contact can begin for good.
+  const bool is_settling = !target.is_sum() && target.is_about(Target::settling);
+  if (is_settling && std::isfinite(baseline.initial_contact_time))
+    return best.permanent_contact_time <= settling_goal * baseline.initial_contact_time;
+  return figure(target, best, baseline) < figure(target, baseline, baseline);
+}
+
+}  // namespace softland

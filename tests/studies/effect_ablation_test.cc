@@ -1,0 +1,156 @@
+// What a scene could do without, and effects = "auto".
+#include "studies/closing/effect_ablation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/simulate.h"
+
+namespace softland {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr std::string_view weak_dispersion = R"(dispersion={ model = "van-der-waals", hamaker_constant = "4e-19 J" })";
+
+std::vector<std::string> names(const std::vector<OmissibleEffect>& effects) {
+  std::vector<std::string> list;
+  for (const OmissibleEffect& e : effects) list.push_back(e.effect);
+  return list;
+}
+
+std::vector<std::string> names(const std::vector<EffectAblation>& effects) {
+  std::vector<std::string> list;
+  for (const EffectAblation& e : effects) list.push_back(e.what.effect);
+  return list;
+}
+
+Metrics own(const PreparedScene& p) { return simulate(p, false).metrics; }
+
+TEST(OmissibleEffect, IsWhatTheSceneDescribes) {
+  EXPECT_THAT(names(omissible_effects(prepare(gold()))), ElementsAre("structure.modes", "electrode.main.fringing", "gas"));
+  EXPECT_THAT(names(omissible_effects(prepare(gold({"electrode.main.fringing=none", "structure.modes=1"})))), ElementsAre("gas"));
+  EXPECT_THAT(names(omissible_effects(prepare(gold_at_17_volts(
+                  {"structure.damping_ratio=0.01", "gas.far_gap=3 um", "gas.film_length=250 um", weak_dispersion})))),
+              ElementsAre("structure.modes", "structure.damping_ratio", "electrode.main.fringing", "gas", "gas.far_gap",
+                          "gas.film_length", "dispersion"));
+  EXPECT_THAT(names(omissible_effects(prepare(scene("two-electrodes.toml")))),
+              ElementsAre("structure.damping_ratio", "contact.damping"));
+  EXPECT_THAT(names(omissible_effects(prepare(gold({"contact.distribution=pad"})))), testing::Contains("contact.distribution"));
+  EXPECT_THAT(names(omissible_effects(prepare(gold({"surface.elastic_modulus=5 N/m"})))), testing::Contains("surface"));
+  EXPECT_THAT(names(omissible_effects(prepare(scene("nem-casimir.toml")))), testing::Not(testing::Contains("dispersion")))
+      << "what a waveform drives is no effect to leave out";
+}
+
+TEST(OmissibleEffect, KnowsItsSize) {
+  const std::vector<OmissibleEffect> all = omissible_effects(prepare(gold()));
+  EXPECT_EQ(all[0].choice, "4");
+  EXPECT_EQ(all[1].choice, "meijs-fokkema") << "the default, too";
+  EXPECT_EQ(all[2].choice, "strip");
+  EXPECT_EQ(omissible_effects(prepare(gold({"gas.far_gap=3 um"}))).back().choice, "3 um");
+  EXPECT_EQ(all[0].instead, SceneValue(1));
+  EXPECT_FALSE(all[0].automatic);
+  // van der Meijs & Fokkema at h = 3.5 um, a = 20 um, b = 2 um.
+  EXPECT_NEAR(all[1].magnitude.value, 0.265 * std::pow(3.5 / 20, 0.75) + 0.53 * 3.5 / 20 * std::sqrt(2 / 3.5), 1e-9);
+  EXPECT_NEAR(all[1].group.value, 0.175, 1e-12);
+  EXPECT_NEAR(all[2].magnitude.value, 1.86e-5 * std::pow(20 / 1.5, 3), 1e-12);
+}
+
+TEST(OmissibleEffect, ContactAlongThePadGoesBackToItsCentreWhenTold) {
+  const PreparedScene p = prepare(gold_at_17_volts({"contact.distribution=pad"}));
+  const OmissibleEffect along = omissible_effects(p).back();
+  ASSERT_EQ(along.effect, "contact.distribution");
+  EXPECT_EQ(along.choice, "pad");
+  EXPECT_FALSE(along.automatic);
+  // The free end leads the inner one by the tilt of 1.5 dt / L over 5 um.
+  EXPECT_NEAR(along.magnitude.value, 60e-9, 1e-12);
+  EXPECT_EQ(own(without(p, {along})).initial_contact_time, own(prepare(gold_at_17_volts())).initial_contact_time);
+}
+
+TEST(Without, IsTheSceneWithoutTheSectionUnderTheSameVolts) {
+  const PreparedScene p = prepare(gold_at_17_volts());
+  const std::vector<OmissibleEffect> all = omissible_effects(p);
+  const PreparedScene vacuum = without(p, {all[2]});
+  EXPECT_FALSE(vacuum.scene.device.gas);
+  EXPECT_EQ(own(vacuum).initial_contact_time, own(prepare(without(gold_at_17_volts(), "gas"))).initial_contact_time);
+  const PreparedScene bare = without(p, all);
+  EXPECT_EQ(bare.scene.device.electrodes[0].fringing, Fringing::none);
+  EXPECT_EQ(bare.model.modes(), 1);
+  EXPECT_EQ(bare.signals()[0].hold_level(), 17.771);
+  // A level in Vdp keeps the volts of the whole scene.
+  const PreparedScene relative = prepare(gold());
+  EXPECT_EQ(without(relative, {omissible_effects(relative)[1]}).signals()[0].hold_level(), relative.signals()[0].hold_level());
+}
+
+TEST(Influence, IsTheLargestRelativeChange) {
+  Metrics a;
+  a.initial_contact_time = 10e-6;
+  a.impact_velocity = 0.1;
+  a.major_bounce_height = 100e-9;
+  Metrics b = a;
+  EXPECT_EQ(influence(a, b, {}), 0);
+  b.impact_velocity = 0.103;
+  EXPECT_NEAR(influence(a, b, {}), 0.03, 1e-12);
+  b.major_bounce_height = 90e-9;
+  EXPECT_NEAR(influence(a, b, {}), 0.1, 1e-12);
+  a.major_bounce_height = 0;
+  b.major_bounce_height = 0.5e-9;
+  EXPECT_NEAR(influence(a, b, {.significant_rebound = 1e-9}), 0.03, 1e-12) << "neither rebound counts";
+  b.initial_contact_time = Metrics::unset;
+  EXPECT_TRUE(std::isinf(influence(a, b, {})));
+}
+
+TEST(AutomaticEffects, LeaveOutWhatChangesNothing) {
+  const SceneFile file = gold_at_17_volts({"structure.damping_ratio=1e-9", weak_dispersion, "simulate.effects=auto"});
+  const PreparedScene p = prepare_and_choose(file);
+  ASSERT_TRUE(p.effects);
+  EXPECT_THAT(names(p.effects->choice.left_out), testing::UnorderedElementsAre("structure.damping_ratio", "dispersion"));
+  EXPECT_LE(p.effects->choice.influence, 1e-3);
+  EXPECT_FALSE(p.scene.device.dispersion);
+  EXPECT_TRUE(p.scene.device.gas) << "the film matters here";
+  EXPECT_TRUE(p.effects->described.device.dispersion);
+  EXPECT_THAT(p.scene.warnings.back(), HasSubstr("effects = \"auto\" leaves out "));
+  EXPECT_THAT(p.scene.warnings.back(), HasSubstr("dispersion ("));
+  EXPECT_EQ(own(p).initial_contact_time, own(prepare(gold_at_17_volts())).initial_contact_time);
+  // What is written runs to the same figures without choosing again.
+  const PreparedScene again = prepare(p.resolved());
+  EXPECT_FALSE(again.effects);
+  EXPECT_EQ(own(again).major_bounce_height, own(p).major_bounce_height);
+}
+
+TEST(AutomaticEffects, KeepWhatMattersByTheTolerance) {
+  EXPECT_THAT(prepare_and_choose(gold_at_17_volts({"simulate.effects=auto"})).effects->choice.left_out, IsEmpty());
+  const PreparedScene loose = prepare_and_choose(gold_at_17_volts({"simulate.effects=auto", "simulate.effects_tolerance=0.099"}));
+  EXPECT_THAT(names(loose.effects->choice.left_out), IsEmpty()) << "B_H changes by a third without the film";
+  EXPECT_THAT(loose.scene.warnings.back(), HasSubstr("nothing is left out"));
+}
+
+TEST(AutomaticEffects, CountTogether) {
+  const SceneFile file = gold_at_17_volts({"structure.damping_ratio=1e-4", "gas={ model = \"linear\", quality_factor = 5000 }"});
+  const PreparedScene p = prepare(file);
+  std::vector<double> alone;
+  for (const EffectAblation& o : ablate_effects(p, own(p), false)) {
+    if (o.what.effect == "gas" || o.what.effect == "structure.damping_ratio") alone.push_back(o.influence);
+  }
+  ASSERT_EQ(alone.size(), 2u);
+  const double most = *std::max_element(alone.begin(), alone.end());
+  ASSERT_LT(most, 0.01);
+  EXPECT_EQ(negligible_effects(p, 1.05 * most).left_out.size(), 1u) << alone[0] << " " << alone[1];
+  EXPECT_EQ(negligible_effects(p, 1.2 * (alone[0] + alone[1])).left_out.size(), 2u);
+}
+
+TEST(AutomaticEffects, LeaveNothingOutWhereNothingTouches) {
+  const PreparedScene p =
+      prepare_and_choose(gold_at_17_volts({"waveform.main.level=3 V", weak_dispersion, "simulate.effects=auto"}));
+  EXPECT_THAT(p.effects->choice.left_out, IsEmpty());
+}
+
+}  // namespace
+}  // namespace softland
