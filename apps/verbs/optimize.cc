@@ -280,16 +280,15 @@ void add_optimize(Verb& verb) {
                   ", or a weighted sum such as \"0.7 bounce + 0.3 energy\"; the goal of each asks for no significant rebound");
   verb.option("--actuator", request->actuator, "NAME",
               "drives that the search may shape: " + first_is_default(listed(actuators)));
-  verb.option(
-      "--waveform", request->waveform, "NAME",
-      "family to search: step, pulse, catch (default with a measure of --robust and --calibrate), harmonic, ramp, staircase, "
-      "knots "
-      "(default with a measure of --robust), coast, dual-pulse, pulses, s-curve, dither, chirp, bspline or sines; with a number "
-      "of levels, knots, "
-      "pulses or sines: knots:8; for each drive its own: main=step,pzt=pulse; several, each begun where those before it ended, "
-      "of which the best goes on: " +
-          fmt::format("{} (default), {} (for both, and electrodes on both sides), {} (for pzt)",
-                      default_families(Shaped::electrode), default_families(Shaped::several), default_families(Shaped::piezo)));
+  verb.option("--waveform", request->waveform, "NAME",
+              "family to search: " + listed_searched_families() +
+                  ", with a number of levels, knots, pulses or sines: knots:8; for each drive its own: main=step,pzt=pulse; "
+                  "several, each "
+                  "begun where those before it ended, of which the best goes on. Default: knots with a measure of --robust, "
+                  "catch with one "
+                  "and --calibrate; else " +
+                  fmt::format("{} ({} for both, and electrodes on both sides; {} for pzt)", default_families(Shaped::electrode),
+                              default_families(Shaped::several), default_families(Shaped::piezo)));
   verb.option("--robust", request->robust, "MEASURE",
               "devices that differ as [spread] says: auto (default, but for --seeds; where the scene has no [spread] one is "
               "assumed) searches for the drawing, then races measures and families over devices; none searches for the drawing "

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "studies/search/searched_shapes.h"
+#include "studies/search/searched_trains.h"
 #include "studies/search/swing.h"
 
 namespace softland {

@@ -16,39 +16,10 @@
 namespace softland {
 namespace {
 
-using internal::first_period, internal::lifting_voltage, internal::Parameters, internal::pulse_of;
-
-void add_pulse(DriveSearch& s, const PreparedScene& p, double t0) {
-  const double period = 2 * pi / p.model.angular_frequencies()[0];
-  s.variables = {{"level_1_V", s.limits.min_voltage, s.limits.max_voltage},
-                 {"level_2_V", s.limits.min_voltage, s.limits.max_voltage},
-                 {"time_1_s", 0.05 * t0, 1.6 * t0},
-                 {"duration_2_s", 0.05 * t0, 1.6 * t0},
-                 {"edge_s", 0.005 * period, 0.1 * period}};
-  const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
-  if (s.drive == piezo_drive) {
-    // Brake late in the flight and let go at touch: lifts of a part of the contact gap.
-    const double gap = p.scene.device.gap.contact;
-    for (const double brake : {0.3, 0.6}) {
-      s.starts.push_back(
-          {inside(lifting_voltage(p, 0.1 * gap)), inside(lifting_voltage(p, brake * gap)), 0.9 * t0, 0.7 * t0, 0.05 * period});
-    }
-  } else if (s.brakes) {
-    // Wait, pull back in the second half of the flight, let go at touch.
-    for (const double brake : {0.5, 0.8})
-      s.starts.push_back({0, inside(brake * s.limits.max_voltage), 0.5 * t0, 0.5 * t0, 0.01 * period});
-  } else {
-    // Throw, coast on less than the hold level, catch.
-    for (const double throwing : {1.0, 1.1}) {
-      s.starts.push_back({inside(throwing * s.hold), inside(0.6 * s.hold), 0.85 * t0, 0.5 * t0, 0.01 * period});
-    }
-  }
-  if (const auto landing = internal::throw_and_coast(s, p))
-    s.starts.push_back({landing->pulling, landing->coasting, landing->driven_time, landing->coasting_time, 0.005 * period});
-}
+using namespace internal;
 
 void add_harmonic(DriveSearch& s, const PreparedScene& p, double t0) {
-  const double upper = internal::add_dither_variables(s, p, t0), room = s.variables[0].upper;
+  const double upper = add_dither_variables(s, p, t0), room = s.variables[0].upper;
   for (const double frequency : {0.15, 0.45}) s.starts.push_back({room / 2, frequency * upper, pi, 0, 1.5 * t0, 0.2});
 }
 
@@ -57,65 +28,8 @@ void add_step(DriveSearch& s, const PreparedScene&, double t0) {
   s.starts = {{0.5 * t0}};
 }
 
-// Levels that last for a while each, by edges of one length.
-void add_levels(DriveSearch& s, const std::vector<double>& longest, double longest_edge, double t0, double period) {
-  const auto numbered = [](const char* what, std::size_t k, const char* unit) {
-    return fmt::format("{}_{}{}", what, k + 1, unit);
-  };
-  for (std::size_t k = 0; k < longest.size(); ++k)
-    s.variables.push_back({numbered("level", k, "_V"), s.limits.min_voltage, s.limits.max_voltage});
-  for (std::size_t k = 0; k < longest.size(); ++k)
-    s.variables.push_back({numbered("duration", k, "_s"), 0.05 * t0, longest[k] * t0});
-  s.variables.push_back({"edge_s", 0.005 * period, longest_edge * period});
-}
-
-void add_catch(DriveSearch& s, const PreparedScene& p, double t0) {
-  const double period = first_period(p), low = s.limits.min_voltage, high = s.limits.max_voltage;
-  add_levels(s, {1.6, 1.6, 4}, 0.1, t0, period);
-  const auto inside = [&](double v) { return std::clamp(v, low, high); };
-  if (s.drive == piezo_drive) {
-    const double gap = p.scene.device.gap.contact;
-    for (const double brake : {0.3, 0.6})
-      s.starts.push_back({inside(lifting_voltage(p, -0.2 * gap)), inside(lifting_voltage(p, brake * gap)), inside(0), 0.9 * t0,
-                          0.7 * t0, t0, 0.05 * period});
-    s.starts.push_back({inside(0), inside(0), inside(0), t0, t0, t0, 0.05 * period});
-  } else {
-    // Throw, coast, hold fast.
-    s.starts.push_back({high, low, high, 0.8 * t0, 0.5 * t0, 1.7 * t0, 0.01 * period});
-    s.starts.push_back({inside(s.hold), inside(0.6 * s.hold), inside(s.hold), 0.85 * t0, 0.5 * t0, t0, 0.01 * period});
-    if (const auto landing = internal::throw_and_coast(s, p)) {
-      for (const double push : internal::pushes)
-        s.starts.push_back(
-            {landing->pulling, landing->coasting, high, landing->driven_time, landing->coasting_time, push * t0, 0.005 * period});
-    }
-  }
-}
-
-void add_staircase(DriveSearch& s, const PreparedScene& p, double t0) {
-  const double period = first_period(p);
-  const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
-  add_levels(s, std::vector<double>(s.count, 3), 1, t0, period);
-  const auto climb = [&](double from, double to, double duration, double edge) {
-    std::vector<double> x;
-    for (std::size_t k = 0; k < s.count; ++k)
-      x.push_back(inside(from + (to - from) * static_cast<double>(k) / static_cast<double>(s.count)));
-    x.insert(x.end(), s.count, duration * t0);
-    x.push_back(edge * period);
-    s.starts.push_back(x);
-  };
-  if (s.drive == piezo_drive) {
-    const double gap = p.scene.device.gap.contact;
-    climb(0, 0, 0.5, 0.05);
-    climb(lifting_voltage(p, -0.3 * gap), lifting_voltage(p, 0.3 * gap), 0.5, 0.05);
-  } else {
-    climb(0.7 * s.hold, 0.95 * s.hold, 6.0 / static_cast<double>(s.count), 0.2);
-    climb(0.75 * s.hold, s.hold, 2.0 / static_cast<double>(s.count), 0.05);
-  }
-}
-
 // A broken line: the voltages at its knots, the time of the whole and the parts of it between them.
 void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
-  const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
   for (std::size_t k = 0; k < s.count; ++k)
     s.variables.push_back({fmt::format("level_{}_V", k + 1), s.limits.min_voltage, s.limits.max_voltage});
   s.variables.push_back({"total_time_s", 0.5 * t0, 10 * t0});
@@ -123,7 +37,7 @@ void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
   const auto line = [&](const auto& voltage, double total, double last_part) {
     std::vector<double> x;
     for (std::size_t k = 0; k < s.count; ++k)
-      x.push_back(inside(voltage(static_cast<double>(k) / static_cast<double>(s.count - 1))));
+      x.push_back(inside(s, voltage(static_cast<double>(k) / static_cast<double>(s.count - 1))));
     x.push_back(total * t0);
     x.insert(x.end(), s.count - 1, 1.0);
     x.push_back(last_part);
@@ -144,13 +58,12 @@ void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
 
 void add_ramp(DriveSearch& s, const PreparedScene& p, double t0) {
   const double period = first_period(p);
-  const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
   s.variables = {{"level_1_V", s.limits.min_voltage, s.limits.max_voltage},
                  {"level_2_V", s.limits.min_voltage, s.limits.max_voltage},
                  {"duration_s", 0.5 * t0, 10 * t0},
                  {"edge_s", 0.005 * period, 0.5 * period}};
   for (const double duration : {8.0, 3.0}) {
-    s.starts.push_back({inside(0.7 * s.hold), inside(0.9 * s.hold), duration * t0, 0.05 * period});
+    s.starts.push_back({inside(s, 0.7 * s.hold), inside(s, 0.9 * s.hold), duration * t0, 0.05 * period});
   }
 }
 
@@ -158,14 +71,8 @@ Waveform step_at(const DriveSearch& s, std::span<const double> x) {
   return Step{.level = s.hold, .rise_time = std::max(x[0], std::abs(s.hold - s.before) / s.limits.max_slew)};
 }
 
-Waveform pulse_at(const DriveSearch& s, std::span<const double> x) {
-  const std::size_t levels = (x.size() - 1) / 2;
-  return pulse_of(s, x.first(levels), x.subspan(levels, levels), x.back());
-}
-
 Waveform harmonic_at(const DriveSearch& s, std::span<const double> x) {
-  const internal::SlewedDither d =
-      internal::slewed_dither(s, x[0], x[1], std::numeric_limits<double>::infinity(), x[3], x[4], x[5]);
+  const SlewedDither d = slewed_dither(s, x[0], x[1], std::numeric_limits<double>::infinity(), x[3], x[4], x[5]);
   return Harmonic{.base = s.hold,
                   .rise_time = d.rise_time,
                   .amplitude = d.amplitude,
@@ -204,19 +111,6 @@ Parameters of_step(const DriveSearch&, const Waveform& waveform) {
   return std::vector<double>{std::get<Step>(waveform).rise_time};
 }
 
-Parameters of_pulse(const DriveSearch& s, const Waveform& waveform) {
-  const auto& pulse = std::get<Pulse>(waveform);
-  if (2 * pulse.times.size() + 1 != s.variables.size()) return std::nullopt;
-  std::vector<double> x(pulse.levels.begin(), pulse.levels.end() - 1);
-  double before = 0;
-  for (const double time : pulse.times) {
-    x.push_back(time - before);
-    before = time;
-  }
-  x.push_back(pulse.edge);
-  return x;
-}
-
 Parameters of_harmonic(const DriveSearch&, const Waveform& waveform) {
   const auto& dither = std::get<Harmonic>(waveform);
   const double duration = dither.end - dither.start;
@@ -246,33 +140,42 @@ Parameters of_ramp(const DriveSearch& s, const Waveform& waveform) {
   return std::vector<double>{table.voltage[1], table.voltage[2], table.time[2], table.time[3] - table.time[2]};
 }
 
-constexpr auto searched_families = std::to_array<SearchedFamily>(
-    {{FamilyOf<Step>::name, FamilyOf<Step>::name, 0, add_step, step_at, of_step},
-     {FamilyOf<Pulse>::name, FamilyOf<Pulse>::name, 0, add_pulse, pulse_at, of_pulse},
-     {FamilyOf<Harmonic>::name, FamilyOf<Harmonic>::name, 0, add_harmonic, harmonic_at, of_harmonic},
-     {"catch", FamilyOf<Pulse>::name, 0, add_catch, pulse_at, of_pulse},
-     {"ramp", FamilyOf<Table>::name, 0, add_ramp, ramp_at, of_ramp},
-     {"staircase", FamilyOf<Pulse>::name, 4, add_staircase, pulse_at, of_pulse},
-     {"knots", FamilyOf<Table>::name, 6, add_knots, knots_at, of_knots},
-     {"coast", FamilyOf<Pulse>::name, 0, internal::add_coast, internal::coast_at, internal::of_coast},
-     {"dual-pulse", FamilyOf<Pulse>::name, 0, internal::add_dual_pulse, internal::pulses_at, internal::of_pulses},
-     {"pulses", FamilyOf<Pulse>::name, 3, internal::add_pulses, internal::pulses_at, internal::of_pulses},
-     {"s-curve", FamilyOf<SCurve>::name, 0, internal::add_s_curve, internal::s_curve_at, internal::of_s_curve},
-     {"dither", FamilyOf<Chirp>::name, 0, internal::add_dither, internal::dither_at, internal::of_dither},
-     {"chirp", FamilyOf<Chirp>::name, 0, internal::add_chirp, internal::chirp_at, internal::of_chirp},
-     {"bspline", FamilyOf<BSpline>::name, 6, internal::add_bspline, internal::bspline_at, internal::of_bspline},
-     {"sines", FamilyOf<Sines>::name, 4, internal::add_sines, internal::sines_at, internal::of_sines}});
+constexpr auto families = std::to_array<SearchedFamily>({
+    {FamilyOf<Step>::name, FamilyOf<Step>::name, 0, add_step, step_at, of_step},
+    {FamilyOf<Pulse>::name,
+     FamilyOf<Pulse>::name,
+     0,
+     add_pulse,
+     train_at,
+     of_train,
+     {.pulses = 2, .longest = {1.6, 1.6, 1.6}, .first_duration = "time_1_s"}},
+    {FamilyOf<Harmonic>::name, FamilyOf<Harmonic>::name, 0, add_harmonic, harmonic_at, of_harmonic},
+    {"catch", FamilyOf<Pulse>::name, 0, add_catch, train_at, of_train, {.pulses = 3, .longest = {1.6, 1.6, 4}}},
+    {"ramp", FamilyOf<Table>::name, 0, add_ramp, ramp_at, of_ramp},
+    {"staircase", FamilyOf<Pulse>::name, 4, add_staircase, train_at, of_train, {.longest = {3, 3, 3}, .longest_edge = 1}},
+    {"knots", FamilyOf<Table>::name, 6, add_knots, knots_at, of_knots},
+    {"coast", FamilyOf<Pulse>::name, 0, add_coast, train_at, of_train, {.pulses = 1, .coasts = true, .longest = {1.6}}},
+    {"dual-pulse", FamilyOf<Pulse>::name, 0, add_pulses, train_at, of_train, {.pulses = 2, .coasts = true, .longest = {1.6, 4}}},
+    {"pulses", FamilyOf<Pulse>::name, 3, add_pulses, train_at, of_train, {.coasts = true, .longest = {1.6, 4, 4}}},
+    {"s-curve", FamilyOf<SCurve>::name, 0, add_s_curve, s_curve_at, of_s_curve},
+    {"dither", FamilyOf<Chirp>::name, 0, add_dither, dither_at, of_dither},
+    {"chirp", FamilyOf<Chirp>::name, 0, add_chirp, chirp_at, of_chirp},
+    {"bspline", FamilyOf<BSpline>::name, 6, add_bspline, bspline_at, of_bspline},
+    {"sines", FamilyOf<Sines>::name, 4, add_sines, sines_at, of_sines},
+});
 
 constexpr std::size_t fewest = 2, most = 20;  // of levels, knots, pulses or sines
 
 }  // namespace
 
+std::span<const SearchedFamily> searched_families() { return families; }
+
 void choose_family(DriveSearch& s, const std::string& text) {
   const std::size_t colon = text.find(':');
   const std::string_view name = std::string_view(text).substr(0, colon);
-  const auto* found = std::find_if(searched_families.begin(), searched_families.end(),
-                                   [&](const SearchedFamily& family) { return family.name == name; });
-  require_request(found != searched_families.end(),
+  const auto* found =
+      std::find_if(families.begin(), families.end(), [&](const SearchedFamily& family) { return family.name == name; });
+  require_request(found != families.end(),
                   [&] { return fmt::format("{} {}: must be {}", requested("waveform"), text, listed_searched_families()); });
   s.family = found;
   s.count = found->count;
@@ -290,12 +193,12 @@ void choose_family(DriveSearch& s, const std::string& text) {
 
 std::string listed_searched_families() {
   std::string text;
-  for (std::size_t i = 0; i < searched_families.size(); ++i) {
-    const SearchedFamily& family = searched_families[i];
+  for (std::size_t i = 0; i < families.size(); ++i) {
+    const SearchedFamily& family = families[i];
     text += fmt::format("{}{}{}",
-                        i == 0                              ? ""
-                        : i + 1 == searched_families.size() ? " or "
-                                                            : ", ",
+                        i == 0                     ? ""
+                        : i + 1 == families.size() ? " or "
+                                                   : ", ",
                         family.name, family.count > 0 ? ":N" : "");
   }
   return text;

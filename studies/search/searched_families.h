@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "studies/search/search_space.h"
+#include "studies/search/searched_trains.h"
 
 namespace softland {
 
@@ -17,12 +18,15 @@ namespace softland {
 struct SearchedFamily {
   std::string_view name;
   std::string_view waveform;  ///< the family of a scene that it makes
-  std::size_t count;          ///< of levels, knots, pulses or sines, where there is a choice, if it is not given
+  std::size_t count = 0;      ///< of levels, knots, pulses or sines, where there is a choice, if it is not given
   void (*add)(DriveSearch&, const PreparedScene&, double first_touch);
   Waveform (*at)(const DriveSearch&, std::span<const double> x);
   std::optional<std::vector<double>> (*parameters)(const DriveSearch&, const Waveform&);
+  internal::TrainRules train = {};  ///< of a family that is a train of pulses
 };
 
+/// All of them, in the order in which they are listed.
+[[nodiscard]] std::span<const SearchedFamily> searched_families();
 /// Sets the family of a drive, and its number of levels, knots, pulses or sines: "pulse", "knots:8". Throws InvalidInput where
 /// there is none.
 void choose_family(DriveSearch& s, const std::string& text);

@@ -23,48 +23,6 @@ void add_variables(DriveSearch& s, const char* what, const char* unit, std::size
 
 double longest_rise(const DriveSearch& s) { return std::abs(s.hold - s.before) / s.limits.max_slew; }
 
-/// Pulses and pauses in turn, and the edge: levels, durations and pauses are where a point has them.
-struct Train {
-  std::span<const double> levels, durations, pauses;
-  double edge = 0;
-  bool pauses_first = false;
-};
-
-Waveform train(const DriveSearch& s, const Train& t) {
-  std::vector<double> levels, durations;
-  const double none = inside(s, 0);
-  for (std::size_t k = 0; k < t.levels.size(); ++k) {
-    if (t.pauses_first) levels.push_back(none), durations.push_back(t.pauses[k]);
-    levels.push_back(t.levels[k]), durations.push_back(t.durations[k]);
-    if (!t.pauses_first && k < t.pauses.size()) levels.push_back(none), durations.push_back(t.pauses[k]);
-  }
-  return pulse_of(s, levels, durations, t.edge);
-}
-
-/// The point of a train of `count` pulses, of which `pauses` follow or, for a drive that brakes, precede one.
-Parameters of_train(const DriveSearch& s, const Waveform& waveform, std::size_t count, std::size_t pauses) {
-  const auto& pulse = std::get<Pulse>(waveform);
-  if (pulse.times.size() != count + pauses) return std::nullopt;
-  std::vector<double> levels, durations, between;
-  double before = 0;
-  for (std::size_t i = 0; i < pulse.times.size(); ++i) {
-    const double duration = pulse.times[i] - before;
-    before = pulse.times[i];
-    const bool is_pause = (i % 2 == 1) != s.brakes;
-    if (is_pause && pulse.levels[i] != inside(s, 0)) return std::nullopt;
-    if (!is_pause) levels.push_back(pulse.levels[i]);
-    (is_pause ? between : durations).push_back(duration);
-  }
-  std::vector<double> x = levels;
-  x.insert(x.end(), durations.begin(), durations.end());
-  x.insert(x.end(), between.begin(), between.end());
-  x.push_back(pulse.edge);
-  return x;
-}
-
-/// Numbers of pulses and pauses of a train.
-std::size_t pauses_of(const DriveSearch& s, std::size_t count) { return s.brakes ? count : count - 1; }
-
 }  // namespace
 
 double inside(const DriveSearch& s, double voltage) { return std::clamp(voltage, s.limits.min_voltage, s.limits.max_voltage); }
@@ -76,17 +34,6 @@ double lifting_voltage(const PreparedScene& p, double lift) {
 }
 
 double first_period(const PreparedScene& p) { return 2 * pi / p.model.angular_frequencies()[0]; }
-
-Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations, double edge) {
-  Pulse pulse{.levels = {levels.begin(), levels.end()}, .times = {}, .edge = edge};
-  pulse.levels.push_back(s.hold);
-  double steps = std::abs(levels[0] - s.before);
-  for (std::size_t k = 0; k < levels.size(); ++k) steps = std::max(steps, std::abs(pulse.levels[k + 1] - pulse.levels[k]));
-  pulse.edge = std::max(edge, steps / s.limits.max_slew);
-  double time = 0;
-  for (const double duration : durations) pulse.times.push_back(time += std::max(duration, pulse.edge));
-  return pulse;
-}
 
 std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const PreparedScene& p) {
   if (s.brakes) return std::nullopt;
@@ -114,87 +61,6 @@ std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const Prepare
   found.driven_time = landing->driven_time;
   found.coasting_time = landing->coasting_time;
   return found;
-}
-
-void add_coast(DriveSearch& s, const PreparedScene& p, double t0) {
-  const double period = first_period(p);
-  s.variables = {{"level_1_V", s.limits.min_voltage, s.limits.max_voltage},
-                 {"duration_1_s", 0.05 * t0, 1.6 * t0},
-                 {"coast_1_s", 0.05 * t0, 1.6 * t0},
-                 {"edge_s", 0.005 * period, 0.1 * period}};
-  if (s.drive == piezo_drive) {
-    for (const double brake : {0.3, 0.6})
-      s.starts.push_back({inside(s, lifting_voltage(p, brake * p.scene.device.gap.contact)), 1.4 * t0, 0.5 * t0, 0.05 * period});
-  } else if (s.brakes) {
-    for (const double brake : {0.5, 0.8})
-      s.starts.push_back({inside(s, brake * s.limits.max_voltage), 0.5 * t0, 0.5 * t0, 0.01 * period});
-  } else {
-    for (const double throwing : {1.0, 1.1})
-      s.starts.push_back({inside(s, throwing * s.hold), 0.7 * t0, 0.4 * t0, 0.01 * period});
-  }
-  if (const auto landing = throw_and_coast(s, p))
-    s.starts.push_back({landing->pulling, landing->driven_time, landing->coasting_time, 0.005 * period});
-}
-
-Waveform coast_at(const DriveSearch& s, std::span<const double> x) {
-  return train(
-      s, {.levels = x.first(1), .durations = x.subspan(1, 1), .pauses = x.subspan(2, 1), .edge = x[3], .pauses_first = s.brakes});
-}
-
-Parameters of_coast(const DriveSearch& s, const Waveform& waveform) { return of_train(s, waveform, 1, 1); }
-
-void add_pulses(DriveSearch& s, const PreparedScene& p, double t0) {
-  const double period = first_period(p);
-  const std::size_t pauses = pauses_of(s, s.count);
-  add_variables(s, "level", "_V", s.count, s.limits.min_voltage, s.limits.max_voltage);
-  s.variables.push_back({"duration_1_s", 0.05 * t0, 1.6 * t0});
-  for (std::size_t k = 2; k <= s.count; ++k) s.variables.push_back({fmt::format("duration_{}_s", k), 0.05 * t0, 4 * t0});
-  add_variables(s, "coast", "_s", pauses, 0.05 * t0, 1.6 * t0);
-  s.variables.push_back({"edge_s", 0.005 * period, 0.1 * period});
-  // The first pulse throws the switch, the second holds it fast on its contact; those after it hold on.
-  const auto start = [&](double first, double later, double duration, double second, double pause, double edge) {
-    std::vector<double> x{inside(s, first)};
-    x.insert(x.end(), s.count - 1, inside(s, later));
-    x.push_back(duration);
-    x.insert(x.end(), s.count - 1, second);
-    x.push_back(std::max(pause, edge * period));
-    x.insert(x.end(), pauses - 1, s.brakes ? t0 : std::max(0.05 * t0, edge * period));
-    x.push_back(edge * period);
-    s.starts.push_back(x);
-  };
-  if (s.drive == piezo_drive) {
-    const double gap = p.scene.device.gap.contact;
-    for (const double brake : {0.3, 0.6})
-      start(lifting_voltage(p, -0.2 * gap), lifting_voltage(p, brake * gap), 0.8 * t0, 0.7 * t0, 0.05 * t0, 0.05);
-  } else if (s.brakes) {
-    for (const double brake : {0.5, 0.8}) start(brake * s.limits.max_voltage, 0, 0.5 * t0, 0.5 * t0, 0.5 * t0, 0.01);
-  } else {
-    const double high = s.limits.max_voltage;
-    start(high, high, 0.7 * t0, 1.7 * t0, 0.45 * t0, 0.01);
-    start(s.hold, s.hold, 0.85 * t0, t0, 0.4 * t0, 0.01);
-    if (const auto landing = throw_and_coast(s, p)) {
-      for (const double push : pushes)
-        start(landing->pulling, high, landing->driven_time, push * t0, landing->coasting_time, 0.005);
-    }
-  }
-}
-
-void add_dual_pulse(DriveSearch& s, const PreparedScene& p, double t0) {
-  s.count = 2;
-  add_pulses(s, p, t0);
-}
-
-Waveform pulses_at(const DriveSearch& s, std::span<const double> x) {
-  const std::size_t n = s.count;
-  return train(s, {.levels = x.first(n),
-                   .durations = x.subspan(n, n),
-                   .pauses = x.subspan(2 * n, pauses_of(s, n)),
-                   .edge = x.back(),
-                   .pauses_first = s.brakes});
-}
-
-Parameters of_pulses(const DriveSearch& s, const Waveform& waveform) {
-  return of_train(s, waveform, s.count, pauses_of(s, s.count));
 }
 
 void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0) {

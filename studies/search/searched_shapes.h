@@ -1,4 +1,5 @@
-// Variables, starting points and waveforms of the searched families that are trains of pulses or curves; their rows stand in
+// Variables, starting points and waveforms of the searched families that are curves, and what those of trains
+// (searched_trains.h) share with them; their rows stand in
 // searched_families.cc, and search_space.h says what they vary.
 #pragma once
 
@@ -19,11 +20,6 @@ using Parameters = std::optional<std::vector<double>>;
 [[nodiscard]] double lifting_voltage(const PreparedScene& p, double lift);
 /// [s]
 [[nodiscard]] double first_period(const PreparedScene& p);
-/// A pulse of these levels and then the hold level, whose durations are at least those of its edges, as long as the driver asks
-/// for.
-[[nodiscard]] Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations,
-                                double edge);
-
 /// Full pull and then none, as it lands the switch (swing.h), or its first mode without damping (bang_bang.h) where the gas film
 /// is compressible; the other drives stand at their hold levels.
 struct ThrowAndCoast {
@@ -35,17 +31,6 @@ struct ThrowAndCoast {
 inline constexpr std::array pushes = {0.5, 1.0, 2.0, 3.5};
 /// Nothing where there is no such landing, and for a drive that pulls away from the contact.
 [[nodiscard]] std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const PreparedScene& p);
-
-/// A single pulse, coasting without voltage, the hold level. A drive that brakes waits before its pulse instead.
-void add_coast(DriveSearch& s, const PreparedScene& p, double t0);
-/// s.count pulses between which the switch coasts; the hold level follows the last one. A drive that brakes waits before the
-/// first.
-void add_pulses(DriveSearch& s, const PreparedScene& p, double t0);
-void add_dual_pulse(DriveSearch& s, const PreparedScene& p, double t0);
-[[nodiscard]] Waveform coast_at(const DriveSearch& s, std::span<const double> x);
-[[nodiscard]] Waveform pulses_at(const DriveSearch& s, std::span<const double> x);
-[[nodiscard]] Parameters of_coast(const DriveSearch& s, const Waveform& waveform);
-[[nodiscard]] Parameters of_pulses(const DriveSearch& s, const Waveform& waveform);
 
 void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0);
 void add_dither(DriveSearch& s, const PreparedScene& p, double t0);

@@ -37,13 +37,24 @@ class BadInput : public ::testing::Test {
     delete here;
     here = nullptr;
   }
+  /// Of a message with "…" what stands before and behind: a list that the program makes of a table is not written down here.
+  static void expect_message(const std::string& said, const std::string& message, const std::string& line) {
+    const std::string whole = "softland: " + message + "\n", ellipsis = "…";
+    const std::size_t gap = whole.find(ellipsis);
+    if (gap == std::string::npos) {
+      EXPECT_EQ(said, whole) << line;
+    } else {
+      EXPECT_TRUE(said.starts_with(whole.substr(0, gap))) << said << line;
+      EXPECT_TRUE(said.ends_with(whole.substr(gap + ellipsis.size()))) << said << line;
+    }
+  }
   static void expect_refused(const std::vector<Case>& cases) {
     for (const auto& [words, message] : cases) {
       std::string line;
       for (const std::string& word : words) line += " " + word;
       const Outcome o = here->run(words);
       EXPECT_EQ(o.status, 2) << line;
-      EXPECT_EQ(o.err, "softland: " + message + "\n") << line;
+      expect_message(o.err, message, line);
       EXPECT_EQ(o.out, "") << line;
     }
   }
@@ -53,12 +64,7 @@ class BadInput : public ::testing::Test {
 };
 
 TEST_F(BadInput, Verbs) {
-  const std::string missing =
-      "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, limit, release, explore, robustness, "
-      "calibrate, fit, tune, device, "
-      "table, "
-      "status, merge, slurm, new, "
-      "export, report or read (see softland --help)";
+  const std::string missing = "a verb is required: simulate, … or read (see softland --help)";
   expect_refused({
       {{}, missing},
       {{"frobnicate"}, "there is no verb 'frobnicate' (see softland --help)"},
@@ -214,20 +220,11 @@ TEST_F(BadInput, Searches_long) {
   const std::string budget = ": must be a whole number of evaluations such as 2500, or a time such as \"90 s\"";
   expect_refused({
       {search({"--target", "softness"}),
-       "--target softness: must be bounce, settling, rebound, count, impact, energy, force, drive or steady, or a weighted sum "
-       "such as "
-       "\"0.7 "
-       "bounce + 0.3 energy\""},
+       "--target softness: must be bounce, …, or a weighted sum such as \"0.7 bounce + 0.3 energy\""},
       {search({"--constrain", "t_i < 3 V"}), "--constrain: initial_contact_time in 't_i < 3 V' must be a time [s]"},
       {search({"--actuator", "magnetic"}), "--actuator magnetic: must be electrostatic, pzt or both"},
-      {search({"--waveform", "table"}),
-       "--waveform table: must be step, pulse, harmonic, catch, ramp, staircase:N, knots:N, coast, dual-pulse, pulses:N, "
-       "s-curve, dither, "
-       "chirp, bspline:N or sines:N"},
-      {search({"--waveform", "spline"}),
-       "--waveform spline: must be step, pulse, harmonic, catch, ramp, staircase:N, knots:N, coast, dual-pulse, pulses:N, "
-       "s-curve, dither, "
-       "chirp, bspline:N or sines:N"},
+      {search({"--waveform", "table"}), "--waveform table: must be step, …"},
+      {search({"--waveform", "spline"}), "--waveform spline: must be step, …"},
       {search({"--budget", "0"}), "--budget 0" + budget},
       {search({"--budget", "-5"}), "--budget -5" + budget},
       {search({"--budget", "1.5"}), "--budget 1.5" + budget},
