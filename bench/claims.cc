@@ -301,7 +301,7 @@ void casimir_size(const std::filesystem::path& folder) {
     };
     for (SizedSwitches& kind : kinds) {
       const double length = critical_length(sized, own_length, kind.critical);
-      const double period = 2 * pi / prepare(sized(length)).model.angular_frequencies()[0];
+      const double period = 2 * pi / prepare(sized(length)).model.basis().angular_frequencies()[0];
       const auto scaled = [&](double part) {
         return with(sized(length), {fmt::format("waveform.dispersion.level={:.17g}", 1 + 0.25 * part),
                                     fmt::format("simulate.duration={:.17g} s", 20 * period)});

@@ -166,7 +166,7 @@ void run(const Options& options) {
     nlohmann::json out{{"scene", options.scene},
                        {"drive", drive},
                        {"window_s", window},
-                       {"quadrature_points", prepared.model.points()},
+                       {"quadrature_points", prepared.model.quadrature().points()},
                        {"modes", prepared.model.modes()},
                        {"runs", options.runs},
                        {"rhs_s", rhs},
@@ -181,7 +181,7 @@ void run(const Options& options) {
     return;
   }
   fmt::print("step of {}, {:g} us, {} modes, {} quadrature points; {:.1f} ns per right-hand side; medians of {} runs\n\n", drive,
-             window * 1e6, prepared.model.modes(), prepared.model.points(), rhs * 1e9, options.runs);
+             window * 1e6, prepared.model.modes(), prepared.model.quadrature().points(), rhs * 1e9, options.runs);
   fmt::print("{:<15}{:>8}{:>8}{:>9}{:>11}{:>10}{:>10}{:>11}{:>9}{:>11}\n", "integrator", "tol", "steps", "rhs", "ms/closing",
              "ns/rhs", "t_i [us]", "v_i [m/s]", "B_H[nm]", "worst err");
   for (const Row& row : rows) {

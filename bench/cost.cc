@@ -73,7 +73,7 @@ Cost measure(const PreparedScene& prepared, const Case& c) {
     evaluations = t.work.rhs_evaluations;
   }
   return {*std::min_element(seconds.begin(), seconds.end()), right_hand_side_seconds(with, prepared.signals(), window, 1001),
-          evaluations, with.points()};
+          evaluations, with.quadrature().points()};
 }
 
 double slope(const std::vector<double>& x, const std::vector<double>& y) {
@@ -89,8 +89,8 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
 void print_bound(const PreparedScene& prepared) {
   const Switch& device = prepared.model;
   const std::vector<Stretch> pads = prepared.scene.device.electrodes[0].pads(prepared.scene.device.structure.length);
-  const auto all = static_cast<double>(device.points());
-  const auto driven = static_cast<double>(std::ranges::count_if(device.point_positions(), [&](double x) {
+  const auto all = static_cast<double>(device.quadrature().points());
+  const auto driven = static_cast<double>(std::ranges::count_if(device.quadrature().positions(), [&](double x) {
     return std::ranges::any_of(pads, [&](const Stretch& pad) { return pad.holds(x); });
   }));
   const double modes = device.modes();
@@ -120,7 +120,7 @@ void print_bound(const PreparedScene& prepared) {
       "first-level cache.\nDivisions and roots share a unit, multiply-adds run beside them: the bound is the larger sum, "
       "**{:.1f} ns**. Measured: **{:.1f} ns, {:.0f} % of\n"
       "the bound's speed**.\n\n",
-      modes, device.points(), driven, 2 * multiply_adds + divisions + roots, bytes / 1e3, bound * 1e9, measured * 1e9,
+      modes, device.quadrature().points(), driven, 2 * multiply_adds + divisions + roots, bytes / 1e3, bound * 1e9, measured * 1e9,
       100 * bound / measured);
 }
 

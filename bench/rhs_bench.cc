@@ -30,8 +30,8 @@ int run(long calls, SceneFile file, const std::vector<std::string>& assignments)
   // The contact point a nanometre beyond the plane, by the first mode, and on its way.
   const auto n = static_cast<std::size_t>(model.modes());
   std::vector<double> state(2 * n + model.film_states()), rates(n + model.film_states());
-  state[0] = (model.device().gap.contact + 1e-9) / model.contact_shape()[0];
-  state[n] = model.angular_frequencies()[0] * state[0];
+  state[0] = (model.device().gap.contact + 1e-9) / model.basis().contact_shape()[0];
+  state[n] = model.basis().angular_frequencies()[0] * state[0];
   Switch::Workspace work = model.workspace();
   double sum = 0;
   for (long i = 0; i < calls; ++i) {

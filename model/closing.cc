@@ -28,7 +28,7 @@ class Run {
         stepping_(parts_),
         audit_(model, parts_.drives, parts_.phase, parts_.equations, stepping_.here()) {
     out_.contact_gap = plane_;
-    out_.in_contact_period = model.in_contact_period();
+    out_.in_contact_period = model.basis().in_contact_period();
     out_.smallest_gap = model.device().gap.electrode;
   }
 

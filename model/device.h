@@ -173,6 +173,8 @@ struct Device {
   /// end, or lies about the middle of a beam between two clamps. Without contact: the free end, or the middle. Of a contact along
   /// the pad: the free end, which touches first.
   [[nodiscard]] double contact_position() const;
+  /// Whether the contact acts along its pad, not at one place.
+  [[nodiscard]] bool touches_along_pad() const { return contact && contact->distribution == ContactDistribution::pad; }
   /// Where the pad begins and ends [m]; of a device with a contact.
   [[nodiscard]] std::pair<double, double> pad() const {
     const double end =

@@ -164,7 +164,7 @@ LinearizedClosing::LinearizedClosing(const Switch& model, std::span<const Signal
       dent_(static_cast<Index>(signals.size())),
       moving_(by_device != nullptr ? static_cast<Index>(by_device->moving().size()) : 0),
       inputs_(dent_ + 1 + moving_),
-      fastest_(model.angular_frequencies().maxCoeff()),
+      fastest_(model.basis().angular_frequencies().maxCoeff()),
       work_(model.workspace()),
       refinement_(refinement),
       pieces_(1, std::vector<std::size_t>(signals.size(), 0)),
@@ -310,7 +310,7 @@ void LinearizedClosing::set_node(Node& node, double t, const double* q, const do
       return contact_force(model_.contact(), d, moved, 0);
     };
     const double slope = (force(contact.shift + step) - force(contact.shift - step)) / (2 * step);
-    node.inputs.col(dent_) = -slope * model_.contact_shape();
+    node.inputs.col(dent_) = -slope * model_.basis().contact_shape();
   }
 }
 
@@ -416,7 +416,7 @@ LinearizedClosing::Jump LinearizedClosing::at_rest(const Arc& before) const {
   Jump jump{.matrix = MatrixXd::Zero(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   for (Index j = 0; j < moving_; ++j) {
     jump.by_device(0, j) =
-        -fastest_ * by_device_->interference(static_cast<std::size_t>(j), before.q.data()) / model_.contact_shape()[0];
+        -fastest_ * by_device_->interference(static_cast<std::size_t>(j), before.q.data()) / model_.basis().contact_shape()[0];
   }
   return jump;
 }
@@ -428,7 +428,7 @@ LinearizedClosing::Jump LinearizedClosing::turned(const Arc& before) const {
   const auto shift = [&](double d) { return dent(model_.contact(), d).shift; };
   const double slope = (shift(deepest + step) - shift(deepest - step)) / (2 * step);
   jump.matrix->bottomRows<1>().setZero();
-  jump.matrix->bottomLeftCorner(1, n_) = slope / fastest_ * model_.contact_shape().transpose();
+  jump.matrix->bottomLeftCorner(1, n_) = slope / fastest_ * model_.basis().contact_shape().transpose();
   for (Index j = 0; j < moving_; ++j) {
     const auto parameter = static_cast<std::size_t>(j);
     jump.by_device(size_, j) = slope * by_device_->interference(parameter, before.q.data()) +
@@ -443,7 +443,7 @@ LinearizedClosing::Jump LinearizedClosing::crossed(const RecordedMotion::PhaseEv
   Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   MatrixXd& matrix = *jump.matrix;
   VectorXd normal = VectorXd::Zero(size_);
-  normal.head(n_) = model_.contact_shape() / fastest_;
+  normal.head(n_) = model_.basis().contact_shape() / fastest_;
   Modal v = before.v;
   VectorXd from = rates(passage.time, before.q.data(), v.data(), change.before);
   const double approach = normal.dot(from);

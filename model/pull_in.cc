@@ -30,12 +30,12 @@ class Statics {
       : model_(model),
         work_(model.workspace()),
         rest_(Eigen::VectorXd::Zero(model.modes())),
-        squares_(model.angular_frequencies().cwiseAbs2()) {}
+        squares_(model.basis().angular_frequencies().cwiseAbs2()) {}
 
   // Shape under a force at the contact point, scaled to the deflection s there.
   [[nodiscard]] Eigen::VectorXd pushed(double s) const {
-    const Eigen::VectorXd shape = model_.contact_shape().cwiseQuotient(squares_);
-    return shape * (s / model_.contact_shape().dot(shape));
+    const Eigen::VectorXd shape = model_.basis().contact_shape().cwiseQuotient(squares_);
+    return shape * (s / model_.basis().contact_shape().dot(shape));
   }
 
   // `drive` holds the contact point at s against the contact force P(s - dt), the other drives standing at `bias`.
@@ -45,7 +45,7 @@ class Statics {
     std::vector<double> some(bias.begin(), bias.end()), none = some;
     some[drive] = model_.value_of_strength(drive, scale);
     none[drive] = model_.value_of_strength(drive, 0);
-    const Eigen::VectorXd& shape = model_.contact_shape();
+    const Eigen::VectorXd& shape = model_.basis().contact_shape();
     const double d = s - model_.device().gap.contact;
     const bool acts = model_.has_contact() && !model_.has_pad_contact() && d > -model_.contact_reach();
     const double push = acts ? contact_force(model_.contact(), d) : 0;
@@ -79,8 +79,8 @@ class Statics {
     return newton(s, std::move(near),
                   [&](const Held& at, Eigen::VectorXd& residual, Eigen::MatrixXd& by_q, Eigen::VectorXd& by_unknown) {
                     evaluate(at.q, volts, residual, by_q);
-                    residual -= at.unknown * model_.contact_shape();
-                    by_unknown = -model_.contact_shape();
+                    residual -= at.unknown * model_.basis().contact_shape();
+                    by_unknown = -model_.basis().contact_shape();
                   });
   }
 
@@ -123,7 +123,7 @@ class Statics {
   template <class Equations>
   std::optional<Held> newton(double s, Held h, Equations&& equations) {
     const Eigen::Index n = model_.modes();
-    const Eigen::VectorXd& shape = model_.contact_shape();
+    const Eigen::VectorXd& shape = model_.basis().contact_shape();
     const double largest = shape.cwiseAbs().maxCoeff();
     Eigen::VectorXd residual, by_unknown;
     Eigen::MatrixXd by_q, bordered(n + 1, n + 1);
@@ -147,7 +147,7 @@ class Statics {
   }
 
   [[nodiscard]] bool has_converged(const Eigen::VectorXd& step) const {
-    return step.cwiseProduct(model_.contact_shape()).cwiseAbs().sum() < 1e-13 * model_.device().gap.electrode;
+    return step.cwiseProduct(model_.basis().contact_shape()).cwiseAbs().sum() < 1e-13 * model_.device().gap.electrode;
   }
   // Of the state evaluated last: below the floor the laws are no longer physics, and a state there is none.
   [[nodiscard]] bool is_above_floor() const { return Switch::smallest_gap(work_) > model_.gap_floor(); }
@@ -263,13 +263,13 @@ class StepTrial {
     for (const double standing : bias_) signals.push_back(Signal::standing(standing));
     signals[drive_] = Signal::constant(value);
     ClosingOptions options{
-        .duration = 100 * 2 * pi / model_.angular_frequencies()[0], .tolerance = tolerance_, .after_contact = 0, .stop = stop};
+        .duration = 100 * 2 * pi / model_.basis().angular_frequencies()[0], .tolerance = tolerance_, .after_contact = 0, .stop = stop};
     int step = 0;
     options.observer = [&](double time, const double* q, const double* v) {
       if (++step % 8 != 0) return false;  // looking more often costs more than it saves
       tell(time / options.duration);
       return model_.contact_deflection(q) < barrier.deflection &&
-             model_.kinetic_energy(v) + model_.potential(q, all, model_.untouched(q), work_) + model_.film_energy(q, work_) <
+             model_.basis().kinetic_energy(v) + model_.potential(q, all, model_.untouched(q), work_) + model_.film_energy(q, work_) <
                  barrier.potential;
     };
     return !simulate_closing(model_, signals, options).touches.empty();
@@ -419,7 +419,7 @@ double smallest_closed_eigenvalue(const Switch& model, const Eigen::VectorXd& q,
   Eigen::MatrixXd stiffness = stiffness_at(model, q, volts, !is_rigid);
   if (is_rigid) {
     if (model.modes() == 1) return std::numeric_limits<double>::infinity();
-    const Eigen::MatrixXd free = orthogonal_complement(model.contact_shape());
+    const Eigen::MatrixXd free = orthogonal_complement(model.basis().contact_shape());
     stiffness = (free.transpose() * stiffness * free).eval();
   }
   return symmetric_eigen(stiffness).values[0];

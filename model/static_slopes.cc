@@ -23,7 +23,7 @@ struct Tangent {
   Tangent(const Switch& model, const VectorXd& q, std::span<const double> volts, const ContactState& contact)
       : by_q(model.modes(), model.modes()),
         by_strength(model.modes(), static_cast<Eigen::Index>(model.drives())),
-        scale(model.angular_frequencies().cwiseAbs2().cwiseInverse()) {
+        scale(model.basis().angular_frequencies().cwiseAbs2().cwiseInverse()) {
     const VectorXd still = VectorXd::Zero(model.modes());
     VectorXd force(model.modes());
     MatrixXd by_v(model.modes(), model.modes());
@@ -61,7 +61,7 @@ std::vector<double> held_slopes(const Switch& model, SwitchSlopes& by, std::size
   const ContactState contact = acts;
   const Tangent tangent(model, held->q, volts, contact);
   const Eigen::Index n = model.modes();
-  const VectorXd& shape = model.contact_shape();
+  const VectorXd& shape = model.basis().contact_shape();
   const double largest = shape.cwiseAbs().maxCoeff();
   MatrixXd bordered = MatrixXd::Zero(n + 1, n + 1);
   bordered.topLeftCorner(n, n) = tangent.scale.asDiagonal() * tangent.by_q;
@@ -109,7 +109,7 @@ bool are_zero(std::span<const double> values) {
 VectorXd motion_by_voltage(const Switch& model, const Tangent& tangent, std::size_t drive, double value) {
   const double by_value = model.drive_kind(drive) == DriveKind::electrode ? 2 * value : 1;
   const VectorXd force = model.drive_kind(drive) == DriveKind::piezo
-                             ? model.piezo_shape()
+                             ? model.basis().piezo_shape()
                              : VectorXd(tangent.by_strength.col(static_cast<Eigen::Index>(drive)));
   return -tangent.solved(by_value * force);
 }
@@ -141,7 +141,7 @@ std::vector<double> release_slopes(const Switch& model, SwitchSlopes& by, std::s
 }
 
 double resonance(const Switch& model, std::size_t mode, std::span<const double> values) {
-  if (are_zero(values)) return model.angular_frequencies()[static_cast<Eigen::Index>(mode)];
+  if (are_zero(values)) return model.basis().angular_frequencies()[static_cast<Eigen::Index>(mode)];
   const std::optional<Rest> rest = rest_under(model, values);
   if (!rest) return no_slope;
   const double square = symmetric_eigen(symmetric_tangent(model, rest->q, values)).values[static_cast<Eigen::Index>(mode)];
@@ -153,7 +153,7 @@ std::vector<double> resonance_slopes(const Switch& model, SwitchSlopes& by, std:
   const auto m = static_cast<Eigen::Index>(mode);
   if (are_zero(values)) {
     for (std::size_t j = 0; j < slopes.size(); ++j)
-      slopes[j] = by.of_switch(j, [&](const Switch& s, double) { return s.angular_frequencies()[m]; });
+      slopes[j] = by.of_switch(j, [&](const Switch& s, double) { return s.basis().angular_frequencies()[m]; });
     return slopes;
   }
   const std::optional<Rest> rest = rest_under(model, values);

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
-#include <iterator>
-#include <set>
 #include <utility>
 
 #include "base/decompositions.h"
-#include "base/gauss.h"
 #include "base/require.h"
 #include "model/far_side.h"
 #include "model/forces/dispersion.h"
@@ -18,6 +15,7 @@
 #include "model/forces/gold_casimir.h"
 #include "model/modal_projection.h"
 #include "model/plate.h"
+#include "model/sampled_modes.h"
 #include "model/tabulated_modes.h"
 
 namespace softland {
@@ -55,8 +53,6 @@ std::shared_ptr<const DistributedLaw> dispersion_force(const Dispersion& d, doub
   return d.conductor == Conductor::gold ? with(GoldCasimir{}) : with(IdealCasimir{});
 }
 
-bool touches_along_pad(const Device& d) { return d.contact && d.contact->distribution == ContactDistribution::pad; }
-
 MidPlaneStretching stretching_of(const BeamModes& beam, const Structure& s) {
   const Eigen::MatrixXd slopes = beam.slope_products();
   return {.modes = static_cast<std::size_t>(slopes.rows()),
@@ -66,127 +62,28 @@ MidPlaneStretching stretching_of(const BeamModes& beam, const Structure& s) {
 
 }  // namespace
 
-// What switches of the same lengths share: where they are looked at, and their normalised modes there.
-struct Switch::ModalBasis {
-  struct Quadrature {
-    std::vector<double> corners;                         // of the quadrature's panels [m]
-    double contact = 0, piezo_begin = 0, piezo_end = 0;  // [m]
-    double points_per_length = 0;
-    int fewest_points = 0;  // of a panel
-
-    [[nodiscard]] static Quadrature of(const Device& d) {
-      std::set<double> corners{0, d.structure.length};
-      const double length = d.structure.length, piezo_begin = d.piezo ? d.piezo->begin.on(length) : 0,
-                   piezo_end = d.piezo ? d.piezo->end.on(length) : 0;
-      for (const Electrode& e : d.electrodes)
-        for (const Stretch& pad : e.pads(length)) corners.insert({pad.begin, std::min(pad.end, length)});
-      if (d.piezo) corners.insert({piezo_begin, piezo_end});
-      if (touches_along_pad(d)) {
-        const auto [begin, end] = d.pad();
-        corners.insert({begin, end});
-      }
-      return {.corners = {corners.begin(), corners.end()},
-              .contact = d.contact_position(),
-              .piezo_begin = piezo_begin,
-              .piezo_end = piezo_end};
-    }
-    [[nodiscard]] bool operator==(const Quadrature&) const = default;
-  };
-  Quadrature quadrature;
-  std::vector<GaussRule> rules;                  // of the panels
-  std::shared_ptr<const NormalisedModes> modes;  // null of what is no beam
-  TabulatedModes::Shapes table = {};             // empty of what is no table
-  Eigen::ArrayXd positions, weights;             // [m]
-  Eigen::MatrixXd shapes;                        // points x modes
-  Eigen::VectorXd contact_shape, contact_slope, piezo_begin_slope, piezo_end_slope;
-  double pinned_inverse_square = 0;  // of the beam held at its contact
-
-  template <class Modes>
-  ModalBasis(const Modes& normalised, double length, Quadrature at, const ModalBasis* near) : quadrature(std::move(at)) {
-    const double end = quadrature.corners.back();
-    std::vector<double> x, w;
-    for (auto corner = quadrature.corners.begin(); std::next(corner) != quadrature.corners.end(); ++corner) {
-      const double begin = *corner, panel = *std::next(corner) - begin;
-      if (panel < 1e-9 * end) continue;  // two names of one place that differ by a rounding
-      const int count =
-          std::max(quadrature.fewest_points, static_cast<int>(std::ceil(panel / end * quadrature.points_per_length)));
-      const GaussRule* known = near && rules.size() < near->rules.size() ? &near->rules[rules.size()] : nullptr;
-      rules.push_back(known && static_cast<int>(known->points.size()) == count ? *known : gauss_rule(count));
-      const GaussRule& rule = rules.back();
-      for (std::size_t i = 0; i < rule.points.size(); ++i) {
-        x.push_back(begin + panel * (1 + rule.points[i]) / 2);
-        w.push_back(rule.weights[i] * panel / 2);
-      }
-    }
-    positions = Eigen::Map<Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size()));
-    weights = Eigen::Map<Eigen::ArrayXd>(w.data(), positions.size());
-    contact_shape = normalised.value(quadrature.contact / length);
-    contact_slope = normalised.slope(quadrature.contact / length);
-    piezo_begin_slope = normalised.slope(quadrature.piezo_begin / length);
-    piezo_end_slope = normalised.slope(quadrature.piezo_end / length);
-    pinned_inverse_square = normalised.pinned_inverse_square(quadrature.contact / length,
-                                                             near ? std::optional(near->pinned_inverse_square) : std::nullopt);
-    shapes.resize(positions.size(), contact_shape.size());
-    for (Eigen::Index p = 0; p < positions.size(); ++p) shapes.row(p) = normalised.value(positions[p] / length).transpose();
-  }
-};
-
 template <class Modes>
 void Switch::set_modes(const Modes& structure, double points_per_length, int fewest_points, const Switch* like) {
-  const Structure& s = device_.structure;
-  ModalBasis::Quadrature quadrature = ModalBasis::Quadrature::of(device_);
-  quadrature.points_per_length = points_per_length;
-  quadrature.fewest_points = fewest_points;
-  const auto is_in = [&]([[maybe_unused]] const ModalBasis& basis) {
-    if constexpr (std::same_as<Modes, BeamModes>) return basis.modes == structure.normalised();
-    if constexpr (std::same_as<Modes, TabulatedModes>) return basis.table == *structure.normalised();
+  SampledModes::Places places = SampledModes::Places::of(device_, points_per_length, fewest_points);
+  const auto is_in = [&]([[maybe_unused]] const SampledModes& sampled) {
+    if constexpr (std::same_as<Modes, BeamModes>) return sampled.modes == structure.normalised();
+    if constexpr (std::same_as<Modes, TabulatedModes>) return sampled.table == *structure.normalised();
     return false;
   };
-  if (like != nullptr && is_in(*like->basis_) && like->basis_->quadrature == quadrature) basis_ = like->basis_;
-  if (!basis_) {
-    auto basis = std::make_shared<ModalBasis>(*structure.normalised(), structure.length(), std::move(quadrature),
-                                              like != nullptr ? like->basis_.get() : nullptr);
-    if constexpr (std::same_as<Modes, BeamModes>) basis->modes = structure.normalised();
-    if constexpr (std::same_as<Modes, TabulatedModes>) basis->table = *structure.normalised();
-    basis_ = std::move(basis);
+  if (like != nullptr && is_in(*like->sampled_) && like->sampled_->places == places) sampled_ = like->sampled_;
+  if (!sampled_) {
+    auto sampled = std::make_shared<SampledModes>(*structure.normalised(), structure.length(), std::move(places),
+                                                  like != nullptr ? like->sampled_.get() : nullptr);
+    if constexpr (std::same_as<Modes, BeamModes>) sampled->modes = structure.normalised();
+    if constexpr (std::same_as<Modes, TabulatedModes>) sampled->table = *structure.normalised();
+    sampled_ = std::move(sampled);
   }
-
-  const double scale = structure.scale(), slope_scale = scale / structure.length();
-  frequencies_ = structure.angular_frequencies();
-  squares_ = frequencies_.cwiseAbs2();
-  contact_shape_ = scale * basis_->contact_shape;
-  pad_slope_ = Eigen::VectorXd::Zero(modes());
-  if (touches_along_pad(device_)) {
-    pad_.emplace(device_.contact->pad_length);
-    pad_slope_ = slope_scale * basis_->contact_slope;
-  }
-  in_contact_period_ = 2 * pi / (structure.frequency_scale() / std::sqrt(basis_->pinned_inverse_square));
-  piezo_shape_ = Eigen::VectorXd::Zero(modes());
-  if (device_.piezo) {
-    piezo_shape_ = piezo_moment_per_volt(s, *device_.piezo) *
-                   (slope_scale * basis_->piezo_end_slope - slope_scale * basis_->piezo_begin_slope);
-  }
-  positions_ = basis_->positions;
-  weights_ = basis_->weights;
-  const Eigen::Index n = positions_.size();
-  // Idle points, where no mode moves, fill the last block.
-  shapes_ = weighted_shapes_ = Eigen::MatrixXd::Zero((n + block - 1) / block * block, modes());
-  shapes_.topRows(n) = scale * basis_->shapes;
-  weighted_shapes_.topRows(n) = weights_.matrix().asDiagonal() * shapes_.topRows(n);
-
-  const auto in_lanes = [](const Eigen::VectorXd& v) { return padded_to_lanes({v.begin(), v.end()}, 0); };
-  stiffness_lanes_ = in_lanes(squares_);
-  friction_lanes_ = in_lanes(2 * s.damping_ratio * frequencies_);
-  contact_lanes_ = in_lanes(contact_shape_);
-  piezo_lanes_ = in_lanes(piezo_shape_);
-  const auto rows = static_cast<std::size_t>(shapes_.rows()), columns = static_cast<std::size_t>(modes());
-  weighted_lanes_.assign(stiffness_lanes_.size() * rows, 0);
-  for (std::size_t i = 0; i < columns; ++i) {
-    double* group = weighted_lanes_.data() + i / lanes * lanes * rows + i % lanes;
-    for (std::size_t p = 0; p < rows; ++p) {
-      group[p * lanes] = weighted_shapes_(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(i));
-    }
-  }
+  basis_ = ModalBasis(structure.angular_frequencies(),
+                      {.length = structure.length(), .shape = structure.scale(), .frequency = structure.frequency_scale()},
+                      *sampled_, device_);
+  quadrature_ =
+      PointQuadrature(sampled_->positions, sampled_->weights, structure.scale() * sampled_->shapes, device_.gap.electrode);
+  if (device_.touches_along_pad()) pad_.emplace(device_.contact->pad_length);
 }
 
 Switch::Switch(const Device& device, const SwitchOptions& options, const Switch* like) : device_(device) {
@@ -204,11 +101,11 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     set_modes(TabulatedModes(s.table, s.modes, s.frequency_factor), options.points_per_length, options.points_per_panel, like);
   } else {
     const BeamModes beam(beam_sections(device_), s.modes, beam_support(s, device_.surface),
-                         like != nullptr ? like->basis_->modes : nullptr);
+                         like != nullptr ? like->sampled_->modes : nullptr);
     set_modes(beam, options.points_per_length, options.points_per_panel, like);
     if (s.kind == StructureKind::clamped_clamped && s.stretching) stretching_ = stretching_of(beam, s);
   }
-  const Eigen::Index n = points();
+  const Eigen::Index n = quadrature_.points();
 
   // A law on the far side, where the rest gap is `gap`.
   const auto on_far_side = [&](const auto& law, double gap) {
@@ -220,7 +117,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
   for (const Electrode& e : device_.electrodes) {
     std::vector<std::shared_ptr<const DistributedLaw>> pads;
     for (const Stretch& pad : e.pads(s.length)) {
-      const PointRange range = points_in(positions_, pad.begin, pad.end);
+      const PointRange range = points_in(quadrature_.positions(), pad.begin, pad.end);
       pads.push_back(electrostatic(e.fringing, s, [&](const auto& law) {
         if (e.side == Side::near) return erased(law, range, gap_floor());
         const auto far = on_far_side(law, e.gap);
@@ -234,8 +131,8 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     driven_laws_.push_back(dispersion_force(*device_.dispersion, s.width, {0, n}, gap_floor()));
   }
   if (device_.gas) {
-    const double first_mode = (weights_ * shapes_.col(0).head(n).array().square()).sum();
-    gas_ = gas_law(*device_.gas, s, frequencies_[0] / first_mode);
+    const double first_mode = (quadrature_.weights() * quadrature_.shapes().col(0).head(n).array().square()).sum();
+    gas_ = gas_law(*device_.gas, s, basis_.angular_frequencies()[0] / first_mode);
     if (is_compressible(*device_.gas)) {
       film_.emplace(*film_of(*device_.gas), s.width, n, gap_floor());
     } else {
@@ -250,7 +147,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     }
   }
   // What bends the beam by the contact gap at x_c.
-  const double compliance = contact_shape_.cwiseAbs2().cwiseQuotient(squares_).sum();
+  const double compliance = basis_.contact_shape().cwiseAbs2().cwiseQuotient(basis_.squares()).sum();
   const double force = device_.gap.contact / compliance;
   bending_energy_ = force * device_.gap.contact / 2;
   if (device_.contact) {
@@ -264,10 +161,10 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
 // The interference that carries a force, by bisection: laws grow. A pad is tilted as by that force at the contact point.
 double Switch::penetration_under(double force) const {
   const double plane = device_.gap.contact;
-  const Eigen::VectorXd pushed = contact_shape_.cwiseQuotient(squares_), still = Eigen::VectorXd::Zero(modes());
+  const Eigen::VectorXd pushed = basis_.contact_shape().cwiseQuotient(basis_.squares()), still = Eigen::VectorXd::Zero(modes());
   const auto carried = [&](double depth) {
     if (!pad_) return contact_force(*contact_, depth);
-    const Eigen::VectorXd q = pushed * ((plane + depth) / contact_shape_.dot(pushed));
+    const Eigen::VectorXd q = pushed * ((plane + depth) / basis_.contact_shape().dot(pushed));
     return contact_push(q.data(), still.data(), true);
   };
   double low = 0, high = plane;
@@ -320,12 +217,13 @@ std::optional<Eigen::VectorXd> Switch::equilibrium_from(Eigen::VectorXd q, std::
     if (!(smallest_gap(work) > gap_floor())) return std::nullopt;
     // In units of each mode's own stiffness.
     const std::optional<Eigen::VectorXd> moved =
-        solve_definite(-(frequencies_.cwiseInverse().asDiagonal() * by_q * frequencies_.cwiseInverse().asDiagonal()),
-                       force.cwiseQuotient(frequencies_));
+        solve_definite(-(basis_.angular_frequencies().cwiseInverse().asDiagonal() * by_q *
+                         basis_.angular_frequencies().cwiseInverse().asDiagonal()),
+                       force.cwiseQuotient(basis_.angular_frequencies()));
     if (!moved) return std::nullopt;
-    const Eigen::VectorXd step = moved->cwiseQuotient(frequencies_);
+    const Eigen::VectorXd step = moved->cwiseQuotient(basis_.angular_frequencies());
     q += step;
-    if (step.cwiseProduct(contact_shape_).cwiseAbs().sum() < rounding * device_.gap.electrode) {
+    if (step.cwiseProduct(basis_.contact_shape()).cwiseAbs().sum() < rounding * device_.gap.electrode) {
       return contact_deflection(q.data()) < device_.gap.contact ? std::optional(q) : std::nullopt;
     }
   }
@@ -333,69 +231,16 @@ std::optional<Eigen::VectorXd> Switch::equilibrium_from(Eigen::VectorXd q, std::
 }
 
 Switch::Workspace Switch::workspace() const {
-  const Eigen::ArrayXd zero = Eigen::ArrayXd::Zero(shapes_.rows());
+  const Eigen::ArrayXd zero = Eigen::ArrayXd::Zero(quadrature_.shapes().rows());
   return {.field = {.gap = zero, .velocity = zero, .smallest_gap = 0}, .load = zero, .by_deflection = zero, .by_velocity = zero};
-}
-
-void Switch::set_gap(const double* q, Workspace& work) const {
-  // noalias: no temporary, so no allocation in the hot path.
-  work.field.gap.matrix().noalias() = shapes_ * Eigen::Map<const Eigen::VectorXd>(q, modes());
-  work.field.gap = device_.gap.electrode - work.field.gap;
-}
-
-// The matrices are small: a block of points at a time, with the modes' coordinates in registers, beats a general product.
-// Inlined, like the two that follow: a call would end the vectors that go on behind it.
-template <int Modes>
-[[gnu::always_inline]] inline double Switch::add_modes(Eigen::Index first, const double* q, const double* v,
-                                                       GapField& field) const {
-  const Eigen::Index points = shapes_.rows();
-  const double* shapes = shapes_.data() + first * points;
-  Lane at[Modes], rate[Modes];
-  for (int i = 0; i < Modes; ++i) at[i].setConstant(q[first + i]), rate[i].setConstant(v[first + i]);
-  const double open = device_.gap.electrode;
-  Block smallest = Block::Constant(open);
-  for (Eigen::Index p = 0; p < points; p += block) {
-    Eigen::Map<Block> all_gap(field.gap.data() + p), all_velocity(field.velocity.data() + p);
-    Block gap = Block::Constant(open), velocity = Block::Zero();
-    if (first > 0) gap = all_gap, velocity = all_velocity;
-    for (int i = 0; i < Modes; ++i) {
-      const Eigen::Map<const Block> shape(shapes + i * points + p);
-      gap -= shape * at[i];
-      velocity += shape * rate[i];
-    }
-    all_gap = gap;
-    all_velocity = velocity;
-    smallest = smallest.min(gap);
-  }
-  return smallest.minCoeff();
-}
-
-[[gnu::always_inline]] inline void Switch::set_field(const double* q, const double* v, Workspace& work) const {
-  Eigen::Index first = 0, left = modes();
-  double& smallest = work.field.smallest_gap;
-  for (; left >= 4; first += 4, left -= 4) smallest = add_modes<4>(first, q, v, work.field);
-  if (left == 3) smallest = add_modes<3>(first, q, v, work.field);
-  if (left == 2) smallest = add_modes<2>(first, q, v, work.field);
-  if (left == 1) smallest = add_modes<1>(first, q, v, work.field);
-}
-
-[[gnu::always_inline]] inline Lane Switch::projected(const Workspace& work, std::size_t first) const {
-  const auto points = static_cast<std::size_t>(shapes_.rows());
-  const double* shapes = weighted_lanes_.data() + first * points;
-  const double* load = work.load.data();
-  constexpr std::size_t chains = 4;  // sums that do not wait for one another
-  Lane sum[chains] = {Lane::Zero(), Lane::Zero(), Lane::Zero(), Lane::Zero()};
-  for (std::size_t p = 0; p < points; p += chains) {
-    for (std::size_t k = 0; k < chains; ++k) sum[k] += load[p + k] * Eigen::Map<const Lane>(shapes + (p + k) * lanes);
-  }
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 void Switch::accelerations(const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
                            Workspace& work, double* result, const double* film) const {
   const auto n = static_cast<std::size_t>(modes());
-  set_field(q, v, work);
-  for (Eigen::Index p = 0; p < work.load.size(); p += block) Eigen::Map<Block>(work.load.data() + p).setZero();
+  quadrature_.set_field(q, v, work.field);
+  using Block = PointQuadrature::Block;
+  for (Eigen::Index p = 0; p < work.load.size(); p += PointQuadrature::block) Eigen::Map<Block>(work.load.data() + p).setZero();
   for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
   if (film != nullptr) film_->add_load(film, work.load.data());
   for (std::size_t k = 0; k < driven_laws_.size(); ++k) {
@@ -411,42 +256,33 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
   const double piezo = device_.piezo ? volts.back() : 0;
   for (std::size_t i = 0; i < n; i += lanes) {
     // What waits for the load comes last.
-    const Lane own = piezo * lane(piezo_lanes_, i) - push * lane(contact_lanes_, i) -
-                     lane(stiffness_lanes_, i) * load_lane(q, i, n) - lane(friction_lanes_, i) * load_lane(v, i, n);
-    store_lane(own + projected(work, i), result, i, n);
+    const Lane own = basis_.forces(i, n, q, v, piezo, push);
+    store_lane(own + quadrature_.projected(work.load, i), result, i, n);
   }
   if (contact.active && pad_) add_pad_force(q, v, result);
   if (stretching_) stretching_->add_force(q, result);
 }
 
-void Switch::project_slopes(const Eigen::ArrayXd& slopes, Workspace& work, Eigen::Ref<Eigen::MatrixXd> by) const {
-  const auto n = static_cast<std::size_t>(modes());
-  for (Eigen::Index k = 0; k < modes(); ++k) {
-    work.load = slopes * shapes_.col(k).array();
-    for (std::size_t i = 0; i < n; i += lanes) store_lane(projected(work, i), by.col(k).data(), i, n);
-  }
-}
-
 void Switch::jacobian(const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
                       Workspace& work, Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const {
-  set_field(q, v, work);
+  quadrature_.set_field(q, v, work.field);
   work.by_deflection.setZero();
   work.by_velocity.setZero();
   for (std::size_t k = 0; k < driven_laws_.size(); ++k) {
     driven_laws_[k]->add_derivatives(work.field, strength(k, volts[k]), work.by_deflection.data(), work.by_velocity.data());
   }
   for (const auto& law : passive_laws_) law->add_derivatives(work.field, 0, work.by_deflection.data(), work.by_velocity.data());
-  project_slopes(work.by_deflection, work, by_q);
+  quadrature_.project_slopes(work.by_deflection, work.load, by_q);
   if (passive_laws_.empty()) {
     by_v.setZero();
   } else {
-    project_slopes(work.by_velocity, work, by_v);
+    quadrature_.project_slopes(work.by_velocity, work.load, by_v);
   }
-  by_q.diagonal() -= squares_;
-  by_v.diagonal() -= 2 * device_.structure.damping_ratio * frequencies_;
+  by_q.diagonal() -= basis_.squares();
+  by_v.diagonal() -= 2 * device_.structure.damping_ratio * basis_.angular_frequencies();
   if (contact.active) {
     for_contact_points(q, [&](double xi, double share, double d) {
-      const Eigen::VectorXd shape = contact_shape_ - xi * pad_slope_;
+      const Eigen::VectorXd shape = basis_.contact_shape() - xi * basis_.pad_slope();
       const double rate = contact_rate(v, xi);
       const auto slope = [&](double by_d, double by_rate) {
         return std::visit(
@@ -466,21 +302,21 @@ void Switch::drive_forces(Workspace& work, Eigen::Ref<Eigen::MatrixXd> by_streng
     driven_laws_[k]->add_load(work.field, 1, work.load.data());
     const auto n = static_cast<std::size_t>(modes());
     double* forces = by_strength.col(static_cast<Eigen::Index>(k)).data();
-    for (std::size_t i = 0; i < n; i += lanes) store_lane(projected(work, i), forces, i, n);
+    for (std::size_t i = 0; i < n; i += lanes) store_lane(quadrature_.projected(work.load, i), forces, i, n);
   }
-  if (device_.piezo) by_strength.rightCols<1>() = piezo_shape_;
+  if (device_.piezo) by_strength.rightCols<1>() = basis_.piezo_shape();
 }
 
 void Switch::add_film_derivatives(const double* state, const Workspace& work, Eigen::Ref<Eigen::MatrixXd> derivatives) const {
   constexpr int nodes = ReynoldsFilm::nodes;
   const Eigen::Index n = modes();
   const double* film = state + 2 * n;
-  for (Eigen::Index s = 0; s < points(); ++s, film += nodes) {
+  for (Eigen::Index s = 0; s < quadrature_.points(); ++s, film += nodes) {
     const Eigen::Index at = 2 * n + nodes * s;
     const ReynoldsFilm::Derivatives d = film_->derivatives(work.field.gap[s], work.field.velocity[s], film);
-    derivatives.block(n, at, n, nodes) += weighted_shapes_.row(s).transpose() * film_->load_by_film().transpose();
-    derivatives.block(at, 0, nodes, n) -= d.by_gap * shapes_.row(s);  // the gap shrinks as the beam deflects
-    derivatives.block(at, n, nodes, n) += d.by_velocity * shapes_.row(s);
+    derivatives.block(n, at, n, nodes) += quadrature_.weighted_shapes().row(s).transpose() * film_->load_by_film().transpose();
+    derivatives.block(at, 0, nodes, n) -= d.by_gap * quadrature_.shapes().row(s);  // the gap shrinks as the beam deflects
+    derivatives.block(at, n, nodes, n) += d.by_velocity * quadrature_.shapes().row(s);
     derivatives.block(at, at, nodes, nodes) += d.by_film;
   }
 }
@@ -491,18 +327,14 @@ double Switch::film_scale() const {
 
 double Switch::film_energy(const double* state, Workspace& work) const {
   if (!film_) return 0;
-  set_gap(state, work);
-  return film_->energy(work.field, weights_, state + 2 * modes());
-}
-
-double Switch::contact_deflection(const double* q) const {
-  return deflection<double>({contact_shape_.data(), static_cast<std::size_t>(modes())}, q);
+  quadrature_.set_gap(state, work.field);
+  return film_->energy(work.field, quadrature_.weights(), state + 2 * modes());
 }
 
 double Switch::law_potential(std::size_t drive, const double* q, Workspace& work) const {
   if (drive >= driven_laws_.size()) return 0;
-  set_gap(q, work);
-  return driven_laws_[drive]->potential(work.field, weights_);
+  quadrature_.set_gap(q, work.field);
+  return driven_laws_[drive]->potential(work.field, quadrature_.weights());
 }
 
 double Switch::capacitance(std::size_t drive, const double* q, Workspace& work) const {
@@ -518,44 +350,37 @@ double Switch::charge(std::size_t drive, double value, const double* q, Workspac
     case DriveKind::piezo:
       break;
   }
-  return piezo_charge(q);
+  return basis_.piezo_charge(q);
 }
 
-double Switch::piezo_deflection() const { return contact_shape_.cwiseQuotient(squares_).dot(piezo_shape_); }
-
-double Switch::piezo_charge(const double* q) const { return Eigen::Map<const Eigen::VectorXd>(q, modes()).dot(piezo_shape_); }
-
-double Switch::kinetic_energy(const double* v) const { return Eigen::Map<const Eigen::VectorXd>(v, modes()).squaredNorm() / 2; }
-
 double Switch::elastic_energy(const double* q) const {
-  const double bending = Eigen::Map<const Eigen::VectorXd>(q, modes()).cwiseAbs2().dot(squares_) / 2;
+  const double bending = basis_.bending_energy(q);
   return stretching_ ? bending + stretching_->energy(q) : bending;
 }
 
 double Switch::dissipated_power(const double* q, const double* v, Workspace& work, const double* film) const {
-  set_field(q, v, work);
+  quadrature_.set_field(q, v, work.field);
   return dissipated_power(v, work, film);
 }
 
 double Switch::dissipated_power(const double* v, Workspace& work, const double* film) const {
   work.load.setZero();
   for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
-  const double modal =
-      2 * device_.structure.damping_ratio * Eigen::Map<const Eigen::VectorXd>(v, modes()).cwiseAbs2().dot(frequencies_);
-  const double squeezed = modal - (weights_ * work.load.head(points()) * work.field.velocity.head(points())).sum();
-  return film != nullptr ? squeezed + film_->dissipated_power(work.field, weights_, film) : squeezed;
+  const double modal = 2 * device_.structure.damping_ratio * basis_.at(v).cwiseAbs2().dot(basis_.angular_frequencies());
+  const double squeezed =
+      modal -
+      (quadrature_.weights() * work.load.head(quadrature_.points()) * work.field.velocity.head(quadrature_.points())).sum();
+  return film != nullptr ? squeezed + film_->dissipated_power(work.field, quadrature_.weights(), film) : squeezed;
 }
 
 template <class F>
 void Switch::for_contact_points(const double* q, F&& f) const {
   const double d = contact_deflection(q) - device_.gap.contact;
   if (!pad_) return f(0.0, 1.0, d);
-  pad_->over_contact(d, Eigen::Map<const Eigen::VectorXd>(q, modes()).dot(pad_slope_), f);
+  pad_->over_contact(d, basis_.pad_tilt(q), f);
 }
 
-double Switch::contact_rate(const double* v, double xi) const {
-  return contact_deflection(v) - xi * Eigen::Map<const Eigen::VectorXd>(v, modes()).dot(pad_slope_);
-}
+double Switch::contact_rate(const double* v, double xi) const { return contact_deflection(v) - xi * basis_.pad_tilt(v); }
 
 void Switch::add_pad_force(const double* q, const double* v, double* result) const {
   double force = 0, moment = 0;
@@ -566,8 +391,8 @@ void Switch::add_pad_force(const double* q, const double* v, double* result) con
     moment += push * xi;
   });
   const auto n = static_cast<std::size_t>(modes());
-  add_modal_force<double>({contact_shape_.data(), n}, -force, result);
-  add_modal_force<double>({pad_slope_.data(), n}, moment, result);
+  add_modal_force<double>({basis_.contact_shape().data(), n}, -force, result);
+  add_modal_force<double>({basis_.pad_slope().data(), n}, moment, result);
 }
 
 double Switch::contact_push(const double* q, const double* v, const ContactState& contact) const {
@@ -596,7 +421,7 @@ double Switch::potential(const double* q, std::span<const double> volts, const C
   for (std::size_t k = 0; k < driven_laws_.size(); ++k) {
     if (const double drive = strength(k, volts[k]); drive != 0) energy += drive * law_potential(k, q, work);
   }
-  if (device_.piezo) energy -= volts.back() * piezo_charge(q);
+  if (device_.piezo) energy -= volts.back() * basis_.piezo_charge(q);
   if (contact.active) {
     for_contact_points(q, [&](double, double share, double d) {
       energy += share * (contact.unloading ? stored_energy(*contact_, d, contact) : contact_energy(*contact_, d));

@@ -20,7 +20,6 @@
 #include <string>
 #include <vector>
 
-#include "base/lanes.h"
 #include "model/beam.h"
 #include "model/contact/contact_law.h"
 #include "model/contact/pad.h"
@@ -28,6 +27,8 @@
 #include "model/distributed_law.h"
 #include "model/gas/gas_law.h"
 #include "model/gas/reynolds_film.h"
+#include "model/modal_basis.h"
+#include "model/point_quadrature.h"
 #include "model/stretching.h"
 
 namespace softland {
@@ -48,15 +49,11 @@ class Switch {
   explicit Switch(const Device& device, const SwitchOptions& options = {}, const Switch* like = nullptr);
 
   [[nodiscard]] const Device& device() const { return device_; }
-  [[nodiscard]] int modes() const { return static_cast<int>(frequencies_.size()); }
-  [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s]
-  [[nodiscard]] const Eigen::VectorXd& contact_shape() const { return contact_shape_; }      ///< phi_i(x_c) [kg^(-1/2)]
-  /// Force on mode i per volt on the piezo [N kg^(-1/2) / V]; zero where there is no layer.
-  [[nodiscard]] const Eigen::VectorXd& piezo_shape() const { return piezo_shape_; }
-  /// Static deflection of the contact point per volt on the piezo, of the beam by itself and small [m/V]; 0 where there is no
-  /// layer. Positive towards the electrodes.
-  [[nodiscard]] double piezo_deflection() const;
-  [[nodiscard]] double in_contact_period() const { return in_contact_period_; }  ///< 2 pi over the first pinned frequency [s]
+  /// Of the structure by itself.
+  [[nodiscard]] const ModalBasis& basis() const { return basis_; }
+  /// Where the distributed laws act.
+  [[nodiscard]] const PointQuadrature& quadrature() const { return quadrature_; }
+  [[nodiscard]] int modes() const { return basis_.modes(); }
   /// Number of drives: the electrodes in order, then the dispersion force, then the piezo, if there are any. The values of
   /// electrodes and piezo are voltages [V]; that of the dispersion force is its factor less one.
   [[nodiscard]] std::size_t drives() const { return driven_laws_.size() + (device_.piezo ? 1 : 0); }
@@ -86,12 +83,6 @@ class Switch {
   [[nodiscard]] const RigidContact* rigid_contact() const { return contact_ ? std::get_if<RigidContact>(&*contact_) : nullptr; }
   [[nodiscard]] const std::optional<GasLaw>& gas() const { return gas_; }
   [[nodiscard]] const std::optional<MidPlaneStretching>& stretching() const { return stretching_; }
-  [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
-  [[nodiscard]] const Eigen::ArrayXd& point_positions() const { return positions_; }  ///< [m]
-  [[nodiscard]] const Eigen::ArrayXd& point_weights() const { return weights_; }      ///< of the quadrature [m]
-  /// phi_i(x_p), a row per point and some of no motion behind them [kg^(-1/2)].
-  [[nodiscard]] const Eigen::MatrixXd& point_shapes() const { return shapes_; }
-
   /// Gap below which every law is continued by its tangent and a run counts as having touched the electrode: a hundredth of d0
   /// [m].
   [[nodiscard]] double gap_floor() const { return device_.gap.electrode / 100; }
@@ -146,12 +137,13 @@ class Switch {
   [[nodiscard]] Eigen::MatrixXd free_motion_curvature(const double* q, const double* v, std::span<const double> strengths,
                                                       const double* multipliers, Workspace& work) const;
 
-  [[nodiscard]] double contact_deflection(const double* q) const;  ///< y(x_c) [m]; also the velocity when given v
+  /// y(x_c) [m]; also the velocity when given v.
+  [[nodiscard]] double contact_deflection(const double* q) const { return basis_.contact_deflection(q); }
   /// Smallest local gap in the last field computed with `work` [m].
   [[nodiscard]] static double smallest_gap(const Workspace& work) { return work.field.smallest_gap; }
   /// Whether the beam comes within a hundredth of the rest gap of an electrode or a film's wall on its far side in that field.
   [[nodiscard]] bool at_far_side(const Workspace& work) const {
-    return std::isfinite(most_gap_) && work.field.gap.head(points()).maxCoeff() > most_gap_;
+    return std::isfinite(most_gap_) && work.field.gap.head(quadrature_.points()).maxCoeff() > most_gap_;
   }
 
   /// The stable static equilibrium under drives of 0, modal coordinates [m kg^(1/2)]; none when the beam collapses by itself or
@@ -166,10 +158,6 @@ class Switch {
   /// Minus the derivative of potential() with respect to the drive's value: the charge of an electrode or of the piezo [C], minus
   /// the dispersion law's potential [J].
   [[nodiscard]] double charge(std::size_t drive, double value, const double* q, Workspace& work) const;
-  /// Charge that the deflection puts on the piezo's electrodes, theta q [C]. The layer's own capacitance is not described by a
-  /// scene.
-  [[nodiscard]] double piezo_charge(const double* q) const;
-  [[nodiscard]] double kinetic_energy(const double* v) const;  ///< [J]
   [[nodiscard]] double elastic_energy(const double* q) const;  ///< of the beam, without piezo coupling and contact [J]
   /// Whether anything takes energy out all the time: gas, modal damping, or a contact law that depends on the rate.
   [[nodiscard]] bool damped() const {
@@ -195,11 +183,7 @@ class Switch {
                                  Workspace& work) const;
 
  private:
-  static constexpr Eigen::Index block = lanes;  // points that are handled at once
-  using Block = Lane;
-  struct ModalBasis;
-
-  /// Takes frequencies, shapes and quadrature from what moves, a beam or a plate.
+  /// Takes basis and quadrature from what moves, a beam or a plate.
   template <class Modes>
   void set_modes(const Modes& structure, double points_per_length, int fewest_points, const Switch* like);
   /// Calls f(xi, share, interference) for every point at which an active contact acts, xi from x_c towards the clamp [m].
@@ -209,40 +193,25 @@ class Switch {
   [[nodiscard]] double contact_rate(const double* v, double xi) const;
   void add_pad_force(const double* q, const double* v, double* result) const;
   [[nodiscard]] double penetration_under(double force) const;
-  void set_gap(const double* q, Workspace& work) const;
-  void set_field(const double* q, const double* v, Workspace& work) const;
   void set_free_field(const double* q, const double* v, Workspace& work) const;
-  /// Adds modes from `first` on to the field; returns the smallest gap so far.
-  template <int Modes>
-  double add_modes(Eigen::Index first, const double* q, const double* v, GapField& field) const;
-  /// Modal forces of the load in `work` on modes from `first` on: the sums over points of w_p phi_i(x_p) f(x_p).
-  [[nodiscard]] Lane projected(const Workspace& work, std::size_t first) const;
-  /// Derivatives of the modal forces by modal coordinates, of those of the load by the local ones. Uses the load of `work`.
-  void project_slopes(const Eigen::ArrayXd& slopes, Workspace& work, Eigen::Ref<Eigen::MatrixXd> by) const;
   /// A share of what drives of these values do: V^2 of an electrode, the factor of the dispersion force, V of the piezo.
   [[nodiscard]] std::vector<double> share_of(double share, std::span<const double> values) const;
   [[nodiscard]] std::optional<Eigen::VectorXd> equilibrium_from(Eigen::VectorXd q, std::span<const double> values) const;
 
   Device device_;
-  std::shared_ptr<const ModalBasis> basis_;
+  std::shared_ptr<const SampledModes> sampled_;
+  ModalBasis basis_;
+  PointQuadrature quadrature_;
   std::size_t electrodes_ = 0;
-  Eigen::VectorXd frequencies_, squares_, contact_shape_, piezo_shape_;
-  std::vector<double> stiffness_lanes_, friction_lanes_, contact_lanes_, piezo_lanes_;  // omega^2, 2 zeta omega, phi(x_c), theta
-  Eigen::ArrayXd positions_, weights_;
-  Eigen::MatrixXd shapes_;                                           // phi_i(x_p), points and idle points x modes
-  Eigen::MatrixXd weighted_shapes_;                                  // w_p phi_i(x_p)
-  std::vector<double> weighted_lanes_;                               // the same, for each whole lane of modes point by point
   std::vector<std::shared_ptr<const DistributedLaw>> driven_laws_;   // one per electrode, then the dispersion force
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // these dissipate
   std::optional<ContactLaw> contact_;
   std::optional<PadQuadrature> pad_;  // of a contact along the pad
-  Eigen::VectorXd pad_slope_;         // phi_i'(x_c) of such a contact, else 0
   std::optional<GasLaw> gas_;
   std::optional<ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;
   std::optional<Eigen::VectorXd> rest_;
   double most_gap_ = std::numeric_limits<double>::infinity();  // to the near electrode, where something is on the far side [m]
-  double in_contact_period_ = 0;
   double penetration_scale_ = 0;
   double bending_energy_ = 0;
 };

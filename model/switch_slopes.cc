@@ -24,8 +24,8 @@ SwitchSlopes::SwitchSlopes(const Switch& model, std::vector<std::optional<Neighb
     below_.push_back(neighbours[k]->below.workspace());
     neighbours_.push_back(std::move(*neighbours[k]));
   }
-  deflection_ = model.contact_shape().cwiseQuotient(model.angular_frequencies().cwiseAbs2());
-  deflection_ /= model.contact_shape().dot(deflection_);
+  deflection_ = model.basis().contact_shape().cwiseQuotient(model.basis().angular_frequencies().cwiseAbs2());
+  deflection_ /= model.basis().contact_shape().dot(deflection_);
 }
 
 double SwitchSlopes::interference(std::size_t j, const double* q) const {

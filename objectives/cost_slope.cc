@@ -36,7 +36,7 @@ class SlopeFinder {
         signals_(signals),
         motion_(motion),
         options_(options),
-        shape_(model.contact_shape()),
+        shape_(model.basis().contact_shape()),
         plane_(model.device().gap.contact),
         zero_(VectorXd::Zero(model.modes())),
         work_(model.workspace()) {}

@@ -486,7 +486,7 @@ void bind_scene(py::module_& m) {
              return all;
            })
       .def("duration", [](PyScene& s) { return s.ready()->duration; })
-      .def("frequencies", [](PyScene& s) { return Eigen::VectorXd(s.ready()->model.angular_frequencies()); })
+      .def("frequencies", [](PyScene& s) { return Eigen::VectorXd(s.ready()->model.basis().angular_frequencies()); })
       .def("shapes", [](PyScene& s, int places) { return shapes_of(*s.ready(), places); })
       .def("simulate", &simulate)
       .def("pull_in", &pull_in)

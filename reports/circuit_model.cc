@@ -73,7 +73,7 @@ class Maker {
   Circuit make() {
     const std::string why = why_no_circuit(model_);
     require(why.empty(), [&] { return "a model of this switch for circuits: it has " + why; });
-    const Eigen::VectorXd omega = model_.angular_frequencies(), phi = model_.contact_shape();
+    const Eigen::VectorXd omega = model_.basis().angular_frequencies(), phi = model_.basis().contact_shape();
     unit_ = std::abs(phi[0]);
     c_.tau = 1 / omega[0];
     c_.gap = device_.gap.contact;
@@ -114,7 +114,7 @@ class Maker {
   void find_piezo(const std::string& pin) {
     std::vector<double> by_rate;
     for (Eigen::Index i = 0; i < model_.modes(); ++i) {
-      const double moment = model_.piezo_shape()[i];
+      const double moment = model_.basis().piezo_shape()[i];
       c_.pushes[static_cast<std::size_t>(i)].emplace_back(pin, moment * c_.tau * c_.tau * unit_ / c_.gap);
       by_rate.push_back(moment * c_.gap / (unit_ * c_.tau));
     }
@@ -124,9 +124,9 @@ class Maker {
   void find_points() {
     std::vector<Formula> charges(device_.electrodes.size(), Formula(0));
     const double scale = c_.tau * c_.tau * unit_ * unit_ / c_.gap;  // of a force on the first mode
-    for (Eigen::Index p = 0; p < model_.points(); ++p) {
-      const Eigen::VectorXd shape = model_.point_shapes().row(p).head(model_.modes()) / unit_;
-      const double x = model_.point_positions()[p], weight = model_.point_weights()[p];
+    for (Eigen::Index p = 0; p < model_.quadrature().points(); ++p) {
+      const Eigen::VectorXd shape = model_.quadrature().shapes().row(p).head(model_.modes()) / unit_;
+      const double x = model_.quadrature().positions()[p], weight = model_.quadrature().weights()[p];
       const Formula gap = Formula(c_.gap) * max(d_.variable(fmt::format("h{}", p)), Formula(model_.gap_floor() / c_.gap));
       const Formula velocity = Formula(c_.gap / c_.tau) * d_.variable(fmt::format("w{}", p));
       const Formula load = load_at(x, gap, velocity, weight, charges);
@@ -235,7 +235,7 @@ class Maker {
 };
 
 std::string title(const PreparedScene& p) {
-  return fmt::format("{}: {} modes, {} quadrature points", p.scene.file.name(), p.model.modes(), p.model.points());
+  return fmt::format("{}: {} modes, {} quadrature points", p.scene.file.name(), p.model.modes(), p.model.quadrature().points());
 }
 
 // Appends lines.
@@ -319,7 +319,7 @@ std::string spice_bench(const PreparedScene& p) {
     pins += " " + pin;
   }
   // Of trapezoids: the first mode to 1e-6, the fastest one as it takes part; one mode alone is quick enough for ten times that.
-  const Eigen::VectorXd& omega = p.model.angular_frequencies();
+  const Eigen::VectorXd& omega = p.model.basis().angular_frequencies();
   const double step = 2 * pi / std::max(40 * omega.maxCoeff(), (omega.size() == 1 ? 8000 : 1500) * omega[0]);
   std::string text = title(p) + "\n" + subcircuit(c) + spice_pwl(driven, p.duration) + sources;
   text += fmt::format("Xswitch{} 0 s d y vel force softland_switch\nVs s 0 1\nRload d 0 50\n", pins);

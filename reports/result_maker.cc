@@ -85,7 +85,7 @@ Result started(const PreparedScene& p, const Provenance& provenance) {
            .command = provenance.command,
            .version = std::string(version),
            .made_with = made_with()};
-  const Eigen::VectorXd& frequencies = p.model.angular_frequencies();
+  const Eigen::VectorXd& frequencies = p.model.basis().angular_frequencies();
   r.natural_frequencies.assign(frequencies.begin(), frequencies.end());
   if (p.model.has_contact()) r.closed_state = closed_state(p, p.signals());
   if (p.effects) {

@@ -124,7 +124,7 @@ DriverModel source_of(const PreparedScene& p, const std::string& drive) {
 // What --json gives, besides the state of the closed switch.
 nlohmann::json check_json(const PreparedScene& p, const std::map<std::string, nlohmann::json>& pull_in,
                           const std::vector<std::string>& warnings, const std::string& command) {
-  const Eigen::VectorXd& frequencies = p.model.angular_frequencies();
+  const Eigen::VectorXd& frequencies = p.model.basis().angular_frequencies();
   std::map<std::string, nlohmann::json> windows;
   for (const auto& [name, v] : pull_in) {
     if (v["release_V"].is_number()) windows[name] = nlohmann::json::array({v["release_V"], v["pulled_through_V"]});
@@ -153,9 +153,9 @@ int check_verb(const Common& c) {
   std::string text = fmt::format("{}: valid{}\n\n", printable_line(c.scene), title.empty() ? "" : " (" + title + ")");
   const auto add = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<20} {}\n", name, value); };
   std::vector<std::string> frequencies, warnings = p.scene.warnings;
-  for (const double omega : p.model.angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
+  for (const double omega : p.model.basis().angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
-  if (p.model.has_contact()) add("in-contact period", quantity(p.model.in_contact_period(), "s", 4));
+  if (p.model.has_contact()) add("in-contact period", quantity(p.model.basis().in_contact_period(), "s", 4));
   std::map<std::string, nlohmann::json> pull_in;  // by electrode that has one
   std::map<std::string, double> searched_to;      // what a search takes for the limit where the scene has none [V]
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
@@ -191,7 +191,7 @@ int check_verb(const Common& c) {
   if (const FilmState* const film = p.scene.device.gas ? film_of(*p.scene.device.gas) : nullptr) {
     const double g = p.scene.device.gap.electrode;
     const double closed = g - p.scene.device.gap.contact, lambda = mean_free_path(*film);
-    const double omega = p.model.angular_frequencies()[0];
+    const double omega = p.model.basis().angular_frequencies()[0];
     const double most = limits_of(*p.scene.device.gas).most_squeeze;
     const std::string holds =
         std::isfinite(most) ? fmt::format("; {} holds below about {}", name_of(*p.scene.device.gas), plain_number(most)) : "";

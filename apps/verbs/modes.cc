@@ -43,7 +43,7 @@ int frequencies_of_scene(const Common& c) {
   nlohmann::json list = nlohmann::json::array();
   constexpr int digits = 6;
   std::string text = "mode  angular frequency    frequency\n";
-  for (const double omega : prepared.model.angular_frequencies()) {
+  for (const double omega : prepared.model.basis().angular_frequencies()) {
     list.push_back(omega);
     text += fmt::format("{:>4}  {:>17}  {:>11}\n", list.size(), quantity(omega, "rad/s", digits),
                         quantity(omega / (2 * pi), "Hz", digits));

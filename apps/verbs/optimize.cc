@@ -104,7 +104,7 @@ struct Asked {
 bool takes_little(const Asked& asked, const OptimizeResult& result) {
   constexpr double widest_band = 40;  // the highest natural frequency over the lowest
   const auto& limits = result.best_scene->drives.limits;
-  const Eigen::VectorXd& omega = result.best_scene->model.angular_frequencies();
+  const Eigen::VectorXd& omega = result.best_scene->model.basis().angular_frequencies();
   return asked.search.options.max_evaluations >= evaluations_worth_a_limit &&
          omega.maxCoeff() <= widest_band * omega.minCoeff() &&
          std::none_of(limits.begin(), limits.end(), [](const auto& one) { return std::isfinite(one.second.max_slew); });
@@ -280,15 +280,16 @@ void add_optimize(Verb& verb) {
                   ", or a weighted sum such as \"0.7 bounce + 0.3 energy\"; the goal of each asks for no significant rebound");
   verb.option("--actuator", request->actuator, "NAME",
               "drives that the search may shape: " + first_is_default(listed(actuators)));
-  verb.option("--waveform", request->waveform, "NAME",
-              "family to search: " + listed_searched_families() +
-                  ", with a number of levels, knots, pulses or sines: knots:8; for each drive its own: main=step,pzt=pulse; "
-                  "several, each "
-                  "begun where those before it ended, of which the best goes on. Default: knots with a measure of --robust, "
-                  "catch with one "
-                  "and --calibrate; else " +
-                  fmt::format("{} ({} for both, and electrodes on both sides; {} for pzt)", default_families(Shaped::electrode),
-                              default_families(Shaped::several), default_families(Shaped::piezo)));
+  verb.option(
+      "--waveform", request->waveform, "NAME",
+      "family to search: " + listed_searched_families() +
+          ", with a number of levels, knots, pulses or sines: knots:8; for each drive its own: main=step,pzt=pulse; several, "
+          "each "
+          "begun where those before it ended, of which the best goes on: " +
+          fmt::format(
+              "{} (default), {} (for both, and electrodes on both sides), {} (for pzt); with a measure of --robust knots, "
+              "with --calibrate catch",
+              default_families(Shaped::electrode), default_families(Shaped::several), default_families(Shaped::piezo)));
   verb.option("--robust", request->robust, "MEASURE",
               "devices that differ as [spread] says: auto (default, but for --seeds; where the scene has no [spread] one is "
               "assumed) searches for the drawing, then races measures and families over devices; none searches for the drawing "

@@ -99,7 +99,7 @@ void EnergyAudit::impact(double lost, double dissipation) {
 double EnergyAudit::above_rest(const Knot& here) {
   const double* q = here.state.data();
   const std::span<const double> values = drives_.values(here.time);
-  return model_.kinetic_energy(q + modes_) + model_.potential(q, values, phase_.law(), equations_.workspace()) + impacts_ +
+  return model_.basis().kinetic_energy(q + modes_) + model_.potential(q, values, phase_.law(), equations_.workspace()) + impacts_ +
          model_.film_energy(q, equations_.workspace());
 }
 
@@ -109,7 +109,7 @@ void EnergyAudit::settle(const Knot& here) {
   const std::span<const double> values = drives_.values(here.time);
   Switch::Workspace& work = equations_.workspace();
   balance_ = {.source_work = source_work_,
-              .stored = model_.kinetic_energy(q + modes_) + model_.potential(q, values, false, work) - rest_energy_ +
+              .stored = model_.basis().kinetic_energy(q + modes_) + model_.potential(q, values, false, work) - rest_energy_ +
                         model_.film_energy(q, work),
               .dissipated = dissipated_ + impacts_};
   for (std::size_t k = 0; k < drives_.size(); ++k) {

@@ -4,7 +4,7 @@ namespace softland {
 
 ClosingEquations::ClosingEquations(const Switch& model, DriveCourse& drives, const ContactPhase& phase, bool phase_decides)
     : model_(model), drives_(drives), phase_(phase), modes_(static_cast<std::size_t>(model.modes())), work_(model.workspace()) {
-  const Eigen::VectorXd& omega = model.angular_frequencies();
+  const Eigen::VectorXd& omega = model.basis().angular_frequencies();
   system_.size = 2 * modes_ + model.film_states();
   system_.frequencies.assign(omega.begin(), omega.end());
   if (model.film_states() > 0) {

@@ -14,27 +14,27 @@ RestingPlate::RestingPlate(const Switch& model, DriveCourse& drives, ClosingEqua
 
 double RestingPlate::press(const Knot& here, double t) {
   equations_.rates(t, here.state.data(), rates_.data());
-  return rates_[0] / model_.contact_shape()[0];
+  return rates_[0] / model_.basis().contact_shape()[0];
 }
 
 // A plate has one mode.
 RestingPlate::Impact RestingPlate::strike(Knot& here) {
   const RigidContact& contact = *model_.rigid_contact();
-  const double shape = model_.contact_shape()[0], plane = model_.device().gap.contact;
+  const double shape = model_.basis().contact_shape()[0], plane = model_.device().gap.contact;
   double &q = here.state[0], &v = here.state[1];
-  Impact impact{.energy = model_.kinetic_energy(&v)};
+  Impact impact{.energy = model_.basis().kinetic_energy(&v)};
   const double speed = contact.restitution * std::max(0.0, v * shape);
   q = plane / shape;  // what the event's place is off would add up over many impacts
   v = 0;
   impact.rests = RigidContact::rests(speed, press(here, here.time) * shape * shape, plane);
   if (!impact.rests) v = -speed / shape;
-  impact.lost = impact.energy - model_.kinetic_energy(&v);
+  impact.lost = impact.energy - model_.basis().kinetic_energy(&v);
   return impact;
 }
 
 void RestingPlate::begin(Knot& here, double stretch_end) {
   constexpr double looks = 32;  // at a stretch without sines
-  force_ = here.rates[0] / model_.contact_shape()[0];
+  force_ = here.rates[0] / model_.basis().contact_shape()[0];
   here.rates[0] = 0;
   look_ = std::min((stretch_end - here.time) / looks, drives_.resolving_step(here.time));
 }

@@ -59,7 +59,7 @@ Stepping::Stepping(ClosingParts& parts)
     : parts_(parts),
       n_(static_cast<std::size_t>(parts.model.modes())),
       plane_(parts.model.device().gap.contact),
-      fastest_(parts.model.angular_frequencies().maxCoeff()),
+      fastest_(parts.model.basis().angular_frequencies().maxCoeff()),
       tolerances_(parts.model, parts.options.tolerance),
       motion_(parts.model, parts.options.tolerance),
       here_(at_rest(parts)),

@@ -24,7 +24,7 @@ struct Tolerances {
     constexpr double penetrations_in_contact = 1;  // of the static interference that bends the beam by the contact gap
     const double gap = model.device().gap.contact;
     const auto n = static_cast<std::size_t>(model.modes());
-    const Eigen::VectorXd &omega = model.angular_frequencies(), &shape = model.contact_shape();
+    const Eigen::VectorXd &omega = model.basis().angular_frequencies(), &shape = model.basis().contact_shape();
     const double largest = shape.cwiseAbs().maxCoeff();
     const auto of_length = [&](double length) {
       std::vector<double> absolute(2 * n + model.film_states(), model.film_states() > 0 ? relative * model.film_scale() : 0);

@@ -113,8 +113,8 @@ std::vector<Segment> segments_between(const Switch& model) {
     return found == pads.end() ? -1 : found->second;
   };
   std::vector<Segment> segments;
-  for (int p = 0; p < to_int(model.points()); ++p) {
-    const int electrode = over(model.point_positions()[p]);
+  for (int p = 0; p < to_int(model.quadrature().points()); ++p) {
+    const int electrode = over(model.quadrature().positions()[p]);
     if (p == 0 || segments.back().electrode != electrode) segments.push_back({.begin = p, .electrode = electrode});
     segments.back().end = p + 1;
   }
@@ -123,7 +123,7 @@ std::vector<Segment> segments_between(const Switch& model) {
 
 /// The faces of every pad that has points.
 std::vector<Segment> faces_of(const Switch& model) {
-  const Eigen::ArrayXd& x = model.point_positions();
+  const Eigen::ArrayXd& x = model.quadrature().positions();
   const auto first_at = [&](double place) { return to_int(std::lower_bound(x.begin(), x.end(), place) - x.begin()); };
   std::vector<Segment> faces;
   for (const auto& [pad, electrode] : pads_of(model.device())) {
@@ -145,7 +145,7 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
   const ElasticContact contact = *lane_contact(model);
   LaneLayout layout{.usual = is_usual(model) && !measures_work,
                     .modes = model.modes(),
-                    .points = to_int(model.points()),
+                    .points = to_int(model.quadrature().points()),
                     .electrodes = to_int(device.electrodes.size()),
                     .drives = to_int(model.drives()),
                     .piezo = model.has_piezo(),
@@ -224,18 +224,18 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   if (device.dispersion) set_dispersion(s, *device.dispersion);
   if (model.stretching()) set_stretching(s, *model.stretching());
   set_far_side(s, device);
-  std::fill_n(s.omega, fleet::most_modes, model.angular_frequencies()[0]);
+  std::fill_n(s.omega, fleet::most_modes, model.basis().angular_frequencies()[0]);
   const Tolerances tolerances(model, tolerance);
   for (int i = 0; i < s.modes; ++i) {
     const auto k = static_cast<std::size_t>(i), n = static_cast<std::size_t>(s.modes);
-    s.omega[i] = model.angular_frequencies()[i];
-    s.at_contact[i] = model.contact_shape()[i];
-    s.piezo[i] = model.piezo_shape()[i];
+    s.omega[i] = model.basis().angular_frequencies()[i];
+    s.at_contact[i] = model.basis().contact_shape()[i];
+    s.piezo[i] = model.basis().piezo_shape()[i];
     s.friction[i] = 2 * device.structure.damping_ratio * s.omega[i];
     s.flying[i] = tolerances.in_flight[k], s.touching[i] = tolerances.touching[k], s.speed[i] = tolerances.in_flight[n + k];
-    for (Eigen::Index p = 0; p < model.points(); ++p) s.shape[p][i] = model.point_shapes()(p, i);
+    for (Eigen::Index p = 0; p < model.quadrature().points(); ++p) s.shape[p][i] = model.quadrature().shapes()(p, i);
   }
-  for (Eigen::Index p = 0; p < model.points(); ++p) s.weight[p] = model.point_weights()[p];
+  for (Eigen::Index p = 0; p < model.quadrature().points(); ++p) s.weight[p] = model.quadrature().weights()[p];
   return s;
 }
 
@@ -333,7 +333,7 @@ Vectors vectors_in_use() {
 std::string why_not_in_lanes(const Switch& model) {
   const Device& device = model.device();
   if (model.modes() > fleet::most_modes) return fmt::format("more than {} modes", fleet::most_modes);
-  if (model.points() > fleet::most_points) return fmt::format("more than {} quadrature points", fleet::most_points);
+  if (model.quadrature().points() > fleet::most_points) return fmt::format("more than {} quadrature points", fleet::most_points);
   if (model.drives() > fleet::most_drives) return fmt::format("more than {} drives", fleet::most_drives);
   if (!lane_dispersion(device.dispersion)) return "a dispersion force between gold";
   if (!lane_contact(model)) return "a contact other than linear or asperity-uniform at the contact point";
@@ -385,7 +385,7 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
             .observer = &tellers.back()};
     std::copy(rests[n].begin(), rests[n].end(), lane.start);
     for (std::size_t k = 0; k < c.drives.size(); ++k) {
-      const std::vector<LanePiece>& own = drives.of(c.drives[k], c.model->angular_frequencies().maxCoeff());
+      const std::vector<LanePiece>& own = drives.of(c.drives[k], c.model->basis().angular_frequencies().maxCoeff());
       lane.pieces[k] = own.data();
       lane.piece_count[k] = to_int(own.size());
     }

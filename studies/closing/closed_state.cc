@@ -37,7 +37,7 @@ namespace {
 
 bool is_equilibrium(const Switch& model, const Eigen::VectorXd& q, const std::vector<double>& levels) {
   constexpr double rounding = 1e-9;  // of the force that bends the beam by the contact gap
-  const double left = static_force(model, q, levels).cwiseQuotient(model.angular_frequencies()).squaredNorm();
+  const double left = static_force(model, q, levels).cwiseQuotient(model.basis().angular_frequencies()).squaredNorm();
   return left <= rounding * rounding * model.bending_energy();
 }
 

@@ -27,7 +27,7 @@ double force_at_rest(const Device& described, std::size_t electrode) {
   return with[0] - without[0];
 }
 
-double first_frequency(const Device& device) { return Switch(device).angular_frequencies()[0]; }
+double first_frequency(const Device& device) { return Switch(device).basis().angular_frequencies()[0]; }
 
 Metrics closing(const PreparedScene& p, const Watch& watch, double done = 0, double share = 1) {
   return metrics(simulate_closing(p.model, p.signals(),
@@ -44,9 +44,9 @@ void add_omissible_structure(const PreparedScene& prepared, std::vector<Omissibl
   if (s.kind != StructureKind::plate && s.modes > 1) {
     list.push_back(
         {.effect = "structure.modes",
-         .magnitude = {.name = "highest mode", .unit = "rad/s", .value = prepared.model.angular_frequencies()[s.modes - 1]},
+         .magnitude = {.name = "highest mode", .unit = "rad/s", .value = prepared.model.basis().angular_frequencies()[s.modes - 1]},
          .group = {.name = "over the first",
-                   .value = prepared.model.angular_frequencies()[s.modes - 1] / prepared.model.angular_frequencies()[0]},
+                   .value = prepared.model.basis().angular_frequencies()[s.modes - 1] / prepared.model.basis().angular_frequencies()[0]},
          .instead = 1,
          .automatic = false});
   }
@@ -97,7 +97,7 @@ void add_omissible_fringing(const PreparedScene& prepared, std::vector<Omissible
 void add_omissible_gas(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
   const double width = d.structure.width, closed = d.gap.electrode - d.gap.contact;
-  const double omega = prepared.model.angular_frequencies()[0];
+  const double omega = prepared.model.basis().angular_frequencies()[0];
   list.push_back(
       {.effect = "gas",
        .magnitude = {.name = "damping, closed", .unit = "N s/m^2", .value = damping_per_length(*prepared.model.gas(), closed)},

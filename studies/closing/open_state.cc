@@ -19,7 +19,7 @@ void set_open_figures(Metrics& metrics, const Trajectory& run, const Switch& mod
   const double settled_from = band > 0 ? band_figures(run, {.open_position = position, .width = band}).settled_from : 0;
   metrics.static_deflection = position;
   metrics.overshoot = start > position ? all.below : all.above;
-  const double period = 2 * pi / model.angular_frequencies()[0];
+  const double period = 2 * pi / model.basis().angular_frequencies()[0];
   if (run.points.back().time - settled_from >= period) metrics.open_settling_time = settled_from;
 }
 

@@ -138,7 +138,7 @@ double periods_of(const Waveform& waveform, double window) {
 double default_window(const Switch& model, const std::vector<Signal>& signals) {
   constexpr double periods = 6, closings = 4, loose = 1e-4;
   constexpr long most_steps = 100'000;
-  const double usual = periods * 2 * pi / model.angular_frequencies()[0];
+  const double usual = periods * 2 * pi / model.basis().angular_frequencies()[0];
   if (!(usual <= longest_window)) return usual;
   std::vector<Signal> steps;
   for (const Signal& signal : signals) steps.push_back(Signal::constant(signal.hold_level(), signal.before()));

@@ -39,7 +39,7 @@ class LaneFigures final : public LandingObserver {
     course_.last_time = end.time;
     const Trajectory run{.status = Status::done,
                          .contact_gap = model.device().gap.contact,
-                         .in_contact_period = model.in_contact_period(),
+                         .in_contact_period = model.basis().in_contact_period(),
                          .steady_force_time = end.steady_force_time,
                          .least_force_after_touch = end.least_force_after_touch,
                          .energy = {.source_work = end.drive_energy}};
@@ -202,9 +202,9 @@ DeviceUnits DeviceMeter::told_by(double time) const {
   return {.volts = volts, .time = 1, .volts_by_time = slope / volts};
 }
 
-double DeviceMeter::piezo_unit(const Switch& model) { return std::abs(model.piezo_deflection()) / model.device().gap.contact; }
+double DeviceMeter::piezo_unit(const Switch& model) { return std::abs(model.basis().piezo_deflection()) / model.device().gap.contact; }
 
-double DeviceMeter::frequency() const { return nominal_->model.angular_frequencies()[0] / (2 * pi); }
+double DeviceMeter::frequency() const { return nominal_->model.basis().angular_frequencies()[0] / (2 * pi); }
 
 double DeviceMeter::pull_in(const Switch& model) const {
   constexpr double looser = 10;  // the integrator: no measurement is as good
@@ -217,7 +217,7 @@ DeviceUnits DeviceMeter::exact(const Switch& model) const {
   DeviceUnits units = gauges_.closing_time ? told_by(time_of(model, closing_step * pull_in_))
                       : gauges_.pull_in    ? DeviceUnits{.volts = pull_in(model) / pull_in_}
                                            : DeviceUnits{};
-  units.time = nominal_->model.angular_frequencies()[0] / model.angular_frequencies()[0];
+  units.time = nominal_->model.basis().angular_frequencies()[0] / model.basis().angular_frequencies()[0];
   if (const double unit = piezo_unit(nominal_->model); unit > 0) units.piezo = unit / piezo_unit(model);
   return units;
 }

@@ -193,7 +193,7 @@ DeviceReader::Reading DeviceReader::at_rest(const Instrument& instrument, bool w
   return reading;
 }
 
-double DeviceReader::duration() const { return periods_to_close * 2 * pi / nominal_.model.angular_frequencies()[0]; }
+double DeviceReader::duration() const { return periods_to_close * 2 * pi / nominal_.model.basis().angular_frequencies()[0]; }
 
 std::vector<Waveform> DeviceReader::waveforms_of(const Instrument& instrument) const {
   if (!instrument.waveforms.empty()) return instrument.waveforms;
@@ -238,7 +238,7 @@ VectorXd DeviceReader::followed(const Instrument& instrument, const Switch& mode
     return run(beyond * instrument.times.back(), std::numeric_limits<double>::infinity(), points) ? points.values() : unknown;
   }
   EdgeRecorder edges(model.device().gap.contact);
-  const double after = instrument.edges == 1 ? 0 : 2 * pi / nominal_.model.angular_frequencies()[0];
+  const double after = instrument.edges == 1 ? 0 : 2 * pi / nominal_.model.basis().angular_frequencies()[0];
   return run(window, after, edges) ? edges.first(instrument.size()) : unknown;
 }
 

@@ -54,7 +54,7 @@ SwitchSlopes::Neighbours NearbyDevices::neighbours(std::size_t i) {
   Switch above = device_beside(i, 1), below = device_beside(i, -1);
   SwitchOptions finer = nominal_.quadrature;
   // A panel that has a point more than on the other side would look like a change of the device.
-  while (above.points() != below.points()) {
+  while (above.quadrature().points() != below.quadrature().points()) {
     constexpr double little = 1.01;
     finer.points_per_length *= little;
     above = Switch(above.device(), finer, &nominal_.model);

@@ -51,7 +51,7 @@ std::optional<BangBang> bang_bang(const Potential& driven, const Potential& coas
 std::optional<BangBang> bang_bang(const Switch& model, const std::vector<double>& driven, const std::vector<double>& coasting,
                                   std::span<const double> before) {
   const auto n = static_cast<std::size_t>(model.modes());
-  const double shape = model.contact_shape()[0];
+  const double shape = model.basis().contact_shape()[0];
   const double contact = model.device().gap.contact;
   Switch::Workspace work = model.workspace();
   const auto potential = [&](const std::vector<double>& values) {

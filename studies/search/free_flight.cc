@@ -27,14 +27,14 @@ FreeFlight::FreeFlight(const PreparedScene& prepared, Actuator actuator, double 
     : model_(prepared.model),
       modes_(prepared.model.modes()),
       gap_(prepared.scene.device.gap.contact),
-      omega_(prepared.model.angular_frequencies()),
+      omega_(prepared.model.basis().angular_frequencies()),
       work_(prepared.model.workspace()) {
   require(model_.film_states() == 0, "the least time is not known where the gas film is compressible: gas.model = strip or none");
   require(model_.rest().has_value(), "the least time is not known of a switch without an open state");
   for (const auto& [name, value] : prepared.drives.before)
     require(value == 0,
             fmt::format("the least time is known from rest without drives only: waveform.{}.{} must be absent", name, "before"));
-  const VectorXd& at_contact = model_.contact_shape();
+  const VectorXd& at_contact = model_.basis().contact_shape();
   const double least = at_contact.cwiseAbs().maxCoeff() / 10;
   const VectorXd scale = at_contact.cwiseAbs().cwiseMax(least);
   per_q_ = gap_ * scale.cwiseInverse();
@@ -88,7 +88,7 @@ void FreeFlight::add_free(const PreparedScene& prepared, const std::string& name
   if (model_.drive_kind(drive) == DriveKind::piezo) {
     f.largest = std::max(std::abs(low), std::abs(high));
     bound = {.lower = low / f.largest, .upper = high / f.largest};
-    const bool up = model_.piezo_shape().cwiseQuotient(omega_.cwiseAbs2()).dot(model_.contact_shape()) > 0;
+    const bool up = model_.basis().piezo_shape().cwiseQuotient(omega_.cwiseAbs2()).dot(model_.basis().contact_shape()) > 0;
     pull = up ? bound.upper : bound.lower;
     release = up ? bound.lower : bound.upper;
   } else {
@@ -218,7 +218,7 @@ std::optional<FreeFlight::Landing> FreeFlight::landing() const {
   std::vector<double> drives;
   for (std::size_t k = 0; k < levels.size(); ++k) drives.push_back(strength(k, levels[k]));
   Switch::Workspace work = model_.workspace();
-  const VectorXd still = VectorXd::Zero(modes_), &shape = model_.contact_shape();
+  const VectorXd still = VectorXd::Zero(modes_), &shape = model_.basis().contact_shape();
   const Switch::FreeMotion motion = model_.free_motion(closed->q.data(), still.data(), drives, work);
   const VectorXd yields = solve_linear(motion.by_q, shape);
   const double depth = model_.contact_deflection(closed->q.data()) - gap_;

@@ -166,7 +166,7 @@ class LeastTimeSearch {
   }
 
  private:
-  [[nodiscard]] double longest_time() const { return longest_swing * 2 * pi / prepared_.model.angular_frequencies()[0]; }
+  [[nodiscard]] double longest_time() const { return longest_swing * 2 * pi / prepared_.model.basis().angular_frequencies()[0]; }
 
   LeastTime from(ControlledCourse guess, double longest) {
     course_ = std::move(guess);
@@ -192,7 +192,7 @@ class LeastTimeSearch {
 
   void pose(double longest, const std::optional<FreeFlight::Landing>& landing) {
     const double speed = options_.impact_velocity / flight_.speed_unit();
-    const double fastest = prepared_.model.angular_frequencies().maxCoeff() * flight_.time_unit();
+    const double fastest = prepared_.model.basis().angular_frequencies().maxCoeff() * flight_.time_unit();
     problem_ = {
         .system = &flight_,
         .start = flight_.start(),
@@ -305,7 +305,7 @@ std::vector<std::map<std::string, Waveform>> landings_at_rest(const PreparedScen
                                                               double impact_velocity, const Watch& watch) {
   constexpr int most_modes_followed = 4;
   constexpr std::array ramps = {1.0 / 9, 1.0 / 18};  // periods of the first mode from one end of a range to the other
-  const double period = 2 * pi / prepared.model.angular_frequencies()[0];
+  const double period = 2 * pi / prepared.model.basis().angular_frequencies()[0];
   std::vector<std::map<std::string, Waveform>> found;
   if (prepared.model.modes() > most_modes_followed) return found;
   for (std::size_t k = 0; k < ramps.size() && !watch.stopped(); ++k) {
@@ -347,7 +347,7 @@ class AfterTouch {
   // The one that rebounds least, of those that begin after a delay and end up to a few times the time of the touch later.
   [[nodiscard]] Catch best_catch(double delay, const Watch& watch) const {
     constexpr double longest = 3, step = 0.1;  // times that of the touch
-    const double period = 2 * pi / prepared_.model.angular_frequencies()[0];
+    const double period = 2 * pi / prepared_.model.basis().angular_frequencies()[0];
     Catch best;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k * step <= longest && !watch.stopped() && least > 0; ++k) {

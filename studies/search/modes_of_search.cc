@@ -13,7 +13,7 @@ namespace {
 
 // The limits, and whether any differs from those of the drivers.
 bool make_gentle(SearchSetting& setting) {
-  const double shortest_period = 2 * pi / setting.given.model.angular_frequencies().maxCoeff();
+  const double shortest_period = 2 * pi / setting.given.model.basis().angular_frequencies().maxCoeff();
   bool changes = false;
   for (const DriveSearch& s : setting.space.drives()) {
     DriverLimits& limits = setting.limits.at(s.drive);

@@ -67,7 +67,7 @@ class ReleaseSearch {
       : given_(given),
         options_(options),
         gap_(given.scene.device.gap.contact),
-        period_(2 * pi / given.model.angular_frequencies()[0]),
+        period_(2 * pi / given.model.basis().angular_frequencies()[0]),
         names_(given.drive_names()),
         told_holds_(hold_levels(signals_of(given.in_drive_order(given.drives.waveforms)))) {
     add_brakes();

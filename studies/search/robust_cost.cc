@@ -118,7 +118,7 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
       vectors_(vectors),
       measures_steady_force_(is_about_steady_force(setting, aim)) {
   const Switch& model = setting.given.model;
-  const double period = 2 * pi / model.angular_frequencies()[0], in_contact = model.in_contact_period();
+  const double period = 2 * pi / model.basis().angular_frequencies()[0], in_contact = model.basis().in_contact_period();
   window_ = std::max(0.6 * period, 2.5 * in_contact);
   tail_ = in_contact;
   wait_ = std::max(setting.run.no_contact_before, period);

@@ -35,7 +35,7 @@ Metrics imagined_step(const PreparedScene& given, double period) {
   const double gap = given.scene.device.gap.contact;
   Metrics step;
   step.initial_contact_time = period / 2;
-  step.largest_impact_velocity = gap * given.model.angular_frequencies()[0];
+  step.largest_impact_velocity = gap * given.model.basis().angular_frequencies()[0];
   step.major_bounce_height = gap;
   step.impact_energy = step.landing_excess = given.model.bending_energy();
   return step;
@@ -138,7 +138,7 @@ bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) 
 // A drive that still changes after the score would open the switch again unseen.
 ClosingOptions SearchSetting::run_of(const std::vector<Signal>& signals) const {
   ClosingOptions own = run;
-  own.no_end_before = last_breakpoint(signals) + given.model.in_contact_period();
+  own.no_end_before = last_breakpoint(signals) + given.model.basis().in_contact_period();
   own.duration = std::max(run.duration, own.no_end_before);
   return own;
 }
@@ -320,9 +320,9 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
     beside.push_back(beside_step(std::move(one), of_step));
   }
 
-  const double period = 2 * pi / given.model.angular_frequencies()[0];
+  const double period = 2 * pi / given.model.basis().angular_frequencies()[0];
   CostScale scale{.step = {},
-                  .score_window = std::max(period, 3 * given.model.in_contact_period()),
+                  .score_window = std::max(period, 3 * given.model.basis().in_contact_period()),
                   .contact_gap = given.scene.device.gap.contact,
                   .free_touch = actuator == Actuator::pzt ? braked_touch : driven_touch};
   ClosingOptions run{.duration = given.duration, .tolerance = search_tolerance, .after_contact = scale.score_window};
@@ -339,10 +339,10 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
   const double baseline_cost = cost(target, step, scale, given.scene.metrics);
   // A landing so late that the window ends before the switch could bounce would look like a soft one.
   run.no_contact_before =
-      std::min(latest_touch * scale.step.initial_contact_time, given.duration - 2 * given.model.in_contact_period());
+      std::min(latest_touch * scale.step.initial_contact_time, given.duration - 2 * given.model.basis().in_contact_period());
   require(run.no_contact_before > 0, [&] {
     return fmt::format("simulate.duration = {} is too short to judge a landing: it needs more than {}",
-                       engineering(given.duration, "s", 3), engineering(2 * given.model.in_contact_period(), "s", 3));
+                       engineering(given.duration, "s", 3), engineering(2 * given.model.basis().in_contact_period(), "s", 3));
   });
   run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
   SearchSpace space(given, actuator, family, scale.step.initial_contact_time, own);

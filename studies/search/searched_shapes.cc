@@ -28,12 +28,12 @@ double longest_rise(const DriveSearch& s) { return std::abs(s.hold - s.before) /
 double inside(const DriveSearch& s, double voltage) { return std::clamp(voltage, s.limits.min_voltage, s.limits.max_voltage); }
 
 double lifting_voltage(const PreparedScene& p, double lift) {
-  const Eigen::VectorXd squares = p.model.angular_frequencies().cwiseAbs2();
-  const double per_volt = p.model.contact_shape().dot(p.model.piezo_shape().cwiseQuotient(squares));
+  const Eigen::VectorXd squares = p.model.basis().angular_frequencies().cwiseAbs2();
+  const double per_volt = p.model.basis().contact_shape().dot(p.model.basis().piezo_shape().cwiseQuotient(squares));
   return -lift / per_volt;
 }
 
-double first_period(const PreparedScene& p) { return 2 * pi / p.model.angular_frequencies()[0]; }
+double first_period(const PreparedScene& p) { return 2 * pi / p.model.basis().angular_frequencies()[0]; }
 
 std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const PreparedScene& p) {
   if (s.brakes) return std::nullopt;
@@ -94,7 +94,7 @@ double add_dither_variables(DriveSearch& s, const PreparedScene& p, double t0) {
   const double room = std::min(s.limits.max_voltage - s.hold, s.hold - s.limits.min_voltage);
   require(room > 0, fmt::format("driver.{}: the hold level {} stands at the driver's limit, which leaves no room for a dither",
                                 s.drive, engineering(s.hold, "V", 5)));
-  const Eigen::VectorXd& omega = p.model.angular_frequencies();
+  const Eigen::VectorXd& omega = p.model.basis().angular_frequencies();
   const Eigen::Index mode = std::min<Eigen::Index>(s.drive == piezo_drive ? 2 : 1, omega.size() - 1);
   const double upper = omega.size() > 1 ? omega[mode] : 6 * omega[0];
   s.variables = {{"amplitude_V", 0, room},           {"angular_frequency_rad_s", 0.2 * omega[0], upper},

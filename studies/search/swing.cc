@@ -77,7 +77,7 @@ std::optional<Swing> quickest_swing(const Switch& model, const std::vector<doubl
   const std::optional<VectorXd> rest = model.open_equilibrium(before);
   require(rest.has_value(), "a switch without an open state has no swing");
   constexpr double step_angle = 0.05;  // of the fastest mode in a step
-  Swing swing{.step = step_angle / model.angular_frequencies().maxCoeff()};
+  Swing swing{.step = step_angle / model.basis().angular_frequencies().maxCoeff()};
   PullAndRelease drives(model, *rest, pulling, releasing, swing.step, longest);
   const Flight full = drives.fly(longest);
   if (!full.touched) return std::nullopt;

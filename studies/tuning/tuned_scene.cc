@@ -167,7 +167,7 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
   std::map<std::string, Waveform> step = nominal_.drives.waveforms;
   for (const auto& [drive, waveform] : plain_step(nominal_, options.actuator)) step[drive] = waveform;
   const std::vector<Signal> signals = nominal_.driven(nominal_.in_drive_order(step));
-  const double longest = periods_to_close * 2 * std::numbers::pi / nominal_.model.angular_frequencies()[0];
+  const double longest = periods_to_close * 2 * std::numbers::pi / nominal_.model.basis().angular_frequencies()[0];
   const Trajectory closing = simulate_closing(
       nominal_.model, signals, {.duration = longest, .tolerance = nominal_.tolerance, .after_contact = 0, .stop = watch.stop});
   watch.throw_if_stopped();
@@ -326,7 +326,7 @@ void TunedScene::find_units(const Watch& watch) {
     DeviceBuilder builder(*ensemble_);
     const SampledDevice device = builder.device(values(z));
     if (!device.model) return {};
-    Found own{.volts = 1, .period = 1 / device.model->angular_frequencies()[0], .pulled_through = Metrics::unset};
+    Found own{.volts = 1, .period = 1 / device.model->basis().angular_frequencies()[0], .pulled_through = Metrics::unset};
     if (!electrode_) return own;
     const double gain = gain_of(p.scene.spread, p.drive_names()[*electrode_], device.values);
     own.volts = static_pull_in(*device.model, *electrode_, bias).voltage / gain;

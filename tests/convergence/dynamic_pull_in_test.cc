@@ -47,7 +47,7 @@ TEST(ClosingTime, OfAnUndampedStepIsTheReference) {
   for (const int modes : {4, 1}) {
     const Device d = test::device({.modes = modes});
     const Switch model(d);
-    const double frequency = model.angular_frequencies()[0];
+    const double frequency = model.basis().angular_frequencies()[0];
     for (const Row& row : reference) {
       const std::vector<Signal> drives{Signal::constant(row.over_static * test::volts(d, test::full_length_beta))};
       const Trajectory trajectory = simulate_closing(model, drives, {.duration = 10 / frequency, .tolerance = 1e-9});

@@ -114,7 +114,7 @@ TEST(Plate, ClosesInTheTimeOfItsQuadratureWithTheSpeedOfItsEnergy) {
     const auto touch = [&](double contact_over_gap) {
       const Switch model(plate(contact_over_gap));
       const std::vector<Signal> drives{Signal::constant(row.over_static * static_voltage(model.device()))};
-      const double frequency = model.angular_frequencies()[0];
+      const double frequency = model.basis().angular_frequencies()[0];
       const Trajectory t = simulate_closing(model, drives, {.duration = 10 / frequency, .tolerance = 1e-11});
       EXPECT_EQ(t.touches.size(), 1u);
       return Touch{.begin = t.touches.at(0).begin * frequency,
@@ -137,7 +137,7 @@ TEST(Plate, HeavilyDampedLingersAtTheGhostOfTheFold) {
   for (const auto& [excess, time] :
        {Row{1e-4, 360.300}, Row{1e-3, 112.2597}, Row{0.01, 33.8409}, Row{0.1, 9.13712}, Row{1, 1.77676}}) {
     const Switch model(plate(0.98, damping_ratio));
-    const double unit = 2 * damping_ratio / model.angular_frequencies()[0];  // c / k
+    const double unit = 2 * damping_ratio / model.basis().angular_frequencies()[0];  // c / k
     const std::vector<Signal> drives{Signal::constant(std::sqrt(1 + excess) * static_voltage(model.device()))};
     const Trajectory t =
         simulate_closing(model, drives, {.duration = 2 * time * unit, .tolerance = 1e-8, .integrator = Integrator::bdf});

@@ -183,7 +183,7 @@ TEST(RigidContact, ClosedEquilibriumIsThePlateOnThePlane) {
   Switch::Workspace work = model.workspace();
   Eigen::VectorXd rest = Eigen::VectorXd::Zero(1), force(1);
   model.accelerations(closed->q.data(), rest.data(), volts_there, false, work, force.data());
-  EXPECT_NEAR(closed->contact_force, force[0] / model.contact_shape()[0], 1e-12 * closed->contact_force);
+  EXPECT_NEAR(closed->contact_force, force[0] / model.basis().contact_shape()[0], 1e-12 * closed->contact_force);
   EXPECT_EQ(closed->potential, model.potential(closed->q.data(), volts_there, false, work));
   // Just above the release voltage there is one, just below none.
   const double release = release_voltage(model, 0);

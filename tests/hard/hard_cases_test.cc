@@ -74,7 +74,7 @@ std::vector<Case> cases() {
   }
   for (const double dither : {6.0, 600.0}) {  // of the first mode, of which the fourth has 34 times the frequency
     const Device d = test::gold_cantilever();
-    const double omega = Switch(d).angular_frequencies()[0];
+    const double omega = Switch(d).basis().angular_frequencies()[0];
     all.push_back({fmt::format("dither at {:g} times the first mode's frequency", dither),
                    d,
                    {signal(Harmonic{.base = step_level, .amplitude = 0.3 * step_level, .angular_frequency = dither * omega})},
@@ -83,7 +83,7 @@ std::vector<Case> cases() {
   for (const int mode : {0, 1, 3}) {
     Device d = test::gold_cantilever();
     d.gas.reset();
-    const double omega = Switch(d).angular_frequencies()[mode];
+    const double omega = Switch(d).basis().angular_frequencies()[mode];
     all.push_back({fmt::format("dither on the resonance of mode {} without damping", mode + 1),
                    d,
                    {signal(Harmonic{.base = 0.8 * step_level, .amplitude = 0.4 * step_level, .angular_frequency = omega})},

@@ -109,7 +109,7 @@ TEST(EveryScene, LandsAlikeFromTwoIntegrators_slow) {
     const test::Landing a = test::landing(one.trajectory), b = test::landing(other.trajectory);
     RC_LOG() << p.scene.file.text() << fmt::format("{} s, {} m/s and {} s, {} m/s", a.time, a.velocity, b.time, b.velocity);
     // Slow first touches and those just above pull-in are less certain than the tolerance.
-    const double scale = p.model.device().gap.contact * p.model.angular_frequencies()[0];
+    const double scale = p.model.device().gap.contact * p.model.basis().angular_frequencies()[0];
     RC_ASSERT(std::abs(a.time - b.time) <= 1e-4 * a.time);
     RC_ASSERT(std::abs(a.velocity - b.velocity) <= 1e-3 * std::max(a.velocity, scale));
   }));

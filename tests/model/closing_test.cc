@@ -42,7 +42,7 @@ TEST(Closing, BeginsAtRestAndKeepsItsKnotsInOrder) {
   EXPECT_DOUBLE_EQ(t.points.back().time, 100_us);
   for (std::size_t i = 1; i < t.points.size(); ++i) EXPECT_GE(t.points[i].time, t.points[i - 1].time);
   EXPECT_EQ(t.contact_gap, 2_um);
-  EXPECT_EQ(t.in_contact_period, gold().in_contact_period());
+  EXPECT_EQ(t.in_contact_period, gold().basis().in_contact_period());
   EXPECT_GT(t.work.steps, 0);
   EXPECT_GT(t.work.rhs_evaluations, t.work.steps);
   EXPECT_TRUE(t.message.empty());
@@ -215,7 +215,7 @@ TEST(Closing, SeesAPulseFarShorterThanItsSteps) {
   const double rest = 0;
   double force = 0;
   device.accelerations(&rest, &rest, std::vector<double>{300}, false, work, &force);
-  const double expected = force * device.contact_shape()[0] * 2_ns;  // velocity after the kick
+  const double expected = force * device.basis().contact_shape()[0] * 2_ns;  // velocity after the kick
   double fastest = 0;
   for (const TrajectoryPoint& p : t.points) fastest = std::max(fastest, std::abs(p.velocity));
   EXPECT_NEAR(fastest, expected, 1e-3 * expected);
@@ -365,7 +365,7 @@ TEST(ContactMemory, TakesFromTheMotionWhatTheDentSays) {
     const auto speed = [&](double time) {
       return std::find_if(t.points.begin(), t.points.end(), [&](const TrajectoryPoint& p) { return p.time == time; })->velocity;
     };
-    const double mass = 1 / std::pow(device.contact_shape()[0], 2);
+    const double mass = 1 / std::pow(device.basis().contact_shape()[0], 2);
     const double before = t.touches[0].impact_velocity, after = speed(t.touches[0].end);
     const double expected = dent(device.contact(), t.deepest_penetration).lost;
     EXPECT_LT(after, 0);

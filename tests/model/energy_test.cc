@@ -196,7 +196,7 @@ TEST(EnergyBalance, ClosesForEveryDispersionForceWhileItsFactorChanges) {
         if (law == DispersionModel::automatic && conductor == Conductor::gold) d.dispersion->hamaker_constant = 1.2e-19;
         const Switch model(d);
         ASSERT_TRUE(model.rest().has_value());
-        const double period = 2 * pi / model.angular_frequencies()[0];
+        const double period = 2 * pi / model.basis().angular_frequencies()[0];
         const StaticPullIn fold = static_pull_in(model, 0);
         ASSERT_EQ(fold.status, Status::done);
         const std::vector<Signal> drives{signal(Pulse{.levels = {1.4 * fold.voltage, 0.9 * fold.voltage, 1.2 * fold.voltage},

@@ -53,12 +53,12 @@ struct Motion {
 Motion motion_of(const Switch& model) {
   Motion m;
   const Index n = model.modes();
-  m.q = model.contact_shape().cwiseQuotient(model.angular_frequencies().cwiseAbs2());
-  m.q *= 0.6 * model.device().gap.contact / model.contact_shape().dot(m.q);
+  m.q = model.basis().contact_shape().cwiseQuotient(model.basis().angular_frequencies().cwiseAbs2());
+  m.q *= 0.6 * model.device().gap.contact / model.basis().contact_shape().dot(m.q);
   m.v = VectorXd(n);
   for (Index i = 0; i < n; ++i) {
     m.q[i] *= 1 + 0.1 * std::sin(3.0 * static_cast<double>(i) + 1);
-    m.v[i] = 0.3 * model.angular_frequencies()[0] * m.q[0] * std::cos(2.0 * static_cast<double>(i));
+    m.v[i] = 0.3 * model.basis().angular_frequencies()[0] * m.q[0] * std::cos(2.0 * static_cast<double>(i));
   }
   for (std::size_t k = 0; k < model.drives(); ++k) {
     const bool piezo = model.drive_kind(k) == DriveKind::piezo;

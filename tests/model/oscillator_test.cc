@@ -58,12 +58,12 @@ void expect_response(double damping_ratio, const Signal& drive, double volts, Re
   ASSERT_EQ(trajectory.status, Status::done);
   ASSERT_TRUE(trajectory.touches.empty());
   EXPECT_DOUBLE_EQ(trajectory.points.back().time, window);
-  const Eigen::VectorXd gain = device.piezo_shape().cwiseProduct(device.contact_shape());
+  const Eigen::VectorXd gain = device.basis().piezo_shape().cwiseProduct(device.basis().contact_shape());
   double largest = 0, worst = 0;
   for (const TrajectoryPoint& p : trajectory.points) {
     double exact = 0;
     for (Eigen::Index i = 0; i < device.modes(); ++i)
-      exact += volts * gain[i] * response(device.angular_frequencies()[i], p.time);
+      exact += volts * gain[i] * response(device.basis().angular_frequencies()[i], p.time);
     largest = std::max(largest, std::abs(exact));
     worst = std::max(worst, std::abs(p.position - exact));
   }
@@ -105,7 +105,7 @@ TEST(LinearLimit, SineDrivesEveryModeBelowAndAboveItsResonance_optimized) {
 
 TEST(LinearLimit, EveryIntegratorFollowsTheClosedForm_optimized) {
   const Switch device(oscillator(0));
-  const Eigen::VectorXd gain = device.piezo_shape().cwiseProduct(device.contact_shape());
+  const Eigen::VectorXd gain = device.basis().piezo_shape().cwiseProduct(device.basis().contact_shape());
   const std::vector<Signal> drives{Signal::constant(-0.2)};
   for (const Integrator integrator :
        {Integrator::lawson, Integrator::arkode_erk, Integrator::esdirk, Integrator::bdf, Integrator::adams}) {
@@ -113,7 +113,7 @@ TEST(LinearLimit, EveryIntegratorFollowsTheClosedForm_optimized) {
         simulate_closing(device, drives, {.duration = 100_us, .tolerance = 1e-9, .integrator = integrator});
     double exact = 0;
     for (Eigen::Index i = 0; i < device.modes(); ++i) {
-      exact += -0.2 * gain[i] * step_response(device.angular_frequencies()[i], 0, 100_us);
+      exact += -0.2 * gain[i] * step_response(device.basis().angular_frequencies()[i], 0, 100_us);
     }
     constexpr double multistep_digits = 2e-5;  // multistep methods let many thousand small errors add up
     EXPECT_NEAR(trajectory.points.back().position, exact, multistep_digits * 1_um) << static_cast<int>(integrator);
@@ -124,13 +124,13 @@ TEST(LinearLimit, FreeModesAreExactAtAnyTolerance_optimized) {
   const Switch device(oscillator(0));
   const std::vector<Signal> drives{Signal::constant(-0.2)};
   const Trajectory trajectory = simulate_closing(device, drives, {.duration = 100_us, .tolerance = 0.1});
-  const double fastest = device.angular_frequencies().maxCoeff();
+  const double fastest = device.basis().angular_frequencies().maxCoeff();
   EXPECT_LE(trajectory.work.steps, 10 + static_cast<long>(100_us * fastest / 2)) << "two radians a step";
-  const Eigen::VectorXd gain = device.piezo_shape().cwiseProduct(device.contact_shape());
+  const Eigen::VectorXd gain = device.basis().piezo_shape().cwiseProduct(device.basis().contact_shape());
   for (const TrajectoryPoint& point : trajectory.points) {
     double exact = 0;
     for (Eigen::Index i = 0; i < device.modes(); ++i) {
-      exact += -0.2 * gain[i] * step_response(device.angular_frequencies()[i], 0, point.time);
+      exact += -0.2 * gain[i] * step_response(device.basis().angular_frequencies()[i], 0, point.time);
     }
     ASSERT_NEAR(point.position, exact, 1e-10 * 1_um);
   }
@@ -145,7 +145,7 @@ TEST(LinearLimit, EnergyOfTheModesIsTheWorkOfTheDrive_optimized) {
   // Work of a constant voltage: V times the charge the deflection moved, theta q.
   double work = 0;
   for (Eigen::Index i = 0; i < device.modes(); ++i) {
-    work += 0.2 * 0.2 * std::pow(device.piezo_shape()[i], 2) * step_response(device.angular_frequencies()[i], 0, 130_us);
+    work += 0.2 * 0.2 * std::pow(device.basis().piezo_shape()[i], 2) * step_response(device.basis().angular_frequencies()[i], 0, 130_us);
   }
   EXPECT_NEAR(trajectory.energy.source_work, work, 1e-6 * work);
 }
@@ -157,8 +157,8 @@ TEST(Touch, ThatGrazesThePlaneIsFoundAndItsNearMissIsNot) {
   d.structure.modes = 1;
   d.contact = test::gold_cantilever().contact;
   const Switch probe(d);
-  const double w = probe.angular_frequencies()[0];
-  const double peak = 2 * volts * probe.piezo_shape()[0] * probe.contact_shape()[0] / (w * w);
+  const double w = probe.basis().angular_frequencies()[0];
+  const double peak = 2 * volts * probe.basis().piezo_shape()[0] * probe.basis().contact_shape()[0] / (w * w);
   for (const bool touches : {true, false}) {
     d.gap.contact = peak * (touches ? 1 - margin : 1 + margin);
     const Switch device(d);

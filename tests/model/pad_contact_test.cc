@@ -51,7 +51,7 @@ Eigen::VectorXd velocities(const Switch& model, std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   Eigen::VectorXd v(model.modes());
   for (Eigen::Index i = 0; i < v.size(); ++i) {
-    v[i] = 0.1 * uniform(random) / (model.contact_shape()[0] * static_cast<double>(1 + i * i));
+    v[i] = 0.1 * uniform(random) / (model.basis().contact_shape()[0] * static_cast<double>(1 + i * i));
   }
   return v;
 }
@@ -184,7 +184,7 @@ TEST(PadContact, HasItsExactDerivativesAndEnergy) {
       const Eigen::VectorXd still = Eigen::VectorXd::Zero(n), at_rest = force(still);
       Eigen::VectorXd gradient(n);
       for (Eigen::Index i = 0; i < n; ++i) {
-        const double unit = 1 / std::abs(model.contact_shape()[i]);
+        const double unit = 1 / std::abs(model.basis().contact_shape()[i]);
         const Eigen::VectorXd q_column = derivative(q[i], step * unit, [&] { return force(v); });
         EXPECT_LT((q_column - by_q.col(i)).cwiseAbs().maxCoeff(), differences * by_q.cwiseAbs().maxCoeff()) << name;
         const Eigen::VectorXd v_column = derivative(v[i], 0.01 * unit, [&] { return force(v); });
@@ -218,11 +218,11 @@ TEST(PadContact, IsSeenFromTheFreeEnd) {
   const Device& d = model.device();
   const BeamModes modes(beam_sections(d), model.modes());
   EXPECT_EQ(d.contact_position(), d.structure.length);
-  EXPECT_EQ(model.contact_shape(), modes.value(d.structure.length));
-  EXPECT_DOUBLE_EQ(model.in_contact_period(), 2 * pi / modes.pinned_frequency(d.structure.length));
+  EXPECT_EQ(model.basis().contact_shape(), modes.value(d.structure.length));
+  EXPECT_DOUBLE_EQ(model.basis().in_contact_period(), 2 * pi / modes.pinned_frequency(d.structure.length));
   // The scale of penetration carries the force that bends the beam by the contact gap, on the pad as tilted by that force.
-  const Eigen::VectorXd bent = model.contact_shape().cwiseQuotient(model.angular_frequencies().cwiseAbs2());
-  const double compliance = model.contact_shape().dot(bent);
+  const Eigen::VectorXd bent = model.basis().contact_shape().cwiseQuotient(model.basis().angular_frequencies().cwiseAbs2());
+  const double compliance = model.basis().contact_shape().dot(bent);
   const Eigen::VectorXd q = bent * ((d.gap.contact + model.penetration_scale()) / compliance), still = 0 * q;
   const double force = d.gap.contact / compliance;
   EXPECT_NEAR(model.contact_push(q.data(), still.data(), true), force, 1e-9 * force);

@@ -32,7 +32,7 @@ Switch contact_first() {
 /// of its shortcuts.
 bool reaches(const Switch& model, double volts) {
   const std::vector<Signal> drives{Signal::constant(volts)};
-  const double window = 100 * 2 * pi / model.angular_frequencies()[0];
+  const double window = 100 * 2 * pi / model.basis().angular_frequencies()[0];
   return !simulate_closing(model, drives, {.duration = window, .tolerance = 1e-9, .after_contact = 0}).touches.empty();
 }
 
@@ -263,7 +263,7 @@ TEST(ClosedEquilibrium, IsAnEquilibrium) {
     const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
     Eigen::VectorXd a(model.modes());
     model.accelerations(closed->q.data(), rest.data(), volts, true, work, a.data());
-    const double contact = closed->contact_force * model.contact_shape().maxCoeff();
+    const double contact = closed->contact_force * model.basis().contact_shape().maxCoeff();
     EXPECT_LT(a.cwiseAbs().maxCoeff(), 1e-6 * contact);
     EXPECT_GT(closed->contact_force, 0);
     const double d = model.contact_deflection(closed->q.data()) - model.device().gap.contact;
@@ -286,7 +286,7 @@ TEST(ClosedEquilibrium, IsFoundBetweenASoftContactAndTheElectrode) {
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
   Eigen::VectorXd a(model.modes());
   model.accelerations(closed->q.data(), rest.data(), volts, true, work, a.data());
-  EXPECT_LT(a.cwiseAbs().maxCoeff(), 1e-6 * closed->contact_force * model.contact_shape().maxCoeff());
+  EXPECT_LT(a.cwiseAbs().maxCoeff(), 1e-6 * closed->contact_force * model.basis().contact_shape().maxCoeff());
 }
 
 TEST(ClosedEquilibrium, IsWhereABouncingSwitchComesToRest) {
@@ -328,7 +328,7 @@ TEST(ClosedEquilibrium, IsOneForEveryContactLaw) {
     Eigen::VectorXd left(model.modes());
     model.accelerations(closed->q.data(), rest.data(), volts, true, work, left.data());
     constexpr double digits = 1e-6;  // of the contact force
-    EXPECT_LT(left.norm(), digits * closed->contact_force * model.contact_shape().norm()) << name_of(contact.model);
+    EXPECT_LT(left.norm(), digits * closed->contact_force * model.basis().contact_shape().norm()) << name_of(contact.model);
     EXPECT_GT(release_voltage(model, 0), 0) << name_of(contact.model);
   }
 }

@@ -206,11 +206,11 @@ TEST(Switch, WithAFilmOfItsOwnStatesHasTheExactJacobian) {
     const Switch model(d);
     Switch::Workspace work = model.workspace();
     const Eigen::Index n = model.modes(), size = 2 * n + static_cast<Eigen::Index>(model.film_states());
-    EXPECT_EQ(model.film_states(), static_cast<std::size_t>(nodes * model.points()));
+    EXPECT_EQ(model.film_states(), static_cast<std::size_t>(nodes * model.quadrature().points()));
     std::mt19937_64 random(4);
     std::uniform_real_distribution<double> uniform(-1, 1);
     Eigen::VectorXd state = Eigen::VectorXd::NullaryExpr(size, [&] { return 0.3 * uniform(random); });
-    const double shape = model.contact_shape()[0];
+    const double shape = model.basis().contact_shape()[0];
     state.head(n).setZero();
     state[0] = 1_um / shape;
     state.segment(n, n) *= 0.1 / shape;

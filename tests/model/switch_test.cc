@@ -128,13 +128,13 @@ State random_state(const Switch& device, bool in_contact, std::mt19937_64& rando
   State s{Eigen::VectorXd(n), Eigen::VectorXd(n), {}};
   for (Eigen::Index i = 0; i < n; ++i) {
     // A mode that does not move the contact point moves the rest of the beam.
-    const double shape = std::max(std::abs(device.contact_shape()[i]), 0.1 * device.contact_shape()[0]);
+    const double shape = std::max(std::abs(device.basis().contact_shape()[i]), 0.1 * device.basis().contact_shape()[0]);
     const double share = shape * static_cast<double>(1 + i * i);
     s.q[i] = 0.15 * plane * uniform(random) / share;
     s.v[i] = 0.1 * uniform(random) / share;
   }
   const double wanted = in_contact ? plane * (1.03 + 0.0125 * uniform(random)) : plane * (0.5 + 0.4 * uniform(random));
-  s.q[0] += (wanted - device.contact_deflection(s.q.data())) / device.contact_shape()[0];
+  s.q[0] += (wanted - device.contact_deflection(s.q.data())) / device.basis().contact_shape()[0];
   for (std::size_t k = 0; k < device.drives(); ++k) {
     s.volts.push_back((device.drive_kind(k) == DriveKind::electrode ? 10 : 1) * uniform(random));
   }
@@ -168,11 +168,11 @@ TEST(Switch, JacobianIsTheDerivativeOfTheAccelerations) {
         return Eigen::VectorXd(sum / (12 * h));
       };
       for (Eigen::Index i = 0; i < n; ++i) {
-        const Eigen::VectorXd q_column = column(s.q, i, 5e-5 * c.device.gap.contact / device.contact_shape().maxCoeff());
+        const Eigen::VectorXd q_column = column(s.q, i, 5e-5 * c.device.gap.contact / device.basis().contact_shape().maxCoeff());
         EXPECT_LT((q_column - by_q.col(i)).cwiseAbs().maxCoeff(), differences * by_q.cwiseAbs().maxCoeff()) << c.name;
-        const Eigen::VectorXd v_column = column(s.v, i, 0.01 / device.contact_shape().maxCoeff());
+        const Eigen::VectorXd v_column = column(s.v, i, 0.01 / device.basis().contact_shape().maxCoeff());
         EXPECT_LE((v_column - by_v.col(i)).cwiseAbs().maxCoeff(),
-                  differences * (by_v.cwiseAbs().maxCoeff() + device.angular_frequencies()[0]))
+                  differences * (by_v.cwiseAbs().maxCoeff() + device.basis().angular_frequencies()[0]))
             << c.name;
       }
     }
@@ -188,19 +188,19 @@ void expect_same(const Switch& a, const Switch& b, bool in_bits) {
     EXPECT_TRUE((x - y).cwiseAbs().maxCoeff() <= relative * y.cwiseAbs().maxCoeff()) << x.transpose() << "\n" << y.transpose();
   };
   ASSERT_EQ(a.modes(), b.modes());
-  ASSERT_EQ(a.points(), b.points());
-  expect_close(a.angular_frequencies(), b.angular_frequencies(), rounding);
-  expect_close(a.contact_shape(), b.contact_shape(), rounding);
-  expect_close(a.piezo_shape(), b.piezo_shape(), rounding);
-  EXPECT_NEAR(a.in_contact_period() / b.in_contact_period(), 1, 1e-11);
+  ASSERT_EQ(a.quadrature().points(), b.quadrature().points());
+  expect_close(a.basis().angular_frequencies(), b.basis().angular_frequencies(), rounding);
+  expect_close(a.basis().contact_shape(), b.basis().contact_shape(), rounding);
+  expect_close(a.basis().piezo_shape(), b.basis().piezo_shape(), rounding);
+  EXPECT_NEAR(a.basis().in_contact_period() / b.basis().in_contact_period(), 1, 1e-11);
   EXPECT_TRUE(std::abs(a.penetration_scale() - b.penetration_scale()) <= rounding * b.penetration_scale());
   EXPECT_TRUE(std::abs(a.bending_energy() - b.bending_energy()) <= rounding * b.bending_energy());
   ASSERT_EQ(a.rest().has_value(), b.rest().has_value());
   if (a.rest()) expect_close(*a.rest(), *b.rest(), magnified);
-  EXPECT_TRUE((a.point_positions() == b.point_positions()).all());
+  EXPECT_TRUE((a.quadrature().positions() == b.quadrature().positions()).all());
   const auto accelerations = [](const Switch& s) {
     Eigen::VectorXd q = Eigen::VectorXd::Zero(s.modes()), v = Eigen::VectorXd::Constant(s.modes(), 1e-8), result(s.modes());
-    q[0] = 1.001 * s.device().gap.contact / s.contact_shape()[0];
+    q[0] = 1.001 * s.device().gap.contact / s.basis().contact_shape()[0];
     const std::vector<double> drives(s.drives(), 1.5);
     Switch::Workspace work = s.workspace();
     s.accelerations(q.data(), v.data(), drives, s.has_contact(), work, result.data());
@@ -242,7 +242,7 @@ TEST(Switch, TwiceTheQuadratureIsTwiceThePointsOfEveryPanel) {
   const SwitchOptions coarse{.points_per_length = 30}, fine{.points_per_length = 60, .points_per_panel = 6};
   Device d = test::gold_cantilever();
   d.electrodes[0].begin = 0.3_um;  // a panel so short that it has as few points as there may be
-  EXPECT_EQ(Switch(d, fine).points(), 2 * Switch(d, coarse).points());
+  EXPECT_EQ(Switch(d, fine).quadrature().points(), 2 * Switch(d, coarse).quadrature().points());
 }
 
 // An electrode of several pads is several electrodes under one voltage.
@@ -254,7 +254,7 @@ TEST(Switch, PadsOfOneElectrodeActAsElectrodesOfOneVoltage) {
     pads.electrodes[0].further = {{.begin = 130_um, .end = Place::share(1)}};
     apart.electrodes.push_back({.name = "two", .begin = 130_um, .end = 250_um, .side = side, .gap = 5_um});
     const Switch one(pads), two(apart);
-    ASSERT_EQ(one.points(), two.points());
+    ASSERT_EQ(one.quadrature().points(), two.quadrature().points());
     ASSERT_EQ(one.drives(), 1U);
     const Eigen::VectorXd q = Eigen::VectorXd::Constant(one.modes(), 2e-13), v = Eigen::VectorXd::Constant(one.modes(), 1e-8);
     Switch::Workspace work = one.workspace();
@@ -281,7 +281,7 @@ TEST(Switch, StaticForceIsMinusTheGradientOfThePotential) {
       Eigen::VectorXd force(n), gradient(n);
       device.accelerations(s.q.data(), rest.data(), s.volts, in_contact, work, force.data());
       for (Eigen::Index i = 0; i < n; ++i) {
-        const double at = s.q[i], h = 1e-3 * c.device.gap.contact / device.contact_shape().maxCoeff();
+        const double at = s.q[i], h = 1e-3 * c.device.gap.contact / device.basis().contact_shape().maxCoeff();
         double sum = 0;
         for (const auto& [offset, weight] : {std::pair{1, 672.0}, {2, -168.0}, {3, 32.0}, {4, -3.0}}) {
           s.q[i] = at + offset * h;
@@ -331,9 +331,9 @@ TEST(Switch, EnergiesAreThoseOfMassNormalisedModes) {
   double kinetic = 0, elastic = 0;
   for (Eigen::Index i = 0; i < device.modes(); ++i) {
     kinetic += s.v[i] * s.v[i] / 2;
-    elastic += std::pow(device.angular_frequencies()[i] * s.q[i], 2) / 2;
+    elastic += std::pow(device.basis().angular_frequencies()[i] * s.q[i], 2) / 2;
   }
-  EXPECT_NEAR(device.kinetic_energy(s.v.data()), kinetic, 1e-14 * kinetic);
+  EXPECT_NEAR(device.basis().kinetic_energy(s.v.data()), kinetic, 1e-14 * kinetic);
   EXPECT_NEAR(device.elastic_energy(s.q.data()), elastic, 1e-14 * elastic);
 }
 
@@ -351,9 +351,9 @@ TEST(Switch, CapacitanceAtRestIsThatOfTheStraightBeam) {
 TEST(Quadrature, CornersThatDifferByARoundingAreOne) {
   Device d = test::gold_cantilever();
   d.electrodes[0].end = d.structure.length - d.contact->pad_length;
-  const Eigen::Index points = Switch(d).points();
+  const Eigen::Index points = Switch(d).quadrature().points();
   d.electrodes[0].end = std::nextafter(d.electrodes[0].end.value, 0.0);
-  EXPECT_EQ(Switch(d).points(), points);
+  EXPECT_EQ(Switch(d).quadrature().points(), points);
 }
 
 TEST(Switch, QuadratureKnowsEveryCorner) {
@@ -368,8 +368,8 @@ TEST(Switch, QuadratureKnowsEveryCorner) {
     const double expected = vacuum_permittivity * 20_um * (end - begin) / 3.5_um;
     EXPECT_NEAR(part.capacitance(0, rest.data(), work), expected, 1e-12 * expected) << begin << " " << end;
   }
-  EXPECT_TRUE((device.point_positions() > 0).all());
-  EXPECT_TRUE((device.point_positions() < 250_um).all());
+  EXPECT_TRUE((device.quadrature().positions() > 0).all());
+  EXPECT_TRUE((device.quadrature().positions() < 250_um).all());
 }
 
 TEST(Switch, ElectrodeUpToTheFreeEndCountsEveryPoint) {
@@ -397,7 +397,7 @@ TEST(Switch, UniformPressureOnAStiffBeamGivesTheTextbookDeflection) {
   Eigen::VectorXd force(device.modes());
   const std::vector<double> volts{0.1};
   device.accelerations(rest.data(), rest.data(), volts, false, work, force.data());
-  const Eigen::VectorXd q = force.cwiseQuotient(device.angular_frequencies().cwiseAbs2());
+  const Eigen::VectorXd q = force.cwiseQuotient(device.basis().angular_frequencies().cwiseAbs2());
   const double load = vacuum_permittivity * 20_um * 0.01 / (2 * std::pow(3.5_um, 2));
   const double rigidity = 78e9 * 20_um * std::pow(2_um, 3) / 12;
   const double expected = load * std::pow(250_um, 4) / (8 * rigidity);
@@ -410,9 +410,9 @@ TEST(Switch, PiezoForceBelongsToItsCharge) {
   EXPECT_TRUE(device.has_piezo());
   std::mt19937_64 random(5);
   const State s = random_state(device, false, random);
-  EXPECT_DOUBLE_EQ(device.piezo_charge(s.q.data()), device.piezo_shape().dot(s.q));
-  EXPECT_LT(device.piezo_shape()[0], 0) << "a positive voltage lifts the tip";
-  EXPECT_TRUE(Switch(test::gold_cantilever()).piezo_shape().isZero());
+  EXPECT_DOUBLE_EQ(device.basis().piezo_charge(s.q.data()), device.basis().piezo_shape().dot(s.q));
+  EXPECT_LT(device.basis().piezo_shape()[0], 0) << "a positive voltage lifts the tip";
+  EXPECT_TRUE(Switch(test::gold_cantilever()).basis().piezo_shape().isZero());
   EXPECT_EQ(Switch(test::gold_cantilever()).drives(), 1u);
 }
 
@@ -421,7 +421,7 @@ TEST(Switch, PenetrationScaleCarriesTheForceThatBendsTheBeamByTheGap) {
   d.contact->model = LinearSpring{.stiffness = 1e4};
   d.structure.modes = 1;
   const Switch device(d);
-  const double stiffness = std::pow(device.angular_frequencies()[0] / device.contact_shape()[0], 2);
+  const double stiffness = std::pow(device.basis().angular_frequencies()[0] / device.basis().contact_shape()[0], 2);
   EXPECT_NEAR(device.penetration_scale(), stiffness * 2_um / 1e4, 1e-9 * device.penetration_scale());
 }
 
@@ -439,7 +439,7 @@ TEST(Switch, InContactItVibratesAsTheBeamPinnedAtTheContact) {
   device.jacobian(rest.data(), rest.data(), {}, true, work, by_q, by_v);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(-by_q);
   const double period = 2 * pi / std::sqrt(solver.eigenvalues()[0]);
-  EXPECT_NEAR(device.in_contact_period(), period, 1e-3 * period);
+  EXPECT_NEAR(device.basis().in_contact_period(), period, 1e-3 * period);
 }
 
 TEST(Switch, BetweenTwoClampsHasItsContactInTheMiddle) {
@@ -449,7 +449,7 @@ TEST(Switch, BetweenTwoClampsHasItsContactInTheMiddle) {
   EXPECT_DOUBLE_EQ(d.pad().first, 122.5_um);
   EXPECT_DOUBLE_EQ(d.pad().second, 127.5_um);
   // The middle is a node of every second mode.
-  for (const int i : {1, 3}) EXPECT_NEAR(device.contact_shape()[i], 0, 1e-9 * device.contact_shape()[0]);
+  for (const int i : {1, 3}) EXPECT_NEAR(device.basis().contact_shape()[i], 0, 1e-9 * device.basis().contact_shape()[0]);
   d.contact.reset();
   EXPECT_DOUBLE_EQ(d.contact_position(), 125_um);
 }
@@ -480,21 +480,21 @@ TEST(Switch, OfAPlateIsOneOscillator) {
   d.structure.modes = 4;  // a plate has one, whatever is said
   const Switch device(d);
   ASSERT_EQ(device.modes(), 1);
-  EXPECT_EQ(device.points(), 3);  // where either electrode ends, and the rest
-  EXPECT_DOUBLE_EQ(device.angular_frequencies()[0], std::sqrt(42 / 2.4e-9));
-  const double x = 0.4_um, q = x / device.contact_shape()[0];
+  EXPECT_EQ(device.quadrature().points(), 3);  // where either electrode ends, and the rest
+  EXPECT_DOUBLE_EQ(device.basis().angular_frequencies()[0], std::sqrt(42 / 2.4e-9));
+  const double x = 0.4_um, q = x / device.basis().contact_shape()[0];
   EXPECT_DOUBLE_EQ(device.contact_deflection(&q), x);
   EXPECT_NEAR(device.elastic_energy(&q), 42 * x * x / 2, 1e-14 * 42 * x * x);
   // Areas make the force: eps0 A V^2 / (2 h^2) and the film's mu a^2 A / h^3.
   for (Electrode& e : d.electrodes) e.fringing = Fringing::none;
   const Switch plain(d);
   Switch::Workspace work = plain.workspace();
-  const double rest = 0, v = 0.1 / plain.contact_shape()[0];
+  const double rest = 0, v = 0.1 / plain.basis().contact_shape()[0];
   double force = 0;
   plain.accelerations(&q, &rest, std::vector<double>{0.0, 10.0}, false, work, &force);
   const double h = 3.8_um - x, area = 100_um * 100_um;
   const double expected = vacuum_permittivity * 0.3 * area * 100 / (2 * h * h) - 42 * x;
-  EXPECT_NEAR(force * plain.contact_shape()[0] * 2.4e-9, expected, 1e-12 * 42 * x);
+  EXPECT_NEAR(force * plain.basis().contact_shape()[0] * 2.4e-9, expected, 1e-12 * 42 * x);
   const double power = 1e-6 * 1e-8 * area / (h * h * h) * 0.01;
   EXPECT_NEAR(plain.dissipated_power(&q, &v, work), power, 1e-12 * power);
 }
@@ -509,11 +509,11 @@ TEST(Switch, ElectrodeOnTheFarSideLiftsTheBeam) {
   d.electrodes[1].gap = 2 * 3.8_um;
   const Switch device(d);
   Switch::Workspace work = device.workspace();
-  const double rest = 0, v = 0.1 / device.contact_shape()[0], force = vacuum_permittivity * 5e-9 / (2 * std::pow(3.8_um, 2));
+  const double rest = 0, v = 0.1 / device.basis().contact_shape()[0], force = vacuum_permittivity * 5e-9 / (2 * std::pow(3.8_um, 2));
   double a = 0;
   const auto newtons = [&](std::vector<double> volts) {
     device.accelerations(&rest, &rest, volts, false, work, &a);
-    return a * 2.4e-9 * device.contact_shape()[0];
+    return a * 2.4e-9 * device.basis().contact_shape()[0];
   };
   EXPECT_NEAR(newtons({1, 0}), force, 1e-12 * force);
   EXPECT_NEAR(newtons({0, 1}), -force / 4, 1e-12 * force);

@@ -42,7 +42,7 @@ Metrics closing(const Switch& device, const Signal& piezo, double duration, doub
 /// start of Newton's method and then the shape. Written out here because the library's pull-in keeps all other drives at 0 V.
 double square_at(const Switch& device, double s, double piezo_volts, Eigen::VectorXd& q, double square) {
   const Eigen::Index n = device.modes();
-  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(n), shape = device.contact_shape();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(n), shape = device.basis().contact_shape();
   Switch::Workspace work = device.workspace();
   Eigen::MatrixXd by_q(n, n), by_v(n, n), system(n + 1, n + 1);
   Eigen::VectorXd force(n), without(n), right(n + 1);
@@ -51,7 +51,7 @@ double square_at(const Switch& device, double s, double piezo_volts, Eigen::Vect
     device.accelerations(q.data(), rest.data(), volts, false, work, force.data());
     device.jacobian(q.data(), rest.data(), volts, false, work, by_q, by_v);
     device.accelerations(q.data(), rest.data(), electrode_off, false, work, without.data());
-    const Eigen::VectorXd stiffness = device.angular_frequencies().cwiseAbs2();
+    const Eigen::VectorXd stiffness = device.basis().angular_frequencies().cwiseAbs2();
     system.topLeftCorner(n, n) = stiffness.cwiseInverse().asDiagonal() * by_q;
     system.topRightCorner(n, 1) = (force - without).cwiseQuotient(square * stiffness);
     system.bottomLeftCorner(1, n) = shape.transpose();
@@ -72,7 +72,7 @@ TEST(GoldPzt, HasTheReferenceFrequencies) {
   ASSERT_EQ(device.modes(), 4);
   for (int i = 0; i < 4; ++i) {
     const double expected = reference[static_cast<std::size_t>(i)];
-    EXPECT_NEAR(device.angular_frequencies()[i], expected, frequency_digits * expected) << "mode " << i;
+    EXPECT_NEAR(device.basis().angular_frequencies()[i], expected, frequency_digits * expected) << "mode " << i;
   }
 }
 

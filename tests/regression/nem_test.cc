@@ -19,7 +19,7 @@ using namespace literals;
 Trajectory step(const Switch& model, double value, double periods) {
   std::vector<Signal> drives(model.drives());
   drives[0] = Signal::constant(value);
-  return simulate_closing(model, drives, {.duration = periods * 2 * pi / model.angular_frequencies()[0], .tolerance = 1e-8});
+  return simulate_closing(model, drives, {.duration = periods * 2 * pi / model.basis().angular_frequencies()[0], .tolerance = 1e-8});
 }
 
 TEST(NemTin, PullsInNearTheClosedFormOfTheFullLengthElectrode) {
@@ -55,7 +55,7 @@ TEST(NemTin, ClosesBouncesAndSettlesAtItsVoltage) {
   const Trajectory t = step(model, 1.25 * dynamic.voltage, 40);
   ASSERT_EQ(t.status, Status::done) << t.message;
   const Metrics m = metrics(t, {.significant_rebound = 1e-11});
-  EXPECT_LT(m.initial_contact_time, 2 * pi / model.angular_frequencies()[0]);
+  EXPECT_LT(m.initial_contact_time, 2 * pi / model.basis().angular_frequencies()[0]);
   EXPECT_GT(m.bounce_count, 0);
   EXPECT_GT(t.smallest_gap, 2.5_nm) << "2.8 nm with four times the quadrature points, which then come nearest to the end";
 }

@@ -95,7 +95,7 @@ TEST(Bias, OfAPiezoGivesTheDynamicPullInOfSimulatedSteps_long) {
     SceneFile file = biased;
     file.set(fmt::format("waveform.piezo.before={}", volts));
     const Switch& model = prepare(biased).model;
-    file.assign("simulate.duration", 100 * 2 * std::numbers::pi / model.angular_frequencies()[0]);
+    file.assign("simulate.duration", 100 * 2 * std::numbers::pi / model.basis().angular_frequencies()[0]);
     const auto closes = [&](double main) {
       file.assign("waveform.main.level", Quantity{.value = main, .dimension = dimension::voltage});
       return !simulate(prepare(file), false).trajectory.touches.empty();

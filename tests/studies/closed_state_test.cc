@@ -102,7 +102,7 @@ TEST(ClosedState, SmallestEigenvalueIsThatOfDifferences) {
     // By accelerations, in the directions of the modes, which are differences in both senses.
     Eigen::MatrixXd tangent(n, n);
     for (Eigen::Index k = 0; k < n; ++k) {
-      const double step = 1e-6 * p.scene.device.gap.contact / p.model.contact_shape().cwiseAbs().maxCoeff();
+      const double step = 1e-6 * p.scene.device.gap.contact / p.model.basis().contact_shape().cwiseAbs().maxCoeff();
       Eigen::VectorXd ahead(n), behind(n), q = closed->q;
       q[k] += step;
       p.model.accelerations(q.data(), still.data(), volts, true, work, ahead.data());

@@ -44,7 +44,7 @@ TEST(Ensemble, HasTheDevicesThatItsScenesDescribe) {
       // The modes of a beam of two sections are found from those of the nominal one, and closings agree to their tolerance.
       const bool has_sections = nominal.model.has_piezo();
       const double same = has_sections ? 1e-7 : 0;
-      EXPECT_TRUE(device.model->angular_frequencies().isApprox(own.angular_frequencies(), has_sections ? 1e-11 : 0));
+      EXPECT_TRUE(device.model->basis().angular_frequencies().isApprox(own.basis().angular_frequencies(), has_sections ? 1e-11 : 0));
       const Metrics ours = closing(*device.model, nominal.signals()), theirs = closing(own, alone.signals());
       ASSERT_TRUE(std::isfinite(theirs.initial_contact_time));
       EXPECT_NEAR(ours.initial_contact_time, theirs.initial_contact_time, same * theirs.initial_contact_time);
@@ -76,7 +76,7 @@ TEST(Ensemble, DoesNotDependOnThreadsOrderOrSize) {
   const Ensemble ensemble(nominal, 600);
   DeviceBuilder builder(ensemble), other(ensemble);
   for (const std::uint64_t k : {5U, 2U, 599U}) static_cast<void>(other.device(k));
-  EXPECT_EQ(builder.device(7).model->angular_frequencies(), other.device(7).model->angular_frequencies());
+  EXPECT_EQ(builder.device(7).model->basis().angular_frequencies(), other.device(7).model->basis().angular_frequencies());
   // Another seed, other devices.
   EXPECT_NE(Ensemble(nominal, 600, 2).values(0), ensemble.values(0));
 }
@@ -137,7 +137,7 @@ TEST(Calibration, GivesEveryDeviceTheWaveformInItsOwnUnits) {
   for (std::uint64_t k = 0; k < ensemble.size(); ++k) {
     const SampledDevice device = builder.device(k);
     const double volts = pull_in_by_bisection(*device.model, 10, 20) / own;
-    const double time = nominal.model.angular_frequencies()[0] / device.model->angular_frequencies()[0];
+    const double time = nominal.model.basis().angular_frequencies()[0] / device.model->basis().angular_frequencies()[0];
     const DeviceUnits units = DeviceMeter(nominal, {.pull_in = true}).exact(*device.model);
     EXPECT_NEAR(units.volts, volts, 3e-5);
     EXPECT_DOUBLE_EQ(units.time, time);
@@ -388,7 +388,7 @@ TEST(Robustness, SaysWhatEachMeasurementIsWorth_optimized) {
   const auto spread_of_first_contact = [&](const DriveRobustness& d) {
     std::vector<double> periods;
     for (std::size_t k = 0; k < d.outcomes.size(); ++k)
-      periods.push_back(d.outcomes[k].metrics.initial_contact_time * builder.device(k).model->angular_frequencies()[0]);
+      periods.push_back(d.outcomes[k].metrics.initial_contact_time * builder.device(k).model->basis().angular_frequencies()[0]);
     return sample_standard_deviation(periods) / sample_mean(periods);
   };
   EXPECT_LT(spread_of_first_contact(found.by_knowledge.back()), spread_of_first_contact(found.by_knowledge[0]) / 3);

@@ -188,7 +188,7 @@ TEST(LandingsAtRest, BringAPiezoToRestWithoutJumps_slow) {
   const auto found = landings_at_rest(p, Actuator::pzt, 1.3e-3, {});
   ASSERT_GE(found.size(), 4U);
   const DriverLimits& limits = p.drives.limits.at("piezo");
-  const double period = 2 * pi / p.model.angular_frequencies()[0],
+  const double period = 2 * pi / p.model.basis().angular_frequencies()[0],
                steepest = (limits.max_voltage - limits.min_voltage) / period * 18;
   std::vector<double> heights;
   for (const auto& landing : found) {

@@ -46,7 +46,7 @@ TEST(GentleEdges, AreThoseOfEveryWaveformOfEveryFamily) {
   const std::vector<SearchSetting> steep = search_settings(gold_pzt(), Target::bounce, Actuator::both, families_with_slew, {});
   const std::vector<SearchSetting> gentle = with_gentle_edges(steep, Actuator::both, families_with_slew);
   ASSERT_EQ(gentle.size(), steep.size());
-  const double fastest = steep.front().given.model.angular_frequencies().maxCoeff();
+  const double fastest = steep.front().given.model.basis().angular_frequencies().maxCoeff();
   bool steeper = false;
   for (std::size_t k = 0; k < gentle.size(); ++k) {
     for (std::uint64_t n = 0; n < 40; ++n) {

@@ -25,7 +25,7 @@ TEST(Accuracy, TakesATenthForTheToleranceAndFourPointsADigit) {
   EXPECT_DOUBLE_EQ(quadrature_for(1e-6, 4).points_per_length, 24);
   EXPECT_DOUBLE_EQ(quadrature_for(0.1, 1).points_per_length, 8);
   EXPECT_DOUBLE_EQ(quadrature_for(1e-3, 10).points_per_length, 24) << "two to a mode";
-  EXPECT_LT(prepare(gold({"simulate.accuracy=1e-3"})).model.points(), prepare(gold({"simulate.accuracy=1e-6"})).model.points());
+  EXPECT_LT(prepare(gold({"simulate.accuracy=1e-3"})).model.quadrature().points(), prepare(gold({"simulate.accuracy=1e-6"})).model.quadrature().points());
 }
 
 TEST(Prepare, ComputesPullInOnlyWhereAUnitNeedsIt) {
@@ -86,7 +86,7 @@ TEST(Prepare, WaitsForASlowClosingWhereNoOtherEndIsPossible) {
   const PreparedScene p = prepare(plate);
   const Trajectory run = simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = p.tolerance});
   ASSERT_FALSE(run.touches.empty());
-  const double period = 2 * pi / p.model.angular_frequencies()[0];
+  const double period = 2 * pi / p.model.basis().angular_frequencies()[0];
   EXPECT_GT(run.touches.front().begin, 60 * period) << "longer than any step is waited for that need not close";
   EXPECT_GT(p.duration, 3.9 * run.touches.front().begin);
   plate.set("waveform.main.level=0.995 Vsp");
@@ -128,7 +128,7 @@ TEST(Prepare, TakesWindowAndToleranceFromTheScene) {
 
 TEST(Prepare, ChoosesAWindowOfSixPeriodsWhereTheSceneHasNone) {
   const PreparedScene p = prepare(without(gold(), "simulate"));
-  EXPECT_NEAR(p.duration * p.model.angular_frequencies()[0], 6 * 2 * 3.14159265358979, 1e-9);
+  EXPECT_NEAR(p.duration * p.model.basis().angular_frequencies()[0], 6 * 2 * 3.14159265358979, 1e-9);
 }
 
 TEST(Prepare, ChoosesAWindowThatShowsASlowClosing) {
@@ -136,7 +136,7 @@ TEST(Prepare, ChoosesAWindowThatShowsASlowClosing) {
   const PreparedScene p = prepare(slow);
   const Trajectory closing = simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-8});
   ASSERT_FALSE(closing.touches.empty());
-  const double first = closing.touches.front().begin, six_periods = 6 * 2 * 3.14159265358979 / p.model.angular_frequencies()[0];
+  const double first = closing.touches.front().begin, six_periods = 6 * 2 * 3.14159265358979 / p.model.basis().angular_frequencies()[0];
   ASSERT_GT(first, six_periods) << "a closing that six periods would not show";
   EXPECT_NEAR(p.duration, 4 * first, 1e-3 * first);  // found at a tolerance of 1e-4
 }

@@ -19,7 +19,7 @@
 namespace softland {
 namespace {
 
-double longest(const PreparedScene& p) { return 3 * 2 * pi / p.model.angular_frequencies()[0]; }
+double longest(const PreparedScene& p) { return 3 * 2 * pi / p.model.basis().angular_frequencies()[0]; }
 
 std::vector<double> full_pull(const PreparedScene& p) {
   std::vector<double> values(p.model.drives(), 0.0);

@@ -98,12 +98,12 @@ TEST(TunedScenes, UnitsFollowThePullInVoltageAndThePeriod) {
     const VectorXd z = VectorXd::Unit(scene.size(), coordinate(scene, name));
     const std::vector<VectorXd> points{z};
     const Switch& own = *scene.devices(points)[0].sampled.model;
-    return std::pair{scene.units(z), own.angular_frequencies()[0]};
+    return std::pair{scene.units(z), own.basis().angular_frequencies()[0]};
   };
   constexpr double second_order = 2e-3;
   const auto [thicker, frequency] = of("structure.thickness");
   EXPECT_NEAR(thicker.volts, std::pow(1.02, 1.5), second_order);  // Vdp as the root of the bending stiffness
-  EXPECT_NEAR(thicker.time, scene.nominal().model.angular_frequencies()[0] / frequency, second_order);
+  EXPECT_NEAR(thicker.time, scene.nominal().model.basis().angular_frequencies()[0] / frequency, second_order);
   EXPECT_NEAR(of("driver.main.gain").first.volts, 1 / 1.005, second_order);
 }
 

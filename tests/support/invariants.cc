@@ -33,7 +33,7 @@ class Energy {
       time_ = t;
     }
     const double d = device_.contact_deflection(q) - device_.device().gap.contact;
-    const double open = device_.potential(q, volts_, false, work_), kinetic = device_.kinetic_energy(v);
+    const double open = device_.potential(q, volts_, false, work_), kinetic = device_.basis().kinetic_energy(v);
     // What a contact with memory stores is positive, and the least that it can be is enough.
     double contact = 0;
     if (device_.has_contact() && !has_memory(device_.contact()) && (d > 0 || device_.untouched(q).active)) {
@@ -53,7 +53,7 @@ class Energy {
   // Derivative of the potential by each drive's strength; by the voltage of a piezo.
   void look(const double* q, std::vector<double>& potentials) {
     for (std::size_t k = 0; k < drives_.size(); ++k) {
-      potentials[k] = device_.drive_kind(k) == DriveKind::piezo ? -device_.piezo_charge(q) : device_.law_potential(k, q, work_);
+      potentials[k] = device_.drive_kind(k) == DriveKind::piezo ? -device_.basis().piezo_charge(q) : device_.law_potential(k, q, work_);
     }
   }
   [[nodiscard]] double strength(std::size_t k, double value) const {

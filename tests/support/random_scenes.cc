@@ -243,7 +243,7 @@ void vary_contact(SceneFile& file, Dice& dice) {
   if (without_memory && d.structure.kind == StructureKind::cantilever && dice.chance(0.3))
     put(file, "contact.distribution", "pad");
   if (without_memory && model != "adhesive" && dice.chance(0.4)) {
-    put(file, "contact.damping", dice.log_between(0.02, 2) / (open.angular_frequencies()[0] * d.gap.contact), "s/m");
+    put(file, "contact.damping", dice.log_between(0.02, 2) / (open.basis().angular_frequencies()[0] * d.gap.contact), "s/m");
   }
 }
 
@@ -317,13 +317,13 @@ void put_waveforms(SceneFile& file, Dice& dice) {
   file.erase("driver");
   const Scene scene = read_scene(file);
   const Switch model(scene.device);
-  const double period = 2 * pi / model.angular_frequencies()[0];
+  const double period = 2 * pi / model.basis().angular_frequencies()[0];
   double volts = 0;  // that the electrodes before pull in at
   for (std::size_t k = 0; k < model.drives(); ++k) {
     const DriveKind kind = model.drive_kind(k);
     if (kind == DriveKind::piezo) {
       const double per_volt =
-          (model.contact_shape().cwiseProduct(model.piezo_shape()).cwiseQuotient(model.angular_frequencies().cwiseAbs2())).sum();
+          (model.basis().contact_shape().cwiseProduct(model.basis().piezo_shape()).cwiseQuotient(model.basis().angular_frequencies().cwiseAbs2())).sum();
       const double bends = dice.log_between(0.01, 0.3) * (dice.chance(0.5) ? -1 : 1) * scene.device.gap.contact;
       file.set_waveform(std::string(piezo_drive), waveform(dice, bends / per_volt, period));
     } else if (kind == DriveKind::dispersion) {

@@ -70,7 +70,7 @@ TEST(EnergyAudit, BalancesAFreeSwingAndMissesWhatAStepLoses) {
   Parts p(test::nickel_plate(), {Signal::constant(0)});
   EnergyAudit audit(p.model, p.drives, p.phase, p.equations, p.start);
   audit.enter_stretch(p.start, true);
-  const double w = p.model.angular_frequencies()[0];
+  const double w = p.model.basis().angular_frequencies()[0];
   Knot moving = p.start;
   moving.state[1] = 1e-9 * w;
   audit.settle(moving);
@@ -88,7 +88,7 @@ TEST(EnergyAudit, IntegratesTheDissipationOfADampedMode) {
   Parts p(device, {Signal::constant(0)});
   EnergyAudit audit(p.model, p.drives, p.phase, p.equations, p.start);
   audit.enter_stretch(p.start, true);
-  const double w = p.model.angular_frequencies()[0], zeta = 0.1, wd = w * std::sqrt(1 - zeta * zeta), v0 = 1e-9 * w;
+  const double w = p.model.basis().angular_frequencies()[0], zeta = 0.1, wd = w * std::sqrt(1 - zeta * zeta), v0 = 1e-9 * w;
   const auto at = [&](double t) {
     const double decay = v0 * std::exp(-zeta * w * t), q = decay / wd * std::sin(wd * t);
     const double v = decay * (std::cos(wd * t) - zeta * w / wd * std::sin(wd * t));
@@ -120,7 +120,7 @@ Device on_stop(double restitution) {
 }
 
 Knot arriving(const Switch& model, double speed) {
-  const double shape = model.contact_shape()[0];
+  const double shape = model.basis().contact_shape()[0];
   return {.time = 0, .state = {model.device().gap.contact * (1 + 1e-14) / shape, speed / shape}, .rates = {0}};
 }
 

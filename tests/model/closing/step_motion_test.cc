@@ -25,7 +25,7 @@ struct Swing {
     const std::size_t n = pull.size();
     Knot knot{.time = t, .state = std::vector<double>(2 * n), .rates = std::vector<double>(n)};
     for (std::size_t i = 0; i < n; ++i) {
-      const double w = gold().angular_frequencies()[static_cast<Eigen::Index>(i)];
+      const double w = gold().basis().angular_frequencies()[static_cast<Eigen::Index>(i)];
       knot.state[i] = pull[i] * (1 - std::cos(w * t)) + kick[i] / w * std::sin(w * t);
       knot.state[n + i] = w * pull[i] * std::sin(w * t) + kick[i] * std::cos(w * t);
       knot.rates[i] = w * w * pull[i] * std::cos(w * t) - w * kick[i] * std::sin(w * t);
@@ -35,7 +35,7 @@ struct Swing {
 };
 
 Swing swing() {
-  const Eigen::VectorXd& w = gold().angular_frequencies();
+  const Eigen::VectorXd& w = gold().basis().angular_frequencies();
   return {.pull = {1e-12, 2e-14, -3e-15, 1e-15}, .kick = {1e-13 * w[0], -1e-14 * w[1], 1e-15 * w[2], 1e-15 * w[3]}};
 }
 
@@ -47,7 +47,7 @@ TrajectoryPoint tip(const Knot& knot) {
           .acceleration = gold().contact_deflection(knot.rates.data())};
 }
 
-double length_of_phase(double phase) { return phase / gold().angular_frequencies().maxCoeff(); }
+double length_of_phase(double phase) { return phase / gold().basis().angular_frequencies().maxCoeff(); }
 
 TEST(StepMotion, IsExactForModesUnderConstantForces) {
   const Swing modes = swing();

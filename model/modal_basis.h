@@ -1,0 +1,70 @@
+// The undamped modes of a structure: frequencies, mass-normalised shapes where its contact and its piezo layer act on it, and
+// what follows from coordinates alone.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "base/lanes.h"
+#include "model/device.h"
+#include "model/modal_projection.h"
+
+namespace softland {
+
+struct SampledModes;
+
+class ModalBasis {
+ public:
+  /// What normalised modes are taken times.
+  struct Scales {
+    double length = 0;     ///< [m]
+    double shape = 0;      ///< [kg^(-1/2)]
+    double frequency = 0;  ///< [rad/s]
+  };
+  ModalBasis() = default;
+  ModalBasis(Eigen::VectorXd angular_frequencies, const Scales& scales, const SampledModes& sampled, const Device& device);
+
+  [[nodiscard]] int modes() const { return static_cast<int>(frequencies_.size()); }
+  [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s]
+  [[nodiscard]] const Eigen::VectorXd& squares() const { return squares_; }                  ///< of these
+  [[nodiscard]] const Eigen::VectorXd& contact_shape() const { return contact_shape_; }      ///< phi_i(x_c) [kg^(-1/2)]
+  /// phi_i'(x_c) of a contact that acts along the pad [kg^(-1/2)/m]; 0 of every other.
+  [[nodiscard]] const Eigen::VectorXd& pad_slope() const { return pad_slope_; }
+  /// Force on mode i per volt on the piezo [N kg^(-1/2) / V]; zero where there is no layer.
+  [[nodiscard]] const Eigen::VectorXd& piezo_shape() const { return piezo_shape_; }
+  [[nodiscard]] double in_contact_period() const { return in_contact_period_; }  ///< 2 pi over the first pinned frequency [s]
+
+  /// y(x_c) [m]; the velocity when given one.
+  [[nodiscard]] double contact_deflection(const double* q) const {
+    return deflection<double>({contact_shape_.data(), static_cast<std::size_t>(modes())}, q);
+  }
+  /// y'(x_c) of a contact along the pad.
+  [[nodiscard]] double pad_tilt(const double* q) const { return at(q).dot(pad_slope_); }
+  /// Static deflection of the contact point per volt on the piezo, of the beam by itself and small [m/V]; 0 where there is no
+  /// layer. Positive towards the electrodes.
+  [[nodiscard]] double piezo_deflection() const { return contact_shape_.cwiseQuotient(squares_).dot(piezo_shape_); }
+  /// Charge that the deflection puts on the piezo's electrodes, theta q [C]. The layer's own capacitance is not described by a
+  /// scene.
+  [[nodiscard]] double piezo_charge(const double* q) const { return at(q).dot(piezo_shape_); }
+  [[nodiscard]] double kinetic_energy(const double* v) const { return at(v).squaredNorm() / 2; }              ///< [J]
+  [[nodiscard]] double bending_energy(const double* q) const { return at(q).cwiseAbs2().dot(squares_) / 2; }  ///< [J]
+  [[nodiscard]] Eigen::Map<const Eigen::VectorXd> at(const double* q) const {
+    return Eigen::Map<const Eigen::VectorXd>(q, modes());
+  }
+
+  /// Modal forces of stiffness and modal damping, of a piezo at so many volts, and of a push at the contact point [N], on the
+  /// lane of the n = modes() that begins with mode i.
+  [[gnu::always_inline]] [[nodiscard]] Lane forces(std::size_t i, std::size_t n, const double* q, const double* v, double piezo,
+                                                   double push) const {
+    return piezo * lane(piezo_lanes_, i) - push * lane(contact_lanes_, i) - lane(stiffness_lanes_, i) * load_lane(q, i, n) -
+           lane(friction_lanes_, i) * load_lane(v, i, n);
+  }
+
+ private:
+  Eigen::VectorXd frequencies_, squares_, contact_shape_, pad_slope_, piezo_shape_;
+  std::vector<double> stiffness_lanes_, friction_lanes_, contact_lanes_, piezo_lanes_;  // omega^2, 2 zeta omega, phi(x_c), theta
+  double in_contact_period_ = 0;
+};
+
+}  // namespace softland

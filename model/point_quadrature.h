@@ -1,0 +1,94 @@
+// Where the distributed laws of a switch act: points along its structure with their weights, the gap and its velocity there, and
+// loads there projected on the modes. A Galerkin projection, on Gauss panels that begin and end where something does.
+//
+// The matrices are small: a block of points, or a lane of modes, at a time, with what it needs in registers, beats a general
+// product. What stands on the way of every closing is inlined: a call would end the vectors that go on behind it.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "base/lanes.h"
+#include "model/distributed_law.h"
+
+namespace softland {
+
+class PointQuadrature {
+ public:
+  PointQuadrature() = default;
+  /// Positions and weights [m], shapes of the modes there (points x modes) [kg^(-1/2)], and the gap of the straight beam [m].
+  PointQuadrature(Eigen::ArrayXd positions, Eigen::ArrayXd weights, const Eigen::MatrixXd& shapes, double open_gap);
+
+  [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
+  [[nodiscard]] const Eigen::ArrayXd& positions() const { return positions_; }  ///< [m]
+  [[nodiscard]] const Eigen::ArrayXd& weights() const { return weights_; }      ///< [m]
+  /// phi_i(x_p), a row per point and some of no motion behind them, which fill the last block [kg^(-1/2)].
+  [[nodiscard]] const Eigen::MatrixXd& shapes() const { return shapes_; }
+  [[nodiscard]] const Eigen::MatrixXd& weighted_shapes() const { return weighted_shapes_; }  ///< w_p phi_i(x_p)
+
+  void set_gap(const double* q, GapField& field) const {
+    // noalias: no temporary, so no allocation in the hot path.
+    field.gap.matrix().noalias() = shapes_ * Eigen::Map<const Eigen::VectorXd>(q, shapes_.cols());
+    field.gap = open_gap_ - field.gap;
+  }
+  /// Gap, velocity and smallest gap.
+  [[gnu::always_inline]] void set_field(const double* q, const double* v, GapField& field) const {
+    Eigen::Index first = 0, left = shapes_.cols();
+    double& smallest = field.smallest_gap;
+    for (; left >= 4; first += 4, left -= 4) smallest = add_modes<4>(first, q, v, field);
+    if (left == 3) smallest = add_modes<3>(first, q, v, field);
+    if (left == 2) smallest = add_modes<2>(first, q, v, field);
+    if (left == 1) smallest = add_modes<1>(first, q, v, field);
+  }
+  /// Modal forces of a load on the lane of modes that begins there: the sums over points of w_p phi_i(x_p) f(x_p).
+  [[gnu::always_inline]] [[nodiscard]] Lane projected(const Eigen::ArrayXd& loads, std::size_t first) const {
+    const auto points = static_cast<std::size_t>(shapes_.rows());
+    const double* shapes = weighted_lanes_.data() + first * points;
+    const double* load = loads.data();
+    constexpr std::size_t chains = 4;  // sums that do not wait for one another
+    Lane sum[chains] = {Lane::Zero(), Lane::Zero(), Lane::Zero(), Lane::Zero()};
+    for (std::size_t p = 0; p < points; p += chains) {
+      for (std::size_t k = 0; k < chains; ++k) sum[k] += load[p + k] * Eigen::Map<const Lane>(shapes + (p + k) * lanes);
+    }
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  }
+  /// Derivatives of the modal forces by modal coordinates, of those of the load by the local ones. `load` is scratch.
+  void project_slopes(const Eigen::ArrayXd& slopes, Eigen::ArrayXd& load, Eigen::Ref<Eigen::MatrixXd> by) const;
+
+  static constexpr Eigen::Index block = lanes;  ///< points that are handled at once
+  using Block = Lane;
+
+ private:
+  /// Adds modes from `first` on to the field; returns the smallest gap so far.
+  template <int Modes>
+  [[gnu::always_inline]] double add_modes(Eigen::Index first, const double* q, const double* v, GapField& field) const {
+    const Eigen::Index points = shapes_.rows();
+    const double* shapes = shapes_.data() + first * points;
+    Lane at[Modes], rate[Modes];
+    for (int i = 0; i < Modes; ++i) at[i].setConstant(q[first + i]), rate[i].setConstant(v[first + i]);
+    const double open = open_gap_;
+    Block smallest = Block::Constant(open);
+    for (Eigen::Index p = 0; p < points; p += block) {
+      Eigen::Map<Block> all_gap(field.gap.data() + p), all_velocity(field.velocity.data() + p);
+      Block gap = Block::Constant(open), velocity = Block::Zero();
+      if (first > 0) gap = all_gap, velocity = all_velocity;
+      for (int i = 0; i < Modes; ++i) {
+        const Eigen::Map<const Block> shape(shapes + i * points + p);
+        gap -= shape * at[i];
+        velocity += shape * rate[i];
+      }
+      all_gap = gap;
+      all_velocity = velocity;
+      smallest = smallest.min(gap);
+    }
+    return smallest.minCoeff();
+  }
+
+  Eigen::ArrayXd positions_, weights_;
+  Eigen::MatrixXd shapes_, weighted_shapes_;
+  std::vector<double> weighted_lanes_;  // the latter, for each whole lane of modes point by point
+  double open_gap_ = 0;
+};
+
+}  // namespace softland

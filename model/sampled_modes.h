@@ -1,0 +1,87 @@
+// Normalised modes at the places where a switch looks at them: at the points of its quadrature, at its contact and at the ends of
+// its piezo layer. Switches of the same lengths share one, whatever their stiffness and mass.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "base/gauss.h"
+#include "model/beam.h"
+#include "model/device.h"
+#include "model/tabulated_modes.h"
+
+namespace softland {
+
+struct SampledModes {
+  struct Places {
+    std::vector<double> corners;                         // of the panels [m]
+    double contact = 0, piezo_begin = 0, piezo_end = 0;  // [m]
+    double points_per_length = 0;
+    int fewest_points = 0;  // of a panel
+
+    [[nodiscard]] static Places of(const Device& d, double points_per_length, int fewest_points) {
+      std::set<double> corners{0, d.structure.length};
+      const double length = d.structure.length, piezo_begin = d.piezo ? d.piezo->begin.on(length) : 0,
+                   piezo_end = d.piezo ? d.piezo->end.on(length) : 0;
+      for (const Electrode& e : d.electrodes)
+        for (const Stretch& pad : e.pads(length)) corners.insert({pad.begin, std::min(pad.end, length)});
+      if (d.piezo) corners.insert({piezo_begin, piezo_end});
+      if (d.touches_along_pad()) {
+        const auto [begin, end] = d.pad();
+        corners.insert({begin, end});
+      }
+      return {.corners = {corners.begin(), corners.end()},
+              .contact = d.contact_position(),
+              .piezo_begin = piezo_begin,
+              .piezo_end = piezo_end,
+              .points_per_length = points_per_length,
+              .fewest_points = fewest_points};
+    }
+    [[nodiscard]] bool operator==(const Places&) const = default;
+  };
+  Places places;
+  std::vector<GaussRule> rules;                  // of the panels
+  std::shared_ptr<const NormalisedModes> modes;  // null of what is no beam
+  TabulatedModes::Shapes table = {};             // empty of what is no table
+  Eigen::ArrayXd positions, weights;             // [m]
+  Eigen::MatrixXd shapes;                        // points x modes
+  Eigen::VectorXd contact_shape, contact_slope, piezo_begin_slope, piezo_end_slope;
+  double pinned_inverse_square = 0;  // of the beam held at its contact
+
+  template <class Modes>
+  SampledModes(const Modes& normalised, double length, Places at, const SampledModes* near) : places(std::move(at)) {
+    const double end = places.corners.back();
+    std::vector<double> x, w;
+    for (auto corner = places.corners.begin(); std::next(corner) != places.corners.end(); ++corner) {
+      const double begin = *corner, panel = *std::next(corner) - begin;
+      if (panel < 1e-9 * end) continue;  // two names of one place that differ by a rounding
+      const int count = std::max(places.fewest_points, static_cast<int>(std::ceil(panel / end * places.points_per_length)));
+      const GaussRule* known = near && rules.size() < near->rules.size() ? &near->rules[rules.size()] : nullptr;
+      rules.push_back(known && static_cast<int>(known->points.size()) == count ? *known : gauss_rule(count));
+      const GaussRule& rule = rules.back();
+      for (std::size_t i = 0; i < rule.points.size(); ++i) {
+        x.push_back(begin + panel * (1 + rule.points[i]) / 2);
+        w.push_back(rule.weights[i] * panel / 2);
+      }
+    }
+    positions = Eigen::Map<Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+    weights = Eigen::Map<Eigen::ArrayXd>(w.data(), positions.size());
+    contact_shape = normalised.value(places.contact / length);
+    contact_slope = normalised.slope(places.contact / length);
+    piezo_begin_slope = normalised.slope(places.piezo_begin / length);
+    piezo_end_slope = normalised.slope(places.piezo_end / length);
+    pinned_inverse_square = normalised.pinned_inverse_square(places.contact / length,
+                                                             near ? std::optional(near->pinned_inverse_square) : std::nullopt);
+    shapes.resize(positions.size(), contact_shape.size());
+    for (Eigen::Index p = 0; p < positions.size(); ++p) shapes.row(p) = normalised.value(positions[p] / length).transpose();
+  }
+};
+
+}  // namespace softland
