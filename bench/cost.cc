@@ -120,8 +120,8 @@ void print_bound(const PreparedScene& prepared) {
       "first-level cache.\nDivisions and roots share a unit, multiply-adds run beside them: the bound is the larger sum, "
       "**{:.1f} ns**. Measured: **{:.1f} ns, {:.0f} % of\n"
       "the bound's speed**.\n\n",
-      modes, device.quadrature().points(), driven, 2 * multiply_adds + divisions + roots, bytes / 1e3, bound * 1e9, measured * 1e9,
-      100 * bound / measured);
+      modes, device.quadrature().points(), driven, 2 * multiply_adds + divisions + roots, bytes / 1e3, bound * 1e9,
+      measured * 1e9, 100 * bound / measured);
 }
 
 void print_growth(const PreparedScene& prepared) {

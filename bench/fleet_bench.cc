@@ -31,7 +31,8 @@ struct Fleet {
   Fleet(const std::string& scene, const std::vector<std::string>& changes, std::uint64_t count)
       : nominal(prepared(scene, changes)), ensemble(nominal, count), signals(nominal.signals()) {
     build();
-    window = std::max(0.6 * 2 * M_PI / nominal.model.basis().angular_frequencies()[0], 2.5 * nominal.model.basis().in_contact_period());
+    window = std::max(0.6 * 2 * M_PI / nominal.model.basis().angular_frequencies()[0],
+                      2.5 * nominal.model.basis().in_contact_period());
   }
   static PreparedScene prepared(const std::string& scene, const std::vector<std::string>& changes) {
     SceneFile file = SceneFile::load(scene);

@@ -11,7 +11,8 @@ ModeShapes mode_shapes(const Switch& model, int places) {
   const Device& device = model.device();
   const Structure& structure = device.structure;
   if (structure.kind == StructureKind::plate)
-    return {.places = model.quadrature().positions().head(model.quadrature().points()), .shapes = model.quadrature().shapes().topRows(model.quadrature().points())};
+    return {.places = model.quadrature().positions().head(model.quadrature().points()),
+            .shapes = model.quadrature().shapes().topRows(model.quadrature().points())};
   ModeShapes all{.places = Eigen::VectorXd::LinSpaced(places, 0, structure.length),
                  .shapes = Eigen::MatrixXd(places, model.modes())};
   if (structure.kind == StructureKind::modes) {

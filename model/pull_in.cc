@@ -262,15 +262,18 @@ class StepTrial {
     std::vector<Signal> signals;
     for (const double standing : bias_) signals.push_back(Signal::standing(standing));
     signals[drive_] = Signal::constant(value);
-    ClosingOptions options{
-        .duration = 100 * 2 * pi / model_.basis().angular_frequencies()[0], .tolerance = tolerance_, .after_contact = 0, .stop = stop};
+    ClosingOptions options{.duration = 100 * 2 * pi / model_.basis().angular_frequencies()[0],
+                           .tolerance = tolerance_,
+                           .after_contact = 0,
+                           .stop = stop};
     int step = 0;
     options.observer = [&](double time, const double* q, const double* v) {
       if (++step % 8 != 0) return false;  // looking more often costs more than it saves
       tell(time / options.duration);
-      return model_.contact_deflection(q) < barrier.deflection &&
-             model_.basis().kinetic_energy(v) + model_.potential(q, all, model_.untouched(q), work_) + model_.film_energy(q, work_) <
-                 barrier.potential;
+      return model_.contact_deflection(q) < barrier.deflection && model_.basis().kinetic_energy(v) +
+                                                                          model_.potential(q, all, model_.untouched(q), work_) +
+                                                                          model_.film_energy(q, work_) <
+                                                                      barrier.potential;
     };
     return !simulate_closing(model_, signals, options).touches.empty();
   }

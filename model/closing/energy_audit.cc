@@ -99,8 +99,8 @@ void EnergyAudit::impact(double lost, double dissipation) {
 double EnergyAudit::above_rest(const Knot& here) {
   const double* q = here.state.data();
   const std::span<const double> values = drives_.values(here.time);
-  return model_.basis().kinetic_energy(q + modes_) + model_.potential(q, values, phase_.law(), equations_.workspace()) + impacts_ +
-         model_.film_energy(q, equations_.workspace());
+  return model_.basis().kinetic_energy(q + modes_) + model_.potential(q, values, phase_.law(), equations_.workspace()) +
+         impacts_ + model_.film_energy(q, equations_.workspace());
 }
 
 // What is stored is the potential and, where a source holds a charge at its voltage, V Q.

@@ -42,13 +42,15 @@ void add_omissible_structure(const PreparedScene& prepared, std::vector<Omissibl
   const Device& d = prepared.scene.device;
   const Structure& s = d.structure;
   if (s.kind != StructureKind::plate && s.modes > 1) {
-    list.push_back(
-        {.effect = "structure.modes",
-         .magnitude = {.name = "highest mode", .unit = "rad/s", .value = prepared.model.basis().angular_frequencies()[s.modes - 1]},
-         .group = {.name = "over the first",
-                   .value = prepared.model.basis().angular_frequencies()[s.modes - 1] / prepared.model.basis().angular_frequencies()[0]},
-         .instead = 1,
-         .automatic = false});
+    list.push_back({.effect = "structure.modes",
+                    .magnitude = {.name = "highest mode",
+                                  .unit = "rad/s",
+                                  .value = prepared.model.basis().angular_frequencies()[s.modes - 1]},
+                    .group = {.name = "over the first",
+                              .value = prepared.model.basis().angular_frequencies()[s.modes - 1] /
+                                       prepared.model.basis().angular_frequencies()[0]},
+                    .instead = 1,
+                    .automatic = false});
   }
   if (s.damping_ratio > 0) {
     list.push_back({.effect = "structure.damping_ratio",

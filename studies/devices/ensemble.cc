@@ -202,7 +202,9 @@ DeviceUnits DeviceMeter::told_by(double time) const {
   return {.volts = volts, .time = 1, .volts_by_time = slope / volts};
 }
 
-double DeviceMeter::piezo_unit(const Switch& model) { return std::abs(model.basis().piezo_deflection()) / model.device().gap.contact; }
+double DeviceMeter::piezo_unit(const Switch& model) {
+  return std::abs(model.basis().piezo_deflection()) / model.device().gap.contact;
+}
 
 double DeviceMeter::frequency() const { return nominal_->model.basis().angular_frequencies()[0] / (2 * pi); }
 

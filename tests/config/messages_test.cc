@@ -3,12 +3,14 @@
 
 #include <filesystem>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "base/require.h"
 #include "config/scene.h"
 #include "tests/config/message.h"
 #include "tests/config/small_scene.h"
+#include "waveforms/waveform.h"
 
 namespace softland {
 namespace {
@@ -34,6 +36,13 @@ const std::string main_step = "family = \"step\"\nlevel = \"1.25 Vdp\"";
 const std::string harmonic = "family = \"harmonic\"\n";
 const std::string table = "family = \"table\"\n";
 
+/// As a message lists them.
+std::string listed_families() {
+  std::string all;
+  for_each_family(
+      [&](const auto& one) { all += (all.empty() ? "" : ", ") + std::string(FamilyOf<std::decay_t<decltype(one)>>::name); });
+  return all;
+}
 const std::string more_damping = R"(; for more give [gas] model = "linear" and quality_factor = 1 / (2 damping_ratio))";
 
 /// A line in [structure] that is not in the small scene.
@@ -123,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
 
 INSTANTIATE_TEST_SUITE_P(Structure, BadFile, testing::Values(
     Edit{R"(thickness = "4 um")", "", R"(x.toml:2: [structure]: missing key 'thickness' (a length such as "2 um"))"},
-    Edit{R"(family = "step")", "", "x.toml:27: [waveform.main]: missing key 'family' (one of step, harmonic, pulse, table, s-curve, chirp, bspline, sines)"},
+    Edit{R"(family = "step")", "", "x.toml:27: [waveform.main]: missing key 'family' (one of " + listed_families() + ")"},
     Edit{"[gap]\nelectrode = \"3.5 um\"\ncontact = \"2 um\"\n", "", "x.toml: section [gap] is missing"},
     Edit{"title =", "metrics = 3\ntitle =", "x.toml:1: metrics = 3: expected a section [metrics]"},
     structure_line("modes = 21", "x.toml:9: structure.modes = 21: must be in [1, 20]"),

@@ -57,7 +57,8 @@ TEST(Device, NamesWhatIsWrongWithABeamBetweenTwoClamps) {
   EXPECT_NO_THROW(validate(nearly));
   Device free = test::gold_cantilever();
   free.structure.residual_stress = -1e9;  // released at the free end
-  EXPECT_DOUBLE_EQ(Switch(free).basis().angular_frequencies()[0], Switch(test::gold_cantilever()).basis().angular_frequencies()[0]);
+  EXPECT_DOUBLE_EQ(Switch(free).basis().angular_frequencies()[0],
+                   Switch(test::gold_cantilever()).basis().angular_frequencies()[0]);
 }
 
 TEST(Device, RefusesElectrodesThatOverlapOnOneSideOfABeam) {

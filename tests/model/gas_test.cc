@@ -52,7 +52,8 @@ TEST(LinearDamper, OfAUniformBeamDampsEveryModeAtTheSameRate) {
   const Switch a(damper), b(modal);
   Switch::Workspace work_a = a.workspace(), work_b = b.workspace();
   const double rest = 0, v = 1;
-  EXPECT_NEAR(a.dissipated_power(&rest, &v, work_a), b.dissipated_power(&rest, &v, work_b), 1e-9 * a.basis().angular_frequencies()[0]);
+  EXPECT_NEAR(a.dissipated_power(&rest, &v, work_a), b.dissipated_power(&rest, &v, work_b),
+              1e-9 * a.basis().angular_frequencies()[0]);
 }
 
 Trajectory closing(const Gas& gas) {

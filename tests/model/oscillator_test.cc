@@ -145,7 +145,8 @@ TEST(LinearLimit, EnergyOfTheModesIsTheWorkOfTheDrive_optimized) {
   // Work of a constant voltage: V times the charge the deflection moved, theta q.
   double work = 0;
   for (Eigen::Index i = 0; i < device.modes(); ++i) {
-    work += 0.2 * 0.2 * std::pow(device.basis().piezo_shape()[i], 2) * step_response(device.basis().angular_frequencies()[i], 0, 130_us);
+    work += 0.2 * 0.2 * std::pow(device.basis().piezo_shape()[i], 2) *
+            step_response(device.basis().angular_frequencies()[i], 0, 130_us);
   }
   EXPECT_NEAR(trajectory.energy.source_work, work, 1e-6 * work);
 }

@@ -55,7 +55,8 @@ TEST(Surface, ScalesFrequenciesAndPullInByTheRootOfTheRigidity) {
   d.surface.reset();
   const Switch without(d);
   for (int i = 0; i < 4; ++i) {
-    EXPECT_NEAR(with.basis().angular_frequencies()[i], root * without.basis().angular_frequencies()[i], 1e-10 * without.basis().angular_frequencies()[i]);
+    EXPECT_NEAR(with.basis().angular_frequencies()[i], root * without.basis().angular_frequencies()[i],
+                1e-10 * without.basis().angular_frequencies()[i]);
   }
   EXPECT_NEAR(static_pull_in(with, 0).voltage, root * static_pull_in(without, 0).voltage,
               1e-9 * static_pull_in(without, 0).voltage);
@@ -87,7 +88,8 @@ TEST(Surface, ResidualCompressionSoftensACantileverUntilItBuckles) {
   d.surface->cantilever_load = ResidualLoad::none;
   const Switch free(d);
   const double expected = 2 * close * std::pow(pi / 2, 4) / (2 * (1.5 - 4 / pi)) / std::pow(1.87510407, 4);
-  EXPECT_NEAR(std::pow(near.basis().angular_frequencies()[0] / free.basis().angular_frequencies()[0], 2), expected, 1e-4 * expected);
+  EXPECT_NEAR(std::pow(near.basis().angular_frequencies()[0] / free.basis().angular_frequencies()[0], 2), expected,
+              1e-4 * expected);
   EXPECT_LT(static_pull_in(near, 0).voltage, 0.01 * static_pull_in(free, 0).voltage);
   d.surface->cantilever_load = ResidualLoad::compression;
   EXPECT_THROW(validate(of_length(buckling_length * (1 + close))), InvalidInput);

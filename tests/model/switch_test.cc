@@ -509,7 +509,8 @@ TEST(Switch, ElectrodeOnTheFarSideLiftsTheBeam) {
   d.electrodes[1].gap = 2 * 3.8_um;
   const Switch device(d);
   Switch::Workspace work = device.workspace();
-  const double rest = 0, v = 0.1 / device.basis().contact_shape()[0], force = vacuum_permittivity * 5e-9 / (2 * std::pow(3.8_um, 2));
+  const double rest = 0, v = 0.1 / device.basis().contact_shape()[0],
+               force = vacuum_permittivity * 5e-9 / (2 * std::pow(3.8_um, 2));
   double a = 0;
   const auto newtons = [&](std::vector<double> volts) {
     device.accelerations(&rest, &rest, volts, false, work, &a);

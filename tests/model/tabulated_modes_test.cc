@@ -86,7 +86,8 @@ TEST(TabulatedModes, MoveASwitchAsTheBeamDoes) {
   const Switch beam(device), table(by_modes(device, modal_table_of(device, modes, table_places)));
   ASSERT_EQ(table.modes(), modes);
   Eigen::VectorXd q = Eigen::VectorXd::Zero(modes), v = q, expected(modes), found(modes);
-  q[0] = 0.4 * device.gap.contact / beam.basis().contact_shape()[0], v[0] = 0.1 / beam.basis().contact_shape()[0], q[1] = -0.1 * q[0];
+  q[0] = 0.4 * device.gap.contact / beam.basis().contact_shape()[0], v[0] = 0.1 / beam.basis().contact_shape()[0],
+  q[1] = -0.1 * q[0];
   const std::vector<double> volts(beam.drives(), 20.0);
   Switch::Workspace work = beam.workspace(), other = table.workspace();
   beam.accelerations(q.data(), v.data(), volts, false, work, expected.data());
@@ -103,7 +104,8 @@ TEST(TabulatedModes, OfSwitchesOfOneTableShareTheirQuadrature) {
   EXPECT_EQ(built.quadrature().shapes(), quickly.quadrature().shapes());
   EXPECT_EQ(built.basis().angular_frequencies(), quickly.basis().angular_frequencies());
   EXPECT_EQ(built.basis().contact_shape(), quickly.basis().contact_shape());
-  EXPECT_NEAR(built.basis().angular_frequencies()[2], 1.1 * nominal.basis().angular_frequencies()[2], 1e-9 * nominal.basis().angular_frequencies()[2]);
+  EXPECT_NEAR(built.basis().angular_frequencies()[2], 1.1 * nominal.basis().angular_frequencies()[2],
+              1e-9 * nominal.basis().angular_frequencies()[2]);
 }
 
 TEST(TabulatedModes, AreRefusedWithTheRule) {

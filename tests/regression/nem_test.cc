@@ -19,7 +19,8 @@ using namespace literals;
 Trajectory step(const Switch& model, double value, double periods) {
   std::vector<Signal> drives(model.drives());
   drives[0] = Signal::constant(value);
-  return simulate_closing(model, drives, {.duration = periods * 2 * pi / model.basis().angular_frequencies()[0], .tolerance = 1e-8});
+  return simulate_closing(model, drives,
+                          {.duration = periods * 2 * pi / model.basis().angular_frequencies()[0], .tolerance = 1e-8});
 }
 
 TEST(NemTin, PullsInNearTheClosedFormOfTheFullLengthElectrode) {

@@ -155,7 +155,8 @@ TEST(Certify, GivesChaoticFiguresAsACloudAndSaysWhereItParts) {
 double tight_pull_in(const PreparedScene& p) {
   const Switch fine(p.scene.device, {.points_per_length = 48});
   const double known = p.pull_in.at("main").dynamically.voltage;
-  const ClosingOptions options{.duration = 100 * 2 * pi / fine.basis().angular_frequencies()[0], .tolerance = 1e-12, .after_contact = 0};
+  const ClosingOptions options{
+      .duration = 100 * 2 * pi / fine.basis().angular_frequencies()[0], .tolerance = 1e-12, .after_contact = 0};
   double low = known * (1 - 1e-6), high = known * (1 + 1e-6);
   while (high - low > 1e-12 * high) {
     const double middle = (low + high) / 2;

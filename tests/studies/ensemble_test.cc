@@ -44,7 +44,8 @@ TEST(Ensemble, HasTheDevicesThatItsScenesDescribe) {
       // The modes of a beam of two sections are found from those of the nominal one, and closings agree to their tolerance.
       const bool has_sections = nominal.model.has_piezo();
       const double same = has_sections ? 1e-7 : 0;
-      EXPECT_TRUE(device.model->basis().angular_frequencies().isApprox(own.basis().angular_frequencies(), has_sections ? 1e-11 : 0));
+      EXPECT_TRUE(
+          device.model->basis().angular_frequencies().isApprox(own.basis().angular_frequencies(), has_sections ? 1e-11 : 0));
       const Metrics ours = closing(*device.model, nominal.signals()), theirs = closing(own, alone.signals());
       ASSERT_TRUE(std::isfinite(theirs.initial_contact_time));
       EXPECT_NEAR(ours.initial_contact_time, theirs.initial_contact_time, same * theirs.initial_contact_time);

@@ -82,7 +82,8 @@ TEST(Instruments, ReadWhatTheModelSays) {
   constexpr double rounding = 1e-9;  // a device built for its values is not bit for bit the scene's
   EXPECT_NEAR(value({.what = Measurable::pull_in}) / static_pull_in(p.model, 0).voltage, 1, rounding);
   EXPECT_NEAR(value({.what = Measurable::release}) / release_voltage(p.model, 0), 1, rounding);
-  EXPECT_NEAR(value({.what = Measurable::frequency, .mode = 1}) / (p.model.basis().angular_frequencies()[1] / (2 * pi)), 1, rounding);
+  EXPECT_NEAR(value({.what = Measurable::frequency, .mode = 1}) / (p.model.basis().angular_frequencies()[1] / (2 * pi)), 1,
+              rounding);
   const Eigen::VectorXd straight = Eigen::VectorXd::Zero(4);
   Switch::Workspace work = p.model.workspace();
   EXPECT_NEAR(value({.what = Measurable::capacitance}) / p.model.capacitance(0, straight.data(), work), 1, rounding);

@@ -25,7 +25,8 @@ TEST(Accuracy, TakesATenthForTheToleranceAndFourPointsADigit) {
   EXPECT_DOUBLE_EQ(quadrature_for(1e-6, 4).points_per_length, 24);
   EXPECT_DOUBLE_EQ(quadrature_for(0.1, 1).points_per_length, 8);
   EXPECT_DOUBLE_EQ(quadrature_for(1e-3, 10).points_per_length, 24) << "two to a mode";
-  EXPECT_LT(prepare(gold({"simulate.accuracy=1e-3"})).model.quadrature().points(), prepare(gold({"simulate.accuracy=1e-6"})).model.quadrature().points());
+  EXPECT_LT(prepare(gold({"simulate.accuracy=1e-3"})).model.quadrature().points(),
+            prepare(gold({"simulate.accuracy=1e-6"})).model.quadrature().points());
 }
 
 TEST(Prepare, ComputesPullInOnlyWhereAUnitNeedsIt) {
@@ -136,7 +137,8 @@ TEST(Prepare, ChoosesAWindowThatShowsASlowClosing) {
   const PreparedScene p = prepare(slow);
   const Trajectory closing = simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-8});
   ASSERT_FALSE(closing.touches.empty());
-  const double first = closing.touches.front().begin, six_periods = 6 * 2 * 3.14159265358979 / p.model.basis().angular_frequencies()[0];
+  const double first = closing.touches.front().begin,
+               six_periods = 6 * 2 * 3.14159265358979 / p.model.basis().angular_frequencies()[0];
   ASSERT_GT(first, six_periods) << "a closing that six periods would not show";
   EXPECT_NEAR(p.duration, 4 * first, 1e-3 * first);  // found at a tolerance of 1e-4
 }

@@ -53,7 +53,8 @@ class Energy {
   // Derivative of the potential by each drive's strength; by the voltage of a piezo.
   void look(const double* q, std::vector<double>& potentials) {
     for (std::size_t k = 0; k < drives_.size(); ++k) {
-      potentials[k] = device_.drive_kind(k) == DriveKind::piezo ? -device_.basis().piezo_charge(q) : device_.law_potential(k, q, work_);
+      potentials[k] =
+          device_.drive_kind(k) == DriveKind::piezo ? -device_.basis().piezo_charge(q) : device_.law_potential(k, q, work_);
     }
   }
   [[nodiscard]] double strength(std::size_t k, double value) const {

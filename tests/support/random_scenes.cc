@@ -322,8 +322,11 @@ void put_waveforms(SceneFile& file, Dice& dice) {
   for (std::size_t k = 0; k < model.drives(); ++k) {
     const DriveKind kind = model.drive_kind(k);
     if (kind == DriveKind::piezo) {
-      const double per_volt =
-          (model.basis().contact_shape().cwiseProduct(model.basis().piezo_shape()).cwiseQuotient(model.basis().angular_frequencies().cwiseAbs2())).sum();
+      const double per_volt = (model.basis()
+                                   .contact_shape()
+                                   .cwiseProduct(model.basis().piezo_shape())
+                                   .cwiseQuotient(model.basis().angular_frequencies().cwiseAbs2()))
+                                  .sum();
       const double bends = dice.log_between(0.01, 0.3) * (dice.chance(0.5) ? -1 : 1) * scene.device.gap.contact;
       file.set_waveform(std::string(piezo_drive), waveform(dice, bends / per_volt, period));
     } else if (kind == DriveKind::dispersion) {
