@@ -149,7 +149,7 @@ class Statics {
   [[nodiscard]] bool has_converged(const Eigen::VectorXd& step) const {
     return step.cwiseProduct(model_.basis().contact_shape()).cwiseAbs().sum() < 1e-13 * model_.device().gap.electrode;
   }
-  // Of the state evaluated last: below the floor the laws are no longer physics, and a state there is none.
+  // Of the state evaluated last: the laws do not hold below the floor, so that there is no equilibrium.
   [[nodiscard]] bool is_above_floor() const { return Switch::smallest_gap(work_) > model_.gap_floor(); }
 
   const Switch& model_;

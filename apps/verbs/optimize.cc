@@ -173,7 +173,7 @@ ResultSeeds ranked(const SeedStudy& study, const StoredSearch& search, double si
   return seeds;
 }
 
-// What there is of searches from several seeds that were asked to stop: --resume goes on with it.
+// Reports a study of several seeds that was interrupted; --resume goes on with it.
 int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, const ResultSeeds& seeds) {
   const fs::path stores = places.store(evaluations_file).parent_path();
   std::string left = left_in(stores, {evaluations_file, seeds_file});

@@ -11,7 +11,7 @@ namespace {
 
 // An explicit method held back by stability in one look after the other gives way to an implicit one. A thick film in a gap that
 // is all but closed makes every step one of these. In other closings they come and go, a dozen in a row at the most; but a damped
-// contact that rattles has made ninety, so that some such runs go over without need.
+// contact that rattles may show ninety in a row, so that some such runs go over without need.
 constexpr double held_back = 2;  // Stepper::stiffness()
 constexpr long steps_to_look = 100;
 constexpr int patience = 50;  // looks

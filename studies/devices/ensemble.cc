@@ -242,7 +242,7 @@ DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& c
 
 namespace {
 
-// Without error.
+// True units of each reference device, without measurement error.
 std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const Gauges& gauges, std::size_t size, int jobs,
                                          const Watch& watch) {
   const DeviceMeter meter(nominal, gauges);

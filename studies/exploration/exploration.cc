@@ -286,7 +286,7 @@ PointRow Exploration::row(const SceneFile& scene, int jobs, const Watch& watch) 
   } catch (const std::exception& error) {
     row = {.status = std::string(internal_fault), .reason = error.what(), .figures = {}};
   }
-  watch.throw_if_stopped();  // what was cut short is no row
+  watch.throw_if_stopped();  // an interrupted point adds no row
   row.figures.resize(figures_.size(), Metrics::unset);
   return row;
 }

@@ -47,7 +47,7 @@ double excess(const Criterion& one, const Metrics& metrics) {
   return std::clamp(one.violation(one.figure.value(metrics)) + margin, -most_broken, most_broken);
 }
 
-// By the figure.
+// Derivative of excess() with respect to the figure.
 double excess_rate(const Criterion& one, const Metrics& metrics) {
   if (std::abs(excess(one, metrics)) >= most_broken) return 0;
   const double scale = one.limit == 0 ? 1 : std::abs(one.limit);
@@ -129,10 +129,23 @@ bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) 
   const std::vector<std::string> names = given.drive_names();
   return std::all_of(searched.begin(), searched.end(), [&](const auto& one) {
     const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), one.first) - names.begin());
-    const Signal told = given.told(k, one.second);
-    if (std::holds_alternative<Own>(one.second) && !space.drive(one.first).holds(told)) return false;
-    return violation(told, limits_for(one.second, limits.at(one.first))).empty();
+    return keeps_limits(one.first, one.second, given.told(k, one.second));
   });
+}
+
+std::optional<std::vector<Signal>> SearchSetting::allowed_told(const std::map<std::string, Waveform>& searched) const {
+  const std::vector<std::string> names = given.drive_names();
+  std::vector<Signal> told = given.told(drives(searched));
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto one = searched.find(names[k]);
+    if (one != searched.end() && !keeps_limits(one->first, one->second, told[k])) return std::nullopt;
+  }
+  return told;
+}
+
+bool SearchSetting::keeps_limits(const std::string& drive, const Waveform& waveform, const Signal& told) const {
+  if (std::holds_alternative<Own>(waveform) && !space.drive(drive).holds(told)) return false;
+  return violation(told, limits_for(waveform, limits.at(drive))).empty();
 }
 
 // A drive that still changes after the score would open the switch again unseen.
@@ -199,13 +212,13 @@ SearchCosts SearchSetting::price_of(const RecordedClosing& closing) const {
 }
 
 SearchCosts SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memory, LastClosing* last) const {
-  const std::map<std::string, Waveform> searched = space.waveforms(x);
-  if (!is_allowed(searched)) return {};
+  std::optional<std::vector<Signal>> told = allowed_told(space.waveforms(x));
+  if (!told) return {};
   const EvaluationKey key{.x = {x.begin(), x.end()}};
   if (memory != nullptr) {
     if (const auto known = memory->recall(key)) return {.leading = known->leading, .own = known->cost, .lands = known->lands};
   }
-  auto closing = std::make_shared<const RecordedClosing>(*this, given.driven(drives(searched)));
+  auto closing = std::make_shared<const RecordedClosing>(*this, given.driven(std::move(*told)));
   SearchCosts found = worst_price(*closing);
   if (last != nullptr) *last = {.x = key.x, .closing = std::move(closing)};
   found.leading += 0.0, found.own += 0.0;  // of zeros a memory need not keep the sign
@@ -261,9 +274,9 @@ std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const 
   if (last != nullptr && last->closing != nullptr && std::equal(x.begin(), x.end(), last->x.begin(), last->x.end())) {
     closing = last->closing;
   } else {
-    const std::map<std::string, Waveform> searched = space.waveforms(x);
-    if (!is_allowed(searched)) return gradient;
-    closing = std::make_shared<const RecordedClosing>(*this, given.driven(drives(searched)));
+    std::optional<std::vector<Signal>> told = allowed_told(space.waveforms(x));
+    if (!told) return gradient;
+    closing = std::make_shared<const RecordedClosing>(*this, given.driven(std::move(*told)));
   }
   LinearizedClosing motion(given.model, closing->signals, closing->tape);
   const CostSlopes slopes = cost_slopes(given.model, closing->signals, motion, given.scene.metrics);

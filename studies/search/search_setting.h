@@ -63,6 +63,8 @@ struct SearchSetting {
   [[nodiscard]] std::vector<Waveform> drives(const std::map<std::string, Waveform>& searched) const;
   /// Whether the searched drives stay inside their limits.
   [[nodiscard]] bool is_allowed(const std::map<std::string, Waveform>& searched) const;
+  /// What the sources of all drives are told where they do; else nothing.
+  [[nodiscard]] std::optional<std::vector<Signal>> allowed_told(const std::map<std::string, Waveform>& searched) const;
   /// How a candidate under these signals is run.
   [[nodiscard]] ClosingOptions run_of(const std::vector<Signal>& signals) const;
   [[nodiscard]] SearchCosts price(const std::vector<Signal>& signals) const;
@@ -96,6 +98,7 @@ struct SearchSetting {
   /// With the figures that a run of a search does not measure.
   [[nodiscard]] Metrics with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const;
   [[nodiscard]] SearchCosts price_of(const RecordedClosing& closing) const;
+  [[nodiscard]] bool keeps_limits(const std::string& drive, const Waveform& waveform, const Signal& told) const;
   [[nodiscard]] SearchCosts worst_price(const RecordedClosing& closing) const;
 };
 

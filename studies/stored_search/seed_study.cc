@@ -99,7 +99,7 @@ void SeedStudy::run(const Listener& listener) {
   store_.flush();
 }
 
-// A search that was asked to stop before its end is no row: what it evaluated is kept, and the study goes on with it.
+// An interrupted search adds no row; what it evaluated is kept, and the study goes on with it.
 void SeedStudy::search(std::uint64_t k, int jobs, const Listener& listener) {
   OptimizeOptions options = search_.options;
   const Watch watch{.stop = search_.options.stop};
