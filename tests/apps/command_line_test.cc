@@ -90,8 +90,9 @@ TEST(Program, CalledOptimizeIsThatVerb) {
   EXPECT_EQ(called.status, 0);
   EXPECT_EQ(called.out, here.run({"optimize", "--help"}).out);
   EXPECT_EQ(here.run({"gold.toml", "--target", "softness"}, link).err,
-            "softland: --target softness: must be bounce, settling, rebound, count, impact, energy, force, drive or steady, or a "
-            "weighted sum such as \"0.7 bounce + 0.3 energy\"\n");
+            here.run({"optimize", "gold.toml", "--target", "softness"}).err);
+  EXPECT_THAT(here.run({"gold.toml", "--target", "softness"}, link).err,
+              testing::StartsWith("softland: --target softness: must be bounce, "));
 }
 
 TEST(Robustness, RefusesAResultThatBeginsElsewhere) {

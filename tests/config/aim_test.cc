@@ -39,8 +39,7 @@ TEST(Aim, IsATargetOrAWeightedSum) {
 }
 
 TEST(Aim, RefusesWhatIsNone) {
-  const std::string names = "bounce, settling, rebound, count, impact, energy, force, drive or steady";
-  const std::string rule = "must be " + names + ", or a weighted sum such as \"0.7 bounce + 0.3 energy\"";
+  const std::string rule = "must be " + listed(targets) + ", or a weighted sum such as \"0.7 bounce + 0.3 energy\"";
   EXPECT_EQ(message("softness"), rule);
   EXPECT_EQ(message(""), rule);
   EXPECT_EQ(message("0.7 bounce + 0.3 softness"), rule);
