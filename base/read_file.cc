@@ -4,8 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -16,11 +19,20 @@
 namespace softland {
 namespace {
 
-// The files read so far, by device and inode: other names, links and relative paths lead to the same file.
+// The files read so far and the names they were read by. By device and inode, since other names, links and relative paths lead to the
+// same file; with the names, since an inode is given to another file once its own is deleted, which a long process lives to see.
+using Identity = std::pair<dev_t, ino_t>;
 std::mutex guard;
-std::set<std::pair<dev_t, ino_t>>& files_read() {
-  static std::set<std::pair<dev_t, ino_t>> all;
+std::map<Identity, std::set<std::filesystem::path>>& files_read() {
+  static std::map<Identity, std::set<std::filesystem::path>> all;
   return all;
+}
+
+// None where there is no such file.
+std::optional<Identity> identity_of(const std::filesystem::path& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0) return {};
+  return Identity{info.st_dev, info.st_ino};
 }
 
 std::string_view kind(mode_t mode) {
@@ -68,23 +80,23 @@ std::string read_file(const std::filesystem::path& path) {
     require(content.size() <= largest_file,
             name + ": is too large, it must have at most " + std::to_string(largest_file >> 20) + " MiB");
   }
-  const std::lock_guard lock(guard);
-  files_read().emplace(info.st_dev, info.st_ino);
+  mark_as_read(path);
   return content;
 }
 
 void mark_as_read(const std::filesystem::path& path) {
-  struct stat info {};
-  if (::stat(path.c_str(), &info) != 0) return;
+  const std::optional<Identity> file = identity_of(path);
+  if (!file) return;
   const std::lock_guard lock(guard);
-  files_read().emplace(info.st_dev, info.st_ino);
+  files_read()[*file].insert(std::filesystem::absolute(path));
 }
 
 bool was_read(const std::filesystem::path& path) {
-  struct stat info {};
-  if (::stat(path.c_str(), &info) != 0) return false;
+  const std::optional<Identity> file = identity_of(path);
+  if (!file) return false;
   const std::lock_guard lock(guard);
-  return files_read().contains({info.st_dev, info.st_ino});
+  const auto found = files_read().find(*file);
+  return found != files_read().end() && std::ranges::any_of(found->second, [&](const auto& name) { return identity_of(name) == file; });
 }
 
 }  // namespace softland

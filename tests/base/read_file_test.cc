@@ -79,5 +79,15 @@ TEST_F(ReadFile, IsRememberedUnderEveryName) {
   EXPECT_FALSE(was_read(folder / "absent"));
 }
 
+TEST_F(ReadFile, IsForgottenOnceDeletedThoughAnotherFileGetsItsInode) {
+  for (int k = 0; k < 50; ++k) {
+    const fs::path read = file("gone", "x");
+    static_cast<void>(read_file(read));
+    fs::remove(read);
+    EXPECT_FALSE(was_read(file("new", "y"))) << k;
+    fs::remove(folder / "new");
+  }
+}
+
 }  // namespace
 }  // namespace softland
