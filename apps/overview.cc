@@ -9,13 +9,12 @@
 #include "base/shortened.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 
 namespace softland::apps {
 namespace {
 
-using internal::left_aligned;
 using internal::quantity;
-using internal::right_aligned;
 using nlohmann::json;
 
 }  // namespace
@@ -60,18 +59,21 @@ std::string overview_text(const StoredPlan& plan, const Overview& found) {
     const auto reason = found.first_reasons.find(status);
     text += reason == found.first_reasons.end() ? "\n" : fmt::format("   {}\n", shortened(printable_line(reason->second), 140));
   }
-  text += fmt::format("\n{:<44} {:>12} {:>9}   {:>12} {:>9}\n", "", "least", "at point", "most", "at point");
+  std::vector<internal::TextRow> rows;
   for (std::size_t i = 0; i < plan.columns.size(); ++i) {
     const StoredColumn& column = plan.columns[i];
     const Overview::Extent& e = found.extents[i];
     if (column.kind == ColumnKind::variable || !(e.least <= e.most)) continue;
-    const auto cell = [&](double value, std::int64_t at) {
-      return right_aligned(quantity(value, column.unit), 12) + " " + right_aligned(std::to_string(at), 9);
-    };
-    text +=
-        left_aligned(shortened(column.name, 43), 44) + " " + cell(e.least, e.least_at) + "   " + cell(e.most, e.most_at) + "\n";
+    rows.push_back({shortened(column.name, 43), quantity(e.least, column.unit), std::to_string(e.least_at),
+                    quantity(e.most, column.unit), std::to_string(e.most_at)});
   }
-  return text;
+  return text + "\n" +
+         internal::text_table({{.width = 44, .is_words = true},
+                               {.head = "least", .width = 12, .gap = 1},
+                               {.head = "at point", .width = 9, .gap = 1},
+                               {.head = "most", .width = 12, .gap = 3},
+                               {.head = "at point", .width = 9, .gap = 1}},
+                              rows);
 }
 
 }  // namespace softland::apps

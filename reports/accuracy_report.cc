@@ -14,6 +14,7 @@
 #include "reports/quantity.h"
 #include "reports/result_json.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 
 namespace softland {
 namespace {
@@ -29,6 +30,7 @@ using internal::recommendations;
 using internal::restart_text;
 using internal::setting_text;
 using internal::symbols;
+using internal::TextRow;
 using nlohmann::json;
 
 json errors_json(const FigureErrors& errors) {
@@ -69,49 +71,58 @@ json spread_json(const Spread& s) {
   return {{"low", json_number(s.low)}, {"median", json_number(s.median)}, {"high", json_number(s.high)}, {"runs", s.runs}};
 }
 
-// Columns of words and numbers: the first to the left, the others to the right.
-std::string aligned(const std::vector<std::string>& cells) {
-  constexpr std::size_t first = 16, other = 11;
-  std::string line = fmt::format("{:<{}}", cells[0], first);
-  for (std::size_t i = 1; i < cells.size(); ++i) line += fmt::format("{:>{}}", cells[i], other);
-  return line + "\n";
-}
-
-std::vector<std::string> head(const std::vector<std::string>& setting) {
-  std::vector<std::string> cells = setting;
-  for (const Figure& f : studied_figures) cells.emplace_back(f.symbol);
-  cells.insert(cells.end(), {"rhs", "time"});
-  return cells;
-}
-
-std::string line(std::vector<std::string> cells, const AccuracyRow& row) {
+TextRow row_of(TextRow setting, const AccuracyRow& row) {
   if (!row.missing.empty()) {
-    std::string text = aligned(cells);
-    text.pop_back();
-    return text + "    " + row.missing + "\n";
+    setting.push_back("    " + row.missing);
+    return setting;
   }
-  for (const double error : row.errors) cells.push_back(error_cell(error));
-  cells.push_back(fmt::format("{}", row.work.rhs_evaluations));
-  cells.push_back(internal::quantity(row.seconds, "s"));
-  return aligned(cells);
+  for (const double error : row.errors) setting.push_back(error_cell(error));
+  setting.push_back(fmt::format("{}", row.work.rhs_evaluations));
+  setting.push_back(internal::quantity(row.seconds, "s"));
+  return setting;
+}
+
+// Errors and costs beside two words of setting.
+std::string errors_table(const char* what, const char* of_it, const std::vector<TextRow>& rows) {
+  TextRow heads{of_it};
+  for (const Figure& f : studied_figures) heads.emplace_back(f.symbol);
+  heads.insert(heads.end(), {"rhs", "time"});
+  std::vector<internal::TextColumn> columns = internal::number_columns(heads, 11);
+  columns.insert(columns.begin(), {.head = what, .width = 16, .is_words = true});
+  return internal::text_table(columns, rows);
+}
+
+std::string by_integrator(const char* what, const std::vector<AccuracyRow>& all) {
+  std::vector<TextRow> rows;
+  for (const AccuracyRow& row : all)
+    rows.push_back(row_of({std::string(to_string(row.integrator)), internal::scientific(row.tolerance)}, row));
+  return errors_table(what, "tolerance", rows);
 }
 
 std::string cloud_table(const AccuracyStudy& study) {
-  std::string text = fmt::format("{:<16}{:>14}{:>14}{:>14}{:>8}\n", "cloud", "low", "median", "high", "runs");
+  std::vector<TextRow> rows;
   const auto add = [&](const Figure& f, const Spread& s, bool ill) {
+    TextRow& row = rows.emplace_back(TextRow{std::string(f.symbol)});
     if (s.runs == 0) {
-      text += fmt::format("{:<16}{:>14}\n", f.symbol, "none");
+      row.emplace_back("none");
       return;
     }
-    text += fmt::format("{:<16}{:>14}{:>14}{:>14}{:>8}{}\n", f.symbol, four_digits(s.low, f.unit), four_digits(s.median, f.unit),
-                        four_digits(s.high, f.unit), s.runs, ill ? "  ill-conditioned" : "");
+    for (const double value : {s.low, s.median, s.high}) row.push_back(four_digits(value, f.unit));
+    row.push_back(fmt::format("{}", s.runs));
+    if (ill) row.emplace_back("ill-conditioned");
   };
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
     if (study.cloud[i].runs > 0) add(studied_figures[i], study.cloud[i], !study.conditioned[i]);
   }
   add(figure_of(&Metrics::permanent_contact_time), study.permanent_contact_time, false);
   add(figure_of(&Metrics::bounce_count), study.bounce_count, false);
-  return text;
+  return internal::text_table({{.head = "cloud", .width = 16, .is_words = true},
+                               {.head = "low", .width = 14},
+                               {.head = "median", .width = 14},
+                               {.head = "high", .width = 14},
+                               {.head = "runs", .width = 8},
+                               {.is_words = true, .gap = 2}},
+                              rows);
 }
 
 }  // namespace
@@ -166,22 +177,20 @@ std::string accuracy_text(const AccuracyStudy& study) {
                                          setting_text(study.reference), modes_text(study.reference), fmt::join(values, ", "))) +
                      "\n\n";
   if (!study.message.empty()) text += wrapped("The reference: " + study.message + ".") + "\n\n";
-  text += aligned(head({"integrator", "tolerance"}));
-  for (const AccuracyRow& row : study.rows) {
-    if (row.points_per_length != own_points(study)) continue;
-    text += line({std::string(to_string(row.integrator)), internal::scientific(row.tolerance)}, row);
-  }
-  if (!study.through.empty()) text += "\n" + aligned(head({"no restart", "tolerance"}));
-  for (const AccuracyRow& row : study.through) {
-    text += line({std::string(to_string(row.integrator)), internal::scientific(row.tolerance)}, row);
-  }
+  std::vector<AccuracyRow> of_own_points = study.rows;
+  std::erase_if(of_own_points, [&](const AccuracyRow& row) { return row.points_per_length != own_points(study); });
+  text += by_integrator("integrator", of_own_points);
+  if (!study.through.empty()) text += "\n" + by_integrator("no restart", study.through);
   if (own_points(study)) {
-    text += "\n" + aligned(head({"points", "per length"}));
-    for (const AccuracyRow* row : quadrature_rows(study)) text += line({"", fmt::format("{:g}", *row->points_per_length)}, *row);
+    std::vector<TextRow> rows;
+    for (const AccuracyRow* row : quadrature_rows(study))
+      rows.push_back(row_of({"", fmt::format("{:g}", *row->points_per_length)}, *row));
+    text += "\n" + errors_table("points", "per length", rows);
   }
   if (!study.modes.empty()) {
-    text += "\n" + aligned(head({"modes", ""}));
-    for (const AccuracyRow& row : study.modes) text += line({"", fmt::format("{}", row.modes)}, row);
+    std::vector<TextRow> rows;
+    for (const AccuracyRow& row : study.modes) rows.push_back(row_of({"", fmt::format("{}", row.modes)}, row));
+    text += "\n" + errors_table("modes", "", rows);
   }
   text +=
       "\n" +

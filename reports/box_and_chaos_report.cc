@@ -12,6 +12,7 @@
 #include "reports/quantity.h"
 #include "reports/robustness_report.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 
 namespace softland::internal {
 namespace {
@@ -158,15 +159,14 @@ json other_ways_json(const BoxAndChaos& ways, const DriveRobustness& drive, cons
 
 std::string other_ways_text(const BoxAndChaos& ways, const DriveRobustness& drive, const PreparedScene& nominal) {
   if (ways.ranges.empty()) return {};
-  constexpr std::size_t label = 47, width = 16;
-  std::string text = "\n" + left_aligned("Other ways, under " + drive.name, label);
-  for (const FigureRange& r : ways.ranges) text += right_aligned(std::string(figure_of(r.key).symbol), width);
-  text += "\n";
+  std::vector<internal::TextColumn> columns{{.head = "Other ways, under " + drive.name, .width = 47, .is_words = true}};
+  for (const FigureRange& r : ways.ranges) columns.push_back({.head = std::string(figure_of(r.key).symbol), .width = 16});
+  std::vector<internal::TextRow> rows;
   for (const ComparedRow& row : compared(ways, drive)) {
-    text += left_aligned(row.name, label);
-    for (const std::string& cell : row.cells) text += right_aligned(cell, width);
-    text += "\n";
+    rows.push_back({row.name});
+    rows.back().insert(rows.back().end(), row.cells.begin(), row.cells.end());
   }
+  std::string text = "\n" + text_table(columns, rows);
   for (const FigureRange& r : ways.ranges) {
     std::string values;
     const std::vector<double> shown = shown_values_in_box(r.most, nominal);

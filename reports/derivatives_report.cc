@@ -12,6 +12,7 @@
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 
 namespace softland::internal {
 namespace {
@@ -123,26 +124,26 @@ json derivatives_json(const Derivatives& derivatives, const DriveRobustness& dri
 std::string derivatives_text(const Derivatives& derivatives, const DriveRobustness& drive) {
   if (derivatives.variables.empty()) return {};
   if (derivatives.figures.empty()) return "\n" + wrapped(why_no_derivatives(derivatives)) + "\n";
-  constexpr std::size_t label = 34, width = 25;
   std::vector<const FigureDerivatives*> shown;
   for (const std::string_view key : explained_figures) {
     const auto has_key = [&](const FigureDerivatives& figure) { return figure.key == key; };
     shown.push_back(&*std::find_if(derivatives.figures.begin(), derivatives.figures.end(), has_key));
   }
-  std::string text = "\n";
+  std::vector<internal::TextColumn> columns{
+      {.head = derivatives.grazes() ? "To first order (grazing)" : "To first order", .width = 34, .is_words = true}};
+  for (const FigureDerivatives* figure : shown)
+    columns.push_back({.head = std::string(figure_of(figure->key).symbol), .width = 25});
+  std::vector<internal::TextRow> rows;
   const auto row = [&](const std::string& name, auto&& cell) {
-    text += left_aligned(name, label);
-    for (const FigureDerivatives* figure : shown) text += right_aligned(cell(*figure), width);
-    text += "\n";
+    rows.push_back({name});
+    for (const FigureDerivatives* figure : shown) rows.back().push_back(cell(*figure));
   };
-  row(derivatives.grazes() ? "To first order (grazing)" : "To first order",
-      [](const FigureDerivatives& f) { return std::string(figure_of(f.key).symbol); });
   for (std::size_t i = 0; i < derivatives.variables.size(); ++i)
     row(derivatives.variables[i].name, [&](const FigureDerivatives& f) { return derivative_cell(derivatives, drive, f, i); });
   row("standard deviation", [](const FigureDerivatives& f) { return deviation_cell(f, f.deviation); });
   row("  of the devices",
       [&](const FigureDerivatives& f) { return deviation_cell(f, statistics_of(drive, f.key).standard_deviation); });
-  return text + wrapped(meaning_of(derivatives, drive)) + "\n";
+  return "\n" + internal::text_table(columns, rows) + wrapped(meaning_of(derivatives, drive)) + "\n";
 }
 
 std::string derivatives_html(const Derivatives& derivatives, const DriveRobustness& drive) {

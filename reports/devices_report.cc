@@ -17,6 +17,7 @@
 #include "reports/quantity.h"
 #include "reports/robustness_words.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 
 namespace softland {
 
@@ -219,18 +220,17 @@ std::string internal::devices_headline(const Result& result) {
 
 std::string internal::devices_text(const ResultDevices& d) {
   if (d.rows.empty()) return {};
-  constexpr std::size_t label = 26, width = 11;
-  std::string out = left_aligned(fmt::format("{:.0f} devices, 95 % below", d.count), label);
   std::vector<std::string> heads{"no rebound"};
   for (const Column& c : columns) heads.emplace_back(c.short_heading);
   heads.insert(heads.end(), {"stay open", "pulled in"});
-  for (const std::string& head : heads) out += right_aligned(head, width);
-  out += "\n";
+  std::vector<TextColumn> shown = number_columns(heads, 11);
+  shown.insert(shown.begin(), {.head = fmt::format("{:.0f} devices, 95 % below", d.count), .width = 26, .is_words = true});
+  std::vector<internal::TextRow> rows;
   for (const ResultDevices::Row& row : d.rows) {
-    out += left_aligned(row.name, label);
-    for (const std::string& cell : cells(row)) out += right_aligned(cell, width);
-    out += "\n";
+    rows.push_back(cells(row));
+    rows.back().insert(rows.back().begin(), row.name);
   }
+  std::string out = text_table(shown, rows);
   if (!d.measure.empty())
     out += "\n" +
            wrapped(fmt::format("best.toml is a {} waveform, searched by {}; {:.0f} closings in all. Devices: {}.", d.waveform,

@@ -13,11 +13,13 @@
 #include "reports/quantity.h"
 #include "reports/result_json.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 
 namespace softland {
 namespace {
 
 using internal::json_number;
+using internal::TextRow;
 using nlohmann::json;
 
 // How a figure changes from the scene's own closing to another.
@@ -31,13 +33,7 @@ json changes_json(const Metrics& metrics, const Metrics& own) {
   return all;
 }
 
-// What a line says of every compared figure.
-template <class Cell>
-std::string cells(const Cell& cell_of) {
-  std::string all;
-  for (const Figure& f : compared_figures) all += cell_of(f);
-  return all;
-}
+constexpr std::size_t rhs_width = 9;
 
 json named(const NamedNumber& n) { return {{"name", n.name}, {"unit", n.unit}, {"value", json_number(n.value)}}; }
 
@@ -48,23 +44,23 @@ std::string size_of(const NamedNumber& n) {
 // Each effect of the scene, left out.
 std::string omissions_text(const Effects& effects) {
   const Effect& own = effects.own("gas");
-  const auto row = [](std::string_view effect, std::string_view choice, const std::string& changes, std::string_view rhs) {
-    return fmt::format("{:<26}{:<18}{}{:>9}", effect, choice, changes, rhs);
-  };
-  std::string text =
-      row("left out", "", cells([](const Figure& f) { return fmt::format("{:>10}", f.symbol); }), "rhs") + "  size\n";
+  std::vector<internal::TextColumn> columns{{.head = "left out", .width = 26, .is_words = true}, {.width = 18, .is_words = true}};
+  for (const Figure& f : compared_figures) columns.push_back({.head = std::string(f.symbol), .width = 10});
+  columns.push_back({.head = "rhs", .width = rhs_width});
+  columns.push_back({.head = "size", .is_words = true, .gap = 2});
+  std::vector<TextRow> rows;
   for (const EffectAblation& o : effects.omissions) {
-    const auto changed = [&](const Figure& f) {
-      return fmt::format("{:>10}", internal::relative_change(change(f, o.metrics, own.metrics)));
-    };
+    TextRow& row = rows.emplace_back(TextRow{o.what.effect, internal::with_true_minus(o.what.choice)});
+    for (const Figure& f : compared_figures) row.push_back(internal::relative_change(change(f, o.metrics, own.metrics)));
     const std::string group = size_of(o.what.group);
-    text += row(o.what.effect, internal::with_true_minus(o.what.choice), cells(changed), internal::quantity(o.rhs_seconds, "s")) +
-            fmt::format("  {}{}{}\n", size_of(o.what.magnitude), group.empty() ? "" : "; ", group);
+    row.push_back(internal::quantity(o.rhs_seconds, "s"));
+    row.push_back(size_of(o.what.magnitude) + (group.empty() ? "" : "; ") + group);
   }
-  if (effects.omissions.empty()) text += "nothing: the scene describes no effect that it could do without\n";
-  const std::string none = cells([](const Figure&) { return fmt::format("{:>10}", ""); });
-  text += row("nothing", "", none, internal::quantity(own.rhs_seconds, "s")) + "\n";
-  return text + "\n" +
+  if (effects.omissions.empty()) rows.push_back({"nothing: the scene describes no effect that it could do without"});
+  TextRow& nothing = rows.emplace_back(TextRow{"nothing"});
+  nothing.resize(2 + compared_figures.size());
+  nothing.push_back(internal::quantity(own.rhs_seconds, "s"));
+  return internal::text_table(columns, rows) + "\n" +
          wrapped(
              "How the figures change when one effect is left out, under the same voltages, and what a right-hand side then "
              "costs. "
@@ -124,23 +120,25 @@ std::string effects_text(const Effects& effects) {
             "\n\n";
   }
   text += omissions_text(effects);
-  const auto row = [](std::string_view choice, std::string_view damping, std::string_view knudsen, const std::string& figures,
-                      std::string_view rhs) {
-    return fmt::format("{:<20}{:>16}{:>8}{}{:>9}\n", choice, damping, knudsen, figures, rhs);
-  };
-  const auto pair = [](const Figure& f, std::string_view value, std::string_view change) {
-    return fmt::format("{:>{}}{:>9}", value, 9 + f.unit.size(), change);
-  };
-  text += row("gas", "c", "Kn", cells([&](const Figure& f) { return pair(f, f.symbol, ""); }), "rhs");
-  for (const Effect& e : effects.list) {
-    const auto compared = [&](const Figure& f) {
-      return pair(f, internal::quantity(f.value(e.metrics), f.unit, 4),
-                  e.in_scene ? "" : internal::relative_change(change(f, e.metrics, own.metrics)));
-    };
-    text += row((e.in_scene ? "* " : "  ") + e.choice, internal::quantity(e.magnitude.value, e.magnitude.unit),
-                internal::quantity(e.group.value, e.group.unit), cells(compared), internal::quantity(e.rhs_seconds, "s"));
+  std::vector<internal::TextColumn> columns{
+      {.head = "gas", .width = 20, .is_words = true}, {.head = "c", .width = 16}, {.head = "Kn", .width = 8}};
+  for (const Figure& f : compared_figures) {
+    columns.push_back({.head = std::string(f.symbol), .width = 9 + f.unit.size()});
+    columns.push_back({.width = 9});
   }
-  text += "\n" +
+  columns.push_back({.head = "rhs", .width = rhs_width});
+  std::vector<TextRow> rows;
+  for (const Effect& e : effects.list) {
+    TextRow& row =
+        rows.emplace_back(TextRow{(e.in_scene ? "* " : "  ") + e.choice, internal::quantity(e.magnitude.value, e.magnitude.unit),
+                                  internal::quantity(e.group.value, e.group.unit)});
+    for (const Figure& f : compared_figures) {
+      row.push_back(internal::quantity(f.value(e.metrics), f.unit, 4));
+      row.push_back(e.in_scene ? "" : internal::relative_change(change(f, e.metrics, own.metrics)));
+    }
+    row.push_back(internal::quantity(e.rhs_seconds, "s"));
+  }
+  text += internal::text_table(columns, rows) + "\n" +
           wrapped(
               "* the scene's own. c is the damping per length and Kn the Knudsen number at the gap of the closed tip; every "
               "other column is of the whole closing, its change is relative to the scene's own.") +

@@ -16,16 +16,15 @@
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 
 namespace softland {
 namespace {
 
 using internal::escaped;
 using internal::json_number;
-using internal::left_aligned;
 using internal::plain_number;
 using internal::quantity;
-using internal::right_aligned;
 using nlohmann::json;
 
 constexpr double unlikely = 3;  // errors
@@ -236,15 +235,17 @@ json fit_json(const Fit& fit, const Provenance& provenance) {
 std::string fit_text(const Fit& fit) {
   std::string text = wrapped(fit_headline(fit)) + "\n";
   if (fit.found) {
-    constexpr std::size_t name = 34, wide = 16, interval = 28;
-    text += "\n" + left_aligned("Unknown", name) + right_aligned("scene", wide) + right_aligned("fitted", wide) +
-            right_aligned("± 1 sigma", wide + 4) + right_aligned("95 %", interval) + right_aligned("prior", wide) + "\n";
-    for (const FittedUnknown& u : fit.unknowns) {
-      text += left_aligned(label_of(u), name) + right_aligned(nominal_text(u), wide) +
-              right_aligned(fitted_value_text(u, u.value, u.standard_error), wide) +
-              right_aligned(fitted_error_text(u), wide + 4) + right_aligned(fitted_interval_text(u), interval) +
-              right_aligned(fitted_prior_text(u), wide) + "\n";
-    }
+    std::vector<internal::TextRow> rows;
+    for (const FittedUnknown& u : fit.unknowns)
+      rows.push_back({label_of(u), nominal_text(u), fitted_value_text(u, u.value, u.standard_error), fitted_error_text(u),
+                      fitted_interval_text(u), fitted_prior_text(u)});
+    text += "\n" + internal::text_table({{.head = "Unknown", .width = 34, .is_words = true},
+                                         {.head = "scene", .width = 16},
+                                         {.head = "fitted", .width = 16},
+                                         {.head = "± 1 sigma", .width = 20},
+                                         {.head = "95 %", .width = 28},
+                                         {.head = "prior", .width = 16}},
+                                        rows);
   }
   for (const std::string& sentence : fit_words(fit)) text += "\n" + wrapped(sentence) + "\n";
   return text;

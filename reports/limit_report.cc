@@ -15,14 +15,14 @@
 #include "reports/result_json.h"
 #include "reports/svg.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 
 namespace softland {
 namespace {
 
 using internal::json_number;
-using internal::left_aligned;
 using internal::quantity;
-using internal::right_aligned;
+using internal::TextRow;
 using nlohmann::json;
 
 json least_json(const LeastTime& least) {
@@ -70,22 +70,25 @@ std::string drives_of(Actuator actuator) {
   return "electrodes and piezo";
 }
 
-constexpr std::size_t limit_label_width = 44, limit_number_width = 12;
-
-std::string limit_row(const std::string& name, const std::string& time, const std::string& velocity,
-                      const std::string& rest = {}) {
-  return "  " + left_aligned(name, limit_label_width) + right_aligned(time, limit_number_width) +
-         right_aligned(velocity, limit_number_width) + (rest.empty() ? "" : "  " + rest) + "\n";
+// `second`: the head of what stands beside a time.
+std::string limit_table(const std::string& name, const std::string& time, const std::string& second,
+                        const std::vector<TextRow>& rows) {
+  constexpr std::size_t number = 12;
+  return internal::text_table({{.head = name, .width = 44, .is_words = true, .gap = 2},
+                               {.head = time, .width = number},
+                               {.head = second, .width = number},
+                               {.is_words = true, .gap = 2}},
+                              rows);
 }
 
 std::string why_not(const LeastTime& least) {
   return least.message.empty() ? std::string(to_string(least.status)) : least.message;
 }
 
-std::string least_row(const std::string& name, const LeastTime& least) {
-  if (least.status != Status::done) return limit_row(name, "—", "—", why_not(least));
-  return limit_row(name, quantity(least.time, "s", 4), quantity(least.impact_velocity, "m/s"),
-                   least.from_start ? "found from the waveform of --start" : "");
+TextRow least_row(const std::string& name, const LeastTime& least) {
+  if (least.status != Status::done) return {name, "—", "—", why_not(least)};
+  return {name, quantity(least.time, "s", 4), quantity(least.impact_velocity, "m/s"),
+          least.from_start ? "found from the waveform of --start" : ""};
 }
 
 // The model for which a least time is a bound: a beam with more modes may touch earlier. Empty for a plate, which has one mode.
@@ -175,23 +178,24 @@ std::string limit_text(const Limit& limit) {
   const std::string peak = std::isfinite(limit.touch.peak) ? fmt::format(", up to {}", quantity(limit.touch.peak, "V")) : "";
   text += fmt::format("How quickly {} can close the switch{}\n\n", drives_of(limit.options.actuator), peak);
   if (!limit.hold_warning.empty()) text += wrapped("warning: " + limit.hold_warning) + "\n\n";
-  text += limit_row("", "first touch", "speed");
-  text += limit_row("plain step", quantity(limit.step.initial_contact_time, "s", 4), quantity(limit.step.impact_velocity, "m/s"));
-  text += least_row(fmt::format("least time of a touch at {} or less", quantity(limit.impact_velocity, "m/s")), limit.touch);
-  text += least_row("least time with every mode at rest", limit.rest);
+  std::vector<TextRow> touches{
+      {"plain step", quantity(limit.step.initial_contact_time, "s", 4), quantity(limit.step.impact_velocity, "m/s")},
+      least_row(fmt::format("least time of a touch at {} or less", quantity(limit.impact_velocity, "m/s")), limit.touch),
+      least_row("least time with every mode at rest", limit.rest)};
   if (limit.landing) {
     const Metrics& m = limit.landing->closing.metrics;
-    const std::string after = words_after(*limit.landing);
-    text += limit_row(words_of_catch(*limit.landing), quantity(m.initial_contact_time, "s", 4),
-                      quantity(m.impact_velocity, "m/s"), after);
+    touches.push_back({words_of_catch(*limit.landing), quantity(m.initial_contact_time, "s", 4),
+                       quantity(m.impact_velocity, "m/s"), words_after(*limit.landing)});
   }
+  text += limit_table("", "first touch", "speed", touches);
   const auto list = [&](const std::string& title, const std::vector<LeastTime>& all, const auto& name) {
     if (all.empty()) return;
-    text += "\n" + limit_row(title, "least time", "");
+    std::vector<TextRow> rows;
     for (const LeastTime& least : all) {
-      text += least.status == Status::done ? limit_row(name(least), quantity(least.time, "s", 4), "")
-                                           : limit_row(name(least), "—", "", why_not(least));
+      const bool done = least.status == Status::done;
+      rows.push_back({name(least), done ? quantity(least.time, "s", 4) : "—", "", done ? "" : why_not(least)});
     }
+    text += "\n" + limit_table(title, "least time", "", rows);
   };
   list("touch at or below", limit.over_velocity, [](const LeastTime& l) { return quantity(l.permitted, "m/s"); });
   list("volts up to", limit.over_peak, [](const LeastTime& l) { return quantity(l.peak, "V", 4); });

@@ -10,6 +10,7 @@
 #include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 #include "sampling/statistics.h"
 
 namespace softland {
@@ -17,11 +18,10 @@ namespace {
 
 using internal::interval_json;
 using internal::json_number;
-using internal::left_aligned;
 using internal::percent;
 using internal::quantile_text;
 using internal::quantity;
-using internal::right_aligned;
+using internal::TextRow;
 using internal::yield_json;
 using internal::yield_text;
 using nlohmann::json;
@@ -42,19 +42,29 @@ json quantile_json(const EstimatedQuantile& q) {
   return {{"value", json_number(q.value)}, {"interval", interval_json(q.interval)}};
 }
 
-constexpr std::size_t name_width = 36, miss_width = 10, yield_width = 23, quantile_width = 27;
+constexpr std::size_t name_width = 36;
 
-std::string row(const Prediction& p, bool drives_piezo) {
+TextRow row(const Prediction& p, bool drives_piezo) {
   const auto miss = [](double value) {
     return std::isfinite(value) ? internal::plain_number(100 * value, 2) + " %" : std::string("—");
   };
-  std::string text = left_aligned(p.name, name_width) + right_aligned(miss(p.volts_miss), miss_width) +
-                     right_aligned(miss(p.time_miss), miss_width);
-  if (drives_piezo) text += right_aligned(miss(p.piezo_miss), miss_width);
-  if (!p.is_judged) return text + right_aligned("—", yield_width) + "\n";
-  return text + right_aligned(yield_text(p.bounce_free), yield_width) +
-         right_aligned(quantile_text(p.impact_speed, "m/s"), quantile_width) +
-         right_aligned(quantile_text(p.rebound_height, "m"), quantile_width) + "\n";
+  TextRow cells{p.name, miss(p.volts_miss), miss(p.time_miss)};
+  if (drives_piezo) cells.push_back(miss(p.piezo_miss));
+  cells.push_back(p.is_judged ? yield_text(p.bounce_free) : "—");
+  if (p.is_judged) cells.insert(cells.end(), {quantile_text(p.impact_speed, "m/s"), quantile_text(p.rebound_height, "m")});
+  return cells;
+}
+
+std::string predictions_table(const char* name, const std::vector<TextRow>& rows, bool drives_piezo) {
+  constexpr std::size_t miss_width = 10, quantile_width = 27;
+  std::vector<internal::TextColumn> columns{{.head = name, .width = name_width, .is_words = true},
+                                            {.head = "volts off", .width = miss_width},
+                                            {.head = "time off", .width = miss_width}};
+  if (drives_piezo) columns.push_back({.head = "piezo off", .width = miss_width});
+  columns.push_back({.head = "without a rebound", .width = 23});
+  columns.push_back({.head = "v_max, 95 % below", .width = quantile_width});
+  columns.push_back({.head = "B_H, 95 % below", .width = quantile_width});
+  return "\n" + internal::text_table(columns, rows);
 }
 
 }  // namespace
@@ -112,16 +122,13 @@ std::string measurements_text(const IdentificationStudy& study, const Identifica
                           "of the devices, and the devices closed with what was told.",
                           study.devices)) +
       "\n\n";
-  text += fmt::format("{:<{}}{:>12}{:>12}{:>12}{:>12}\n", "Figure", name_width, "nominal", "varies by", "error", "devices");
-  for (const MeasurableFigure& f : study.figures) {
-    text += left_aligned(f.name, name_width) + right_aligned(quantity(f.nominal, f.unit), 12) +
-            right_aligned(percent(variation(f)), 12) + right_aligned(f.error > 0 ? percent(f.error) : "exact", 12) +
-            right_aligned(std::to_string(known(f).size()), 12) + "\n";
-  }
-  const std::string head = fmt::format("{:>{}}{:>{}}{}{:>{}}{:>{}}{:>{}}\n", "volts off", miss_width, "time off", miss_width,
-                                       study.drives_piezo ? right_aligned("piezo off", miss_width) : "", "without a rebound",
-                                       yield_width, "v_max, 95 % below", quantile_width, "B_H, 95 % below", quantile_width);
-  text += "\n" + left_aligned("Measured, the best first", name_width) + head;
+  std::vector<TextRow> figures, rows;
+  for (const MeasurableFigure& f : study.figures)
+    figures.push_back({f.name, quantity(f.nominal, f.unit), percent(variation(f)), f.error > 0 ? percent(f.error) : "exact",
+                       std::to_string(known(f).size())});
+  std::vector<internal::TextColumn> columns = internal::number_columns({"nominal", "varies by", "error", "devices"}, 12);
+  columns.insert(columns.begin(), {.head = "Figure", .width = name_width, .is_words = true});
+  text += internal::text_table(columns, figures);
   // Whether a pair is worth its second figure.
   const auto is_better_than_its_figures = [&](const Prediction& p) {
     return std::all_of(p.figures.begin(), p.figures.end(), [&](std::size_t figure) {
@@ -136,11 +143,13 @@ std::string measurements_text(const IdentificationStudy& study, const Identifica
       ++left_out;
       continue;
     }
-    text += row(p, study.drives_piezo);
+    rows.push_back(row(p, study.drives_piezo));
     ++shown;
   }
-  text += "\n" + left_aligned("To compare with", name_width) + head;
-  for (const Prediction& p : study.references) text += row(p, study.drives_piezo);
+  text += predictions_table("Measured, the best first", rows, study.drives_piezo);
+  rows.clear();
+  for (const Prediction& p : study.references) rows.push_back(row(p, study.drives_piezo));
+  text += predictions_table("To compare with", rows, study.drives_piezo);
   const std::string others =
       left_out > 0 ? fmt::format(" Left out are pairs that do no better than one of their figures: {}.", left_out) : "";
   return text + "\n" +

@@ -15,14 +15,13 @@
 #include "reports/quantity.h"
 #include "reports/svg.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 
 namespace softland {
 namespace {
 
 using internal::json_number;
-using internal::left_aligned;
 using internal::quantity;
-using internal::right_aligned;
 
 constexpr int table_digits = 6;
 
@@ -134,20 +133,20 @@ nlohmann::json mode_table_json(const ModeTable& table) {
 }
 
 std::string mode_table_text(const ModeTable& table) {
-  std::string text = wrapped(summary(table)) + "\n\n";
-  constexpr std::size_t number = 4, frequency = 15, name = 12;
-  text += right_aligned("mode", number) + right_aligned("frequency", frequency) + "  " + left_aligned("taken as", name) +
-          "what it is\n";
+  std::vector<internal::TextRow> rows;
   for (const ModeFound& found : modes_of(table)) {
     const std::optional<std::size_t> column = taken_column(table, found);
-    text += right_aligned(fmt::format("{}", found.number), number) +
-            right_aligned(quantity(found.frequency, "Hz", table_digits), frequency) + "  " +
-            left_aligned(column ? fmt::format("mode_{}", *column + 1) : std::string("left out"), name) + found.name();
+    rows.push_back({fmt::format("{}", found.number), quantity(found.frequency, "Hz", table_digits),
+                    column ? fmt::format("mode_{}", *column + 1) : std::string("left out"), found.name()});
     if (!table.found.empty() && found.kind != ModeKind::unused)
-      text += fmt::format(", {:.3g} % of the motion", 100 * found.share);
-    text += "\n";
+      rows.back().back() += fmt::format(", {:.3g} % of the motion", 100 * found.share);
   }
-  return text;
+  return wrapped(summary(table)) + "\n\n" +
+         internal::text_table({{.head = "mode", .width = 4},
+                               {.head = "frequency", .width = 15},
+                               {.head = "taken as", .width = 12, .is_words = true, .gap = 2},
+                               {.head = "what it is", .is_words = true}},
+                              rows);
 }
 
 std::string mode_table_csv(const ModeTable& table) {

@@ -15,14 +15,13 @@
 #include "reports/quantity.h"
 #include "reports/svg.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 
 namespace softland {
 namespace {
 
 using internal::json_number;
-using internal::left_aligned;
 using internal::quantity;
-using internal::right_aligned;
 
 constexpr int digits = 6;
 
@@ -76,22 +75,17 @@ nlohmann::json recording_json(const Recording& recording) {
 }
 
 std::string recording_text(const Recording& recording) {
-  std::string text = wrapped(summary(recording)) + "\n";
-  std::size_t width = 7;
-  for (const Channel& channel : recording.channels) width = std::max(width, internal::columns_of(printable_line(channel.name)));
-  constexpr std::size_t column = 14;
-  text += "\n" + left_aligned("channel", width) + right_aligned("column", 8) + right_aligned("samples", 10);
-  for (const char* head : {"first", "last", "minimum", "maximum"}) text += right_aligned(head, column);
-  text += "\n";
+  std::vector<internal::TextColumn> columns{
+      {.head = "channel", .is_words = true, .grows = true}, {.head = "column", .width = 8}, {.head = "samples", .width = 10}};
+  for (const char* head : {"first", "last", "minimum", "maximum"}) columns.push_back({.head = head, .width = 14});
+  std::vector<internal::TextRow> rows;
   for (const Channel& channel : recording.channels) {
     const ChannelFigures figures = figures_of(channel);
-    text += left_aligned(printable_line(channel.name), width) + right_aligned(fmt::format("{}", channel.column), 8) +
-            right_aligned(fmt::format("{}", figures.samples), 10);
+    rows.push_back({printable_line(channel.name), fmt::format("{}", channel.column), fmt::format("{}", figures.samples)});
     for (const double value : {figures.first, figures.last, figures.minimum, figures.maximum})
-      text += right_aligned(shown(value, channel), column);
-    text += "\n";
+      rows.back().push_back(shown(value, channel));
   }
-  return text;
+  return wrapped(summary(recording)) + "\n\n" + internal::text_table(columns, rows);
 }
 
 std::string recording_svg(const Recording& recording) {

@@ -15,21 +15,20 @@
 #include "reports/robustness_words.h"
 #include "reports/svg.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 #include "waveforms/export.h"
 
 namespace softland {
 namespace {
 
 using internal::json_number;
-using internal::left_aligned;
 using internal::percent;
 using internal::quantity;
-using internal::right_aligned;
 using internal::spread_words;
+using internal::TextRow;
 using nlohmann::json;
 
 constexpr const char* plain_words = "plain opening";
-constexpr std::size_t release_label_width = 44, release_number_width = 16;
 constexpr double curve_tolerance = 1e-4;  // of the largest voltage, where a drive is no straight line
 
 json figures_json(const OpeningFigures& f) {
@@ -81,12 +80,14 @@ json opening_json(const OpeningResult& r, const Opening& o) {
           {"waveforms", waveforms}};
 }
 
-std::string release_row(const std::string& name, const std::string& plain, const std::string& best,
-                        const std::string& rest = {}) {
-  std::string line = "  " + left_aligned(name, release_label_width) + right_aligned(plain, release_number_width);
-  if (!best.empty()) line += right_aligned(best, release_number_width);
-  if (!rest.empty()) line += "  " + rest;
-  return line + "\n";
+std::string opening_table(const std::string& name, const std::string& plain, const std::string& best,
+                          const std::vector<TextRow>& rows) {
+  constexpr std::size_t number = 16;
+  return internal::text_table({{.head = name, .width = 44, .is_words = true, .gap = 2},
+                               {.head = plain, .width = number},
+                               {.head = best, .width = number},
+                               {.is_words = true, .gap = 2}},
+                              rows);
 }
 
 std::string gain(double plain, double best) {
@@ -94,12 +95,12 @@ std::string gain(double plain, double best) {
   return internal::times(plain / best) + " less";
 }
 
-std::string quantity_row(const OpeningResult& r, const std::string& name, double OpeningFigures::*member, std::string_view unit,
-                         bool lower) {
+TextRow quantity_row(const OpeningResult& r, const std::string& name, double OpeningFigures::*member, std::string_view unit,
+                     bool lower) {
   const double plain = r.plain.figures.*member;
-  if (!r.best) return release_row(name, quantity(plain, unit), "");
+  if (!r.best) return {name, quantity(plain, unit)};
   const double best = r.best->figures.*member;
-  return release_row(name, quantity(plain, unit), quantity(best, unit), lower ? gain(plain, best) : "");
+  return {name, quantity(plain, unit), quantity(best, unit), lower ? gain(plain, best) : ""};
 }
 
 std::string finding(const OpeningResult& r) {
@@ -181,17 +182,17 @@ json devices_json(const std::optional<OpeningsOnDevices>& found) {
 std::string devices_text(const OpeningsOnDevices& found) {
   const auto value = [](double v, const char* unit) { return std::isfinite(v) ? quantity(v, unit) : std::string("∞"); };
   const auto row = [&](const char* name, double DeviceOpenings::*figure, const char* unit) {
-    return release_row(name, value(found.plain.*figure, unit), value(found.best.*figure, unit));
+    return TextRow{name, value(found.plain.*figure, unit), value(found.best.*figure, unit)};
   };
-  std::string text =
-      wrapped(fmt::format("On {} devices, all in the volts of the nominal one: {}{}.", found.devices, spread_words(found.spread),
-                          found.spread_assumed ? " (assumed, the scene has no [spread])" : "")) +
-      "\n" + release_row("", plain_words, "found");
-  text += release_row("open for good", percent(found.plain.open), percent(found.best.open));
-  text += release_row("from when the drives stand on", percent(found.plain.in_band), percent(found.best.in_band));
-  text += row("open for good, 95 % within", &DeviceOpenings::settling_time, "s");
-  text += row("residual vibration, 95 % below", &DeviceOpenings::residual_vibration, "m");
-  return text + row("beyond the open position, 95 % below", &DeviceOpenings::overshoot, "m");
+  return wrapped(fmt::format("On {} devices, all in the volts of the nominal one: {}{}.", found.devices,
+                             spread_words(found.spread), found.spread_assumed ? " (assumed, the scene has no [spread])" : "")) +
+         "\n" +
+         opening_table("", plain_words, "found",
+                       {{"open for good", percent(found.plain.open), percent(found.best.open)},
+                        {"from when the drives stand on", percent(found.plain.in_band), percent(found.best.in_band)},
+                        row("open for good, 95 % within", &DeviceOpenings::settling_time, "s"),
+                        row("residual vibration, 95 % below", &DeviceOpenings::residual_vibration, "m"),
+                        row("beyond the open position, 95 % below", &DeviceOpenings::overshoot, "m")});
 }
 
 }  // namespace
@@ -225,17 +226,18 @@ json release_json(const OpeningResult& r, const Provenance& provenance) {
 std::string release_text(const OpeningResult& r) {
   std::string text = r.interrupted ? "Interrupted: what follows is the best so far.\n\n" : "";
   text += wrapped(finding(r)) + "\n\n";
-  text += release_row("", plain_words, r.best ? "found" : "");
-  text += quantity_row(r, "leaves its contact", &OpeningFigures::release_time, "s", false);
-  text += quantity_row(r, "open for good", &OpeningFigures::settling_time, "s", true);
-  text += quantity_row(r, "residual vibration", &OpeningFigures::residual_vibration, "m", true);
-  text += quantity_row(r, "furthest beyond its open position", &OpeningFigures::overshoot, "m", true);
-  text += release_row("touches again", std::to_string(r.plain.figures.touches),
-                      r.best ? std::to_string(r.best->figures.touches) : "");
+  text += opening_table(
+      "", plain_words, r.best ? "found" : "",
+      {quantity_row(r, "leaves its contact", &OpeningFigures::release_time, "s", false),
+       quantity_row(r, "open for good", &OpeningFigures::settling_time, "s", true),
+       quantity_row(r, "residual vibration", &OpeningFigures::residual_vibration, "m", true),
+       quantity_row(r, "furthest beyond its open position", &OpeningFigures::overshoot, "m", true),
+       {"touches again", std::to_string(r.plain.figures.touches), r.best ? std::to_string(r.best->figures.touches) : ""}});
   if (r.best) {
-    text += "\n" + release_row("parameter", "value", "");
+    std::vector<TextRow> rows;
     for (const auto& [name, value] : r.parameters)
-      text += release_row(name, quantity(value, name.find(".level_") == std::string::npos ? "s" : "V", 4), "");
+      rows.push_back({name, quantity(value, name.find(".level_") == std::string::npos ? "s" : "V", 4)});
+    text += "\n" + opening_table("parameter", "value", "", rows);
   }
   if (r.on_devices) text += "\n" + devices_text(*r.on_devices);
   return text + "\n" + wrapped(remarks(r)) + "\n";

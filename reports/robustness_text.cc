@@ -13,6 +13,7 @@
 #include "reports/robustness_report.h"
 #include "reports/robustness_words.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 
 namespace softland {
 namespace {
@@ -27,27 +28,28 @@ using internal::quantile_text;
 using internal::quantity;
 using internal::share_of;
 using internal::spread_words;
+using internal::text_table;
+using internal::TextColumn;
 using internal::why_no_indices;
 using internal::yield_text;
 
 // Where the spread of the last drive comes from.
 std::string sensitivity_text(const Sensitivity& sensitivity) {
   if (sensitivity.figures.empty()) return {};
-  std::string text = fmt::format("\n{:<34}", "Share of the variance, alone / in all");
+  std::vector<TextColumn> columns{{.head = "Share of the variance, alone / in all", .width = 37, .is_words = true}};
   for (const FigureSensitivity& f : sensitivity.figures)
-    text += internal::right_aligned(std::string(figure_of(f.key).symbol), 18);
-  text += "\n";
+    columns.push_back({.head = std::string(figure_of(f.key).symbol), .width = 18});
+  std::vector<internal::TextRow> rows;
   for (std::size_t i = 0; i < sensitivity.variables.size(); ++i) {
-    text += internal::left_aligned(sensitivity.variables[i], 37);
+    rows.push_back({sensitivity.variables[i]});
     for (const FigureSensitivity& f : sensitivity.figures) {
       const auto& indices = f.estimate.indices;
-      text += internal::right_aligned(
-          indices ? percent(share_of(indices->first_order[i].value)) + " / " + percent(share_of(indices->total[i].value))
-                  : std::string("unknown"),
-          18);
+      rows.back().push_back(indices ? percent(share_of(indices->first_order[i].value)) + " / " +
+                                          percent(share_of(indices->total[i].value))
+                                    : std::string("unknown"));
     }
-    text += "\n";
   }
+  std::string text = "\n" + text_table(columns, rows);
   for (const FigureSensitivity& f : sensitivity.figures) {
     if (!f.estimate.indices) text += wrapped(fmt::format("{}: {}", figure_of(f.key).symbol, why_no_indices(f.estimate))) + "\n";
   }
@@ -59,24 +61,27 @@ std::string knowledge_text(const Robustness& found) {
   if (found.by_knowledge.empty() || found.devices == 0) return {};
   const Calibration& c = found.drives.back().known.calibration();
   const std::string own = calibration_words(c);
-  const std::size_t width = std::max<std::size_t>(34, internal::columns_of(own) + 2);
-  std::string text = "\n" + internal::left_aligned("Known of every device", width) +
-                     fmt::format("{:>24}{:>26}{:>26}\n", "without a rebound", "v_max, 95 % below", "B_H, 95 % below");
+  const std::size_t width = std::max<std::size_t>(34, internal::display_width(own) + 2);
+  std::vector<internal::TextRow> rows;
   const auto row = [&](const std::string& name, const DriveRobustness& d) {
-    text += internal::left_aligned(name, width) + internal::right_aligned(yield_text(d.bounce_free), 24) +
-            internal::right_aligned(quantile_text(quantile_95(d, key_of(&Metrics::largest_impact_velocity)), "m/s"), 26) +
-            internal::right_aligned(quantile_text(quantile_95(d, key_of(&Metrics::major_bounce_height)), "m"), 26) + "\n";
+    rows.push_back({name, yield_text(d.bounce_free),
+                    quantile_text(quantile_95(d, key_of(&Metrics::largest_impact_velocity)), "m/s"),
+                    quantile_text(quantile_95(d, key_of(&Metrics::major_bounce_height)), "m")});
   };
   for (const DriveRobustness& d : found.by_knowledge) row(d.name, d);
   if (is_erring(c)) row(own, found.drives.back());
-  return text;
+  return "\n" + text_table({{.head = "Known of every device", .width = width, .is_words = true},
+                            {.head = "without a rebound", .width = 24},
+                            {.head = "v_max, 95 % below", .width = 26},
+                            {.head = "B_H, 95 % below", .width = 26}},
+                           rows);
 }
 
 // The end of a name tells more of it: of a folder its own name.
 std::string shown_name(const std::string& name, std::size_t columns) {
-  if (internal::columns_of(name) <= columns) return name;
+  if (internal::display_width(name) <= columns) return name;
   std::string end = name;
-  while (internal::columns_of(end) >= columns) {
+  while (internal::display_width(end) >= columns) {
     std::size_t first = 1;
     while (first < end.size() && (static_cast<unsigned char>(end[first]) & 0xC0U) == 0x80U) ++first;  // UTF-8
     end.erase(0, first);
@@ -88,18 +93,19 @@ std::string shown_name(const std::string& name, std::size_t columns) {
 std::string figures_text(const Robustness& found) {
   constexpr std::size_t label = 34, screen = 130, widest = 46;
   std::size_t width = 27;
-  for (const DriveRobustness& d : found.drives) width = std::max(width, std::min(widest, internal::columns_of(d.name) + 2));
+  for (const DriveRobustness& d : found.drives) width = std::max(width, std::min(widest, internal::display_width(d.name) + 2));
   const std::size_t together = (screen - label) / width;
   std::string text;
   for (std::size_t first = 0; first < found.drives.size(); first += together) {
     const std::size_t last = std::min(first + together, found.drives.size());
+    std::vector<TextColumn> columns{{.width = label, .is_words = true}};
+    for (std::size_t d = first; d < last; ++d)
+      columns.push_back({.head = shown_name(found.drives[d].name, width - 2), .width = width});
+    std::vector<internal::TextRow> rows;
     const auto row = [&](std::string_view name, const auto& cell) {
-      std::string line = internal::left_aligned(std::string(name), label);
-      for (std::size_t d = first; d < last; ++d) line += internal::right_aligned(cell(found.drives[d]), width);
-      text += line + "\n";
+      rows.push_back({std::string(name)});
+      for (std::size_t d = first; d < last; ++d) rows.back().push_back(cell(found.drives[d]));
     };
-    if (first > 0) text += "\n";
-    row("", [&](const DriveRobustness& d) { return shown_name(d.name, width - 2); });
     row("devices that close", [](const DriveRobustness& d) { return yield_text(d.closing); });
     if (internal::some_collapse(found))
       row("pulled onto the electrode", [](const DriveRobustness& d) { return yield_text(d.collapsed); });
@@ -107,12 +113,13 @@ std::string figures_text(const Robustness& found) {
     for (const Figure& f : device_figures) {
       if (!internal::is_had(found, f)) continue;
       const bool has_symbol = !f.symbol.empty() && f.symbol.find(' ') == std::string_view::npos;
-      text += fmt::format("{}{}{}\n", f.name, has_symbol ? ", " : "", has_symbol ? f.symbol : "");
+      rows.push_back({fmt::format("{}{}{}", f.name, has_symbol ? ", " : "", has_symbol ? f.symbol : "")});
       for (const std::size_t q : {std::size_t{1}, std::size_t{2}}) {
         row(q == 1 ? "  median" : fmt::format("  {:.0f} % of devices below", 100 * robustness_quantiles[q]),
             [&](const DriveRobustness& d) { return quantile_text(d.figures[f].quantiles[q], f.unit); });
       }
     }
+    text += (first > 0 ? "\n" : "") + text_table(columns, rows);
   }
   return text;
 }

@@ -15,6 +15,7 @@
 #include "reports/quantity.h"
 #include "reports/result_members.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 #include "sampling/statistics.h"
 
 namespace softland {
@@ -157,23 +158,15 @@ std::string seeds_caption(const ResultSeeds& seeds) {
 
 std::string seeds_text(const std::optional<ResultSeeds>& seeds) {
   if (!seeds) return {};
-  std::vector<std::vector<std::string>> rows{heads()};
+  const std::vector<std::string> names = heads();
+  std::vector<TextColumn> columns;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const bool is_words = i == 1 || i + 1 == names.size();
+    columns.push_back({.head = names[i], .is_words = is_words, .gap = i == 0 ? 0U : 2U, .grows = true});
+  }
+  std::vector<internal::TextRow> rows;
   for (const SearchOfSeed& one : seeds->searches) rows.push_back(search_cells(one));
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], columns_of(row[i]));
-  }
-  std::string out = wrapped(seeds_caption(*seeds)) + "\n\n";
-  for (const auto& row : rows) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const bool is_word = i == 1 || i + 1 == row.size();
-      line += (i == 0 ? "" : "  ") + (is_word ? left_aligned(row[i], widths[i]) : right_aligned(row[i], widths[i]));
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    out += line + "\n";
-  }
-  return out;
+  return wrapped(seeds_caption(*seeds)) + "\n\n" + text_table(columns, rows);
 }
 
 std::string seeds_section(const std::optional<ResultSeeds>& seeds) {

@@ -11,21 +11,40 @@
 #include "reports/figure_text.h"
 #include "reports/findings.h"
 #include "reports/seeds_report.h"
+#include "reports/text_table.h"
 
 namespace softland {
 
-std::size_t internal::columns_of(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+namespace {
+
+// Every figure that a run has, as on the page.
+std::string figures_text(const Result& result) {
+  const ResultRun &best = result.best, &baseline = result.baseline;
+  std::vector<internal::TextRow> rows;
+  for (const Figure& f : all_figures) {
+    const double own = internal::figure_of_run(best, f.member), step = internal::figure_of_run(baseline, f.member);
+    if (std::isnan(own) && std::isnan(step)) continue;
+    if (result.is_search) {
+      rows.push_back({f.label(), internal::figure_text(f, step, baseline.errors[f], own),
+                      internal::figure_text(f, own, best.errors[f], step), internal::figure_change(baseline, best, f).words});
+    } else {
+      const std::string cloud = internal::cloud_text(result, f);
+      rows.push_back({f.label(), internal::figure_text(f, own, best.errors[f], Metrics::unset),
+                      !cloud.empty()                  ? cloud
+                      : std::isfinite(best.errors[f]) ? internal::error_text(f, own, best.errors[f])
+                                                      : std::string()});
+    }
+  }
+  std::vector<internal::TextColumn> columns{{.width = 36, .is_words = true}};
+  for (const char* head : {"plain step", "found"}) {
+    if (result.is_search) columns.push_back({.head = head, .width = 16});
+  }
+  if (!result.is_search) columns.push_back({.head = "value", .width = 16});
+  columns.push_back({.head = result.is_search ? "change" : internal::error_heading(result), .is_words = true, .gap = 3});
+  return internal::text_table(columns, rows);
 }
 
-std::string internal::left_aligned(const std::string& text, std::size_t columns) {
-  return text + std::string(columns - std::min(columns, columns_of(text)), ' ');
-}
-
-std::string internal::right_aligned(const std::string& text, std::size_t columns) {
-  return std::string(columns - std::min(columns, columns_of(text)), ' ') + text;
-}
+}  // namespace
 
 std::string wrapped(std::string_view paragraph, std::size_t columns) {
   const std::string clean = printable_line(paragraph);
@@ -36,12 +55,12 @@ std::string wrapped(std::string_view paragraph, std::size_t columns) {
     const std::string_view word = text.substr(0, text.find(' '));
     text.remove_prefix(std::min(text.size(), word.size() + 1));
     if (used > 0) {
-      const bool fits = used + 1 + internal::columns_of(word) <= columns;
+      const bool fits = used + 1 + internal::display_width(word) <= columns;
       out += fits ? ' ' : '\n';
       used = fits ? used + 1 : 0;
     }
     out += word;
-    used += internal::columns_of(word);
+    used += internal::display_width(word);
   }
   return out;
 }
@@ -52,30 +71,9 @@ std::string text_report(const Result& result) {
     out += internal::devices_text(*result.devices) + "\n";
     out += result.devices->better_than_plain_step ? "best.toml on the drawing:\n" : "The plain step on the drawing:\n";
   }
-  const ResultRun &best = result.best, &baseline = result.baseline;
-  const auto aligned = [](const std::string& value) { return internal::right_aligned(value, 16); };
-  out += result.is_search ? fmt::format("{:<36}{:>16}{:>16}   {}\n", "", "plain step", "found", "change")
-                          : fmt::format("{:<36}{:>16}   {}\n", "", "value", internal::error_heading(result));
-  for (const Figure& f : all_figures) {
-    const double own = internal::figure_of_run(best, f.member), step = internal::figure_of_run(baseline, f.member);
-    if (std::isnan(own) && std::isnan(step)) continue;  // as on the page
-    out += internal::left_aligned(f.label(), 36);
-    if (result.is_search) {
-      const internal::Change change = internal::figure_change(baseline, best, f);
-      out += aligned(internal::figure_text(f, step, baseline.errors[f], own)) +
-             aligned(internal::figure_text(f, own, best.errors[f], step)) + "   " + change.words;
-    } else {
-      const std::string cloud = internal::cloud_text(result, f);
-      const std::string shown = !cloud.empty()                  ? cloud
-                                : std::isfinite(best.errors[f]) ? internal::error_text(f, own, best.errors[f])
-                                                                : std::string();
-      out += aligned(internal::figure_text(f, own, best.errors[f], Metrics::unset)) + "   " + shown;
-    }
-    while (!out.empty() && out.back() == ' ') out.pop_back();
-    out += "\n";
-  }
+  out += figures_text(result);
   // Of a winner that bounces there is nothing to confirm.
-  const bool lands_softly = result.is_search && internal::figure_of_run(best, &Metrics::bounce_count) == 0;
+  const bool lands_softly = result.is_search && internal::figure_of_run(result.best, &Metrics::bounce_count) == 0;
   if (const std::string checks = internal::checks_caption(result); lands_softly && !checks.empty())
     out += "\n" + wrapped(checks) + "\n";
   if (const std::string words = internal::limit_words(result); !words.empty()) out += "\n" + wrapped(words) + "\n";

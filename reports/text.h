@@ -17,14 +17,4 @@ namespace softland {
 /// what acts on a terminal are escaped: they come from names of files and folders.
 [[nodiscard]] std::string wrapped(std::string_view paragraph, std::size_t columns = 100);
 
-namespace internal {
-
-/// What a UTF-8 text takes on a terminal.
-[[nodiscard]] std::size_t columns_of(std::string_view text);
-/// Filled up with blanks to so many columns.
-[[nodiscard]] std::string left_aligned(const std::string& text, std::size_t columns);
-[[nodiscard]] std::string right_aligned(const std::string& text, std::size_t columns);
-
-}  // namespace internal
-
 }  // namespace softland

@@ -17,6 +17,7 @@
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 #include "reports/tuning_lines.h"
 #include "waveforms/export.h"
 
@@ -434,20 +435,22 @@ std::string tuning_text(const TuningReport& report) {
   std::string text = report.end == TuningEnd::interrupted ? "Interrupted: what follows is what there is.\n\n" : "";
   text += wrapped(main + rest) + "\n";
   if (report.broken_assumption) text += "\n" + wrapped(*report.broken_assumption) + "\n";
-  text += fmt::format("\n{:>8}{:>28}{:>12}{:>14}\n", "closing", "touch expected", "touch", "bounces");
+  std::vector<internal::TextRow> rows;
   for (const TunedClosing& one : report.closings) {
     const std::optional<double> touch = first_touch(one.record);
     const std::optional<int> count = bounce_count(one.record);
-    text += internal::right_aligned(std::to_string(one.shot.number), 8) +
-            internal::right_aligned(range_words(one.shot.predicted.touch_low, one.shot.predicted.touch_high), 28) +
-            internal::right_aligned(touch ? quantity(*touch, "s", 4) : "—", 12) +
-            internal::right_aligned(!one.record.error.empty() ? "no record"
-                                    : !touch                  ? "stayed open"
-                                    : count                   ? std::to_string(*count)
-                                                              : "?",
-                                    14) +
-            "\n";
+    rows.push_back({std::to_string(one.shot.number), range_words(one.shot.predicted.touch_low, one.shot.predicted.touch_high),
+                    touch ? quantity(*touch, "s", 4) : "—",
+                    !one.record.error.empty() ? "no record"
+                    : !touch                  ? "stayed open"
+                    : count                   ? std::to_string(*count)
+                                              : "?"});
   }
+  text += "\n" + internal::text_table({{.head = "closing", .width = 8},
+                                       {.head = "touch expected", .width = 28},
+                                       {.head = "touch", .width = 12},
+                                       {.head = "bounces", .width = 14}},
+                                      rows);
   return text + "\n" + wrapped("Expected of the waveform kept: " + expected_words(report.kept.predicted) + ".") + "\n";
 }
 

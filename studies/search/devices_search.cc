@@ -376,7 +376,8 @@ RobustCost DevicesSearch::verdict_devices(const KnownUnits& known) {
 const GaugedEnsemble& DevicesSearch::gauged(const Calibration& knowledge) {
   std::optional<GaugedEnsemble>& all = knowledge.time_error ? gauged_by_time_ : gauged_by_pull_in_;
   if (!all)
-    all = gauge_all(Ensemble(first().given, devices_.verdict, options_.seed), Gauges::of(knowledge), options_.jobs, watch_);
+    all = gauge_all(Ensemble(first().given, devices_.verdict, options_.seed), Gauges::of(knowledge), compared_precision,
+                    options_.jobs, watch_);
   return *all;
 }
 

@@ -68,10 +68,10 @@ bool is_about_steady_force(const SearchSetting& setting, const RobustAim& aim) {
 
 }  // namespace
 
-GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, int jobs, const Watch& watch) {
+GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, double precision, int jobs, const Watch& watch) {
   constexpr std::size_t together = 16;
   GaugedEnsemble all{.devices = std::vector<SampledDevice>(ensemble.size()), .exact = std::vector<DeviceUnits>(ensemble.size())};
-  const DeviceMeter meter(ensemble.nominal(), gauges);
+  const DeviceMeter meter(ensemble.nominal(), gauges, precision);
   const auto task = [&](std::size_t chunk) {
     DeviceBuilder builder(ensemble);
     for (std::size_t k = chunk * together; k < std::min<std::size_t>(ensemble.size(), (chunk + 1) * together); ++k) {
@@ -100,7 +100,7 @@ BuiltEnsemble known_as(GaugedEnsemble gauged, const KnownUnits& known, std::uint
 }
 
 BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs, const Watch& watch) {
-  return known_as(gauge_all(ensemble, Gauges::of(known.calibration()), jobs, watch), known, seed);
+  return known_as(gauge_all(ensemble, Gauges::of(known.calibration()), compared_precision, jobs, watch), known, seed);
 }
 
 BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known, std::uint64_t count, std::uint64_t seed,

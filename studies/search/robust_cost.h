@@ -52,8 +52,12 @@ struct GaugedEnsemble {
   std::vector<SampledDevice> devices;
   std::vector<DeviceUnits> exact;  ///< of a device that cannot be described: 1
 };
-/// Throws Interrupted where `watch` asks to stop.
-[[nodiscard]] GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, int jobs, const Watch& watch = {});
+/// `precision`: of pull-in voltages, relative. Throws Interrupted where `watch` asks to stop.
+[[nodiscard]] GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, double precision, int jobs,
+                                       const Watch& watch = {});
+/// Of pull-in voltages where devices are compared: far finer than any instrument. Of a film that gives way slowly, which is
+/// followed for long just above its pull-in voltage, it takes a sixth of the time that dynamic_pull_in_precision does.
+inline constexpr double compared_precision = 1e-5;
 
 /// Devices that are built and measured.
 struct BuiltEnsemble {

@@ -12,6 +12,7 @@
 #include "reports/result_reader.h"
 #include "reports/sketch.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 #include "sample_result.h"
 
 namespace softland {
@@ -174,7 +175,7 @@ TEST(Sketch, HoldsAllOfItsWords) {
     ASSERT_TRUE(std::regex_search(drawing, wide, box));
     int found = 0;
     for (auto at = std::sregex_iterator(drawing.begin(), drawing.end(), text); at != std::sregex_iterator(); ++at, ++found)
-      EXPECT_LE(std::stod((*at)[1]) + letter * static_cast<double>(internal::columns_of((*at)[2].str())), std::stod(wide[1]))
+      EXPECT_LE(std::stod((*at)[1]) + letter * static_cast<double>(internal::display_width((*at)[2].str())), std::stod(wide[1]))
           << (*at)[2];
     EXPECT_GE(found, 2) << structure;
   }

@@ -15,6 +15,7 @@
 
 #include "reports/box_and_chaos_report.h"
 #include "reports/text.h"
+#include "reports/text_table.h"
 #include "studies/closing/auto_settings.h"
 
 namespace softland::robustness_report_test {
@@ -329,7 +330,7 @@ TEST(RobustnessReport, FitsOnATerminalWithManyDrivesOfLongNames) {
     s.found.drives.back().name = std::string(60, 'x') + "/of_run_" + std::to_string(k);
   }
   std::istringstream lines(robustness_text(s.report()));
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(internal::columns_of(line), 150U) << line;
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(internal::display_width(line), 150U) << line;
   for (int k = 0; k < 9; ++k) EXPECT_THAT(robustness_text(s.report()), HasSubstr("/of_run_" + std::to_string(k)));
 }
 
