@@ -29,6 +29,7 @@ struct Method {
 struct Run {
   Point start;
   double step = 0.25;      ///< first step as a fraction of the box
+  double population = 1;   ///< points of a generation, over the usual number
   std::uint64_t seed = 0;  ///< of the library's random numbers
 };
 

@@ -37,9 +37,9 @@ VectorXd recombination_weights(Eigen::Index lambda) {
 
 // The constants of the strategy, as the source names and chooses them.
 struct Strategy {
-  explicit Strategy(Eigen::Index n)
+  Strategy(Eigen::Index n, double population)
       : dimension(static_cast<double>(n)),
-        lambda(4 + static_cast<Eigen::Index>(3 * std::log(dimension))),
+        lambda(static_cast<Eigen::Index>(population * (4 + std::floor(3 * std::log(dimension))))),
         weights(recombination_weights(lambda)),
         mu_eff(1 / weights.squaredNorm()),
         c_sigma((mu_eff + 2) / (dimension + mu_eff + 5)),
@@ -121,7 +121,7 @@ class Distribution {
 
 RunReport run_cma_es(const Run& run, BudgetedObjective& budgeted) {
   const auto n = static_cast<Eigen::Index>(run.start.size());
-  const Strategy strategy(n);
+  const Strategy strategy(n, run.population);
   Distribution points(strategy, VectorXd::Map(run.start.data(), n), run.step);
   const auto evaluate = [&](const VectorXd& point) { return budgeted({point.data(), run.start.size()}).value; };
   std::uint64_t drawn = 0;

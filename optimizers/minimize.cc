@@ -40,6 +40,8 @@ void check(const Problem& problem, const OptimizerOptions& options) {
   require(options.max_evaluations > 0, fmt::format("max_evaluations = {} must be positive", options.max_evaluations));
   require(options.max_seconds > 0, fmt::format("max_seconds = {} must be positive", options.max_seconds));
   require(options.step > 0 && options.step <= 1, fmt::format("step = {} must be in (0, 1]", options.step));
+  require(options.population >= 1 && options.population <= 1000,
+          fmt::format("population = {} must be in [1, 1000]", options.population));
   require(options.jobs >= 1, fmt::format("jobs = {} must be at least 1", options.jobs));
   require(!std::isnan(options.target), "target must not be NaN");
 }
@@ -50,7 +52,7 @@ constexpr std::uint64_t infeasible_starts_skipped = 20;
 // Runs that end without a single new evaluation: the method has nothing more to offer, from anywhere.
 constexpr int idle_runs_allowed = 20;
 
-RunReport search_single_method(EvaluationRecord& record, const Method& method, double step) {
+RunReport search_single_method(EvaluationRecord& record, const Method& method, const OptimizerOptions& options) {
   RunReport report;
   const auto body = [&](BudgetedObjective& budgeted) {
     int idle_runs = 0;
@@ -59,7 +61,8 @@ RunReport search_single_method(EvaluationRecord& record, const Method& method, d
     for (std::uint64_t k = 0; !budgeted.over() && idle_runs < idle_runs_allowed; ++k) {
       const Run run{
           .start = k < given ? record.starts()[k] : sobol_points(record.seed(), record.dimension(), k - given, 1).front(),
-          .step = step,
+          .step = options.step,
+          .population = options.population,
           .seed = random_bits(record.seed(), Stream::library_seed, k)};
       const long before = budgeted.evaluations();
       if (method.reach == Reach::global) {
@@ -129,7 +132,7 @@ OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options
     internal::search_and_finish(record, method);
     return record.result(true, "");
   }
-  const internal::RunReport report = internal::search_single_method(record, method, options.step);
+  const internal::RunReport report = internal::search_single_method(record, method, options);
   return record.result(report.converged, report.message);
 }
 

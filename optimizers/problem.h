@@ -61,8 +61,9 @@ struct OptimizerOptions {
   long max_evaluations = 2000;
   double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
   std::uint64_t seed = 1;
-  double step = 0.25;  ///< first step of a local method, of the box; `auto` takes its own
-  int jobs = 1;        ///< threads, the calling one among them; `auto` makes use of them
+  double step = 0.25;     ///< first step of a local method, of the box; `auto` takes its own
+  double population = 1;  ///< points of a generation of cma-es, over its usual number
+  int jobs = 1;           ///< threads, the calling one among them; `auto` makes use of them
   /// The starts are the best of an earlier search: with a gradient `auto` spends most on hops from the best of them.
   bool goes_on = false;
   /// The objective is smooth around the starts: `auto` follows its gradient from them at once.

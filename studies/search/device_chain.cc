@@ -56,9 +56,13 @@ ChainEnd search_chain(const StagedCost& cost, const std::vector<Variable>& varia
     if (ends || best.closings >= chain.closings) enough = true;
     return tried.cost;
   };
-  static_cast<void>(minimize(
-      {.variables = variables, .objective = objective, .starts = {chain.start}},
-      {.optimizer = "cma-es", .max_evaluations = chain.closings, .seed = chain.seed, .step = chain.step, .stop = &enough}));
+  static_cast<void>(
+      minimize({.variables = variables, .objective = objective, .starts = {chain.start}}, {.optimizer = "cma-es",
+                                                                                           .max_evaluations = chain.closings,
+                                                                                           .seed = chain.seed,
+                                                                                           .step = chain.step,
+                                                                                           .population = chain.population,
+                                                                                           .stop = &enough}));
   return best;
 }
 

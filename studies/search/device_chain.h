@@ -49,8 +49,9 @@ inline constexpr std::array<std::size_t, 2> stages{8, 32};
 struct Chain {
   std::vector<double> start;
   std::size_t devices = 0;
-  long closings = 0;  ///< at the most
-  double step = 0.1;  ///< first one, of the box
+  long closings = 0;      ///< at the most
+  double step = 0.1;      ///< first one, of the box
+  double population = 1;  ///< of a generation, over the usual number
   std::uint64_t seed = 1;
   int jobs = 1;  ///< for one candidate; does not change the result
 };

@@ -167,6 +167,7 @@ void DevicesSearch::reserve_for_verdict(double closing) {
 
 RaceOptions DevicesSearch::race_options() {
   return {.closings = devices_.closings,
+          .are_a_budget = devices_.are_a_budget,
           .seed = options_.seed,
           .jobs = options_.jobs,
           .stop = options_.stop,

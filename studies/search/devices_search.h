@@ -26,6 +26,7 @@ struct ForDevicesOptions {
   /// Families of the race; empty: raced_families, as far as the scene has room for them.
   std::string families = {};
   long closings = race_closings;  ///< of the race
+  bool are_a_budget = false;      ///< it takes no more of them where many devices land
 };
 
 /// A row of the first table: drives of one kind on the fresh devices.

@@ -313,6 +313,7 @@ void share_budget(OptimizeOptions& options, ForDevicesOptions& devices) {
   const long all = options.max_evaluations;
   options.max_evaluations = std::max(1L, all / share_of_drawing);
   devices.closings = all - options.max_evaluations;
+  devices.are_a_budget = true;
 }
 
 ForDevicesResult optimize_for_devices(const SceneFile& file, const OptimizeOptions& options, const ForDevicesOptions& devices) {

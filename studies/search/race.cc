@@ -30,6 +30,7 @@ constexpr std::size_t most_again = 2;
 constexpr std::size_t finalists = 3;
 constexpr double enough_land = 0.25, many_land = 0.4;  // of the devices: what is ranked, and gone on with, by its share
 constexpr double worth_going_on = 0.01;                // of the devices
+constexpr double population_by_share = 2, longer_where_many_land = 1.7;
 constexpr std::size_t scouting_devices = 16;
 constexpr std::uint64_t box_points = 32;
 constexpr double least_length = 0.25;  // of the default: below it searches end before they tell anything
@@ -63,14 +64,18 @@ class Race {
     if (length < least_length) return result;
     long planned = 0;
     for (const Rung& rung : rungs) planned += rung.closings;
+    alone_ = all_rungs;
+    const double longer = alone_ || options_.are_a_budget ? length : longer_where_many_land * length;
     planned_ = all_rungs ? length * static_cast<double>(planned) : static_cast<double>(options_.closings);
     begin(runners, begun);
     std::erase_if(runners, [](const Runner& r) { return r.x.empty(); });
     bool many = false;
     for (std::size_t k = 0; k < rungs.size() && !runners.empty() && !over(); ++k) {
-      search(runners, rungs[k], length, k);
+      search(runners, rungs[k], many ? longer : length, k);
       many = judge(runners, rungs[std::min(k + 1, rungs.size() - 1)].devices, k == 0 ? enough_land : many_land);
       if (k > 0) add(result, runners);
+      if (k == 0 && many)
+        planned_ = static_cast<double>(closings_) + longer / length * (planned_ - static_cast<double>(closings_));
       if (all_rungs) continue;
       runners = k == 0 ? survivors(std::move(runners), many) : best(std::move(runners), many);
       if (many) continue;
@@ -80,7 +85,7 @@ class Race {
     runners.resize(1);
     for (std::size_t again = 0; many && again < most_again && !over(); ++again) {
       const double before = runners[0].bounce_free;
-      search(runners, last_again, length, rungs.size() + again);
+      search(runners, last_again, longer, rungs.size() + again);
       judge(runners, last_again.devices, many_land);
       add(result, runners);
       if (!(runners[0].bounce_free > before + worth_going_on)) break;
@@ -170,6 +175,7 @@ class Race {
                                              .devices = devices,
                                              .closings = static_cast<long>(length * static_cast<double>(rung.closings)),
                                              .step = rung.step,
+                                             .population = r.by_share && !alone_ ? population_by_share : 1,
                                              .seed = seed_of(number, r),
                                              .jobs = options_.jobs},
                                             [&](const Point&, double, long closings) {
@@ -244,6 +250,7 @@ class Race {
   const RaceAims& aims_;
   const RaceOptions& options_;
   std::vector<ParameterBlock> blocks_;  // of the families
+  bool alone_ = false;                  // one search, not a race
   std::atomic<long> closings_ = 0;
   double planned_ = 1;
 };

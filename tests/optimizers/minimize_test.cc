@@ -275,6 +275,7 @@ TEST(BadInput, IsRefusedWithValueAndRule) {
   EXPECT_EQ(with([](auto&, auto& o) { o.max_seconds = 0; }), "max_seconds = 0 must be positive");
   EXPECT_EQ(with([](auto&, auto& o) { o.max_seconds = std::nan(""); }), "max_seconds = nan must be positive");
   EXPECT_EQ(with([](auto&, auto& o) { o.jobs = 0; }), "jobs = 0 must be at least 1");
+  EXPECT_EQ(with([](auto&, auto& o) { o.population = 0.5; }), "population = 0.5 must be in [1, 1000]");
   EXPECT_EQ(with([](auto&, auto& o) { o.target = std::nan(""); }), "target must not be NaN");
 }
 

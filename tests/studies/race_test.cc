@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -20,10 +21,9 @@ namespace {
 
 class Race : public testing::Test {
  protected:
-  Race()
-      : settings_(search_settings(
-            gold({"simulate.duration=150 us", "structure.modes=2", "waveform.main.level=18 V", "driver.main.max_voltage=25 V"}),
-            Target::bounce, Actuator::electrostatic, "pulse+catch", {})),
+  explicit Race(const SceneFile& file = gold({"simulate.duration=150 us", "structure.modes=2", "waveform.main.level=18 V",
+                                              "driver.main.max_voltage=25 V"}))
+      : settings_(search_settings(file, Target::bounce, Actuator::electrostatic, "pulse+catch", {})),
         cost_(settings_.front(), aims_.tail, own_devices(settings_.front(), KnownUnits(), 32, 5, 0, 1, {})) {}
 
   RaceResult run(RaceOptions options) {
@@ -115,6 +115,28 @@ TEST_F(Race, OfTooFewClosingsIsNone) {
   const RaceResult none = race(settings_, cost_, aims_, {.closings = 1000});
   EXPECT_TRUE(none.racers.empty());
   EXPECT_EQ(none.closings, 0);
+}
+
+// A nanometre switch, whose devices land by the half, and more where they differ less.
+class RaceOfNearlyEqualDevices : public Race {
+ protected:
+  RaceOfNearlyEqualDevices()
+      : Race(scene("nem-tin.toml", {"spread.\"structure.thickness\".cov=0.2 %", "spread.\"structure.youngs_modulus\".cov=0.2 %",
+                                    "spread.gaps.cov=0.2 %"})) {}
+};
+
+TEST_F(RaceOfNearlyEqualDevices, TakesLongerUnlessItsClosingsAreABudget_optimized) {
+  std::mutex guard;
+  std::vector<double> parts;
+  const auto note = [&](double part) {
+    const std::scoped_lock lock(guard);
+    parts.push_back(part);
+  };
+  const RaceResult longer = run({.seed = 1, .jobs = 2, .progress = note}),
+                   shorter = run({.are_a_budget = true, .seed = 1, .jobs = 2});
+  EXPECT_GT(static_cast<double>(longer.closings), 1.3 * static_cast<double>(shorter.closings));
+  EXPECT_GT(longer.racers.front().bounce_free, 0.5);
+  EXPECT_LT(parts[parts.size() * 8 / 10], 0.999) << "what is to come is known";
 }
 
 }  // namespace
