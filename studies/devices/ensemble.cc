@@ -164,7 +164,7 @@ DeviceMeter::DeviceMeter(const PreparedScene& nominal, const Gauges& gauges, dou
   });
   const std::string name = searched_electrode(nominal.scene.device);
   electrode_ = searched_drive(nominal.scene.device);
-  pull_in_ = pull_in(nominal.model);
+  pull_in_ = pull_in(nominal.model, std::min(precision, dynamic_pull_in_precision));
   require(std::isfinite(pull_in_), [&] { return fmt::format("electrode '{}' has no pull-in voltage to calibrate by", name); });
   if (gauges.closing_time) learn_times();
 }
@@ -208,16 +208,16 @@ double DeviceMeter::piezo_unit(const Switch& model) {
 
 double DeviceMeter::frequency() const { return nominal_->model.basis().angular_frequencies()[0] / (2 * pi); }
 
-double DeviceMeter::pull_in(const Switch& model) const {
+double DeviceMeter::pull_in(const Switch& model, double precision) const {
   constexpr double looser = 10;  // the integrator: no measurement is as good
   const std::vector<double> bias = bias_of(nominal_->scene, electrode_);
   const StaticPullIn statically = static_pull_in(model, electrode_, bias);
-  return dynamic_pull_in(model, electrode_, statically, bias, {}, looser * precision_, precision_).voltage;
+  return dynamic_pull_in(model, electrode_, statically, bias, {}, looser * precision, precision).voltage;
 }
 
 DeviceUnits DeviceMeter::exact(const Switch& model) const {
   DeviceUnits units = gauges_.closing_time ? told_by(time_of(model, closing_step * pull_in_))
-                      : gauges_.pull_in    ? DeviceUnits{.volts = pull_in(model) / pull_in_}
+                      : gauges_.pull_in    ? DeviceUnits{.volts = pull_in(model, precision_) / pull_in_}
                                            : DeviceUnits{};
   units.time = nominal_->model.basis().angular_frequencies()[0] / model.basis().angular_frequencies()[0];
   if (const double unit = piezo_unit(nominal_->model); unit > 0) units.piezo = unit / piezo_unit(model);
