@@ -19,8 +19,9 @@
 namespace softland {
 namespace {
 
-// The files read so far and the names they were read by. By device and inode, since other names, links and relative paths lead to the
-// same file; with the names, since an inode is given to another file once its own is deleted, which a long process lives to see.
+// The files read so far and the names they were read by. By device and inode, since other names, links and relative paths lead to
+// the same file; with the names, since an inode is given to another file once its own is deleted, which a long process lives to
+// see.
 using Identity = std::pair<dev_t, ino_t>;
 std::mutex guard;
 std::map<Identity, std::set<std::filesystem::path>>& files_read() {
@@ -96,7 +97,8 @@ bool was_read(const std::filesystem::path& path) {
   if (!file) return false;
   const std::lock_guard lock(guard);
   const auto found = files_read().find(*file);
-  return found != files_read().end() && std::ranges::any_of(found->second, [&](const auto& name) { return identity_of(name) == file; });
+  return found != files_read().end() &&
+         std::ranges::any_of(found->second, [&](const auto& name) { return identity_of(name) == file; });
 }
 
 }  // namespace softland

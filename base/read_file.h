@@ -17,8 +17,8 @@ inline constexpr std::size_t largest_file = std::size_t{64} << 20;
 /// For files that others read, such as databases.
 void mark_as_read(const std::filesystem::path& path);
 
-/// Whether this is a file that was read in this process, by read_file() or as mark_as_read() was told, and that still bears the name it
-/// was read by, among whatever others: results must not replace it.
+/// Whether this is a file that was read in this process, by read_file() or as mark_as_read() was told, and that still bears the
+/// name it was read by, among whatever others: results must not replace it.
 [[nodiscard]] bool was_read(const std::filesystem::path& path);
 
 }  // namespace softland

@@ -99,7 +99,7 @@ struct PullInVoltages {
 inline constexpr double default_max_voltage = 1.5;
 
 struct Drives {
-  std::map<std::string, Waveform> waveforms;
+  DriveWaveforms waveforms;
   std::map<std::string, double> before;        ///< what is given of them before t = 0 [V]; others stand at 0 V
   std::map<std::string, DriverLimits> limits;  ///< only drives that have limits (electrodes always do, by default [0, 1.5 Vdp])
   std::map<std::string, DriverModel> models;   ///< only sources that are not ideal

@@ -56,7 +56,8 @@ std::shared_ptr<const PreparedScene> PyScene::ready(bool default_limits, Run& ru
   return kept;
 }
 
-std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const PreparedScene>& prepared, const Waveforms& waveforms) {
+std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const PreparedScene>& prepared,
+                                               const DriveWaveforms& waveforms) {
   if (waveforms.empty()) return prepared;
   auto own = std::make_shared<PreparedScene>(*prepared);
   const std::vector<std::string> names = own->drive_names();

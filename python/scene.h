@@ -58,12 +58,11 @@ struct PyWaveform {
 };
 
 /// What stands in the place of a scene's waveforms, by drive.
-using Waveforms = std::map<std::string, Waveform>;
 /// From a Python dict of softland._softland.Waveform.
-[[nodiscard]] Waveforms waveforms_of(const pybind11::dict& given, Run& run);
+[[nodiscard]] DriveWaveforms waveforms_of(const pybind11::dict& given, Run& run);
 
 /// A scene like this one under other waveforms. Throws InvalidInput for a drive that it has not, and beyond its limits.
 [[nodiscard]] std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const PreparedScene>& prepared,
-                                                             const Waveforms& waveforms);
+                                                             const DriveWaveforms& waveforms);
 
 }  // namespace softland::python

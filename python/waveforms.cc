@@ -16,8 +16,8 @@ namespace softland::python {
 
 namespace py = pybind11;
 
-Waveforms waveforms_of(const py::dict& given, Run&) {
-  Waveforms all;
+DriveWaveforms waveforms_of(const py::dict& given, Run&) {
+  DriveWaveforms all;
   for (const auto& [drive, waveform] : given) all[drive.cast<std::string>()] = waveform.cast<const PyWaveform&>().value;
   return all;
 }

@@ -97,7 +97,7 @@ double ToldShot::last_row() const {
 std::vector<Waveform> ToldShot::waveforms(const PreparedScene& nominal) const {
   std::vector<std::string> names = nominal.drive_names();
   std::erase(names, std::string(dispersion_drive));
-  std::map<std::string, Waveform> all;
+  DriveWaveforms all;
   for (const auto& [name, table] : drives) {
     require(std::find(names.begin(), names.end(), name) != names.end(), [&, &name = name] {
       return fmt::format("drives.{}: there is no such drive; there are {}", shortened(name), fmt::join(names, ", "));

@@ -162,7 +162,7 @@ std::map<std::string, std::string> TuningSession::files(TuningEnd end, const Pro
   const TuningReport now = report(end);
   const PreparedScene& scene = tuner().scene();
   const SentSignals kept = sent_signals(scene, now.kept.waveforms);
-  std::map<std::string, Waveform> waveforms;
+  DriveWaveforms waveforms;
   const std::vector<std::string> names = scene.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (kept.signals.contains(names[k])) waveforms.emplace(names[k], now.kept.waveforms[k]);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,6 +24,8 @@
 namespace softland {
 
 using Waveform = std::variant<Step, Harmonic, Pulse, Table, SCurve, Chirp, BSpline, Sines, Own>;
+/// Waveforms by the name of their drive, of some of a scene's drives or of all.
+using DriveWaveforms = std::map<std::string, Waveform>;
 /// Those that a scene can hold: all but what is made outside softland, which is the last.
 inline constexpr std::size_t families_of_scenes = std::variant_size_v<Waveform> - 1;
 

@@ -21,8 +21,8 @@ Step step_of(const PreparedScene& given, const std::string& drive) {
 
 }  // namespace
 
-std::map<std::string, Waveform> plain_step(const PreparedScene& prepared, Actuator actuator) {
-  std::map<std::string, Waveform> plain;
+DriveWaveforms plain_step(const PreparedScene& prepared, Actuator actuator) {
+  DriveWaveforms plain;
   if (actuator != Actuator::pzt) {
     const std::string electrode = searched_electrode(prepared.scene.device);
     plain[electrode] = step_of(prepared, electrode);

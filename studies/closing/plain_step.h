@@ -1,7 +1,6 @@
 // The drive that every other one is compared with: each voltage at its hold level at once.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -14,7 +13,7 @@ namespace softland {
 /// The waveforms [V] that take the place of the scene's: for an actuator with electrodes, steps to the hold levels that the scene
 /// describes, as steep as the driver permits, and electrodes that brake at 0 V; the piezo at 0 V, unless nothing else drives,
 /// when it steps to its own. Throws InvalidInput where an electrode is needed and there is none that pulls in.
-[[nodiscard]] std::map<std::string, Waveform> plain_step(const PreparedScene& prepared, Actuator actuator);
+[[nodiscard]] DriveWaveforms plain_step(const PreparedScene& prepared, Actuator actuator);
 
 /// Whether the signals are the same, one by one.
 [[nodiscard]] bool same_drives(const std::vector<Signal>& a, const std::vector<Signal>& b);

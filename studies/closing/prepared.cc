@@ -21,7 +21,7 @@ std::vector<std::string> PreparedScene::drive_names() const {
   return names;
 }
 
-std::vector<Waveform> PreparedScene::in_drive_order(const std::map<std::string, Waveform>& waveforms) const {
+std::vector<Waveform> PreparedScene::in_drive_order(const DriveWaveforms& waveforms) const {
   std::vector<Waveform> result;
   for (const std::string& name : drive_names()) {
     const auto found = waveforms.find(name);
@@ -96,7 +96,7 @@ std::map<std::string, PullInVoltages> PreparedScene::voltage_units() const {
   return units;
 }
 
-std::string begins_elsewhere(const std::map<std::string, Waveform>& waveforms, const std::map<std::string, double>& before,
+std::string begins_elsewhere(const DriveWaveforms& waveforms, const std::map<std::string, double>& before,
                              const PreparedScene& scene) {
   for (const auto& [drive, waveform] : waveforms) {
     const auto found = before.find(drive);

@@ -51,7 +51,7 @@ struct PreparedScene {
   /// Names of the drives in the order of Switch::drives().
   [[nodiscard]] std::vector<std::string> drive_names() const;
   /// One waveform per drive in that order; what has none stays at 0 V.
-  [[nodiscard]] std::vector<Waveform> in_drive_order(const std::map<std::string, Waveform>& waveforms) const;
+  [[nodiscard]] std::vector<Waveform> in_drive_order(const DriveWaveforms& waveforms) const;
   /// What a drive stands at before t = 0 [V].
   [[nodiscard]] double before(const std::string& drive) const;
   /// The same of every drive, in that order.
@@ -86,8 +86,8 @@ struct PreparedScene {
 
 /// Why waveforms of a scene whose drives stand at `before` do not begin as those of this one do; empty where they do. `before`:
 /// by drive, what is not there stands at 0 V.
-[[nodiscard]] std::string begins_elsewhere(const std::map<std::string, Waveform>& waveforms,
-                                           const std::map<std::string, double>& before, const PreparedScene& scene);
+[[nodiscard]] std::string begins_elsewhere(const DriveWaveforms& waveforms, const std::map<std::string, double>& before,
+                                           const PreparedScene& scene);
 
 /// Integrator tolerance and quadrature that deliver a relative `accuracy` of t_i, v_i, B_H and the peak force.
 [[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: with a compressible film

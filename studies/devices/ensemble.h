@@ -119,8 +119,8 @@ class DeviceMeter {
  public:
   /// Keeps a reference to `nominal`, of which it measures the electrode that closes the switch. Throws InvalidInput where there
   /// is none, or it has no pull-in voltage, and one of the gauges needs it; and where a piezo is asked for that the switch has
-  /// not, or that does not move its contact point. `precision`: of pull-in voltages, relative; that
-  /// of the nominal device is found to dynamic_pull_in_precision at least.
+  /// not, or that does not move its contact point. `precision`: of pull-in voltages, relative; that of the nominal device is
+  /// found to dynamic_pull_in_precision at least.
   DeviceMeter(const PreparedScene& nominal, const Gauges& gauges, double precision = dynamic_pull_in_precision);
   /// Of the nominal device [V], [Hz].
   [[nodiscard]] double pull_in() const { return pull_in_; }

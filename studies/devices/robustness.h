@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,14 +45,14 @@ struct Yield {
 
 struct DriveRobustness {
   std::string name;
-  std::map<std::string, Waveform> waveforms;  ///< of the nominal device, in volts
-  KnownUnits known = {};                      ///< of the devices, whose units they are in
-  std::vector<DeviceOutcome> outcomes;        ///< by device
-  PerFigure<FigureStatistics> figures;        ///< of device_figures
-  Yield closing;                              ///< the contact is reached, and the run could be followed
-  Yield collapsed;                            ///< the beam is pulled onto the electrode
-  Yield bounce_free;                          ///< the contact is reached, and it settles without a significant rebound
-  std::vector<std::size_t> worst;             ///< devices, the highest rebound first; failures before all
+  DriveWaveforms waveforms;             ///< of the nominal device, in volts
+  KnownUnits known = {};                ///< of the devices, whose units they are in
+  std::vector<DeviceOutcome> outcomes;  ///< by device
+  PerFigure<FigureStatistics> figures;  ///< of device_figures
+  Yield closing;                        ///< the contact is reached, and the run could be followed
+  Yield collapsed;                      ///< the beam is pulled onto the electrode
+  Yield bounce_free;                    ///< the contact is reached, and it settles without a significant rebound
+  std::vector<std::size_t> worst;       ///< devices, the highest rebound first; failures before all
 };
 
 struct RobustnessOptions {
@@ -102,8 +101,8 @@ struct DeviceCourse {
 /// A drive to be judged.
 struct NamedDrive {
   std::string name;
-  std::map<std::string, Waveform> waveforms;  ///< in volts
-  Calibration calibration = {};               ///< none: every device gets the volts of the nominal one
+  DriveWaveforms waveforms;      ///< in volts
+  Calibration calibration = {};  ///< none: every device gets the volts of the nominal one
 };
 
 /// The drives on the devices of the spread of `nominal`, and the plain step to the same hold levels before them. Throws

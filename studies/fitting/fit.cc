@@ -175,7 +175,7 @@ class Instruments {
   [[nodiscard]] std::vector<Waveform> waveforms_of(const BenchMeasurement& m) const {
     const PreparedScene& p = device_.nominal;
     if (*m.waveform == "scene") return p.in_drive_order(p.drives.waveforms);
-    std::map<std::string, Waveform> all;
+    DriveWaveforms all;
     std::string first_fault;
     for (const std::string& name : p.drive_names()) {
       try {

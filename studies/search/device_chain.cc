@@ -15,7 +15,7 @@ constexpr std::size_t fewest_remembered = 5;
 }  // namespace
 
 StagedCost::Tried StagedCost::tried(const std::vector<double>& x, std::size_t devices, double hopeless, int jobs) const {
-  const std::map<std::string, Waveform> searched = setting_.space.waveforms(x);
+  const DriveWaveforms searched = setting_.space.waveforms(x);
   if (!setting_.is_allowed(searched)) return {};
   const EvaluationKey key{.x = x, .devices = devices, .seed = seed_, .hopeless = hopeless};
   if (memory_ != nullptr) {

@@ -178,12 +178,12 @@ RaceOptions DevicesSearch::race_options() {
           .progress = [this](double part) { watch_.tell("searching for the devices", part); }};
 }
 
-std::vector<DeviceOutcome> DevicesSearch::closed(const RobustCost& cost, const std::map<std::string, Waveform>& waveforms) {
+std::vector<DeviceOutcome> DevicesSearch::closed(const RobustCost& cost, const DriveWaveforms& waveforms) {
   closings_ += static_cast<long>(cost.devices());
   return cost.close(first().drives(waveforms), 0, cost.devices(), options_.jobs);
 }
 
-std::map<std::string, Waveform> DevicesSearch::all_drives(std::map<std::string, Waveform> searched) const {
+DriveWaveforms DevicesSearch::all_drives(DriveWaveforms searched) const {
   const PreparedScene& step = first().baseline_scene;
   searched.insert(step.drives.waveforms.begin(), step.drives.waveforms.end());
   return searched;
@@ -261,7 +261,7 @@ void DevicesSearch::measure_ahead() {
 // A recipe for what is known precisely: of a switch too quick for the instrument it has to be searched apart.
 bool DevicesSearch::tells_time() const { return meter_->closing_time() > least_times_of_error * usual_time_error; }
 
-InMeasuredUnits DevicesSearch::in_measured_units(const ChosenFrom& winner, const std::map<std::string, Waveform>& drawing) {
+InMeasuredUnits DevicesSearch::in_measured_units(const ChosenFrom& winner, const DriveWaveforms& drawing) {
   const Calibration coarse{.pull_in_error = coarse_error};
   const Calibration both{.pull_in_error = coarse_error, .frequency_error = coarse_error};
   const Calibration fine{.pull_in_error = fine_error, .frequency_error = fine_error};
@@ -284,8 +284,7 @@ InMeasuredUnits DevicesSearch::in_measured_units(const ChosenFrom& winner, const
 }
 
 // For each of these calibrations, side by side; none where a search came to nothing.
-std::array<DevicesSearch::Found, 2> DevicesSearch::searched_in(const ChosenFrom& winner,
-                                                               const std::map<std::string, Waveform>& drawing,
+std::array<DevicesSearch::Found, 2> DevicesSearch::searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
                                                                const std::array<Calibration, 2>& calibrations) {
   const auto family = std::ranges::find(names_, winner.family);
   const std::size_t k = family == names_.end() ? 0 : static_cast<std::size_t>(family - names_.begin());
@@ -322,7 +321,7 @@ std::array<DevicesSearch::Found, 2> DevicesSearch::searched_in(const ChosenFrom&
 }
 
 // On the devices of a search in measured units.
-bool DevicesSearch::is_harder_than_step(const RobustCost& cost, const std::map<std::string, Waveform>& waveforms) const {
+bool DevicesSearch::is_harder_than_step(const RobustCost& cost, const DriveWaveforms& waveforms) const {
   const std::vector<DeviceOutcome> outcomes = cost.close(first().drives(waveforms), 0, cost.devices(), 1);
   return !hold(no_harder_than_step_, outcomes);
 }
@@ -333,7 +332,7 @@ RaceAims DevicesSearch::no_harder() const {
   return aims;
 }
 
-DevicesRow DevicesSearch::row_of(const char* name, const std::map<std::string, Waveform>& waveforms, const Calibration& knowledge,
+DevicesRow DevicesSearch::row_of(const char* name, const DriveWaveforms& waveforms, const Calibration& knowledge,
                                  bool searched_for_it) {
   const KnownUnits known = known_units(first().given, std::array{knowledge}, options_.jobs, watch_).front();
   const RobustCost fresh = verdict_devices(known);
@@ -348,7 +347,7 @@ DevicesRow DevicesSearch::row_of(const char* name, const std::map<std::string, W
 }
 
 // What the better of these waveforms reaches where Vdp is known with ever larger errors.
-std::vector<KnownVdp> DevicesSearch::judged_by_error(const std::vector<std::map<std::string, Waveform>>& waveforms) {
+std::vector<KnownVdp> DevicesSearch::judged_by_error(const std::vector<DriveWaveforms>& waveforms) {
   std::vector<KnownVdp> judged;
   const GaugedEnsemble& all = gauged({.pull_in_error = coarse_error});
   const auto end = static_cast<std::ptrdiff_t>(std::min(devices_by_error, all.devices.size()));

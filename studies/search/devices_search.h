@@ -48,7 +48,7 @@ struct KnownVdp {
 /// A candidate of the choice.
 struct ChosenFrom {
   std::string measure, family;  ///< "cvar:0.9", "knots:6"; measure "drawing" for what the nominal search tried
-  std::map<std::string, Waveform> waveforms;
+  DriveWaveforms waveforms;
   std::map<std::string, double> parameters;  ///< by drive.name; empty for what the nominal search tried
   std::vector<Variable> variables;
   long closings = 0;
@@ -69,8 +69,8 @@ struct InMeasuredUnits {
   double closing_time = Metrics::unset;  ///< of the nominal device, under the step that is measured [s]
   std::vector<DevicesRow> rows = {};
   std::vector<KnownVdp> by_error = {};
-  std::size_t best = 0;                                 ///< of the rows
-  std::map<std::string, Waveform> best_waveforms = {};  ///< of the searched drives, in these units
+  std::size_t best = 0;                ///< of the rows
+  DriveWaveforms best_waveforms = {};  ///< of the searched drives, in these units
 };
 
 class DevicesSearch {
@@ -106,13 +106,13 @@ class DevicesSearch {
   [[nodiscard]] std::size_t good_enough() const;
   /// Searches in measured units from a winner, and from what lands the drawing: precisely measured devices need little else. No
   /// rows where there is nothing to measure.
-  [[nodiscard]] InMeasuredUnits in_measured_units(const ChosenFrom& winner, const std::map<std::string, Waveform>& drawing);
+  [[nodiscard]] InMeasuredUnits in_measured_units(const ChosenFrom& winner, const DriveWaveforms& drawing);
   /// Devices of the verdict as they are known, for closings over the window of a search.
   [[nodiscard]] RobustCost verdict_devices(const KnownUnits& known);
   /// The outcomes of all devices of a cost; they count as closings.
-  [[nodiscard]] std::vector<DeviceOutcome> closed(const RobustCost& cost, const std::map<std::string, Waveform>& waveforms);
+  [[nodiscard]] std::vector<DeviceOutcome> closed(const RobustCost& cost, const DriveWaveforms& waveforms);
   /// The searched drives of a candidate, and the others as in the plain step.
-  [[nodiscard]] std::map<std::string, Waveform> all_drives(std::map<std::string, Waveform> searched) const;
+  [[nodiscard]] DriveWaveforms all_drives(DriveWaveforms searched) const;
   [[nodiscard]] long closings() const { return closings_; }
 
  private:
@@ -130,7 +130,7 @@ class DevicesSearch {
     bool keeps, lands_half;
     double rank;
   };
-  using Found = std::optional<std::map<std::string, Waveform>>;
+  using Found = std::optional<DriveWaveforms>;
 
   void race_families();
   void make_aims(const std::vector<DeviceOutcome>& step);
@@ -141,13 +141,13 @@ class DevicesSearch {
   [[nodiscard]] ChosenFrom candidate_of(const Racer& racer) const;
   void measure_ahead();
   [[nodiscard]] bool tells_time() const;
-  [[nodiscard]] std::array<Found, 2> searched_in(const ChosenFrom& winner, const std::map<std::string, Waveform>& drawing,
+  [[nodiscard]] std::array<Found, 2> searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
                                                  const std::array<Calibration, 2>& calibrations);
-  [[nodiscard]] bool is_harder_than_step(const RobustCost& cost, const std::map<std::string, Waveform>& waveforms) const;
+  [[nodiscard]] bool is_harder_than_step(const RobustCost& cost, const DriveWaveforms& waveforms) const;
   [[nodiscard]] RaceAims no_harder() const;
-  [[nodiscard]] DevicesRow row_of(const char* name, const std::map<std::string, Waveform>& waveforms,
-                                  const Calibration& knowledge, bool searched_for_it);
-  [[nodiscard]] std::vector<KnownVdp> judged_by_error(const std::vector<std::map<std::string, Waveform>>& waveforms);
+  [[nodiscard]] DevicesRow row_of(const char* name, const DriveWaveforms& waveforms, const Calibration& knowledge,
+                                  bool searched_for_it);
+  [[nodiscard]] std::vector<KnownVdp> judged_by_error(const std::vector<DriveWaveforms>& waveforms);
   [[nodiscard]] const GaugedEnsemble& gauged(const Calibration& knowledge);
 
   const OptimizeOptions& options_;

@@ -42,7 +42,7 @@ class EvaluationMemory {
 /// Waveforms that a search is to begin with.
 struct StartingWaveforms {
   std::string name;                           ///< for messages: "--start run1/best.toml"
-  std::map<std::string, Waveform> waveforms;  ///< by drive [V, s]
+  DriveWaveforms waveforms;                   ///< by drive [V, s]
   std::map<std::string, double> before = {};  ///< what the drives stand at before t = 0, where that is not 0 [V]
 };
 

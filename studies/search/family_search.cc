@@ -52,7 +52,7 @@ PriceSlopes FamilySearch::slopes() const {
   return all;
 }
 
-void FamilySearch::begin_at(const std::map<std::string, Waveform>& waveforms) {
+void FamilySearch::begin_at(const DriveWaveforms& waveforms) {
   const SearchSpace& space = setting_.space;
   const auto ahead = problem_.starts.end() - static_cast<std::ptrdiff_t>(space.starts().size());
   if (const auto point = space.parameters(waveforms)) {
@@ -71,7 +71,7 @@ std::vector<double> FamilySearch::own(const Evaluation& e) const {
   return {x.begin(), x.end()};
 }
 
-std::vector<double> FamilySearch::point(const std::map<std::string, Waveform>& waveforms) const {
+std::vector<double> FamilySearch::point(const DriveWaveforms& waveforms) const {
   const auto own = setting_.space.parameters(waveforms);
   return own ? block_.point(*own) : std::vector<double>();
 }
@@ -91,12 +91,10 @@ Evaluation FamilySearch::among_all(Evaluation e) const {
   return e;
 }
 
-std::map<std::string, Waveform> FamilySearch::waveforms(const Evaluation& e) const {
-  return setting_.space.waveforms(block_.own(e.x));
-}
+DriveWaveforms FamilySearch::waveforms(const Evaluation& e) const { return setting_.space.waveforms(block_.own(e.x)); }
 
 std::optional<SceneFile> FamilySearch::scene(const Evaluation& e) const {
-  const std::map<std::string, Waveform> all = waveforms(e);
+  const DriveWaveforms all = waveforms(e);
   return can_be_written(all) ? std::optional(setting_.scene(all)) : std::nullopt;
 }
 

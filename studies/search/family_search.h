@@ -62,7 +62,7 @@ class FamilySearch {
 
   /// Begins with these waveforms, or with those of the family that differ least from them, before what it would begin with
   /// by itself. Those that it cannot begin with are passed over.
-  void begin_at(const std::map<std::string, Waveform>& waveforms);
+  void begin_at(const DriveWaveforms& waveforms);
   /// Begins at a point of its own before the others.
   void begin_at_point(const std::vector<double>& own);
   /// The family's own parameters of a point of all.
@@ -74,8 +74,8 @@ class FamilySearch {
 
   [[nodiscard]] bool holds(const Evaluation& e) const { return block_.holds(e.x); }
   /// The point of these waveforms; empty where the family has none.
-  [[nodiscard]] std::vector<double> point(const std::map<std::string, Waveform>& waveforms) const;
-  [[nodiscard]] std::map<std::string, Waveform> waveforms(const Evaluation& e) const;
+  [[nodiscard]] std::vector<double> point(const DriveWaveforms& waveforms) const;
+  [[nodiscard]] DriveWaveforms waveforms(const Evaluation& e) const;
   /// Ready to run.
   [[nodiscard]] PreparedScene prepared(const Evaluation& e) const { return setting_.prepared(waveforms(e)); }
   /// None where a scene cannot hold the waveforms.

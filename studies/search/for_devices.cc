@@ -105,7 +105,7 @@ class DevicesStudy {
     result_->candidates = searched_.placed();
   }
 
-  [[nodiscard]] std::map<std::string, Waveform> drawing_waveforms() const {
+  [[nodiscard]] DriveWaveforms drawing_waveforms() const {
     return first().space.searched(result_->drawing.best_scene->drives.waveforms);
   }
 
@@ -199,7 +199,7 @@ class DevicesStudy {
   }
 
   // The row of a drive that is judged, by its name or as one that is driven alike.
-  void add_row(const char* name, const std::map<std::string, Waveform>& waveforms) {
+  void add_row(const char* name, const DriveWaveforms& waveforms) {
     const std::vector<DriveRobustness>& drives = result_->verdict.drives;
     auto found = std::ranges::find(drives, std::string_view(name), &DriveRobustness::name);
     if (found == drives.end()) {
@@ -253,7 +253,7 @@ class DevicesStudy {
   }
 
   // On the nominal device.
-  void win(const std::map<std::string, Waveform>& waveforms) {
+  void win(const DriveWaveforms& waveforms) {
     OptimizeResult& best = result_->best;
     const OptimizeResult& drawing = result_->drawing;
     best.best_scene =

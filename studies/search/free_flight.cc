@@ -47,7 +47,7 @@ FreeFlight::FreeFlight(const PreparedScene& prepared, Actuator actuator, double 
   start_ = VectorXd::Zero(2 * modes_);
   start_.head(modes_) = model_.rest()->cwiseQuotient(per_q_);
 
-  std::map<std::string, Waveform> plain = plain_step(prepared, actuator);
+  DriveWaveforms plain = plain_step(prepared, actuator);
   plain.insert(prepared.drives.waveforms.begin(), prepared.drives.waveforms.end());
   for (const Waveform& w : prepared.in_drive_order(plain)) {
     hold_.push_back(signal(w).hold_level());

@@ -30,13 +30,13 @@ Levels levels_of(const DriveSearch& s, const PreparedScene& given, double share)
 
 }  // namespace
 
-std::vector<std::map<std::string, Waveform>> joint_swings(const PreparedScene& given, const SearchSpace& space) {
+std::vector<DriveWaveforms> joint_swings(const PreparedScene& given, const SearchSpace& space) {
   const std::vector<DriveSearch>& drives = space.drives();
   const bool is_one_electrode = drives.size() == 1 && drives.front().drive != piezo_drive;
   if (is_one_electrode || given.model.film_states() > 0 || !given.rest()) return {};
   const std::vector<std::string> names = given.drive_names();
   const double period = internal::first_period(given);
-  std::vector<std::map<std::string, Waveform>> all;
+  std::vector<DriveWaveforms> all;
   for (const double share : shares) {
     std::vector<double> pulling = hold_levels(given.signals()), releasing = pulling;
     std::map<std::string, Levels> levels;
@@ -49,7 +49,7 @@ std::vector<std::map<std::string, Waveform>> joint_swings(const PreparedScene& g
     const std::optional<Swing> swing = quickest_swing(given.model, pulling, releasing, longest * period, given.values_before());
     if (!swing) continue;
     for (const double push : internal::pushes) {
-      std::map<std::string, Waveform> landing;
+      DriveWaveforms landing;
       for (const DriveSearch& s : drives) {
         const Levels own = levels.at(s.drive);
         const double pushing = s.drive == piezo_drive || s.brakes ? s.hold : own.pulling;

@@ -7,7 +7,6 @@
 // brakes.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -17,6 +16,6 @@ namespace softland {
 
 /// One for each share and length of the push, where there is such a landing. None of an electrode alone, whose families begin
 /// with it themselves, and none where the gas film is compressible.
-[[nodiscard]] std::vector<std::map<std::string, Waveform>> joint_swings(const PreparedScene& given, const SearchSpace& space);
+[[nodiscard]] std::vector<DriveWaveforms> joint_swings(const PreparedScene& given, const SearchSpace& space);
 
 }  // namespace softland

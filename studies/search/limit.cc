@@ -45,7 +45,7 @@ std::vector<double> uniform_knots(int intervals) {
 }
 
 // The controls as tables of volts against time, which pull from the touch on.
-std::map<std::string, Waveform> tables_of(const FreeFlight& flight, const ControlledCourse& course) {
+DriveWaveforms tables_of(const FreeFlight& flight, const ControlledCourse& course) {
   const double end = course.time * flight.time_unit();
   std::map<std::string, Table> tables;
   const auto add = [&](double time, const std::map<std::string, double>& volts) {
@@ -73,7 +73,7 @@ std::map<std::string, Waveform> tables_of(const FreeFlight& flight, const Contro
     }
     add(end, at(level));
   }
-  std::map<std::string, Waveform> waveforms;
+  DriveWaveforms waveforms;
   for (auto& [name, table] : tables) waveforms.emplace(name, std::move(table));
   return waveforms;
 }
@@ -83,9 +83,8 @@ struct Catch {
   double begin = 0, end = 0;  // after the touch
 };
 
-std::map<std::string, Waveform> with_catch(const FreeFlight& flight, const LeastTime& found, const Catch& pulled,
-                                           const std::map<std::string, Waveform>& held) {
-  std::map<std::string, Waveform> caught = found.waveforms;
+DriveWaveforms with_catch(const FreeFlight& flight, const LeastTime& found, const Catch& pulled, const DriveWaveforms& held) {
+  DriveWaveforms caught = found.waveforms;
   const std::map<std::string, double> pull = flight.volts(flight.pull());
   const double touch = found.course.time * flight.time_unit();
   for (auto& [name, waveform] : caught) {
@@ -104,8 +103,7 @@ std::map<std::string, Waveform> with_catch(const FreeFlight& flight, const Least
 }
 
 // The drives under searched waveforms; what is not searched is that of the plain step, else of the scene.
-std::vector<Signal> driven(const PreparedScene& prepared, std::map<std::string, Waveform> searched,
-                           const std::map<std::string, Waveform>& plain) {
+std::vector<Signal> driven(const PreparedScene& prepared, DriveWaveforms searched, const DriveWaveforms& plain) {
   searched.insert(plain.begin(), plain.end());
   searched.insert(prepared.drives.waveforms.begin(), prepared.drives.waveforms.end());
   return prepared.driven(prepared.in_drive_order(searched));
@@ -115,8 +113,7 @@ struct Arrival {
   double time = std::numeric_limits<double>::quiet_NaN(), velocity = time;
 };
 
-Arrival arrival(const PreparedScene& prepared, const std::map<std::string, Waveform>& searched, Actuator actuator,
-                double window) {
+Arrival arrival(const PreparedScene& prepared, const DriveWaveforms& searched, Actuator actuator, double window) {
   const ClosingOptions options{.duration = window, .tolerance = std::min(prepared.tolerance, 1e-8), .after_contact = 0};
   const Trajectory run = simulate_closing(prepared.model, driven(prepared, searched, plain_step(prepared, actuator)), options);
   const Metrics m = metrics(run);
@@ -141,8 +138,8 @@ class LeastTimeSearch {
   }
 
   // Waveforms of courses ever nearer to rest, on the first knots and mesh; from the touch on they hold as the plain ones.
-  std::vector<std::map<std::string, Waveform>> ways_to_rest(const std::map<std::string, Waveform>& plain) {
-    std::vector<std::map<std::string, Waveform>> all;
+  std::vector<DriveWaveforms> ways_to_rest(const DriveWaveforms& plain) {
+    std::vector<DriveWaveforms> all;
     std::optional<ControlledCourse> swing = flight_.swing(longest_time());
     const std::optional<FreeFlight::Landing> landing = flight_.landing();
     if (!swing || !landing) return all;
@@ -301,12 +298,12 @@ LeastTime least_time(const PreparedScene& prepared, const LeastTimeOptions& opti
   return better ? started : swung;
 }
 
-std::vector<std::map<std::string, Waveform>> landings_at_rest(const PreparedScene& prepared, Actuator actuator,
-                                                              double impact_velocity, const Watch& watch) {
+std::vector<DriveWaveforms> landings_at_rest(const PreparedScene& prepared, Actuator actuator, double impact_velocity,
+                                             const Watch& watch) {
   constexpr int most_modes_followed = 4;
   constexpr std::array ramps = {1.0 / 9, 1.0 / 18};  // periods of the first mode from one end of a range to the other
   const double period = 2 * pi / prepared.model.basis().angular_frequencies()[0];
-  std::vector<std::map<std::string, Waveform>> found;
+  std::vector<DriveWaveforms> found;
   if (prepared.model.modes() > most_modes_followed) return found;
   for (std::size_t k = 0; k < ramps.size() && !watch.stopped(); ++k) {
     const double ramp = ramps[k];
@@ -361,7 +358,7 @@ class AfterTouch {
   }
 
   [[nodiscard]] LimitLanding landing(const Catch& pulled) const {
-    std::map<std::string, Waveform> all = with_catch(flight_, until_touch_, pulled, plain_);
+    DriveWaveforms all = with_catch(flight_, until_touch_, pulled, plain_);
     all.insert(plain_.begin(), plain_.end());
     PreparedScene scene = read_back(with_waveforms(prepared_, all), "best.toml", prepared_);
     Closing closing = simulate(scene, false);
@@ -381,7 +378,7 @@ class AfterTouch {
  private:
   const PreparedScene& prepared_;
   FreeFlight flight_;
-  std::map<std::string, Waveform> plain_;
+  DriveWaveforms plain_;
   const LeastTime& way_;
   LeastTime until_touch_;  // with waveforms that end there
 };

@@ -33,7 +33,7 @@ struct LeastTimeOptions {
   bool at_rest = false;                                   ///< all modes at the closed equilibrium, not the contact point alone
   double peak = std::numeric_limits<double>::infinity();  ///< of the electrode that pulls, where it is less than its driver's [V]
   /// Waveforms of the drives, of a search for example: the optimum is looked for from their flight too, where that touches.
-  std::map<std::string, Waveform> start = {};
+  DriveWaveforms start = {};
   Watch watch = {};
 };
 
@@ -51,7 +51,7 @@ struct LeastTime {
   double peak = std::numeric_limits<double>::quiet_NaN();       ///< permitted [V]; NaN where no electrode is shaped
   /// By an integration of the closing under the waveforms, with the contact [s], [m/s].
   double simulated_time = std::numeric_limits<double>::quiet_NaN(), simulated_velocity = simulated_time;
-  std::map<std::string, Waveform> waveforms = {};  ///< of the drives that are shaped; from the touch on they pull
+  DriveWaveforms waveforms = {};  ///< of the drives that are shaped; from the touch on they pull
   ControlledCourse course = {};
 };
 
@@ -63,8 +63,8 @@ struct LeastTime {
 /// ring modes which the model leaves out. Where a search of a piezo, or of several drives, begins. `impact_velocity` as in
 /// LeastTimeOptions. Those that are not found are left out; none where free_flight.h does not follow the switch, and of more
 /// than four modes, which would take minutes.
-[[nodiscard]] std::vector<std::map<std::string, Waveform>> landings_at_rest(const PreparedScene& prepared, Actuator actuator,
-                                                                            double impact_velocity, const Watch& watch);
+[[nodiscard]] std::vector<DriveWaveforms> landings_at_rest(const PreparedScene& prepared, Actuator actuator,
+                                                           double impact_velocity, const Watch& watch);
 
 /// A landing under a waveform that begins as one of least time does. Then it goes on pulling, to keep the beam on its contact
 /// while its modes ring down (the catch), and ends on the hold levels.
@@ -81,7 +81,7 @@ struct LimitLanding {
 struct LimitOptions {
   Actuator actuator = Actuator::electrostatic;
   std::optional<double> impact_velocity = {};  ///< permitted [m/s]; none: a hundredth of the plain step's
-  std::map<std::string, Waveform> start = {};  ///< see LeastTimeOptions
+  DriveWaveforms start = {};                   ///< see LeastTimeOptions
   std::map<std::string, double> before = {};   ///< what the drives of `start` stand at before t = 0, where that is not 0 [V]
   bool curves = true;                          ///< over the peak voltage, and over the permitted speed
 };

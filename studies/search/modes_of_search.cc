@@ -48,9 +48,7 @@ std::vector<SearchSetting> with_gentle_edges(const std::vector<SearchSetting>& s
 bool begins_gently(const std::vector<SearchSetting>& gentle, const std::vector<StartingWaveforms>& starts) {
   if (gentle.empty()) return false;
   const SearchSetting& setting = gentle.front();
-  const auto fits = [&](const std::map<std::string, Waveform>& waveforms) {
-    return setting.is_allowed(setting.space.searched(waveforms));
-  };
+  const auto fits = [&](const DriveWaveforms& waveforms) { return setting.is_allowed(setting.space.searched(waveforms)); };
   return std::ranges::any_of(setting.space.drives(), [](const DriveSearch& s) { return s.drive == piezo_drive; }) &&
          (setting.begins_plainly() || fits(setting.given.drives.waveforms)) &&
          std::ranges::all_of(starts, [&](const StartingWaveforms& start) { return fits(start.waveforms); });

@@ -91,7 +91,7 @@ class ReleaseSearch {
     for (const Brake& brake : brakes_) {
       if (!x.empty()) told[brake.drive] = points(brake, x);
     }
-    std::map<std::string, Waveform> waveforms;
+    DriveWaveforms waveforms;
     for (std::size_t k = 0; k < names_.size(); ++k) {
       if (names_[k] == dispersion_drive) continue;  // which no source drives
       Table table;

@@ -89,7 +89,7 @@ class Search {
       refine(setting.given.signals(), setting.given.drives.waveforms,
              [&] { return prepared_with(setting.given, {}, setting.given); });
     for (const StartingWaveforms& start : options_.starts) {
-      const std::map<std::string, Waveform> searched = setting.space.searched(start.waveforms);
+      const DriveWaveforms searched = setting.space.searched(start.waveforms);
       refine(setting.given.driven(setting.drives(searched)), searched, [&] { return setting.prepared(searched); });
     }
     if (!is_divided(options_.max_evaluations)) begin_at_rest();
@@ -110,7 +110,7 @@ class Search {
   void begin_at_point(const std::vector<double>& own) { families_.front().begin_at_point(own); }
 
   // Of a piezo and of several drives, which can bring all modes to rest.
-  [[nodiscard]] std::vector<std::map<std::string, Waveform>> landings_at_rest() const {
+  [[nodiscard]] std::vector<DriveWaveforms> landings_at_rest() const {
     const SearchSetting& setting = settings_.front();
     const std::vector<DriveSearch>& shaped = setting.space.drives();
     const bool can_rest = shaped.size() > 1 || shaped.front().drive == piezo_drive;
@@ -175,7 +175,7 @@ class Search {
     for (std::size_t k = 0; k < families_.size(); ++k) {
       std::vector<std::pair<double, std::vector<double>>> own;
       for (const Evaluation& e : candidates(improvements_of(families_[k].log()))) {
-        const std::map<std::string, Waveform> waveforms = families_[k].waveforms(e);
+        const DriveWaveforms waveforms = families_[k].waveforms(e);
         own.emplace_back(other.price(other.given.driven(other.drives(waveforms))).own, families_[k].own(e));
       }
       if (own.empty()) continue;
@@ -282,7 +282,7 @@ class Search {
 
   // `prepared()` is the scene under these waveforms.
   template <class MakePrepared>
-  void refine(const std::vector<Signal>& drives, const std::map<std::string, Waveform>& waveforms, const MakePrepared& prepared) {
+  void refine(const std::vector<Signal>& drives, const DriveWaveforms& waveforms, const MakePrepared& prepared) {
     const double cost = settings_.front().price(drives).own;
     for (FamilySearch& family : families_) family.begin_at(waveforms);
     if (!(cost < never_touched)) return;

@@ -99,7 +99,7 @@ struct SearchedFamilyResult {
 struct TriedWaveform {
   std::string family;
   double cost = 0;
-  std::map<std::string, Waveform> waveforms;  ///< of the searched drives [V]
+  DriveWaveforms waveforms;  ///< of the searched drives [V]
 };
 
 struct OptimizeResult {

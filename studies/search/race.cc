@@ -58,7 +58,7 @@ class Race {
     }
   }
 
-  RaceResult run(std::vector<Runner> runners, const std::vector<std::map<std::string, Waveform>>& begun, bool all_rungs) {
+  RaceResult run(std::vector<Runner> runners, const std::vector<DriveWaveforms>& begun, bool all_rungs) {
     const double length = static_cast<double>(options_.closings) / static_cast<double>(race_closings);
     RaceResult result;
     if (length < least_length) return result;
@@ -113,7 +113,7 @@ class Race {
   }
 
   // The best of many starts, for either measure.
-  void begin(std::vector<Runner>& runners, const std::vector<std::map<std::string, Waveform>>& begun) {
+  void begin(std::vector<Runner>& runners, const std::vector<DriveWaveforms>& begun) {
     std::set<std::size_t> families;
     for (const Runner& r : runners) families.insert(r.family);
     for (const std::size_t family : families) {
@@ -134,8 +134,7 @@ class Race {
     }
   }
 
-  [[nodiscard]] std::vector<Point> starts_of(std::size_t family,
-                                             const std::vector<std::map<std::string, Waveform>>& begun) const {
+  [[nodiscard]] std::vector<Point> starts_of(std::size_t family, const std::vector<DriveWaveforms>& begun) const {
     const SearchSpace& space = settings_[family].space;
     const std::vector<Variable> variables = space.variables();
     std::vector<Point> all = space.starts();
@@ -153,7 +152,7 @@ class Race {
   // Empty where a driver cannot give the waveform.
   std::vector<DeviceOutcome> closed(std::size_t family, const Point& x, std::size_t devices, int jobs) {
     const SearchSetting& own = settings_[family];
-    const std::map<std::string, Waveform> searched = own.space.waveforms(x);
+    const DriveWaveforms searched = own.space.waveforms(x);
     if (!own.is_allowed(searched)) return {};
     std::vector<DeviceOutcome> outcomes = cost_.close(own.drives(searched), 0, std::min(devices, cost_.devices()), jobs);
     took(static_cast<long>(outcomes.size()));
@@ -267,7 +266,7 @@ RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& co
 }
 
 RaceResult race_alone(const SearchSetting& setting, std::size_t family, const RobustCost& cost, const RaceAims& aims,
-                      bool by_share, const std::vector<std::map<std::string, Waveform>>& begun, const RaceOptions& options) {
+                      bool by_share, const std::vector<DriveWaveforms>& begun, const RaceOptions& options) {
   const std::vector<SearchSetting> settings{setting};
   return Race(settings, family, cost, aims, options).run({{.by_share = by_share, .x = {}}}, begun, true);
 }

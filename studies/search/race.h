@@ -25,7 +25,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -52,9 +51,9 @@ struct Racer {
   std::size_t family = 0;  ///< its number among the settings
   std::string measure;
   std::vector<double> x;
-  std::map<std::string, Waveform> waveforms;  ///< of the searched drives [V]
-  long closings = 0;                          ///< of the searches that led to it
-  double bounce_free = 0;                     ///< share of the devices of its last rung
+  DriveWaveforms waveforms;  ///< of the searched drives [V]
+  long closings = 0;         ///< of the searches that led to it
+  double bounce_free = 0;    ///< share of the devices of its last rung
   double tail = std::numeric_limits<double>::infinity(), share = std::numeric_limits<double>::infinity();  ///< its costs there
 };
 
@@ -81,7 +80,7 @@ struct RaceResult {
 
 /// One search through all rungs, of one family by one measure. `begun`: waveforms to begin with as well.
 [[nodiscard]] RaceResult race_alone(const SearchSetting& setting, std::size_t family, const RobustCost& cost,
-                                    const RaceAims& aims, bool by_share,
-                                    const std::vector<std::map<std::string, Waveform>>& begun, const RaceOptions& options);
+                                    const RaceAims& aims, bool by_share, const std::vector<DriveWaveforms>& begun,
+                                    const RaceOptions& options);
 
 }  // namespace softland

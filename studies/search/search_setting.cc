@@ -80,19 +80,18 @@ double broken(const std::vector<Criterion>& conditions, const Metrics& metrics) 
   return sum;
 }
 
-SceneFile with_waveforms(const PreparedScene& prepared, const std::map<std::string, Waveform>& waveforms) {
+SceneFile with_waveforms(const PreparedScene& prepared, const DriveWaveforms& waveforms) {
   SceneFile file = prepared.resolved();
   for (const auto& [drive, waveform] : waveforms) file.set_waveform(drive, waveform);
   return file;
 }
 
-bool can_be_written(const std::map<std::string, Waveform>& waveforms) {
+bool can_be_written(const DriveWaveforms& waveforms) {
   return std::ranges::none_of(waveforms, [](const auto& one) { return std::holds_alternative<Own>(one.second); });
 }
 
-PreparedScene prepared_with(const PreparedScene& prepared, std::map<std::string, Waveform> waveforms,
-                            const PreparedScene& given) {
-  std::map<std::string, Waveform> own;
+PreparedScene prepared_with(const PreparedScene& prepared, DriveWaveforms waveforms, const PreparedScene& given) {
+  DriveWaveforms own;
   for (auto one = waveforms.begin(); one != waveforms.end();) {
     const auto next = std::next(one);
     if (std::holds_alternative<Own>(one->second)) own.insert(waveforms.extract(one));
@@ -111,21 +110,19 @@ PreparedScene read_back(const SceneFile& file, const std::string& name, const Pr
   return p;
 }
 
-SceneFile SearchSetting::scene(const std::map<std::string, Waveform>& searched) const {
-  return with_waveforms(baseline_scene, searched);
-}
+SceneFile SearchSetting::scene(const DriveWaveforms& searched) const { return with_waveforms(baseline_scene, searched); }
 
-PreparedScene SearchSetting::prepared(const std::map<std::string, Waveform>& searched) const {
+PreparedScene SearchSetting::prepared(const DriveWaveforms& searched) const {
   return prepared_with(baseline_scene, searched, given);
 }
 
-std::vector<Waveform> SearchSetting::drives(const std::map<std::string, Waveform>& searched) const {
-  std::map<std::string, Waveform> all = searched;
+std::vector<Waveform> SearchSetting::drives(const DriveWaveforms& searched) const {
+  DriveWaveforms all = searched;
   all.insert(baseline_scene.drives.waveforms.begin(), baseline_scene.drives.waveforms.end());
   return given.in_drive_order(all);
 }
 
-bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) const {
+bool SearchSetting::is_allowed(const DriveWaveforms& searched) const {
   const std::vector<std::string> names = given.drive_names();
   return std::all_of(searched.begin(), searched.end(), [&](const auto& one) {
     const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), one.first) - names.begin());
@@ -133,7 +130,7 @@ bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) 
   });
 }
 
-std::optional<std::vector<Signal>> SearchSetting::allowed_told(const std::map<std::string, Waveform>& searched) const {
+std::optional<std::vector<Signal>> SearchSetting::allowed_told(const DriveWaveforms& searched) const {
   const std::vector<std::string> names = given.drive_names();
   std::vector<Signal> told = given.told(drives(searched));
   for (std::size_t k = 0; k < names.size(); ++k) {

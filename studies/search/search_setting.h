@@ -56,15 +56,15 @@ struct SearchSetting {
 
   /// The scene with these waveforms of the searched drives; the others stand as in the baseline. Throws InvalidInput where one
   /// cannot be written into a scene.
-  [[nodiscard]] SceneFile scene(const std::map<std::string, Waveform>& searched) const;
+  [[nodiscard]] SceneFile scene(const DriveWaveforms& searched) const;
   /// The same ready to run: prepared_with().
-  [[nodiscard]] PreparedScene prepared(const std::map<std::string, Waveform>& searched) const;
+  [[nodiscard]] PreparedScene prepared(const DriveWaveforms& searched) const;
   /// One waveform per drive of the switch, in its order.
-  [[nodiscard]] std::vector<Waveform> drives(const std::map<std::string, Waveform>& searched) const;
+  [[nodiscard]] std::vector<Waveform> drives(const DriveWaveforms& searched) const;
   /// Whether the searched drives stay inside their limits.
-  [[nodiscard]] bool is_allowed(const std::map<std::string, Waveform>& searched) const;
+  [[nodiscard]] bool is_allowed(const DriveWaveforms& searched) const;
   /// What the sources of all drives are told where they do; else nothing.
-  [[nodiscard]] std::optional<std::vector<Signal>> allowed_told(const std::map<std::string, Waveform>& searched) const;
+  [[nodiscard]] std::optional<std::vector<Signal>> allowed_told(const DriveWaveforms& searched) const;
   /// How a candidate under these signals is run.
   [[nodiscard]] ClosingOptions run_of(const std::vector<Signal>& signals) const;
   [[nodiscard]] SearchCosts price(const std::vector<Signal>& signals) const;
@@ -118,13 +118,12 @@ struct SearchSetting {
 [[nodiscard]] double broken(const std::vector<Criterion>& conditions, const Metrics& metrics);
 
 /// The scene of `prepared` in volts, with other waveforms on some drives.
-[[nodiscard]] SceneFile with_waveforms(const PreparedScene& prepared, const std::map<std::string, Waveform>& waveforms);
+[[nodiscard]] SceneFile with_waveforms(const PreparedScene& prepared, const DriveWaveforms& waveforms);
 /// Whether a scene file can hold them all: none is a user's own.
-[[nodiscard]] bool can_be_written(const std::map<std::string, Waveform>& waveforms);
+[[nodiscard]] bool can_be_written(const DriveWaveforms& waveforms);
 /// The scene of `prepared` with other waveforms on some drives, ready to run: read_back() of its text, with what no text can hold
 /// put in beside it.
-[[nodiscard]] PreparedScene prepared_with(const PreparedScene& prepared, std::map<std::string, Waveform> waveforms,
-                                          const PreparedScene& given);
+[[nodiscard]] PreparedScene prepared_with(const PreparedScene& prepared, DriveWaveforms waveforms, const PreparedScene& given);
 /// Text of the scene, read back: what a user's `simulate best.toml` will run. Warnings stay those about the file that the user
 /// wrote.
 [[nodiscard]] PreparedScene read_back(const SceneFile& file, const std::string& name, const PreparedScene& given);

@@ -327,8 +327,8 @@ std::vector<std::vector<double>> SearchSpace::starts() const {
   return all;
 }
 
-std::map<std::string, Waveform> SearchSpace::waveforms(std::span<const double> x) const {
-  std::map<std::string, Waveform> result;
+DriveWaveforms SearchSpace::waveforms(std::span<const double> x) const {
+  DriveWaveforms result;
   std::size_t at = 0;
   for (const DriveSearch& d : drives_) {
     result.emplace(d.drive, d.waveform(x.subspan(at, d.variables.size())));
@@ -337,7 +337,7 @@ std::map<std::string, Waveform> SearchSpace::waveforms(std::span<const double> x
   return result;
 }
 
-std::optional<std::vector<double>> SearchSpace::parameters(const std::map<std::string, Waveform>& waveforms) const {
+std::optional<std::vector<double>> SearchSpace::parameters(const DriveWaveforms& waveforms) const {
   std::vector<double> all;
   for (const DriveSearch& d : drives_) {
     const auto found = waveforms.find(d.drive);
@@ -348,7 +348,7 @@ std::optional<std::vector<double>> SearchSpace::parameters(const std::map<std::s
   return all;
 }
 
-std::vector<double> SearchSpace::nearest(const std::map<std::string, Waveform>& waveforms) const {
+std::vector<double> SearchSpace::nearest(const DriveWaveforms& waveforms) const {
   std::vector<double> all;
   for (const DriveSearch& d : drives_) {
     const std::vector<double> part = d.nearest(waveforms.at(d.drive));
@@ -357,15 +357,15 @@ std::vector<double> SearchSpace::nearest(const std::map<std::string, Waveform>& 
   return all;
 }
 
-std::map<std::string, Waveform> SearchSpace::searched(const std::map<std::string, Waveform>& waveforms) const {
-  std::map<std::string, Waveform> chosen;
+DriveWaveforms SearchSpace::searched(const DriveWaveforms& waveforms) const {
+  DriveWaveforms chosen;
   for (const DriveSearch& d : drives_) {
     if (const auto found = waveforms.find(d.drive); found != waveforms.end()) chosen.insert(*found);
   }
   return chosen;
 }
 
-std::string SearchSpace::misfit(const std::map<std::string, Waveform>& waveforms) const {
+std::string SearchSpace::misfit(const DriveWaveforms& waveforms) const {
   for (const DriveSearch& d : drives_) {
     const auto found = waveforms.find(d.drive);
     if (found == waveforms.end()) return fmt::format("there is no waveform of the searched drive '{}'", d.drive);

@@ -29,7 +29,6 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -106,15 +105,15 @@ class SearchSpace {
   [[nodiscard]] std::vector<Variable> variables() const;
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
   /// Waveforms of the searched drives.
-  [[nodiscard]] std::map<std::string, Waveform> waveforms(std::span<const double> x) const;
+  [[nodiscard]] DriveWaveforms waveforms(std::span<const double> x) const;
   /// The point that gives these waveforms, if there is one: where a search refines what was found before.
-  [[nodiscard]] std::optional<std::vector<double>> parameters(const std::map<std::string, Waveform>& waveforms) const;
+  [[nodiscard]] std::optional<std::vector<double>> parameters(const DriveWaveforms& waveforms) const;
   /// The point whose waveforms differ least from these, which must not be misfits: where a search for another family begins.
-  [[nodiscard]] std::vector<double> nearest(const std::map<std::string, Waveform>& waveforms) const;
+  [[nodiscard]] std::vector<double> nearest(const DriveWaveforms& waveforms) const;
   /// Why a search cannot begin with these waveforms, in words; empty where it can.
-  [[nodiscard]] std::string misfit(const std::map<std::string, Waveform>& waveforms) const;
+  [[nodiscard]] std::string misfit(const DriveWaveforms& waveforms) const;
   /// Of these waveforms those of the searched drives.
-  [[nodiscard]] std::map<std::string, Waveform> searched(const std::map<std::string, Waveform>& waveforms) const;
+  [[nodiscard]] DriveWaveforms searched(const DriveWaveforms& waveforms) const;
 
  private:
   std::vector<DriveSearch> drives_;

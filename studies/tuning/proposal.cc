@@ -82,7 +82,7 @@ std::vector<std::vector<double>> Shapes::starts() const { return starts_; }
 
 std::vector<Waveform> Shapes::waveforms(std::vector<double> x) const {
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = std::clamp(x[k], variables_[k].lower, variables_[k].upper);
-  std::map<std::string, Waveform> all = others_;
+  DriveWaveforms all = others_;
   std::size_t begin = 0;
   for (const DriveSearch& drive : drives_) {
     all[drive.drive] = drive.waveform(std::span(x).subspan(begin, drive.variables.size()));

@@ -9,7 +9,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -57,7 +56,7 @@ class Shapes {
 
   const TunedScene* scene_;
   std::vector<DriveSearch> drives_;
-  std::map<std::string, Waveform> others_;
+  DriveWaveforms others_;
   std::vector<std::vector<double>> starts_;
   std::vector<Variable> variables_;
   std::vector<bool> coarse_;

@@ -197,7 +197,7 @@ TEST(LandingsAtRest, BringAPiezoToRestWithoutJumps_slow) {
     EXPECT_EQ(violation(piezo, limits), "");
     EXPECT_LE(piezo.peak_slew(), 1.0001 * steepest);
     EXPECT_EQ(piezo.hold_level(), 0);
-    std::map<std::string, Waveform> all = plain_step(p, Actuator::pzt);
+    DriveWaveforms all = plain_step(p, Actuator::pzt);
     all["piezo"] = landing.at("piezo");
     const PreparedScene scene = read_back(with_waveforms(p, all), "landing.toml", p);
     heights.push_back(

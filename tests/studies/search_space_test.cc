@@ -194,8 +194,7 @@ TEST(SearchSpace, ReadsTheParametersOfItsOwnWaveformsBack) {
 TEST(SearchSpace, HasNoParametersForWhatItCannotReach) {
   const SearchSpace space(plain(), Actuator::electrostatic, "pulse", first_touch);
   const auto pulse = [&](double time, std::vector<double> levels) {
-    return std::map<std::string, Waveform>{
-        {"main", Pulse{.levels = std::move(levels), .times = {time, time + 10e-6}, .edge = 1e-6}}};
+    return DriveWaveforms{{"main", Pulse{.levels = std::move(levels), .times = {time, time + 10e-6}, .edge = 1e-6}}};
   };
   EXPECT_TRUE(space.parameters(pulse(20e-6, {20, 10, 15})));
   EXPECT_FALSE(space.parameters(pulse(50e-6, {20, 10, 15}))) << "later than its bounds";

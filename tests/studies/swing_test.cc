@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -55,7 +54,7 @@ TEST(Swing, BringsEveryModeOfTheGoldSwitchThroughItsFilmToASlowTouch) {
 }
 
 // The waveform with jumps, and driven by a thousandth longer, so that it surely arrives.
-std::map<std::string, Waveform> without_edges(std::map<std::string, Waveform> swing) {
+DriveWaveforms without_edges(DriveWaveforms swing) {
   for (auto& [drive, waveform] : swing) {
     auto& pulse = std::get<Pulse>(waveform);
     const double longer = 1e-3 * pulse.times.front();
@@ -67,12 +66,12 @@ std::map<std::string, Waveform> without_edges(std::map<std::string, Waveform> sw
 
 // Each touches far more slowly than the step that goes to the same hold levels.
 void expect_soft_touches(const PreparedScene& p, const SearchSpace& space, std::size_t least) {
-  const auto landing = [&](std::map<std::string, Waveform> searched) {
+  const auto landing = [&](DriveWaveforms searched) {
     searched.insert(p.drives.waveforms.begin(), p.drives.waveforms.end());
     return metrics(simulate_closing(p.model, signals_of(p.in_drive_order(searched)),
                                     {.duration = p.duration, .tolerance = 1e-6, .after_contact = 0}));
   };
-  std::map<std::string, Waveform> steps;
+  DriveWaveforms steps;
   for (const DriveSearch& s : space.drives()) steps.emplace(s.drive, Step{.level = s.hold});
   const double of_step = landing(steps).impact_velocity;
   const auto swings = joint_swings(p, space);
