@@ -11,7 +11,7 @@
 #include "base/companion.h"
 #include "base/require.h"
 #include "reports/files.h"
-#include "reports/html.h"
+#include "reports/result_document.h"
 #include "reports/result_json.h"
 #include "reports/svg.h"
 #include "reports/text.h"
@@ -56,7 +56,7 @@ std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std:
 }
 
 void print_result(const Common& c, const Result& result, const std::string& left) {
-  print_json_or(c, summary_json(result_json(result)), text_report(result) + left);
+  print_json_or(c, summary_json(result_json(result)), terminal_text(result_document(result)) + left);
 }
 
 std::string left_in(const fs::path& folder, const std::vector<std::string>& files) {

@@ -7,9 +7,9 @@
 #include "apps/stores.h"
 #include "base/printable.h"
 #include "base/shortened.h"
+#include "reports/document.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
-#include "reports/text_table.h"
 
 namespace softland::apps {
 namespace {
@@ -59,21 +59,15 @@ std::string overview_text(const StoredPlan& plan, const Overview& found) {
     const auto reason = found.first_reasons.find(status);
     text += reason == found.first_reasons.end() ? "\n" : fmt::format("   {}\n", shortened(printable_line(reason->second), 140));
   }
-  std::vector<internal::TextRow> rows;
+  ReportTable table{.head = {"", "least", "at point", "most", "at point"}, .rows = {}};
   for (std::size_t i = 0; i < plan.columns.size(); ++i) {
     const StoredColumn& column = plan.columns[i];
     const Overview::Extent& e = found.extents[i];
     if (column.kind == ColumnKind::variable || !(e.least <= e.most)) continue;
-    rows.push_back({shortened(column.name, 43), quantity(e.least, column.unit), std::to_string(e.least_at),
-                    quantity(e.most, column.unit), std::to_string(e.most_at)});
+    table.rows.push_back({shortened(column.name, 43), quantity(e.least, column.unit), std::to_string(e.least_at),
+                          quantity(e.most, column.unit), std::to_string(e.most_at)});
   }
-  return text + "\n" +
-         internal::text_table({{.width = 44, .is_words = true},
-                               {.head = "least", .width = 12, .gap = 1},
-                               {.head = "at point", .width = 9, .gap = 1},
-                               {.head = "most", .width = 12, .gap = 3},
-                               {.head = "at point", .width = 9, .gap = 1}},
-                              rows);
+  return text + "\n" + internal::table_text(table);
 }
 
 }  // namespace softland::apps

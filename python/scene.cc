@@ -20,11 +20,11 @@
 #include "reports/effects_report.h"
 #include "reports/files.h"
 #include "reports/fit_report.h"
-#include "reports/html.h"
 #include "reports/limit_report.h"
 #include "reports/measurement_report.h"
 #include "reports/pull_in_words.h"
 #include "reports/release_report.h"
+#include "reports/result_document.h"
 #include "reports/result_json.h"
 #include "reports/result_maker.h"
 #include "reports/robustness_report.h"
@@ -177,7 +177,7 @@ Result result_of(const PyClosing& c) { return softland::result_of(*c.prepared, c
 std::map<std::string, std::function<std::string()>> files_of(const Result& result) {
   const auto kept = std::make_shared<const Result>(result);
   std::map<std::string, std::function<std::string()>> files{{"result.json", [kept] { return json_text(result_json(*kept)); }},
-                                                            {"report.html", [kept] { return html_report(*kept); }},
+                                                            {"report.html", [kept] { return page_html(result_document(*kept)); }},
                                                             {"gap.svg", [kept] { return svg_gap_chart(*kept); }}};
   if (kept->best.figures) files["trajectory.csv"] = [kept] { return trajectory_csv(kept->best.curve); };
   return files;
@@ -248,7 +248,7 @@ Outcome accuracy(PyScene& scene, std::string command, const py::object& progress
       outcome.files = {
           {"accuracy.json", [p, found, command] { return json_text(accuracy_json(*p, *found, {.command = command}), 2); }},
           {"accuracy.svg", [p, found] { return accuracy_svg(p->scene.title, *found); }},
-          {"report.html", [p, found, command] { return accuracy_html(*p, *found, {.command = command}); }}};
+          {"report.html", [p, found, command] { return page_html(accuracy_document(*p, *found, {.command = command})); }}};
     return outcome;
   });
 }
@@ -335,7 +335,7 @@ Outcome judged(PyScene& scene, std::string name, const py::dict& others, std::ui
     return Outcome{.json = json_text(data),
                    .files = {{"robustness.json", [kept] { return json_text(robustness_json(*kept->report), 2); }},
                              {"devices.csv", [kept] { return robustness_csv(*kept->report); }},
-                             {"robustness.html", [kept] { return robustness_html(*kept->report); }}}};
+                             {"robustness.html", [kept] { return page_html(robustness_document(*kept->report)); }}}};
   });
 }
 
@@ -384,7 +384,7 @@ Outcome fitted(PyScene& scene, const std::string& data, const std::vector<std::s
     Outcome outcome{
         .json = json_text(fit_json(*found, {.command = command})),
         .files = {{"fit.json", [found, command] { return json_text(fit_json(*found, {.command = command}), 1) + "\n"; }},
-                  {"fit.html", [found, command] { return fit_html(*found, {.command = command}); }}}};
+                  {"fit.html", [found, command] { return page_html(fit_document(*found, {.command = command})); }}}};
     if (found->found)
       outcome.files["fitted.toml"] = [found, text = file.text(), name = file.name()] {
         return fitted_text(*found, text, name, found->devices.front());

@@ -6,13 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "reports/escape.h"
 #include "reports/json_number.h"
-#include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/robustness_report.h"
-#include "reports/text.h"
-#include "reports/text_table.h"
 
 namespace softland::internal {
 namespace {
@@ -34,35 +30,32 @@ double missed(const FigureChaos& chaos) { return 1 - (std::isfinite(chaos.q2_uns
 std::string missed_share(double share) { return share >= 1 ? "all" : percent(std::max(0.0, share)); }
 std::string missed_text(double q2) { return std::isfinite(q2) ? missed_share(1 - q2) : "—"; }
 
-/// A line of the comparison: what it is, and its cell for every figure.
-struct ComparedRow {
-  std::string name;
-  std::vector<std::string> cells;
-};
-
-std::vector<ComparedRow> compared(const BoxAndChaos& ways, const DriveRobustness& drive) {
-  std::vector<ComparedRow> rows;
-  const auto add = [&](const char* name, auto&& cell) {
-    ComparedRow& row = rows.emplace_back(ComparedRow{.name = name, .cells = {}});
-    for (std::size_t i = 0; i < ways.ranges.size(); ++i) row.cells.push_back(cell(ways.ranges[i], ways.chaos[i]));
+ReportTable compared(const BoxAndChaos& ways, const DriveRobustness& drive) {
+  ReportTable table{.head = {"Other ways, under " + drive.name}, .rows = {}};
+  for (const FigureRange& r : ways.ranges) table.head.emplace_back(figure_of(r.key).symbol);
+  const auto add = [&](TableCell name, auto&& cell) {
+    TableRow& row = table.rows.emplace_back(TableRow{std::move(name)});
+    for (std::size_t i = 0; i < ways.ranges.size(); ++i) row.emplace_back(cell(ways.ranges[i], ways.chaos[i]));
   };
+  const auto part = [](const char* name) { return TableCell(name, "part"); };
   add("Mean: sampled", [&](const FigureRange& r, const FigureChaos&) { return figure_text(sampled(drive, r.key).mean, r.key); });
-  add("  polynomial chaos", [](const FigureRange&, const FigureChaos& c) { return figure_text(c.mean, c.key); });
+  add(part("polynomial chaos"), [](const FigureRange&, const FigureChaos& c) { return figure_text(c.mean, c.key); });
   add("Standard deviation: sampled",
       [&](const FigureRange& r, const FigureChaos&) { return figure_text(sampled(drive, r.key).standard_deviation, r.key); });
-  add("  polynomial chaos", [](const FigureRange&, const FigureChaos& c) { return figure_text(c.standard_deviation, c.key); });
+  add(part("polynomial chaos"),
+      [](const FigureRange&, const FigureChaos& c) { return figure_text(c.standard_deviation, c.key); });
   add("95 % of devices below: sampled",
       [&](const FigureRange& r, const FigureChaos&) { return figure_text(sampled(drive, r.key).quantiles[2].value, r.key); });
-  add("  polynomial chaos", [](const FigureRange&, const FigureChaos& c) { return figure_text(c.quantile_95, c.key); });
+  add(part("polynomial chaos"), [](const FigureRange&, const FigureChaos& c) { return figure_text(c.quantile_95, c.key); });
   add("Worst in the box: found by search",
       [](const FigureRange& r, const FigureChaos&) { return figure_text(r.most.figure, r.key); });
-  add("  sampled", [](const FigureRange& r, const FigureChaos&) { return figure_text(r.of_sample.high, r.key); });
+  add(part("sampled"), [](const FigureRange& r, const FigureChaos&) { return figure_text(r.of_sample.high, r.key); });
   add("Best in the box: found by search",
       [](const FigureRange& r, const FigureChaos&) { return figure_text(r.least.figure, r.key); });
-  add("  sampled", [](const FigureRange& r, const FigureChaos&) { return figure_text(r.of_sample.low, r.key); });
+  add(part("sampled"), [](const FigureRange& r, const FigureChaos&) { return figure_text(r.of_sample.low, r.key); });
   add("Variance that chaos misses: cross-validated", [](const FigureRange&, const FigureChaos& c) { return missed_text(c.q2); });
-  add("  of devices it was not made of", [](const FigureRange&, const FigureChaos& c) { return missed_text(c.q2_unseen); });
-  return rows;
+  add(part("of devices it was not made of"), [](const FigureRange&, const FigureChaos& c) { return missed_text(c.q2_unseen); });
+  return table;
 }
 
 std::string value_text(const SpreadVariable& variable, double value) {
@@ -77,12 +70,11 @@ std::string box_words(const BoxAndChaos& ways, const DriveRobustness& drive) {
       ways.half_width, 100 * box_share, ways.sampled_inside, drive.outcomes.size(), 100 * box_share, ways.closings);
 }
 
-/// How far chaos can be trusted. `symbol` turns a symbol into words.
-template <class Symbol>
-std::string chaos_words(const BoxAndChaos& ways, Symbol symbol) {
+/// How far chaos can be trusted.
+std::string chaos_words(const BoxAndChaos& ways) {
   std::vector<std::string> good, bad, none;
   for (const FigureChaos& c : ways.chaos) {
-    const std::string name = symbol(figure_of(c.key).symbol);
+    const std::string name(figure_of(c.key).symbol);
     if (!std::isfinite(c.q2)) {
       none.push_back(name);
     } else if (missed(c) <= predicted_well) {
@@ -157,53 +149,23 @@ json other_ways_json(const BoxAndChaos& ways, const DriveRobustness& drive, cons
   return j;
 }
 
-std::string other_ways_text(const BoxAndChaos& ways, const DriveRobustness& drive, const PreparedScene& nominal) {
-  if (ways.ranges.empty()) return {};
-  std::vector<internal::TextColumn> columns{{.head = "Other ways, under " + drive.name, .width = 47, .is_words = true}};
-  for (const FigureRange& r : ways.ranges) columns.push_back({.head = std::string(figure_of(r.key).symbol), .width = 16});
-  std::vector<internal::TextRow> rows;
-  for (const ComparedRow& row : compared(ways, drive)) {
-    rows.push_back({row.name});
-    rows.back().insert(rows.back().end(), row.cells.begin(), row.cells.end());
-  }
-  std::string text = "\n" + text_table(columns, rows);
-  for (const FigureRange& r : ways.ranges) {
-    std::string values;
-    const std::vector<double> shown = shown_values_in_box(r.most, nominal);
-    for (std::size_t i = 0; i < shown.size(); ++i) {
-      const SpreadVariable& variable = nominal.scene.spread.variables[i];
-      values += fmt::format("{}{} {}", i == 0 ? "" : ", ", variable.name, value_text(variable, shown[i]));
-    }
-    text += wrapped(fmt::format("Worst {}: {}", figure_of(r.key).symbol, values)) + "\n";
-  }
-  return text + "\n" + wrapped(box_words(ways, drive)) + "\n" +
-         wrapped(chaos_words(ways, [](std::string_view symbol) { return std::string(symbol); })) + "\n";
-}
-
-std::string other_ways_html(const BoxAndChaos& ways, const DriveRobustness& drive, const PreparedScene& nominal) {
-  if (ways.ranges.empty()) return {};
-  TableRow head{"Under " + escaped(drive.name)}, device_head{"In the box", "Found"};
-  for (const FigureRange& r : ways.ranges) head.emplace_back(symbol_html(figure_of(r.key).symbol));
-  std::vector<TableRow> rows, devices;
-  for (const ComparedRow& row : compared(ways, drive)) {
-    const bool below = row.name.starts_with("  ");
-    TableRow& line = rows.emplace_back(TableRow{Cell(escaped(below ? row.name.substr(2) : row.name), below ? "part" : "")});
-    for (const std::string& cell : row.cells) line.emplace_back(escaped(cell));
-  }
+ReportSection other_ways_section(const BoxAndChaos& ways, const DriveRobustness& drive, const PreparedScene& nominal) {
+  ReportSection section{.id = "ways", .heading = "Other ways to the same answer", .parts = {}};
+  if (ways.ranges.empty()) return section;
+  ReportTable figures = compared(ways, drive), devices{.head = {"In the box", "Found"}, .rows = {}};
   const std::vector<SpreadVariable>& variables = nominal.scene.spread.variables;
-  for (const SpreadVariable& v : variables) device_head.emplace_back(escaped(v.name));
+  for (const SpreadVariable& v : variables) devices.head.emplace_back(v.name);
   for (const FigureRange& r : ways.ranges) {
-    for (const auto& [name, device] : {std::pair("Worst ", &r.most), std::pair("Best ", &r.least)}) {
-      TableRow& line = devices.emplace_back(
-          TableRow{name + symbol_html(figure_of(r.key).symbol), escaped(figure_text(device->figure, r.key))});
+    for (const auto& [name, device] : {std::pair("Worst", &r.most), std::pair("Best", &r.least)}) {
+      TableRow& line = devices.rows.emplace_back(
+          TableRow{fmt::format("{} {}", name, figure_of(r.key).symbol), figure_text(device->figure, r.key)});
       const std::vector<double> shown = shown_values_in_box(*device, nominal);
-      for (std::size_t i = 0; i < shown.size(); ++i) line.emplace_back(escaped(value_text(variables[i], shown[i])));
+      for (std::size_t i = 0; i < shown.size(); ++i) line.emplace_back(value_text(variables[i], shown[i]));
     }
   }
-  return section(
-      "ways", "Other ways to the same answer",
-      fmt::format("<p>{}</p>\n<p>{}</p>\n{}<h3>Worst and best devices of the box</h3>\n{}", escaped(box_words(ways, drive)),
-                  chaos_words(ways, symbol_html), table_html(head, rows), table_html(device_head, devices)));
+  section.parts = {Paragraph{box_words(ways, drive)}, Paragraph{chaos_words(ways)}, std::move(figures),
+                   SubHeading{"Worst and best devices of the box"}, std::move(devices)};
+  return section;
 }
 
 }  // namespace softland::internal

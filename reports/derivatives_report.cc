@@ -7,12 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "reports/escape.h"
 #include "reports/json_number.h"
-#include "reports/page.h"
 #include "reports/quantity.h"
-#include "reports/text.h"
-#include "reports/text_table.h"
 
 namespace softland::internal {
 namespace {
@@ -121,52 +117,31 @@ json derivatives_json(const Derivatives& derivatives, const DriveRobustness& dri
   return j;
 }
 
-std::string derivatives_text(const Derivatives& derivatives, const DriveRobustness& drive) {
-  if (derivatives.variables.empty()) return {};
-  if (derivatives.figures.empty()) return "\n" + wrapped(why_no_derivatives(derivatives)) + "\n";
-  std::vector<const FigureDerivatives*> shown;
-  for (const std::string_view key : explained_figures) {
-    const auto has_key = [&](const FigureDerivatives& figure) { return figure.key == key; };
-    shown.push_back(&*std::find_if(derivatives.figures.begin(), derivatives.figures.end(), has_key));
+ReportSection derivatives_section(const Derivatives& derivatives, const DriveRobustness& drive) {
+  ReportSection section{.id = "derivatives", .heading = "To first order", .parts = {}};
+  if (derivatives.variables.empty()) return section;
+  if (derivatives.figures.empty()) {
+    section.parts = {Paragraph{why_no_derivatives(derivatives)}};
+    return section;
   }
-  std::vector<internal::TextColumn> columns{
-      {.head = derivatives.grazes() ? "To first order (grazing)" : "To first order", .width = 34, .is_words = true}};
-  for (const FigureDerivatives* figure : shown)
-    columns.push_back({.head = std::string(figure_of(figure->key).symbol), .width = 25});
-  std::vector<internal::TextRow> rows;
-  const auto row = [&](const std::string& name, auto&& cell) {
-    rows.push_back({name});
-    for (const FigureDerivatives* figure : shown) rows.back().push_back(cell(*figure));
-  };
-  for (std::size_t i = 0; i < derivatives.variables.size(); ++i)
-    row(derivatives.variables[i].name, [&](const FigureDerivatives& f) { return derivative_cell(derivatives, drive, f, i); });
-  row("standard deviation", [](const FigureDerivatives& f) { return deviation_cell(f, f.deviation); });
-  row("  of the devices",
-      [&](const FigureDerivatives& f) { return deviation_cell(f, statistics_of(drive, f.key).standard_deviation); });
-  return "\n" + internal::text_table(columns, rows) + wrapped(meaning_of(derivatives, drive)) + "\n";
-}
-
-std::string derivatives_html(const Derivatives& derivatives, const DriveRobustness& drive) {
-  if (derivatives.variables.empty()) return {};
-  const auto page_section = [](const std::string& body) { return section("derivatives", "To first order", body); };
-  if (derivatives.figures.empty()) return page_section("<p>" + escaped(why_no_derivatives(derivatives)) + "</p>\n");
-  TableRow head{"Figure", "Nominal"};
-  for (const Derivatives::Variable& v : derivatives.variables) head.emplace_back(escaped(v.name));
-  head.insert(head.end(), {"Standard deviation", "of the devices"});
-  std::vector<TableRow> rows;
+  ReportTable table{.head = {derivatives.grazes() ? "To first order (grazing)" : "To first order", "Nominal"}, .rows = {}};
+  table.head.front().html = "Figure";
+  for (const Derivatives::Variable& v : derivatives.variables) table.head.emplace_back(v.name);
+  table.head.insert(table.head.end(), {"Standard deviation", "of the devices"});
   for (const FigureDerivatives& figure : derivatives.figures) {
     const Figure& of = figure_of(figure.key);
-    TableRow& row = rows.emplace_back(TableRow{escaped(of.name), escaped(quantity(figure.value, of.unit))});
+    TableRow& row = table.rows.emplace_back(TableRow{of.name, quantity(figure.value, of.unit)});
     if (!figure.is_known()) {
-      row.emplace_back(escaped(figure.why_none), "missing", derivatives.variables.size() + 1);
+      row.emplace_back(figure.why_none, "missing", derivatives.variables.size() + 1);
     } else {
       for (std::size_t i = 0; i < derivatives.variables.size(); ++i)
-        row.emplace_back(escaped(derivative_cell(derivatives, drive, figure, i)));
-      row.emplace_back(escaped(deviation_cell(figure, figure.deviation)));
+        row.emplace_back(derivative_cell(derivatives, drive, figure, i));
+      row.emplace_back(deviation_cell(figure, figure.deviation));
     }
-    row.emplace_back(escaped(quantity(statistics_of(drive, figure.key).standard_deviation, of.unit)));
+    row.emplace_back(quantity(statistics_of(drive, figure.key).standard_deviation, of.unit));
   }
-  return page_section(table_html(head, rows) + "<p class=\"below\">" + escaped(meaning_of(derivatives, drive)) + "</p>\n");
+  section.parts = {std::move(table), Paragraph{.text = meaning_of(derivatives, drive), .is_note = true}};
+  return section;
 }
 
 }  // namespace softland::internal

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <string>
 
+#include "reports/document.h"
 #include "studies/devices/derivatives.h"
 #include "studies/devices/robustness.h"
 
@@ -12,9 +12,7 @@ namespace softland::internal {
 
 /// `drive` is the one that they are of.
 [[nodiscard]] nlohmann::json derivatives_json(const Derivatives& derivatives, const DriveRobustness& drive);
-/// For a terminal: explained_figures. Empty where nothing was asked for.
-[[nodiscard]] std::string derivatives_text(const Derivatives& derivatives, const DriveRobustness& drive);
-/// A section of the page, with all figures.
-[[nodiscard]] std::string derivatives_html(const Derivatives& derivatives, const DriveRobustness& drive);
+/// With all figures. Without parts where nothing was asked for.
+[[nodiscard]] ReportSection derivatives_section(const Derivatives& derivatives, const DriveRobustness& drive);
 
 }  // namespace softland::internal

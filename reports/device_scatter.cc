@@ -100,8 +100,9 @@ std::string scatter(const VariedQuantity& quantity, const Figure& figure, const 
 
 }  // namespace
 
-std::string internal::device_scatter_html(const RobustnessReport& report) {
-  if (report.found.devices == 0) return {};
+ReportSection internal::device_scatter(const RobustnessReport& report) {
+  ReportSection section{.id = "scatter", .heading = "Each figure against each quantity", .parts = {}, .is_page_only = true};
+  if (report.found.devices == 0) return section;
   const DriveRobustness& drive = report.found.drives.back();
   const std::vector<VariedQuantity> quantities = quantities_of(report);
   std::string pictures;
@@ -111,11 +112,11 @@ std::string internal::device_scatter_html(const RobustnessReport& report) {
     for (const DeviceOutcome& o : drive.outcomes) values.push_back(o.of(figure));
     for (const VariedQuantity& quantity : quantities) pictures += scatter(quantity, figure, values);
   }
-  if (pictures.empty()) return {};
-  return section("scatter", "Each figure against each quantity",
-                 fmt::format("<p>Devices under {}, a dot each for the first {}; the line joins medians of neighbours.</p>\n"
-                             "<div class=\"multiples\">\n{}</div>\n",
-                             escaped(drive.name), std::min(most_dots, report.found.devices), pictures));
+  if (pictures.empty()) return section;
+  section.parts = {Paragraph{fmt::format("Devices under {}, a dot each for the first {}; the line joins medians of neighbours.",
+                                         drive.name, std::min(most_dots, report.found.devices))},
+                   Drawing{"<div class=\"multiples\">\n" + pictures + "</div>\n"}};
+  return section;
 }
 
 }  // namespace softland

@@ -9,15 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "base/printable.h"
 #include "reports/closing_clauses.h"
 #include "reports/escape.h"
 #include "reports/figure_text.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/robustness_words.h"
-#include "reports/text.h"
-#include "reports/text_table.h"
 
 namespace softland {
 
@@ -98,6 +95,13 @@ std::string known_words(const ResultDevices::ByError& known) {
   const std::string speed = std::isfinite(known.impact_speed) ? quantity(known.impact_speed, "m/s") : std::string("∞");
   return fmt::format("Vdp to {:g} %: {} land without a rebound, or 95 % touch at no more than {}", 100 * known.error,
                      percent(known.bounce_free), speed);
+}
+
+// On a page there is room for more words.
+TableCell headed(std::string_view on_terminal, std::string_view on_page) {
+  TableCell cell(on_terminal);
+  cell.html = escaped(capitalised(std::string(on_page)));
+  return cell;
 }
 
 // Share without a rebound and impact speed over the error of Vdp.
@@ -218,92 +222,65 @@ std::string internal::devices_headline(const Result& result) {
   return words;
 }
 
-std::string internal::devices_text(const ResultDevices& d) {
-  if (d.rows.empty()) return {};
-  std::vector<std::string> heads{"no rebound"};
-  for (const Column& c : columns) heads.emplace_back(c.short_heading);
-  heads.insert(heads.end(), {"stay open", "pulled in"});
-  std::vector<TextColumn> shown = number_columns(heads, 11);
-  shown.insert(shown.begin(), {.head = fmt::format("{:.0f} devices, 95 % below", d.count), .width = 26, .is_words = true});
-  std::vector<internal::TextRow> rows;
-  for (const ResultDevices::Row& row : d.rows) {
-    rows.push_back(cells(row));
-    rows.back().insert(rows.back().begin(), row.name);
-  }
-  std::string out = text_table(shown, rows);
-  if (!d.measure.empty())
-    out += "\n" +
-           wrapped(fmt::format("best.toml is a {} waveform, searched by {}; {:.0f} closings in all. Devices: {}.", d.waveform,
-                               d.measure == "drawing" ? "the nominal search" : d.measure, d.closings, d.spread)) +
-           "\n";
-  if (d.front.size() > 1) {
-    out += "\nSooner or softer, of 95 % of the devices:\n";
-    for (const ResultDevices::FrontPoint& p : d.front) out += "  " + front_words(p) + "\n";
-  }
-  if (!d.by_error.empty()) {
-    out += "\nWhat a measured Vdp is worth, by its error, with one waveform or another:\n";
-    for (const ResultDevices::ByError& known : d.by_error) out += "  " + known_words(known) + "\n";
-  }
-  if (const std::string held = window_words(d.windows); !held.empty()) out += "\n" + wrapped(held) + "\n";
-  for (const ResultRobust::Condition& c : d.conditions)
-    out += "\n" +
-           wrapped(fmt::format("The condition {} {}: {} of the devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
-                               percent(c.share))) +
-           "\n";
-  if (!d.next_command.empty()) out += "\nFor a device that was measured:\n  " + printable_line(d.next_command) + "\n";
-  return out;
-}
-
-std::string internal::devices_keys(const ResultDevices& d) {
+std::vector<KeyNumber> internal::devices_keys(const ResultDevices& d) {
   const ResultDevices::Row *step = d.row("plain step"), *own = d.row("for the devices");
   if (step == nullptr || own == nullptr) return {};
   const std::vector<std::string> before = cells(*step), after = cells(*own);
-  std::string out;
-  const auto add = [&](const std::string& name, std::size_t column) {
-    out += fmt::format(
-        "<div class=\"key\"><dt>{}</dt><dd><span class=\"before\">{} <span aria-label=\"becomes\">→</span></span> <span "
-        "class=\"after\">{}</span></dd></div>\n",
-        name, escaped(before[column]), escaped(after[column]));
-  };
-  add("Devices without a rebound", 0);
-  for (std::size_t i = 0; i < 3; ++i) add(capitalised(std::string(columns[i].heading)) + ", of 95 %", i + 1);
-  return out;
+  std::vector<KeyNumber> keys{{.name = "Devices without a rebound", .value = after[0], .before = before[0]}};
+  for (std::size_t i = 1; i <= 3; ++i)
+    keys.push_back(
+        {.name = capitalised(std::string(columns[i - 1].heading)) + ", of 95 %", .value = after[i], .before = before[i]});
+  return keys;
 }
 
-std::string internal::devices_section(const ResultDevices& d) {
-  if (d.rows.empty()) return {};
-  TableRow head{"Waveform", "Without a rebound"};
-  for (const Column& c : columns) head.emplace_back(capitalised(std::string(c.heading)));
-  head.insert(head.end(), {"Stay open", "Pulled onto the electrode"});
-  std::vector<TableRow> rows;
+namespace {
+
+ReportTable devices_table(const ResultDevices& d) {
+  ReportTable table{.head = {fmt::format("{:.0f} devices, 95 % below", d.count), headed("no rebound", "without a rebound")},
+                    .rows = {}};
+  for (const Column& c : columns) table.head.push_back(headed(c.short_heading, c.heading));
+  table.head.push_back(headed("stay open", "stay open"));
+  table.head.push_back(headed("pulled in", "pulled onto the electrode"));
   for (const ResultDevices::Row& row : d.rows) {
-    const bool is_measured = !std::isnan(row.pull_in_error) || !std::isnan(row.time_error);
-    const std::string name = is_measured ? "with " + row.name : row.name;
-    TableRow& cell = rows.emplace_back(TableRow{escaped(capitalised(name))});
-    const bool is_own = row.name == "for the devices";
-    for (const std::string& one : cells(row)) {
-      if (is_own) {
-        cell.emplace_back(escaped(one), "own");
-      } else {
-        cell.emplace_back(escaped(one));
-      }
-    }
+    TableRow& line = table.rows.emplace_back(TableRow{row.name});
+    for (const std::string& one : cells(row)) line.emplace_back(one, row.name == "for the devices" ? "own" : "");
   }
-  std::string body =
-      fmt::format("<p>{:.0f} fresh devices: {}.{} Figures are those that 95 % of the devices stay below.</p>\n", d.count,
-                  escaped(d.spread), d.spread_assumed ? " The scene has no [spread]: this one is assumed." : "");
-  body += table_html(head, rows);
-  if (d.front.size() > 1) {
-    body += "<p class=\"below\">Sooner or softer: what 95 % of the devices reach with the other candidates.</p>\n<ul>\n";
-    for (const ResultDevices::FrontPoint& p : d.front) body += "<li>" + escaped(front_words(p)) + "</li>\n";
-    body += "</ul>\n";
+  return table;
+}
+
+}  // namespace
+
+ReportSection internal::devices_section(const ResultDevices& d) {
+  ReportSection section{.id = "devices", .heading = "On devices that differ", .parts = {}};
+  if (d.rows.empty()) return section;
+  const auto note = [&](std::string text) { section.parts.emplace_back(Paragraph{.text = std::move(text), .is_note = true}); };
+  section.parts.emplace_back(devices_table(d));
+  if (!d.measure.empty())
+    note(fmt::format("best.toml is a {} waveform, searched by {}; {:.0f} closings in all. Devices: {}.{}", d.waveform,
+                     d.measure == "drawing" ? "the nominal search" : d.measure, d.closings, d.spread,
+                     d.spread_assumed ? " The scene has no [spread]: this one is assumed." : ""));
+  const auto list = [&](const char* head, const auto& all, const auto& words) {
+    section.parts.emplace_back(SubHeading{head});
+    ReportList lines;
+    for (const auto& one : all) lines.lines.push_back(words(one));
+    section.parts.emplace_back(std::move(lines));
+  };
+  if (d.front.size() > 1) list("Sooner or softer, of 95 % of the devices", d.front, front_words);
+  if (!d.by_error.empty())
+    list("What a measured Vdp is worth, by its error, with one waveform or another", d.by_error, known_words);
+  section.parts.emplace_back(Drawing{error_curve(d)});
+  note(window_words(d.windows));
+  for (const ResultRobust::Condition& c : d.conditions)
+    note(fmt::format("The condition {} {}: {} of the devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
+                     percent(c.share)));
+  if (!d.next_command.empty()) {
+    section.parts.emplace_back(SubHeading{"For a device that was measured"});
+    section.parts.emplace_back(ReportList{{d.next_command}});
   }
-  body += error_curve(d);
-  if (const std::string held = window_words(d.windows); !held.empty()) body += "<p class=\"below\">" + escaped(held) + "</p>\n";
-  if (!d.next_command.empty())
-    body += fmt::format("<p class=\"below\">For a device that was measured: <code>{}</code></p>\n", escaped(d.next_command));
-  body += "<p>More: <a href=\"robustness.html\">how the devices do</a>, device by device and figure by figure.</p>\n";
-  return section("devices", "On devices that differ", body);
+  section.parts.emplace_back(
+      Drawing{"<p class=\"below\">More: <a href=\"robustness.html\">how the devices do</a>, device by device and figure by "
+              "figure.</p>\n"});
+  return section;
 }
 
 }  // namespace softland

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "reports/document.h"
 #include "reports/result.h"
 #include "studies/search/for_devices.h"
 
@@ -18,12 +20,10 @@ namespace internal {
 [[nodiscard]] std::string drawing_words(const ResultDevices& devices);
 /// What the waveforms for devices do there, in one or two sentences.
 [[nodiscard]] std::string devices_headline(const Result& result);
-/// The table for a terminal, and the front.
-[[nodiscard]] std::string devices_text(const ResultDevices& devices);
 /// What stands above all else on a page: shares and 95 % quantiles of the devices, from plain step to winner.
-[[nodiscard]] std::string devices_keys(const ResultDevices& devices);
-/// The table for a page.
-[[nodiscard]] std::string devices_section(const ResultDevices& devices);
+[[nodiscard]] std::vector<KeyNumber> devices_keys(const ResultDevices& devices);
+/// The table, the front, what knowing a device is worth.
+[[nodiscard]] ReportSection devices_section(const ResultDevices& devices);
 
 }  // namespace internal
 }  // namespace softland

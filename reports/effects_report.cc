@@ -7,19 +7,17 @@
 #include <utility>
 #include <vector>
 
+#include "reports/document.h"
 #include "reports/findings.h"
 #include "reports/json_number.h"
 #include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/result_json.h"
-#include "reports/text.h"
-#include "reports/text_table.h"
 
 namespace softland {
 namespace {
 
 using internal::json_number;
-using internal::TextRow;
 using nlohmann::json;
 
 // How a figure changes from the scene's own closing to another.
@@ -33,8 +31,6 @@ json changes_json(const Metrics& metrics, const Metrics& own) {
   return all;
 }
 
-constexpr std::size_t rhs_width = 9;
-
 json named(const NamedNumber& n) { return {{"name", n.name}, {"unit", n.unit}, {"value", json_number(n.value)}}; }
 
 std::string size_of(const NamedNumber& n) {
@@ -42,30 +38,72 @@ std::string size_of(const NamedNumber& n) {
 }
 
 // Each effect of the scene, left out.
-std::string omissions_text(const Effects& effects) {
+ReportTable omissions_table(const Effects& effects) {
   const Effect& own = effects.own("gas");
-  std::vector<internal::TextColumn> columns{{.head = "left out", .width = 26, .is_words = true}, {.width = 18, .is_words = true}};
-  for (const Figure& f : compared_figures) columns.push_back({.head = std::string(f.symbol), .width = 10});
-  columns.push_back({.head = "rhs", .width = rhs_width});
-  columns.push_back({.head = "size", .is_words = true, .gap = 2});
-  std::vector<TextRow> rows;
+  ReportTable table{.head = {"left out", {"", "words"}}, .rows = {}};
+  for (const Figure& f : compared_figures) table.head.emplace_back(f.symbol);
+  table.head.insert(table.head.end(), {"rhs", {"size", "words"}});
   for (const EffectAblation& o : effects.omissions) {
-    TextRow& row = rows.emplace_back(TextRow{o.what.effect, internal::with_true_minus(o.what.choice)});
-    for (const Figure& f : compared_figures) row.push_back(internal::relative_change(change(f, o.metrics, own.metrics)));
+    TableRow& row = table.rows.emplace_back(TableRow{o.what.effect, internal::with_true_minus(o.what.choice)});
+    for (const Figure& f : compared_figures) row.emplace_back(internal::relative_change(change(f, o.metrics, own.metrics)));
     const std::string group = size_of(o.what.group);
-    row.push_back(internal::quantity(o.rhs_seconds, "s"));
-    row.push_back(size_of(o.what.magnitude) + (group.empty() ? "" : "; ") + group);
+    row.emplace_back(internal::quantity(o.rhs_seconds, "s"));
+    row.emplace_back(size_of(o.what.magnitude) + (group.empty() ? "" : "; ") + group);
   }
-  if (effects.omissions.empty()) rows.push_back({"nothing: the scene describes no effect that it could do without"});
-  TextRow& nothing = rows.emplace_back(TextRow{"nothing"});
-  nothing.resize(2 + compared_figures.size());
-  nothing.push_back(internal::quantity(own.rhs_seconds, "s"));
-  return internal::text_table(columns, rows) + "\n" +
-         wrapped(
-             "How the figures change when one effect is left out, under the same voltages, and what a right-hand side then "
-             "costs. "
-             "simulate.effects = \"auto\" leaves out what changes them by less than simulate.effects_tolerance.") +
-         "\n\n";
+  TableRow nothing{"nothing"};
+  nothing.resize(2 + compared_figures.size(), "");
+  nothing.emplace_back(internal::quantity(own.rhs_seconds, "s"));
+  table.rows.push_back(std::move(nothing));
+  return table;
+}
+
+ReportTable laws_table(const Effects& effects) {
+  const Effect& own = effects.own("gas");
+  ReportTable table{.head = {"gas", "c", "Kn"}, .rows = {}};
+  for (const Figure& f : compared_figures) table.head.insert(table.head.end(), {f.symbol, ""});
+  table.head.emplace_back("rhs");
+  for (const Effect& e : effects.list) {
+    TableRow& row = table.rows.emplace_back(TableRow{(e.in_scene ? "* " : "  ") + e.choice,
+                                                     internal::quantity(e.magnitude.value, e.magnitude.unit),
+                                                     internal::quantity(e.group.value, e.group.unit)});
+    for (const Figure& f : compared_figures) {
+      row.emplace_back(internal::quantity(f.value(e.metrics), f.unit, 4));
+      row.emplace_back(e.in_scene ? "" : internal::relative_change(change(f, e.metrics, own.metrics)));
+    }
+    row.emplace_back(internal::quantity(e.rhs_seconds, "s"));
+  }
+  return table;
+}
+
+std::string spread_of_laws(const Effects& effects) {
+  std::string words;
+  for (const Figure& f : compared_figures) {
+    if (!std::isfinite(f.value(effects.own("gas").metrics))) continue;
+    const double spread = effects.spread("gas", f);
+    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", f.symbol,
+                         std::isfinite(spread) ? internal::percent(spread) : "unknown");
+  }
+  return words.empty() ? "The gas laws cannot be compared: the switch does not close in the scene's own."
+                       : "The gas laws differ on this scene, largest less smallest over the scene's own, by: " + words + ".";
+}
+
+// One line per warning, with the laws it is about.
+std::vector<std::string> warnings_of(const Effects& effects) {
+  std::vector<std::pair<std::string, std::string>> warnings;  // laws, what
+  for (const Effect& e : effects.list) {
+    for (const std::string& w : e.warnings) {
+      const auto same = std::find_if(warnings.begin(), warnings.end(), [&](const auto& known) { return known.second == w; });
+      if (same == warnings.end()) {
+        warnings.emplace_back(e.choice, w);
+      } else {
+        same->first += ", " + e.choice;
+      }
+    }
+  }
+  std::vector<std::string> lines;
+  for (const NotCompared& n : effects.not_compared) lines.push_back(n.choice + " is not compared: " + n.reason);
+  for (const auto& [laws, what] : warnings) lines.push_back(fmt::format("{}: {}", laws, what));
+  return lines;
 }
 
 }  // namespace
@@ -110,65 +148,31 @@ json effects_json(const PreparedScene& prepared, const Effects& effects, const P
 
 std::string effects_text(const Effects& effects) {
   const Effect& own = effects.own("gas");
-  std::string text = effects.interrupted ? "Interrupted: what follows is not all.\n\n" : "";
+  Document document{.doubt = effects.interrupted ? "Interrupted: what follows is not all." : ""};
   if (!std::isfinite(own.metrics.initial_contact_time)) {
     Result closing{.status = std::string(to_string(own.metrics.status))};
     closing.best = {.status = closing.status, .figures = FigureValues(own.metrics)};
     closing.best.curve.time = {effects.window};
-    text += wrapped(internal::headline(closing).main +
-                    " So there are no figures to compare; below stand the size and the cost of each effect.") +
-            "\n\n";
+    document.headline = internal::headline(closing).main;
+    document.headline_rest = " So there are no figures to compare; below stand the size and the cost of each effect.";
   }
-  text += omissions_text(effects);
-  std::vector<internal::TextColumn> columns{
-      {.head = "gas", .width = 20, .is_words = true}, {.head = "c", .width = 16}, {.head = "Kn", .width = 8}};
-  for (const Figure& f : compared_figures) {
-    columns.push_back({.head = std::string(f.symbol), .width = 9 + f.unit.size()});
-    columns.push_back({.width = 9});
-  }
-  columns.push_back({.head = "rhs", .width = rhs_width});
-  std::vector<TextRow> rows;
-  for (const Effect& e : effects.list) {
-    TextRow& row =
-        rows.emplace_back(TextRow{(e.in_scene ? "* " : "  ") + e.choice, internal::quantity(e.magnitude.value, e.magnitude.unit),
-                                  internal::quantity(e.group.value, e.group.unit)});
-    for (const Figure& f : compared_figures) {
-      row.push_back(internal::quantity(f.value(e.metrics), f.unit, 4));
-      row.push_back(e.in_scene ? "" : internal::relative_change(change(f, e.metrics, own.metrics)));
-    }
-    row.push_back(internal::quantity(e.rhs_seconds, "s"));
-  }
-  text += internal::text_table(columns, rows) + "\n" +
-          wrapped(
-              "* the scene's own. c is the damping per length and Kn the Knudsen number at the gap of the closed tip; every "
-              "other column is of the whole closing, its change is relative to the scene's own.") +
-          "\n\n";
-  std::string words;
-  for (const Figure& f : compared_figures) {
-    if (!std::isfinite(f.value(own.metrics))) continue;
-    const double spread = effects.spread("gas", f);
-    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", f.symbol,
-                         std::isfinite(spread) ? internal::percent(spread) : "unknown");
-  }
-  text += wrapped(words.empty()
-                      ? "The gas laws cannot be compared: the switch does not close in the scene's own."
-                      : "The gas laws differ on this scene, largest less smallest over the scene's own, by: " + words + ".") +
-          "\n";
-  // One line per warning, with the laws it is about.
-  std::vector<std::pair<std::string, std::string>> warnings;  // laws, what
-  for (const Effect& e : effects.list) {
-    for (const std::string& w : e.warnings) {
-      const auto same = std::find_if(warnings.begin(), warnings.end(), [&](const auto& known) { return known.second == w; });
-      if (same == warnings.end()) {
-        warnings.emplace_back(e.choice, w);
-      } else {
-        same->first += ", " + e.choice;
-      }
-    }
-  }
-  for (const NotCompared& n : effects.not_compared) text += "\n" + wrapped(n.choice + " is not compared: " + n.reason) + "\n";
-  for (const auto& [laws, what] : warnings) text += "\n" + wrapped(laws + ": " + what) + "\n";
-  return text;
+  ReportSection left_out{.id = "left-out", .heading = "Each effect left out", .parts = {}};
+  if (effects.omissions.empty())
+    left_out.parts.emplace_back(Paragraph{"Nothing is left out: the scene describes no effect that it could do without."});
+  left_out.parts.emplace_back(omissions_table(effects));
+  left_out.parts.emplace_back(
+      Paragraph{"How the figures change when one effect is left out, under the same voltages, and what a right-hand side then "
+                "costs. simulate.effects = \"auto\" leaves out what changes them by less than simulate.effects_tolerance."});
+  ReportSection laws{.id = "laws",
+                     .heading = "Other gas laws",
+                     .parts = {laws_table(effects),
+                               Paragraph{"* the scene's own. c is the damping per length and Kn the Knudsen number at the gap of "
+                                         "the closed tip; every other column is of the whole closing, its change is relative to "
+                                         "the scene's own."},
+                               Paragraph{spread_of_laws(effects)}}};
+  for (const std::string& line : warnings_of(effects)) laws.parts.emplace_back(Paragraph{line});
+  document.sections = {std::move(left_out), std::move(laws)};
+  return terminal_text(document);
 }
 
 }  // namespace softland

@@ -11,6 +11,7 @@
 #include "base/require.h"
 #include "base/split.h"
 #include "optimizers/pareto.h"
+#include "reports/document.h"
 #include "reports/escape.h"
 #include "reports/exploration_view.h"
 #include "reports/heat_map.h"
@@ -30,7 +31,6 @@ using internal::escaped;
 using internal::explored_text;
 using internal::json_number;
 using internal::section;
-using internal::TableRow;
 using nlohmann::json;
 
 constexpr std::size_t most_front_rows = 40;  // in words
@@ -102,22 +102,27 @@ std::string range_key(const ExplorationReport& report) {
     high = std::max(high, point.values[c]);
   }
   if (!(low <= high)) return {};
-  return internal::key_html(escaped(report.columns[c].name) + ", least", escaped(explored_text(report.columns[c], low, 3)),
-                            "up to " + escaped(explored_text(report.columns[c], high, 3)));
+  return internal::key_html({.name = report.columns[c].name + ", least",
+                             .value = explored_text(report.columns[c], low, 3),
+                             .change = "up to " + explored_text(report.columns[c], high, 3)});
 }
 
 std::string keys_of(const ExplorationReport& report, const ExploredFront& front) {
   const auto finished =
       std::count_if(report.points.begin(), report.points.end(), [](const auto& p) { return has_figures(p.status); });
-  std::string keys = internal::key_html("Points", fmt::format("{}", report.points.size()),
-                                        report.planned > 0 ? fmt::format("of {} in the plan", report.planned) : "");
-  keys += internal::key_html("With figures", fmt::format("{}", finished),
-                             fmt::format("{} ended otherwise", static_cast<std::int64_t>(report.points.size()) - finished));
+  std::string keys = internal::key_html({.name = "Points",
+                                         .value = fmt::format("{}", report.points.size()),
+                                         .change = report.planned > 0 ? fmt::format("of {} in the plan", report.planned) : ""});
+  keys += internal::key_html(
+      {.name = "With figures",
+       .value = fmt::format("{}", finished),
+       .change = fmt::format("{} ended otherwise", static_cast<std::int64_t>(report.points.size()) - finished)});
   keys += range_key(report);
   if (!front.members.empty())
     keys += internal::key_html(
-        "On the front", fmt::format("{}", front.members.size()),
-        std::isfinite(front.share) ? fmt::format("hypervolume {} of its box", internal::percent(front.share)) : "");
+        {.name = "On the front",
+         .value = fmt::format("{}", front.members.size()),
+         .change = std::isfinite(front.share) ? fmt::format("hypervolume {} of its box", internal::percent(front.share)) : ""});
   return keys;
 }
 
@@ -146,19 +151,19 @@ std::string still_map(const ExplorationReport& report, const internal::ExploredG
 }
 
 std::string outcome_section(const ExplorationReport& report) {
-  std::vector<TableRow> rows;
+  ReportTable table{.head = {"Ended", "Points", "Reasons"}, .rows = {}};
   constexpr std::size_t most_reasons = 5;
   for (const auto& [status, outcome] : outcomes_of(report)) {
     std::vector<std::pair<std::string, std::int64_t>> ranked(outcome.reasons.begin(), outcome.reasons.end());
     std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
     std::string reasons;
     for (std::size_t k = 0; k < std::min(most_reasons, ranked.size()); ++k)
-      reasons += fmt::format("{}{} ({})", k == 0 ? "" : "; ", escaped(internal::shortened(printable_line(ranked[k].first))),
-                             ranked[k].second);
+      reasons +=
+          fmt::format("{}{} ({})", k == 0 ? "" : "; ", internal::shortened(printable_line(ranked[k].first)), ranked[k].second);
     if (ranked.size() > most_reasons) reasons += fmt::format("; {} more", ranked.size() - most_reasons);
-    rows.push_back({escaped(with_blanks(status)), fmt::format("{}", outcome.points), internal::Cell(reasons, "missing")});
+    table.rows.push_back({with_blanks(status), fmt::format("{}", outcome.points), {reasons, "missing"}});
   }
-  return section("outcomes", "How the points ended", internal::table_html({"Ended", "Points", "Reasons"}, rows));
+  return section("outcomes", "How the points ended", internal::table_html(table));
 }
 
 std::string front_words(const ExplorationReport& report, const ExploredFront& front) {

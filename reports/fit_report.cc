@@ -10,18 +10,13 @@
 #include <tuple>
 #include <utility>
 
-#include "reports/escape.h"
 #include "reports/json_number.h"
 #include "reports/origin.h"
-#include "reports/page.h"
 #include "reports/quantity.h"
-#include "reports/text.h"
-#include "reports/text_table.h"
 
 namespace softland {
 namespace {
 
-using internal::escaped;
 using internal::json_number;
 using internal::plain_number;
 using internal::quantity;
@@ -232,88 +227,63 @@ json fit_json(const Fit& fit, const Provenance& provenance) {
   return data;
 }
 
-std::string fit_text(const Fit& fit) {
-  std::string text = wrapped(fit_headline(fit)) + "\n";
-  if (fit.found) {
-    std::vector<internal::TextRow> rows;
-    for (const FittedUnknown& u : fit.unknowns)
-      rows.push_back({label_of(u), nominal_text(u), fitted_value_text(u, u.value, u.standard_error), fitted_error_text(u),
-                      fitted_interval_text(u), fitted_prior_text(u)});
-    text += "\n" + internal::text_table({{.head = "Unknown", .width = 34, .is_words = true},
-                                         {.head = "scene", .width = 16},
-                                         {.head = "fitted", .width = 16},
-                                         {.head = "± 1 sigma", .width = 20},
-                                         {.head = "95 %", .width = 28},
-                                         {.head = "prior", .width = 16}},
-                                        rows);
-  }
-  for (const std::string& sentence : fit_words(fit)) text += "\n" + wrapped(sentence) + "\n";
-  return text;
-}
-
 namespace {
 
-std::string values_section(const Fit& fit) {
-  std::vector<internal::TableRow> rows;
-  for (const FittedUnknown& u : fit.unknowns) {
-    rows.push_back({escaped(label_of(u)), escaped(nominal_text(u)),
-                    internal::Cell(escaped(fitted_value_text(u, u.value, u.standard_error)), "own"),
-                    escaped(fitted_error_text(u)), escaped(fitted_interval_text(u)), escaped(fitted_prior_text(u))});
-  }
-  std::string words;
-  for (const std::string& sentence : fit_words(fit)) words += "<p class=\"below\">" + escaped(sentence) + "</p>\n";
-  return internal::section("values", "What was fitted",
-                           internal::table_html({"Unknown", "Scene", "Fitted", "± 1 σ", "95 %", "Known before"}, rows) + words);
+ReportSection values_section(const Fit& fit) {
+  ReportTable table{.head = {"Unknown", "Scene", "Fitted", "± 1 σ", "95 %", "Known before"}, .rows = {}};
+  for (const FittedUnknown& u : fit.unknowns)
+    table.rows.push_back({label_of(u),
+                          nominal_text(u),
+                          {fitted_value_text(u, u.value, u.standard_error), "own"},
+                          fitted_error_text(u),
+                          fitted_interval_text(u),
+                          fitted_prior_text(u)});
+  ReportSection section{.id = "values", .heading = "What was fitted", .parts = {}};
+  if (fit.found) section.parts.emplace_back(std::move(table));
+  for (const std::string& sentence : fit_words(fit)) section.parts.emplace_back(Paragraph{.text = sentence, .is_note = true});
+  return section;
 }
 
-std::string correlation_section(const Fit& fit) {
-  constexpr std::size_t most = 12;
-  if (fit.unknowns.size() < 2 || fit.unknowns.size() > most) return {};
-  internal::TableRow head{""};
-  std::vector<internal::TableRow> rows;
-  for (const FittedUnknown& u : fit.unknowns) head.push_back(escaped(label_of(u)));
+ReportTable correlation_table(const Fit& fit) {
+  ReportTable table{.head = {""}, .rows = {}};
+  for (const FittedUnknown& u : fit.unknowns) table.head.emplace_back(label_of(u));
   for (std::size_t i = 0; i < fit.unknowns.size(); ++i) {
-    internal::TableRow row{escaped(label_of(fit.unknowns[i]))};
+    TableRow& row = table.rows.emplace_back(TableRow{label_of(fit.unknowns[i])});
     for (std::size_t j = 0; j < fit.unknowns.size(); ++j)
-      row.push_back(internal::with_true_minus(
+      row.emplace_back(internal::with_true_minus(
           fmt::format("{:.3f}", fit.estimate.correlation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)))));
-    rows.push_back(std::move(row));
   }
-  return internal::section("correlation", "Correlations of their errors", internal::table_html(head, rows));
+  return table;
 }
 
-std::string next_section(const Fit& fit) {
+ReportTable next_table(const Fit& fit) {
   constexpr std::size_t most = 8;
-  std::vector<internal::TableRow> rows;
+  ReportTable table{.head = {"Measurement", "To", "Standard errors fall by"}, .rows = {}};
   for (const NextMeasurement& one : fit.next) {
-    if (rows.size() == most) break;
-    rows.push_back({escaped(one.name), escaped(quantity(one.error, row_of(one.what).unit, 2)),
-                    internal::Cell(escaped(internal::percent(one.reduction)), "own")});
+    if (table.rows.size() == most) break;
+    table.rows.push_back({one.name, quantity(one.error, row_of(one.what).unit, 2), {internal::percent(one.reduction), "own"}});
   }
-  if (rows.empty()) return {};
-  return internal::section(
-      "next", "What to measure next",
-      internal::table_html({"Measurement", "To", "Standard errors fall by"}, rows) +
-          "<p class=\"below\">The root of the mean square of all standard errors, each over what was known before, where "
-          "this is measured as well, on every device.</p>\n");
+  return table;
 }
 
-std::string data_section(const Fit& fit) {
+ReportSection data_section(const Fit& fit) {
   constexpr std::size_t most = 60;
-  std::vector<internal::TableRow> rows;
+  ReportTable table{.head = {"Measured", "Value", "Error", "Scene", "Fitted", "Off, in errors"}, .rows = {}};
   for (const FitResidual& r : fit.residuals) {
-    if (rows.size() == most) break;
+    if (table.rows.size() == most) break;
     const std::string_view unit = row_of(r.what).unit;
-    rows.push_back({escaped(what_text(r)), escaped(quantity(r.measured, unit, 5)), escaped(quantity(r.error, unit, 2)),
-                    escaped(quantity(r.before, unit, 5)), internal::Cell(escaped(quantity(r.after, unit, 5)), "own"),
-                    internal::with_true_minus(fmt::format("{:.2f}", r.normalized()))});
+    table.rows.push_back({what_text(r),
+                          quantity(r.measured, unit, 5),
+                          quantity(r.error, unit, 2),
+                          quantity(r.before, unit, 5),
+                          {quantity(r.after, unit, 5), "own"},
+                          internal::with_true_minus(fmt::format("{:.2f}", r.normalized()))});
   }
-  std::string below;
+  ReportSection section{.id = "data", .heading = "Measured, before and after", .parts = {std::move(table)}, .is_page_only = true};
   if (fit.residuals.size() > most)
-    below = fmt::format("<p class=\"below\">The first {} of {}; fit.json has all.</p>\n", most, fit.residuals.size());
-  return internal::section(
-      "data", "Measured, before and after",
-      internal::table_html({"Measured", "Value", "Error", "Scene", "Fitted", "Off, in errors"}, rows) + below);
+    section.parts.emplace_back(
+        Paragraph{.text = fmt::format("The first {} of {}; fit.json has all.", most, fit.residuals.size()), .is_note = true});
+  return section;
 }
 
 void add_residual_chart(const Fit& fit, internal::Picture& drawn) {
@@ -394,38 +364,52 @@ void add_courses(const Fit& fit, internal::Picture& drawn) {
   }
 }
 
-std::string keys_of(const Fit& fit) {
+std::vector<KeyNumber> keys_of(const Fit& fit) {
   const auto n = static_cast<double>(fit.residuals.size());
-  return internal::key_html("Off the data by", fmt::format("{} errors", plain_number(std::sqrt(fit.chi_squared() / n), 3)),
-                            fmt::format("the scene as it was: {}", plain_number(std::sqrt(fit.chi_squared_before() / n), 3))) +
-         internal::key_html("Unknowns", fmt::format("{}", fit.unknowns.size()),
-                            fmt::format("from {} data", fit.residuals.size())) +
-         internal::key_html("Minima", fmt::format("{}", fit.minima), fmt::format("of {} searches that converged", fit.converged));
+  return {{.name = "Off the data by",
+           .value = fmt::format("{} errors", plain_number(std::sqrt(fit.chi_squared() / n), 3)),
+           .change = fmt::format("the scene as it was: {}", plain_number(std::sqrt(fit.chi_squared_before() / n), 3))},
+          {.name = "Unknowns",
+           .value = fmt::format("{}", fit.unknowns.size()),
+           .change = fmt::format("from {} data", fit.residuals.size())},
+          {.name = "Minima",
+           .value = fmt::format("{}", fit.minima),
+           .change = fmt::format("of {} searches that converged", fit.converged)}};
 }
 
 }  // namespace
 
-std::string fit_html(const Fit& fit, const Provenance& provenance) {
-  internal::Picture drawn;
-  std::string charts;
+Document fit_document(const Fit& fit, const Provenance& provenance) {
+  Document document{.title = fit.scene.scene.title,
+                    .origin = "fit",
+                    .headline = fit_headline(fit),
+                    .sections = {values_section(fit)},
+                    .made = internal::origin(fit.scene, provenance.command)};
+  document.made.seed = fit.seed;
+  document.made.tolerance = fit.scene.tolerance;
+  constexpr std::size_t most = 12;  // unknowns whose correlations can be read
+  if (fit.unknowns.size() >= 2 && fit.unknowns.size() <= most)
+    document.sections.push_back({.id = "correlation",
+                                 .heading = "Correlations of their errors",
+                                 .parts = {correlation_table(fit)},
+                                 .is_page_only = true});
+  if (!fit.next.empty())
+    document.sections.push_back(
+        {.id = "next",
+         .heading = "What to measure next",
+         .parts = {next_table(fit), Paragraph{.text = "The root of the mean square of all standard errors, each over what was "
+                                                      "known before, where this is measured as well, on every device.",
+                                              .is_note = true}},
+         .is_page_only = true});
   if (fit.found) {
-    add_residual_chart(fit, drawn);
-    add_courses(fit, drawn);
-    for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);
+    document.keys = keys_of(fit);
+    add_residual_chart(fit, document.drawn);
+    add_courses(fit, document.drawn);
   }
-  Result result = internal::origin(fit.scene, provenance.command);
-  result.seed = fit.seed;
-  result.tolerance = fit.scene.tolerance;
-  return internal::page({.title = fit.scene.scene.title,
-                         .origin = "fit",
-                         .headline = fit_headline(fit),
-                         .headline_rest = "",
-                         .keys = fit.found ? keys_of(fit) : "",
-                         .body = values_section(fit) + correlation_section(fit) + next_section(fit) +
-                                 internal::section("courses", "Residuals", charts) + data_section(fit) +
-                                 internal::reproduce(result) + internal::scene(result),
-                         .style = internal::chart_style(),
-                         .scripts = internal::chart_scripts(drawn)});
+  document.sections.push_back(
+      {.id = "courses", .heading = "Residuals", .parts = {internal::charts_of(document.drawn)}, .is_page_only = true});
+  document.sections.push_back(data_section(fit));
+  return document;
 }
 
 }  // namespace softland

@@ -9,20 +9,18 @@
 #include <vector>
 
 #include "reports/chart.h"
+#include "reports/document.h"
 #include "reports/json_number.h"
 #include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/result_json.h"
 #include "reports/svg.h"
-#include "reports/text.h"
-#include "reports/text_table.h"
 
 namespace softland {
 namespace {
 
 using internal::json_number;
 using internal::quantity;
-using internal::TextRow;
 using nlohmann::json;
 
 json least_json(const LeastTime& least) {
@@ -70,25 +68,25 @@ std::string drives_of(Actuator actuator) {
   return "electrodes and piezo";
 }
 
-// `second`: the head of what stands beside a time.
-std::string limit_table(const std::string& name, const std::string& time, const std::string& second,
-                        const std::vector<TextRow>& rows) {
-  constexpr std::size_t number = 12;
-  return internal::text_table({{.head = name, .width = 44, .is_words = true, .gap = 2},
-                               {.head = time, .width = number},
-                               {.head = second, .width = number},
-                               {.is_words = true, .gap = 2}},
-                              rows);
-}
-
 std::string why_not(const LeastTime& least) {
   return least.message.empty() ? std::string(to_string(least.status)) : least.message;
 }
 
-TextRow least_row(const std::string& name, const LeastTime& least) {
+TableRow least_row(const std::string& name, const LeastTime& least) {
   if (least.status != Status::done) return {name, "—", "—", why_not(least)};
   return {name, quantity(least.time, "s", 4), quantity(least.impact_velocity, "m/s"),
           least.from_start ? "found from the waveform of --start" : ""};
+}
+
+// Least times over what was varied, as `name` says it.
+template <class Name>
+ReportTable list_table(const char* title, const std::vector<LeastTime>& all, Name name) {
+  ReportTable table{.head = {title, "least time", {"", "words"}}, .rows = {}};
+  for (const LeastTime& least : all) {
+    const bool done = least.status == Status::done;
+    table.rows.push_back({name(least), done ? quantity(least.time, "s", 4) : "—", done ? "" : why_not(least)});
+  }
+  return table;
 }
 
 // The model for which a least time is a bound: a beam with more modes may touch earlier. Empty for a plate, which has one mode.
@@ -122,6 +120,20 @@ std::string words_of_catch(const LimitLanding& landing) {
   std::string words = fmt::format("landing, then a catch of {}", quantity(pulled, "s"));
   if (landing.catch_delay > 0) words += fmt::format(" after {}", quantity(landing.catch_delay, "s"));
   return words;
+}
+
+ReportTable touches_table(const Limit& limit) {
+  ReportTable table{.head = {"", "first touch", "speed", {"", "words"}}, .rows = {}};
+  table.rows = {
+      {"plain step", quantity(limit.step.initial_contact_time, "s", 4), quantity(limit.step.impact_velocity, "m/s")},
+      least_row(fmt::format("least time of a touch at {} or less", quantity(limit.impact_velocity, "m/s")), limit.touch),
+      least_row("least time with every mode at rest", limit.rest)};
+  if (limit.landing) {
+    const Metrics& m = limit.landing->closing.metrics;
+    table.rows.push_back({words_of_catch(*limit.landing), quantity(m.initial_contact_time, "s", 4),
+                          quantity(m.impact_velocity, "m/s"), words_after(*limit.landing)});
+  }
+  return table;
 }
 
 std::vector<std::string> all_warnings(const Limit& limit) {
@@ -174,41 +186,26 @@ json limit_json(const Limit& limit, const Provenance& provenance) {
 }
 
 std::string limit_text(const Limit& limit) {
-  std::string text = limit.interrupted ? "Interrupted: what follows is not all.\n\n" : "";
   const std::string peak = std::isfinite(limit.touch.peak) ? fmt::format(", up to {}", quantity(limit.touch.peak, "V")) : "";
-  text += fmt::format("How quickly {} can close the switch{}\n\n", drives_of(limit.options.actuator), peak);
-  if (!limit.hold_warning.empty()) text += wrapped("warning: " + limit.hold_warning) + "\n\n";
-  std::vector<TextRow> touches{
-      {"plain step", quantity(limit.step.initial_contact_time, "s", 4), quantity(limit.step.impact_velocity, "m/s")},
-      least_row(fmt::format("least time of a touch at {} or less", quantity(limit.impact_velocity, "m/s")), limit.touch),
-      least_row("least time with every mode at rest", limit.rest)};
-  if (limit.landing) {
-    const Metrics& m = limit.landing->closing.metrics;
-    touches.push_back({words_of_catch(*limit.landing), quantity(m.initial_contact_time, "s", 4),
-                       quantity(m.impact_velocity, "m/s"), words_after(*limit.landing)});
-  }
-  text += limit_table("", "first touch", "speed", touches);
-  const auto list = [&](const std::string& title, const std::vector<LeastTime>& all, const auto& name) {
-    if (all.empty()) return;
-    std::vector<TextRow> rows;
-    for (const LeastTime& least : all) {
-      const bool done = least.status == Status::done;
-      rows.push_back({name(least), done ? quantity(least.time, "s", 4) : "—", "", done ? "" : why_not(least)});
-    }
-    text += "\n" + limit_table(title, "least time", "", rows);
-  };
-  list("touch at or below", limit.over_velocity, [](const LeastTime& l) { return quantity(l.permitted, "m/s"); });
-  list("volts up to", limit.over_peak, [](const LeastTime& l) { return quantity(l.peak, "V", 4); });
-  if (limit.touch.status != Status::done && limit.rest.status != Status::done) return text;
+  ReportSection section{.id = "least-times", .heading = "Least times", .parts = {touches_table(limit)}};
+  if (!limit.over_velocity.empty())
+    section.parts.emplace_back(
+        list_table("touch at or below", limit.over_velocity, [](const LeastTime& l) { return quantity(l.permitted, "m/s"); }));
+  if (!limit.over_peak.empty())
+    section.parts.emplace_back(
+        list_table("volts up to", limit.over_peak, [](const LeastTime& l) { return quantity(l.peak, "V", 4); }));
   const std::string model = model_of(limit);
-  return text + "\n" +
-         wrapped("No waveform of these drives touches earlier at that speed" +
-                 (model.empty() ? "" : " in this model of " + model) +
-                 ", as far as Ipopt can tell: the optimum is a local one, found from the quickest single swing" +
-                 std::string(limit.options.start.empty() ? "" : " or from the waveform of --start") +
-                 (model.empty() ? "." : ". A beam has more modes, by which a waveform can gain.") +
-                 " A beam whose modes still ring may bounce after a soft touch: the landing was simulated.") +
-         "\n";
+  if (limit.touch.status == Status::done || limit.rest.status == Status::done)
+    section.parts.emplace_back(Paragraph{
+        "No waveform of these drives touches earlier at that speed" + (model.empty() ? "" : " in this model of " + model) +
+        ", as far as Ipopt can tell: the optimum is a local one, found from the quickest single swing" +
+        std::string(limit.options.start.empty() ? "" : " or from the waveform of --start") +
+        (model.empty() ? "." : ". A beam has more modes, by which a waveform can gain.") +
+        " A beam whose modes still ring may bounce after a soft touch: the landing was simulated."});
+  return terminal_text({.headline = fmt::format("How quickly {} can close the switch{}", drives_of(limit.options.actuator), peak),
+                        .doubt = limit.interrupted ? "Interrupted: what follows is not all." : "",
+                        .sections = {std::move(section)},
+                        .warnings = limit.hold_warning.empty() ? std::vector<std::string>{} : std::vector{limit.hold_warning}});
 }
 
 std::string limit_svg(const Limit& limit) {

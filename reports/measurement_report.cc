@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reports/document.h"
 #include "reports/estimates.h"
 #include "reports/json_number.h"
 #include "reports/origin.h"
 #include "reports/quantity.h"
-#include "reports/text.h"
-#include "reports/text_table.h"
 #include "sampling/statistics.h"
 
 namespace softland {
@@ -21,7 +20,6 @@ using internal::json_number;
 using internal::percent;
 using internal::quantile_text;
 using internal::quantity;
-using internal::TextRow;
 using internal::yield_json;
 using internal::yield_text;
 using nlohmann::json;
@@ -42,29 +40,31 @@ json quantile_json(const EstimatedQuantile& q) {
   return {{"value", json_number(q.value)}, {"interval", interval_json(q.interval)}};
 }
 
-constexpr std::size_t name_width = 36;
-
-TextRow row(const Prediction& p, bool drives_piezo) {
+TableRow row(const Prediction& p, bool drives_piezo) {
   const auto miss = [](double value) {
     return std::isfinite(value) ? internal::plain_number(100 * value, 2) + " %" : std::string("—");
   };
-  TextRow cells{p.name, miss(p.volts_miss), miss(p.time_miss)};
-  if (drives_piezo) cells.push_back(miss(p.piezo_miss));
-  cells.push_back(p.is_judged ? yield_text(p.bounce_free) : "—");
+  TableRow cells{p.name, miss(p.volts_miss), miss(p.time_miss)};
+  if (drives_piezo) cells.emplace_back(miss(p.piezo_miss));
+  cells.emplace_back(p.is_judged ? yield_text(p.bounce_free) : "—");
   if (p.is_judged) cells.insert(cells.end(), {quantile_text(p.impact_speed, "m/s"), quantile_text(p.rebound_height, "m")});
   return cells;
 }
 
-std::string predictions_table(const char* name, const std::vector<TextRow>& rows, bool drives_piezo) {
-  constexpr std::size_t miss_width = 10, quantile_width = 27;
-  std::vector<internal::TextColumn> columns{{.head = name, .width = name_width, .is_words = true},
-                                            {.head = "volts off", .width = miss_width},
-                                            {.head = "time off", .width = miss_width}};
-  if (drives_piezo) columns.push_back({.head = "piezo off", .width = miss_width});
-  columns.push_back({.head = "without a rebound", .width = 23});
-  columns.push_back({.head = "v_max, 95 % below", .width = quantile_width});
-  columns.push_back({.head = "B_H, 95 % below", .width = quantile_width});
-  return "\n" + internal::text_table(columns, rows);
+ReportTable predictions_table(const char* name, const std::vector<Prediction>& predictions, bool drives_piezo) {
+  ReportTable table{.head = {name, "volts off", "time off"}, .rows = {}};
+  if (drives_piezo) table.head.emplace_back("piezo off");
+  table.head.insert(table.head.end(), {"without a rebound", "v_max, 95 % below", "B_H, 95 % below"});
+  for (const Prediction& p : predictions) table.rows.push_back(row(p, drives_piezo));
+  return table;
+}
+
+ReportTable figures_table(const IdentificationStudy& study) {
+  ReportTable table{.head = {"Figure", "nominal", "varies by", "error", "devices"}, .rows = {}};
+  for (const MeasurableFigure& f : study.figures)
+    table.rows.push_back({f.name, quantity(f.nominal, f.unit), percent(variation(f)), f.error > 0 ? percent(f.error) : "exact",
+                          std::to_string(known(f).size())});
+  return table;
 }
 
 }  // namespace
@@ -114,21 +114,6 @@ json measurements_json(const IdentificationStudy& study, const IdentificationOpt
 }
 
 std::string measurements_text(const IdentificationStudy& study, const IdentificationOptions& options, std::size_t most) {
-  std::string text;
-  if (study.interrupted) text += "Interrupted: not all is judged.\n\n";
-  text +=
-      wrapped(fmt::format("{} devices of the spread. For each the factors of volts and of time were searched under which the "
-                          "recipe lands it most softly; then they were told from what is measured, by a fit to the other half "
-                          "of the devices, and the devices closed with what was told.",
-                          study.devices)) +
-      "\n\n";
-  std::vector<TextRow> figures, rows;
-  for (const MeasurableFigure& f : study.figures)
-    figures.push_back({f.name, quantity(f.nominal, f.unit), percent(variation(f)), f.error > 0 ? percent(f.error) : "exact",
-                       std::to_string(known(f).size())});
-  std::vector<internal::TextColumn> columns = internal::number_columns({"nominal", "varies by", "error", "devices"}, 12);
-  columns.insert(columns.begin(), {.head = "Figure", .width = name_width, .is_words = true});
-  text += internal::text_table(columns, figures);
   // Whether a pair is worth its second figure.
   const auto is_better_than_its_figures = [&](const Prediction& p) {
     return std::all_of(p.figures.begin(), p.figures.end(), [&](std::size_t figure) {
@@ -137,28 +122,29 @@ std::string measurements_text(const IdentificationStudy& study, const Identifica
       });
     });
   };
-  std::size_t shown = 0, left_out = 0;
+  std::vector<Prediction> shown;
   for (const Prediction& p : study.predictions) {
-    if (shown == most || (p.is_judged && p.figures.size() > 1 && !is_better_than_its_figures(p))) {
-      ++left_out;
-      continue;
-    }
-    rows.push_back(row(p, study.drives_piezo));
-    ++shown;
+    if (shown.size() < most && (!p.is_judged || p.figures.size() < 2 || is_better_than_its_figures(p))) shown.push_back(p);
   }
-  text += predictions_table("Measured, the best first", rows, study.drives_piezo);
-  rows.clear();
-  for (const Prediction& p : study.references) rows.push_back(row(p, study.drives_piezo));
-  text += predictions_table("To compare with", rows, study.drives_piezo);
+  const std::size_t left_out = study.predictions.size() - shown.size();
   const std::string others =
       left_out > 0 ? fmt::format(" Left out are pairs that do no better than one of their figures: {}.", left_out) : "";
-  return text + "\n" +
-         wrapped(fmt::format("Volts and times are off the best factors by this root mean square. In brackets: 95 % confidence. "
-                             "Ranked by the 95 % "
-                             "quantile of the score of `bounce`, half the largest touch speed and half the highest rebound over "
-                             "those of the plain step. Seed {}.{}",
-                             options.seed, others)) +
-         "\n";
+  return terminal_text(
+      {.headline =
+           fmt::format("{} devices of the spread. For each the factors of volts and of time were searched under which the "
+                       "recipe lands it most softly; then they were told from what is measured, by a fit to the other "
+                       "half of the devices, and the devices closed with what was told.",
+                       study.devices),
+       .doubt = study.interrupted ? "Interrupted: not all is judged." : "",
+       .sections = {{.id = "measured",
+                     .heading = "What measuring tells",
+                     .parts = {figures_table(study), predictions_table("Measured, the best first", shown, study.drives_piezo),
+                               predictions_table("To compare with", study.references, study.drives_piezo),
+                               Paragraph{fmt::format(
+                                   "Volts and times are off the best factors by this root mean square. In brackets: 95 % "
+                                   "confidence. Ranked by the 95 % quantile of the score of `bounce`, half the largest "
+                                   "touch speed and half the highest rebound over those of the plain step. Seed {}.{}",
+                                   options.seed, others)}}}}});
 }
 
 }  // namespace softland

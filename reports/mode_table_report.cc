@@ -11,11 +11,10 @@
 #include "base/clamped_spline.h"
 #include "base/printable.h"
 #include "reports/chart.h"
+#include "reports/document.h"
 #include "reports/json_number.h"
 #include "reports/quantity.h"
 #include "reports/svg.h"
-#include "reports/text.h"
-#include "reports/text_table.h"
 
 namespace softland {
 namespace {
@@ -133,20 +132,15 @@ nlohmann::json mode_table_json(const ModeTable& table) {
 }
 
 std::string mode_table_text(const ModeTable& table) {
-  std::vector<internal::TextRow> rows;
+  ReportTable modes{.head = {"mode", "frequency", {"taken as", "words"}, {"what it is", "words"}}, .rows = {}};
   for (const ModeFound& found : modes_of(table)) {
     const std::optional<std::size_t> column = taken_column(table, found);
-    rows.push_back({fmt::format("{}", found.number), quantity(found.frequency, "Hz", table_digits),
-                    column ? fmt::format("mode_{}", *column + 1) : std::string("left out"), found.name()});
-    if (!table.found.empty() && found.kind != ModeKind::unused)
-      rows.back().back() += fmt::format(", {:.3g} % of the motion", 100 * found.share);
+    const bool has_share = !table.found.empty() && found.kind != ModeKind::unused;
+    modes.rows.push_back({fmt::format("{}", found.number), quantity(found.frequency, "Hz", table_digits),
+                          column ? fmt::format("mode_{}", *column + 1) : std::string("left out"),
+                          found.name() + (has_share ? fmt::format(", {:.3g} % of the motion", 100 * found.share) : "")});
   }
-  return wrapped(summary(table)) + "\n\n" +
-         internal::text_table({{.head = "mode", .width = 4},
-                               {.head = "frequency", .width = 15},
-                               {.head = "taken as", .width = 12, .is_words = true, .gap = 2},
-                               {.head = "what it is", .is_words = true}},
-                              rows);
+  return terminal_text({.headline = summary(table), .sections = {{.id = "modes", .heading = "Modes", .parts = {modes}}}});
 }
 
 std::string mode_table_csv(const ModeTable& table) {

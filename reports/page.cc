@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/printable.h"
@@ -17,6 +18,7 @@ namespace {
 constexpr std::size_t most_text = 100'000;
 /// Rows per curve in the page: several times the pixels of a wide screen, so that zooming shows more, at about 100 kB a curve.
 constexpr std::size_t rows_per_curve = 6000;
+constexpr std::size_t most_warnings = 200;
 
 }  // namespace
 
@@ -39,39 +41,8 @@ std::string shortened(const std::string& words) {
          fmt::format("\n... cut: {} of {} bytes are not shown", words.size() - most_text, words.size());
 }
 
-std::string table_html(const TableRow& head, const std::vector<TableRow>& rows) {
-  const auto cell = [](const Cell& c, std::string_view tag, std::string_view scope) {
-    std::string out = fmt::format("<{}", tag);
-    if (!scope.empty()) out += fmt::format(" scope=\"{}\"", scope);
-    if (!c.style.empty()) out += fmt::format(" class=\"{}\"", c.style);
-    if (c.columns > 1) out += fmt::format(" colspan=\"{}\"", c.columns);
-    return out + fmt::format(">{}</{}>", c.html, tag);
-  };
-  std::string out = "<div class=\"scroll\"><table><thead><tr>";
-  for (const Cell& c : head) out += cell(c, "th", "col");
-  out += "</tr></thead><tbody>\n";
-  for (const TableRow& row : rows) {
-    out += "<tr>";
-    for (const Cell& c : row) out += &c == row.data() ? cell(c, "th", "row") : cell(c, "td", "");
-    out += "</tr>\n";
-  }
-  return out + "</tbody></table></div>\n";
-}
-
 std::string section(std::string_view id, std::string_view heading, const std::string& body) {
   return fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, heading, body);
-}
-
-std::string symbol_html(std::string_view symbol) {
-  const std::size_t at = symbol.find('_');
-  return at == std::string_view::npos ? std::string(symbol)
-                                      : fmt::format("{}<sub>{}</sub>", symbol.substr(0, at), symbol.substr(at + 1));
-}
-
-std::string key_html(std::string_view name, std::string_view value, std::string_view change) {
-  return fmt::format(
-      "<div class=\"key\"><dt>{}</dt><dd><span class=\"after\">{}</span><span class=\"change\">{}</span></dd></div>\n", name,
-      value, change);
 }
 
 namespace {
@@ -127,6 +98,15 @@ std::string scene(const Result& result) {
   if (result.scene.text.empty()) return {};
   return "<section id=\"scene\"><h2>The switch</h2>\n<details><summary>Resolved scene</summary>\n<pre><code>" +
          escaped(shortened(result.scene.text)) + "</code></pre></details></section>\n";
+}
+
+std::string warnings_section(const std::vector<std::string>& warnings) {
+  if (warnings.empty()) return {};
+  std::string lines;
+  for (std::size_t i = 0; i < std::min(most_warnings, warnings.size()); ++i)
+    lines += fmt::format("<li>{}</li>\n", escaped(shortened(printable_line(warnings[i]))));
+  if (warnings.size() > most_warnings) lines += fmt::format("<li>… and {} more</li>\n", warnings.size() - most_warnings);
+  return section("warnings", "Warnings", "<ul>\n" + lines + "</ul>\n");
 }
 
 std::string page(const Page& parts) {

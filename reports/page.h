@@ -31,26 +31,8 @@ struct Page {
 /// Text cut to 100 kB at a line end, with a word about it.
 [[nodiscard]] std::string shortened(const std::string& words);
 
-/// A cell of a table, or a heading.
-struct Cell {
-  std::string html;
-  std::string style = {};                            ///< name of a class; may be empty
-  std::size_t columns = 1;                           ///< that it takes
-  Cell(std::string text) : html(std::move(text)) {}  // NOLINT(google-explicit-constructor): a cell is its text
-  Cell(const char* text) : html(text) {}             // NOLINT(google-explicit-constructor)
-  Cell(std::string_view text) : html(text) {}        // NOLINT(google-explicit-constructor)
-  Cell(std::string text, std::string name, std::size_t wide = 1) : html(std::move(text)), style(std::move(name)), columns(wide) {}
-};
-/// The first cell of a row is its heading.
-using TableRow = std::vector<Cell>;
-[[nodiscard]] std::string table_html(const TableRow& head, const std::vector<TableRow>& rows);
 /// A part of a page under a heading; `body` is HTML.
 [[nodiscard]] std::string section(std::string_view id, std::string_view heading, const std::string& body);
-/// "t_i" with its index below.
-[[nodiscard]] std::string symbol_html(std::string_view symbol);
-/// A number that stands above everything else, with its name; `change` may be empty. Texts are HTML.
-[[nodiscard]] std::string key_html(std::string_view name, std::string_view value, std::string_view change);
-
 /// The chart as an <svg> element.
 [[nodiscard]] std::string still_picture(const CurveTables& tables, const Chart& chart);
 /// The same, small, as one of many beside each other in an element of the class "multiples".
@@ -63,5 +45,7 @@ using TableRow = std::vector<Cell>;
 /// Sections of a result: the command lines that make it again, and its scene.
 [[nodiscard]] std::string reproduce(const Result& result);
 [[nodiscard]] std::string scene(const Result& result);
+/// Empty without warnings.
+[[nodiscard]] std::string warnings_section(const std::vector<std::string>& warnings);
 
 }  // namespace softland::internal

@@ -10,12 +10,11 @@
 
 #include "base/printable.h"
 #include "reports/chart.h"
+#include "reports/document.h"
 #include "reports/downsample.h"
 #include "reports/json_number.h"
 #include "reports/quantity.h"
 #include "reports/svg.h"
-#include "reports/text.h"
-#include "reports/text_table.h"
 
 namespace softland {
 namespace {
@@ -75,17 +74,16 @@ nlohmann::json recording_json(const Recording& recording) {
 }
 
 std::string recording_text(const Recording& recording) {
-  std::vector<internal::TextColumn> columns{
-      {.head = "channel", .is_words = true, .grows = true}, {.head = "column", .width = 8}, {.head = "samples", .width = 10}};
-  for (const char* head : {"first", "last", "minimum", "maximum"}) columns.push_back({.head = head, .width = 14});
-  std::vector<internal::TextRow> rows;
+  ReportTable table{.head = {"channel", "column", "samples", "first", "last", "minimum", "maximum"}, .rows = {}};
   for (const Channel& channel : recording.channels) {
     const ChannelFigures figures = figures_of(channel);
-    rows.push_back({printable_line(channel.name), fmt::format("{}", channel.column), fmt::format("{}", figures.samples)});
+    TableRow& row = table.rows.emplace_back(
+        TableRow{printable_line(channel.name), fmt::format("{}", channel.column), fmt::format("{}", figures.samples)});
     for (const double value : {figures.first, figures.last, figures.minimum, figures.maximum})
-      rows.back().push_back(shown(value, channel));
+      row.emplace_back(shown(value, channel));
   }
-  return wrapped(summary(recording)) + "\n\n" + internal::text_table(columns, rows);
+  return terminal_text(
+      {.headline = summary(recording), .sections = {{.id = "channels", .heading = "Channels", .parts = {table}}}});
 }
 
 std::string recording_svg(const Recording& recording) {

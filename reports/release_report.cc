@@ -9,13 +9,12 @@
 #include <vector>
 
 #include "reports/chart.h"
+#include "reports/document.h"
 #include "reports/json_number.h"
 #include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/robustness_words.h"
 #include "reports/svg.h"
-#include "reports/text.h"
-#include "reports/text_table.h"
 #include "waveforms/export.h"
 
 namespace softland {
@@ -25,7 +24,6 @@ using internal::json_number;
 using internal::percent;
 using internal::quantity;
 using internal::spread_words;
-using internal::TextRow;
 using nlohmann::json;
 
 constexpr const char* plain_words = "plain opening";
@@ -80,23 +78,13 @@ json opening_json(const OpeningResult& r, const Opening& o) {
           {"waveforms", waveforms}};
 }
 
-std::string opening_table(const std::string& name, const std::string& plain, const std::string& best,
-                          const std::vector<TextRow>& rows) {
-  constexpr std::size_t number = 16;
-  return internal::text_table({{.head = name, .width = 44, .is_words = true, .gap = 2},
-                               {.head = plain, .width = number},
-                               {.head = best, .width = number},
-                               {.is_words = true, .gap = 2}},
-                              rows);
-}
-
 std::string gain(double plain, double best) {
   if (!(plain > 0) || !(best > 0) || !std::isfinite(plain) || best >= plain) return {};
   return internal::times(plain / best) + " less";
 }
 
-TextRow quantity_row(const OpeningResult& r, const std::string& name, double OpeningFigures::*member, std::string_view unit,
-                     bool lower) {
+TableRow quantity_row(const OpeningResult& r, const std::string& name, double OpeningFigures::*member, std::string_view unit,
+                      bool lower) {
   const double plain = r.plain.figures.*member;
   if (!r.best) return {name, quantity(plain, unit)};
   const double best = r.best->figures.*member;
@@ -179,20 +167,41 @@ json devices_json(const std::optional<OpeningsOnDevices>& found) {
 }
 
 // What 95 % of the devices do under either opening.
-std::string devices_text(const OpeningsOnDevices& found) {
-  const auto value = [](double v, const char* unit) { return std::isfinite(v) ? quantity(v, unit) : std::string("∞"); };
-  const auto row = [&](const char* name, double DeviceOpenings::*figure, const char* unit) {
-    return TextRow{name, value(found.plain.*figure, unit), value(found.best.*figure, unit)};
+ReportSection devices_section(const OpeningsOnDevices& found) {
+  ReportTable table{.head = {"", plain_words, "found"}, .rows = {}};
+  table.rows = {{"open for good", percent(found.plain.open), percent(found.best.open)},
+                {"from when the drives stand on", percent(found.plain.in_band), percent(found.best.in_band)}};
+  const auto add = [&](const char* name, double DeviceOpenings::*figure, const char* unit) {
+    const auto value = [&](double v) { return std::isfinite(v) ? quantity(v, unit) : std::string("∞"); };
+    table.rows.push_back({name, value(found.plain.*figure), value(found.best.*figure)});
   };
-  return wrapped(fmt::format("On {} devices, all in the volts of the nominal one: {}{}.", found.devices,
-                             spread_words(found.spread), found.spread_assumed ? " (assumed, the scene has no [spread])" : "")) +
-         "\n" +
-         opening_table("", plain_words, "found",
-                       {{"open for good", percent(found.plain.open), percent(found.best.open)},
-                        {"from when the drives stand on", percent(found.plain.in_band), percent(found.best.in_band)},
-                        row("open for good, 95 % within", &DeviceOpenings::settling_time, "s"),
-                        row("residual vibration, 95 % below", &DeviceOpenings::residual_vibration, "m"),
-                        row("beyond the open position, 95 % below", &DeviceOpenings::overshoot, "m")});
+  add("open for good, 95 % within", &DeviceOpenings::settling_time, "s");
+  add("residual vibration, 95 % below", &DeviceOpenings::residual_vibration, "m");
+  add("beyond the open position, 95 % below", &DeviceOpenings::overshoot, "m");
+  return {.id = "devices",
+          .heading = "On devices that differ",
+          .parts = {Paragraph{fmt::format("On {} devices, all in the volts of the nominal one: {}{}.", found.devices,
+                                          spread_words(found.spread),
+                                          found.spread_assumed ? " (assumed, the scene has no [spread])" : "")},
+                    std::move(table)}};
+}
+
+ReportTable openings_table(const OpeningResult& r) {
+  ReportTable table{.head = {"", plain_words, r.best ? "found" : "", {"", "words"}}, .rows = {}};
+  table.rows = {
+      quantity_row(r, "leaves its contact", &OpeningFigures::release_time, "s", false),
+      quantity_row(r, "open for good", &OpeningFigures::settling_time, "s", true),
+      quantity_row(r, "residual vibration", &OpeningFigures::residual_vibration, "m", true),
+      quantity_row(r, "furthest beyond its open position", &OpeningFigures::overshoot, "m", true),
+      {"touches again", std::to_string(r.plain.figures.touches), r.best ? std::to_string(r.best->figures.touches) : ""}};
+  return table;
+}
+
+ReportTable parameters_table(const OpeningResult& r) {
+  ReportTable table{.head = {"parameter", "value"}, .rows = {}};
+  for (const auto& [name, value] : r.parameters)
+    table.rows.push_back({name, quantity(value, name.find(".level_") == std::string::npos ? "s" : "V", 4)});
+  return table;
 }
 
 }  // namespace
@@ -224,23 +233,14 @@ json release_json(const OpeningResult& r, const Provenance& provenance) {
 }
 
 std::string release_text(const OpeningResult& r) {
-  std::string text = r.interrupted ? "Interrupted: what follows is the best so far.\n\n" : "";
-  text += wrapped(finding(r)) + "\n\n";
-  text += opening_table(
-      "", plain_words, r.best ? "found" : "",
-      {quantity_row(r, "leaves its contact", &OpeningFigures::release_time, "s", false),
-       quantity_row(r, "open for good", &OpeningFigures::settling_time, "s", true),
-       quantity_row(r, "residual vibration", &OpeningFigures::residual_vibration, "m", true),
-       quantity_row(r, "furthest beyond its open position", &OpeningFigures::overshoot, "m", true),
-       {"touches again", std::to_string(r.plain.figures.touches), r.best ? std::to_string(r.best->figures.touches) : ""}});
-  if (r.best) {
-    std::vector<TextRow> rows;
-    for (const auto& [name, value] : r.parameters)
-      rows.push_back({name, quantity(value, name.find(".level_") == std::string::npos ? "s" : "V", 4)});
-    text += "\n" + opening_table("parameter", "value", "", rows);
-  }
-  if (r.on_devices) text += "\n" + devices_text(*r.on_devices);
-  return text + "\n" + wrapped(remarks(r)) + "\n";
+  ReportSection opening{.id = "opening", .heading = "The opening", .parts = {openings_table(r)}};
+  if (r.best) opening.parts.emplace_back(parameters_table(r));
+  Document document{.headline = finding(r),
+                    .doubt = r.interrupted ? "Interrupted: what follows is the best so far." : "",
+                    .sections = {std::move(opening)}};
+  if (r.on_devices) document.sections.push_back(devices_section(*r.on_devices));
+  document.sections.push_back({.id = "remarks", .heading = "Remarks", .parts = {Paragraph{remarks(r)}}});
+  return terminal_text(document);
 }
 
 std::string release_svg(const OpeningResult& r) {

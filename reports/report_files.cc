@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "reports/files.h"
-#include "reports/html.h"
+#include "reports/result_document.h"
 #include "reports/result_json.h"
 #include "reports/svg.h"
 #include "studies/closing/sent_signals.h"
@@ -32,7 +32,7 @@ std::string scene_text(const PreparedScene& scene) { return scene.scene.file.tex
 }  // namespace
 
 std::vector<ReportFile<Result>> files_of(const Result& result) {
-  std::vector<ReportFile<Result>> files{{"report.html", html_report},
+  std::vector<ReportFile<Result>> files{{"report.html", [](const Result& r) { return page_html(result_document(r)); }},
                                         {"gap.svg", svg_gap_chart},
                                         {"result.json", [](const Result& r) { return json_text(result_json(r)); }}};
   if (result.best.figures) files.push_back({"trajectory.csv", [](const Result& r) { return trajectory_csv(r.best.curve); }});
@@ -40,7 +40,7 @@ std::vector<ReportFile<Result>> files_of(const Result& result) {
 }
 
 std::vector<ReportFile<RobustnessReport>> files_of(const RobustnessReport&) {
-  return {{robustness_files[0], robustness_html},
+  return {{robustness_files[0], [](const RobustnessReport& r) { return page_html(robustness_document(r)); }},
           {robustness_files[1], [](const RobustnessReport& r) { return json_text(robustness_json(r), 2); }},
           {robustness_files[2], robustness_csv}};
 }

@@ -1,5 +1,5 @@
-// What `softland robustness` found: JSON with SI units in the names, one line per device as CSV, a table for a terminal, and a
-// page to show around.
+// What `softland robustness` found: JSON with SI units in the names, one line per device as CSV, and a
+// document.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/watch.h"
+#include "reports/document.h"
 #include "reports/result_maker.h"
 #include "studies/devices/box_and_chaos.h"
 #include "studies/devices/derivatives.h"
@@ -35,17 +36,15 @@ struct RobustnessReport {
 void add_details(RobustnessReport& report, bool other_ways_too, const Watch& watch);
 
 [[nodiscard]] nlohmann::json robustness_json(const RobustnessReport& report);
-[[nodiscard]] std::string robustness_text(const RobustnessReport& report);
 
 /// A line per device: its number, the varying quantities [SI unit, or factor; of jitter the time drawn for the first edge], and
 /// for every drive its status and figures; a figure that a device does not have is empty.
 [[nodiscard]] std::string robustness_csv(const RobustnessReport& report);
 
-/// A self-contained page, as html_report(): statistics, cumulative distributions and histograms, the closings of typical devices,
-/// every figure against every quantity,
+/// Statistics, cumulative distributions and histograms, the closings of typical devices, every figure against every quantity,
 /// what measuring is worth, where the spread comes from, derivatives at the nominal device, the other ways, the worst devices,
 /// failures.
-[[nodiscard]] std::string robustness_html(const RobustnessReport& report);
+[[nodiscard]] Document robustness_document(const RobustnessReport& report);
 
 namespace internal {
 

@@ -9,13 +9,9 @@
 #include <tuple>
 #include <vector>
 
-#include "reports/escape.h"
 #include "reports/figure_text.h"
-#include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/result_members.h"
-#include "reports/text.h"
-#include "reports/text_table.h"
 #include "sampling/statistics.h"
 
 namespace softland {
@@ -156,31 +152,15 @@ std::string seeds_caption(const ResultSeeds& seeds) {
   return words + fmt::format(" {} of {} fail: {}.", failures, count, failed);
 }
 
-std::string seeds_text(const std::optional<ResultSeeds>& seeds) {
-  if (!seeds) return {};
-  const std::vector<std::string> names = heads();
-  std::vector<TextColumn> columns;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const bool is_words = i == 1 || i + 1 == names.size();
-    columns.push_back({.head = names[i], .is_words = is_words, .gap = i == 0 ? 0U : 2U, .grows = true});
+ReportSection seeds_section(const ResultSeeds& seeds) {
+  ReportTable table;
+  for (const std::string& name : heads()) table.head.emplace_back(name);
+  table.head[1].style = table.head.back().style = "words";
+  for (std::size_t k = 0; k < seeds.searches.size(); ++k) {
+    TableRow& row = table.rows.emplace_back();
+    for (const std::string& word : search_cells(seeds.searches[k])) row.emplace_back(word, k == seeds.best ? "own" : "");
   }
-  std::vector<internal::TextRow> rows;
-  for (const SearchOfSeed& one : seeds->searches) rows.push_back(search_cells(one));
-  return wrapped(seeds_caption(*seeds)) + "\n\n" + text_table(columns, rows);
-}
-
-std::string seeds_section(const std::optional<ResultSeeds>& seeds) {
-  if (!seeds) return {};
-  const auto row_of = [](const std::vector<std::string>& words, bool is_best) {
-    TableRow row;
-    for (const std::string& word : words) row.emplace_back(escaped(word), is_best ? "own" : "");
-    return row;
-  };
-  std::vector<TableRow> rows;
-  for (std::size_t k = 0; k < seeds->searches.size(); ++k)
-    rows.push_back(row_of(search_cells(seeds->searches[k]), k == seeds->best));
-  return section("seeds", "Searches from other seeds",
-                 "<p>" + escaped(seeds_caption(*seeds)) + "</p>\n" + table_html(row_of(heads(), false), rows));
+  return {.id = "seeds", .heading = "Searches from other seeds", .parts = {Paragraph{seeds_caption(seeds)}, std::move(table)}};
 }
 
 }  // namespace internal

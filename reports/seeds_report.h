@@ -7,6 +7,7 @@
 #include <string>
 
 #include "objectives/cost.h"
+#include "reports/document.h"
 #include "reports/result.h"
 
 namespace softland {
@@ -22,10 +23,8 @@ namespace internal {
 
 /// What the searches came to together, in sentences.
 [[nodiscard]] std::string seeds_caption(const ResultSeeds& seeds);
-/// The caption and a table for a terminal; empty where there was one search.
-[[nodiscard]] std::string seeds_text(const std::optional<ResultSeeds>& seeds);
-/// The same as a section of a page.
-[[nodiscard]] std::string seeds_section(const std::optional<ResultSeeds>& seeds);
+/// The caption and a table.
+[[nodiscard]] ReportSection seeds_section(const ResultSeeds& seeds);
 
 }  // namespace internal
 

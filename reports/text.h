@@ -1,20 +1,23 @@
-// The same findings for a terminal.
+// Sentences for a terminal.
 #pragma once
 
 #include <cstddef>
 #include <string>
 #include <string_view>
 
-#include "reports/result.h"
-
 namespace softland {
-
-/// Headline, table of figures (baseline and winner side by side for optimize; value and error for simulate), confirmations and
-/// warnings of a result.
-[[nodiscard]] std::string text_report(const Result& result);
 
 /// Blanks turned into line breaks so that lines have at most `columns` characters where words permit it. Line breaks, tabs and
 /// what acts on a terminal are escaped: they come from names of files and folders.
 [[nodiscard]] std::string wrapped(std::string_view paragraph, std::size_t columns = 100);
 
+namespace internal {
+
+/// What a UTF-8 text takes on a terminal.
+[[nodiscard]] std::size_t display_width(std::string_view text);
+/// Filled up with blanks to so many columns.
+[[nodiscard]] std::string left_aligned(const std::string& text, std::size_t columns);
+[[nodiscard]] std::string right_aligned(const std::string& text, std::size_t columns);
+
+}  // namespace internal
 }  // namespace softland

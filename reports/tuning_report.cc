@@ -8,16 +8,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "base/require.h"
 #include "reports/escape.h"
 #include "reports/json_number.h"
 #include "reports/origin.h"
-#include "reports/page.h"
 #include "reports/quantity.h"
-#include "reports/text.h"
-#include "reports/text_table.h"
 #include "reports/tuning_lines.h"
 #include "waveforms/export.h"
 
@@ -199,22 +197,27 @@ std::string believed_text(double mean, double deviation, const BelievedQuantity&
   return fmt::format("{} ± {}\u00a0%", internal::relative_change(mean - 1), internal::plain_number(100 * deviation, 2));
 }
 
-std::string belief_section(const BeliefSummary& belief) {
-  std::vector<internal::TableRow> rows;
+ReportSection belief_section(const BeliefSummary& belief) {
+  ReportTable table{.head = {"Quantity", "Before", "Now", ""}, .rows = {}};
   std::vector<BelievedQuantity> shown = belief.quantities;
   if (belief.gap_ratio) shown.push_back(*belief.gap_ratio);
-  for (const BelievedQuantity& q : shown) {
-    rows.push_back({escaped(q.name), escaped(believed_text(q.prior_mean, q.prior_deviation, q)),
-                    internal::Cell(escaped(believed_text(q.mean, q.deviation, q)), "own"),
-                    internal::Cell(belief_bar(q), "picture")});
-  }
-  std::string notes =
-      "<p class=\"below\">From the scene's value, with one standard deviation. In the pictures: two deviations to either side, "
-      "before (grey) and now. What a landing depends on may be known far better than any of these alone: their errors go "
-      "together.</p>\n";
-  for (const std::string& sentence : belief.correlated) notes += "<p class=\"below\">" + escaped(sentence) + "</p>\n";
-  return internal::section("belief", "What is known of the device",
-                           internal::table_html({"Quantity", "Before", "Now", ""}, rows) + notes);
+  for (const BelievedQuantity& q : shown)
+    table.rows.push_back({q.name,
+                          believed_text(q.prior_mean, q.prior_deviation, q),
+                          {believed_text(q.mean, q.deviation, q), "own"},
+                          drawn_cell(belief_bar(q), "picture")});
+  ReportSection section{
+      .id = "belief",
+      .heading = "What is known of the device",
+      .parts = {std::move(table),
+                Paragraph{.text =
+                              "From the scene's value, with one standard deviation. In the pictures: two deviations to either "
+                              "side, before (grey) and now. What a landing depends on may be known far better than any of "
+                              "these alone: their errors go together.",
+                          .is_note = true}},
+      .is_page_only = true};
+  for (const std::string& sentence : belief.correlated) section.parts.emplace_back(Paragraph{.text = sentence, .is_note = true});
+  return section;
 }
 
 // What all strips of records show [s].
@@ -266,36 +269,41 @@ std::string record_bars(const ContactRecord& record, const Shown& shown) {
   return bars;
 }
 
-internal::TableRow record_row(const TunedClosing& one, const Shown& shown) {
+TableRow record_row(const TunedClosing& one, const Shown& shown) {
   const std::optional<double> touch = first_touch(one.record);
   const std::optional<int> count = bounce_count(one.record);
   const std::string bounces = !one.record.error.empty() ? "no record"
                               : !touch                  ? "stayed open"
                               : count                   ? fmt::format("{}", *count)
                                                         : "?";
-  return {fmt::format("{}", one.shot.number), escaped(range_words(one.shot.predicted.touch_low, one.shot.predicted.touch_high)),
-          internal::Cell(touch ? escaped(quantity(*touch, "s", 4)) : "—", "own"), bounces,
-          internal::Cell(strip(expected_bar(one.shot.predicted, shown) + record_bars(one.record, shown),
-                               "closing " + std::to_string(one.shot.number) + " " + record_words(one.record)),
-                         "picture")};
+  return {fmt::format("{}", one.shot.number),
+          range_words(one.shot.predicted.touch_low, one.shot.predicted.touch_high),
+          {touch ? quantity(*touch, "s", 4) : "—", "own"},
+          bounces,
+          drawn_cell(strip(expected_bar(one.shot.predicted, shown) + record_bars(one.record, shown),
+                           "closing " + std::to_string(one.shot.number) + " " + record_words(one.record)),
+                     "picture")};
 }
 
-std::string records_section(const TuningReport& report) {
+ReportSection records_section(const TuningReport& report) {
   constexpr std::size_t most = 24;
   const std::size_t first = report.closings.size() > most ? report.closings.size() - most : 0;
   const Shown shown = shown_times(report, first);
-  std::vector<internal::TableRow> rows;
-  for (std::size_t i = first; i < report.closings.size(); ++i) rows.push_back(record_row(report.closings[i], shown));
-  rows.push_back({fmt::format("{}, next", report.next.number),
-                  escaped(range_words(report.next.predicted.touch_low, report.next.predicted.touch_high)), "", "",
-                  internal::Cell(strip(expected_bar(report.next.predicted, shown), "the next closing"), "picture")});
-  std::string below =
-      "<p class=\"below\">Grey: where the touch was expected before it was seen, with 95 %. Blue: where the contact "
-      "was closed. The pictures show " +
-      escaped(range_words(shown.from, shown.to)) + ".";
-  if (first > 0) below += fmt::format(" The first {} closings are not shown.", first);
-  return internal::section("records", "Each closing under its prediction",
-                           internal::table_html({"Closing", "Touch expected", "Touch", "Bounces", ""}, rows) + below + "</p>\n");
+  ReportTable table{.head = {"Closing", "Touch expected", "Touch", "Bounces", ""}, .rows = {}};
+  for (std::size_t i = first; i < report.closings.size(); ++i) table.rows.push_back(record_row(report.closings[i], shown));
+  table.rows.push_back({fmt::format("{}, next", report.next.number),
+                        range_words(report.next.predicted.touch_low, report.next.predicted.touch_high), "", "",
+                        drawn_cell(strip(expected_bar(report.next.predicted, shown), "the next closing"), "picture")});
+  return {
+      .id = "records",
+      .heading = "Each closing under its prediction",
+      .parts = {
+          std::move(table),
+          Drawing{fmt::format("<p class=\"below\">Grey: where the touch was expected before it was seen, with 95 %. Blue: "
+                              "where the contact was closed. The pictures show {}.</p>\n",
+                              escaped(range_words(shown.from, shown.to)))},
+          Paragraph{.text = first > 0 ? fmt::format("The first {} closings are not shown.", first) : "", .is_note = true},
+          Paragraph{.text = "Expected of the waveform kept: " + expected_words(report.kept.predicted) + ".", .is_note = true}}};
 }
 
 internal::Picture picture_of(const TuningReport& report) {
@@ -339,21 +347,21 @@ internal::Picture picture_of(const TuningReport& report) {
   return drawn;
 }
 
-std::string keys_of(const TuningReport& report) {
+std::vector<KeyNumber> keys_of(const TuningReport& report) {
   const PredictedRecord& p = report.kept.predicted;
-  const auto key = [](const char* name, const std::string& value, const std::string& words) {
-    return internal::key_html(name, escaped(value), escaped(words));
-  };
-  return key("Closings", fmt::format("{}", learned(report)),
-             report.bounce_free_in_a_row > 0 ? fmt::format("the last {} without a bounce", report.bounce_free_in_a_row)
-                                             : "the last one bounced") +
-         key("Touch of the waveform kept", quantity(p.touch_median, "s"),
-             fmt::format("plain step on the drawing {}", quantity(report.step_closing_time, "s"))) +
-         key("Its rebound, 95 % below", p.rebound_high == 0 ? "none" : quantity(p.rebound_high, "m", 2),
-             p.rebound_high == 0
-                 ? "as far as it is known"
-                 : fmt::format("median {}", internal::quantity_beside(p.rebound_median, p.rebound_high, "m", 2))) +
-         key("It may bounce", percent(p.bounces), "of the devices that this may be");
+  return {{.name = "Closings",
+           .value = fmt::format("{}", learned(report)),
+           .change = report.bounce_free_in_a_row > 0 ? fmt::format("the last {} without a bounce", report.bounce_free_in_a_row)
+                                                     : "the last one bounced"},
+          {.name = "Touch of the waveform kept",
+           .value = quantity(p.touch_median, "s"),
+           .change = fmt::format("plain step on the drawing {}", quantity(report.step_closing_time, "s"))},
+          {.name = "Its rebound, 95 % below",
+           .value = p.rebound_high == 0 ? "none" : quantity(p.rebound_high, "m", 2),
+           .change = p.rebound_high == 0
+                         ? "as far as it is known"
+                         : fmt::format("median {}", internal::quantity_beside(p.rebound_median, p.rebound_high, "m", 2))},
+          {.name = "It may bounce", .value = percent(p.bounces), .change = "of the devices that this may be"}};
 }
 
 }  // namespace
@@ -430,49 +438,24 @@ std::string closing_words(const TuningReport& report) {
                      expected_words(report.next.predicted));
 }
 
-std::string tuning_text(const TuningReport& report) {
-  const auto [main, rest] = headline_of(report);
-  std::string text = report.end == TuningEnd::interrupted ? "Interrupted: what follows is what there is.\n\n" : "";
-  text += wrapped(main + rest) + "\n";
-  if (report.broken_assumption) text += "\n" + wrapped(*report.broken_assumption) + "\n";
-  std::vector<internal::TextRow> rows;
-  for (const TunedClosing& one : report.closings) {
-    const std::optional<double> touch = first_touch(one.record);
-    const std::optional<int> count = bounce_count(one.record);
-    rows.push_back({std::to_string(one.shot.number), range_words(one.shot.predicted.touch_low, one.shot.predicted.touch_high),
-                    touch ? quantity(*touch, "s", 4) : "—",
-                    !one.record.error.empty() ? "no record"
-                    : !touch                  ? "stayed open"
-                    : count                   ? std::to_string(*count)
-                                              : "?"});
-  }
-  text += "\n" + internal::text_table({{.head = "closing", .width = 8},
-                                       {.head = "touch expected", .width = 28},
-                                       {.head = "touch", .width = 12},
-                                       {.head = "bounces", .width = 14}},
-                                      rows);
-  return text + "\n" + wrapped("Expected of the waveform kept: " + expected_words(report.kept.predicted) + ".") + "\n";
-}
-
-std::string tuning_html(const TuningReport& report, const Provenance& provenance) {
-  const internal::Picture drawn = picture_of(report);
-  std::string charts;
-  for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);
-  Result result = internal::origin(report.scene, provenance.command);
-  result.seed = report.seed;
-  result.tolerance = report.scene.tolerance;
-  const auto [main, rest] = headline_of(report);
-  return internal::page({.title = report.scene.scene.title,
-                         .origin = "tune",
-                         .headline = main,
-                         .headline_rest = rest,
-                         .doubt = report.broken_assumption.value_or(""),
-                         .keys = keys_of(report),
-                         .body = records_section(report) + belief_section(report.belief) +
-                                 internal::section("waveforms", "What the source is told", charts) + internal::reproduce(result) +
-                                 internal::scene(result),
-                         .style = internal::chart_style(),
-                         .scripts = internal::chart_scripts(drawn)});
+Document tuning_document(const TuningReport& report, const Provenance& provenance) {
+  Document document{.title = report.scene.scene.title,
+                    .origin = "tune",
+                    .doubt = report.broken_assumption.value_or(""),
+                    .keys = keys_of(report),
+                    .sections = {records_section(report), belief_section(report.belief)},
+                    .drawn = picture_of(report),
+                    .made = internal::origin(report.scene, provenance.command)};
+  std::tie(document.headline, document.headline_rest) = headline_of(report);
+  if (report.end == TuningEnd::interrupted)
+    document.headline = "Interrupted: what follows is what there is. " + document.headline;
+  document.sections.push_back({.id = "waveforms",
+                               .heading = "What the source is told",
+                               .parts = {internal::charts_of(document.drawn)},
+                               .is_page_only = true});
+  document.made.seed = report.seed;
+  document.made.tolerance = report.scene.tolerance;
+  return document;
 }
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// What a tuning knows and proposes: JSON with SI units in the names, lines for a terminal, and a page.
+// What a tuning knows and proposes: JSON with SI units in the names, a line for a log, and a document.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "reports/document.h"
 #include "reports/result_maker.h"
 #include "studies/tuning/tuner.h"
 
@@ -51,9 +52,7 @@ struct TuningReport {
 [[nodiscard]] TunedBelief tuned_belief(const nlohmann::json& written);
 /// One line: what the last closing was, and what is expected of the next.
 [[nodiscard]] std::string closing_words(const TuningReport& report);
-[[nodiscard]] std::string tuning_text(const TuningReport& report);
-/// A self-contained page, as html_report() makes it: what is known of the device, every closing's record under the predicted
-/// one, and the voltages that are kept and proposed.
-[[nodiscard]] std::string tuning_html(const TuningReport& report, const Provenance& provenance);
+/// What is known of the device, every closing's record under the predicted one, and the voltages that are kept and proposed.
+[[nodiscard]] Document tuning_document(const TuningReport& report, const Provenance& provenance);
 
 }  // namespace softland

@@ -170,7 +170,7 @@ std::map<std::string, std::string> TuningSession::files(TuningEnd end, const Pro
   return {{"best.toml", with_waveforms(scene, waveforms).text()},
           {"best.csv", csv(kept.signals, scene.duration, kept.sample_rates)},
           {"tune.json", json_text(json(end, provenance), 1)},
-          {"tune.html", tuning_html(now, provenance)}};
+          {"tune.html", page_html(tuning_document(now, provenance))}};
 }
 
 }  // namespace softland

@@ -38,9 +38,10 @@ int accuracy_verb(const Common& c) {
   const AccuracyStudy study = study_accuracy(p, options);
   bar.close(state);
   const nlohmann::json j = accuracy_json(p, study, {.command = c.command});
-  std::string text = accuracy_text(study);
+  const Document document = accuracy_document(p, study, {.command = c.command});
+  std::string text = terminal_text(document);
   if (folder && !study.rows.empty()) {
-    folder->write("report.html", accuracy_html(p, study, {.command = c.command}));
+    folder->write("report.html", page_html(document));
     folder->write("accuracy.svg", accuracy_svg(p.scene.title, study));
     folder->write("accuracy.json", json_text(j, 2));
     const bool interrupted = study.status == Status::interrupted;

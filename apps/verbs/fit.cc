@@ -53,12 +53,13 @@ int fit_verb(const Common& given, const FitRequest& request) {
   const nlohmann::json data = fit_json(found, {.command = c.command});
   std::vector<std::string> left{"fit.html", "fit.json"};
   folder->write("fit.json", json_text(data, 1) + "\n");
-  folder->write("fit.html", fit_html(found, {.command = c.command}));
+  const Document document = fit_document(found, {.command = c.command});
+  folder->write("fit.html", page_html(document));
   if (found.found) {
     folder->write("fitted.toml", fitted_text(found, text_of(c, file), c.scene, found.devices.front()));
     left.insert(left.begin(), "fitted.toml");
   }
-  const std::string text = fit_text(found) + left_in(folder->destination(false), left);
+  const std::string text = terminal_text(document) + left_in(folder->destination(false), left);
   folder->publish(false);
   print_json_or(c, data, text);
   return found.found ? exit_done : exit_numerical_failure;

@@ -20,11 +20,11 @@
 #include "config/units.h"
 #include "exchange/mode_table.h"
 #include "model/constants.h"
+#include "reports/document.h"
 #include "reports/files.h"
 #include "reports/mode_table_report.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
-#include "reports/text_table.h"
 #include "studies/closing/auto_settings.h"
 
 namespace softland::apps {
@@ -43,14 +43,14 @@ int frequencies_of_scene(const Common& c) {
   static_cast<void>(claim_places(c, {}));
   nlohmann::json list = nlohmann::json::array();
   constexpr int digits = 6;
-  std::vector<internal::TextRow> rows;
+  ReportTable table{.head = {"mode", "angular frequency", "frequency"}, .rows = {}};
   for (const double omega : prepared.model.basis().angular_frequencies()) {
     list.push_back(omega);
-    rows.push_back({std::to_string(list.size()), quantity(omega, "rad/s", digits), quantity(omega / (2 * pi), "Hz", digits)});
+    table.rows.push_back(
+        {std::to_string(list.size()), quantity(omega, "rad/s", digits), quantity(omega / (2 * pi), "Hz", digits)});
   }
-  std::string text = internal::text_table(
-      {{.head = "mode", .width = 4}, {.head = "angular frequency", .width = 19}, {.head = "frequency", .width = 13}}, rows);
-  for (const std::string& w : prepared.scene.warnings) text += "\n" + wrapped("warning: " + w) + "\n";
+  const std::string text =
+      terminal_text({.sections = {{.id = "modes", .heading = "Modes", .parts = {table}}}, .warnings = prepared.scene.warnings});
   print_json_or(c, {{"natural_frequencies_rad_s", list}, {"warnings", prepared.scene.warnings}}, text);
   return exit_done;
 }

@@ -134,7 +134,7 @@ std::optional<ResultLimit> limit_of(const Asked& asked, const OptimizeResult& re
 // What follows the table of a result: how the winner does on devices.
 std::string words_on_devices(const Asked& asked, const SearchReport& report, const fs::path& place) {
   const FoundSearch& found = report.found;
-  if (asked.search.robust && report.devices) return "\n" + robustness_text(*report.devices);
+  if (asked.search.robust && report.devices) return "\n" + terminal_text(robustness_document(*report.devices));
   const bool judged = found.best().best_scene && !found.interrupted() && asked.c.json != "-";
   if (asked.search.devices() > 0 || !judged) return {};
   return on_devices(asked.c, *found.best().best_scene, asked.search.options.jobs, place);
@@ -184,7 +184,7 @@ int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, 
   }
   const json j = with_origin({{"status", "interrupted"}, {"seeds", seeds_json(seeds)}}, c.command);
   print_json_or(c, j,
-                internal::seeds_text(seeds) + left + "\n" +
+                terminal_text({.sections = {internal::seeds_section(seeds)}}) + left + "\n" +
                     wrapped(fmt::format("--resume goes on with the {} that are missing.", study.missing())) + "\n");
   return exit_interrupted;
 }

@@ -16,7 +16,7 @@
 #include "base/require.h"
 #include "reports/exploration_report.h"
 #include "reports/explored.h"
-#include "reports/html.h"
+#include "reports/result_document.h"
 #include "reports/result_reader.h"
 #include "reports/svg.h"
 #include "reports/text.h"
@@ -100,10 +100,10 @@ int report_verb(const Common& given, const ReportRequest& request) {
   const std::vector<std::string> files{"report.html", "gap.svg"};
   ResultFolder folder = *claim_places(c, files);
   const Result r = read_result(j);
-  folder.write(files[0], html_report(r));
+  folder.write(files[0], page_html(result_document(r)));
   folder.write(files[1], svg_gap_chart(r));
   folder.publish(false);
-  print(text_report(r) + left_in(c.out, files));
+  print(terminal_text(result_document(r)) + left_in(c.out, files));
   return exit_done;
 }
 

@@ -72,7 +72,8 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
   add_details(report, request.box_and_chaos, work->watch());
   nlohmann::json j = robustness_json(report);
   j["spread_assumed"] = spread_assumed;
-  std::string text = (spread_assumed ? std::string(assumed_words) + "\n" : std::string()) + robustness_text(report);
+  std::string text =
+      (spread_assumed ? std::string(assumed_words) + "\n" : std::string()) + terminal_text(robustness_document(report));
   work.reset();
   if (folder) {
     write_files(*folder, report);

@@ -23,7 +23,6 @@
 #include "reports/files.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
-#include "reports/text_table.h"
 #include "store/study_store.h"
 
 namespace softland::apps {

@@ -162,9 +162,9 @@ int tune_verb(const Common& given, const TuneRequest& request) {
   }
   tuning.write(end);
   const TuningReport report = tuning.report(end);
-  print_json_or(
-      c, tuning.told_json(end),
-      tuning_text(report) + left_in(tuning.folder().path(), {"tune.html", "tune.json", "best.toml", "best.csv", log_file}));
+  print_json_or(c, tuning.told_json(end),
+                terminal_text(tuning_document(report, {})) +
+                    left_in(tuning.folder().path(), {"tune.html", "tune.json", "best.toml", "best.csv", log_file}));
   if (end == TuningEnd::interrupted) return exit_interrupted;
   return report.ever_bounce_free() ? exit_done : exit_no_success;
 }

@@ -476,7 +476,7 @@ TEST(Accuracy, PrintsATableAndTheAgreedJsonAndDraws_long) {
       here.run({"accuracy", "gold.toml", "--quiet", "--set", "simulate.duration=60 us", "--json", "a.json", "--out", "acc"});
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_EQ(o.err, "");
-  EXPECT_THAT(o.out, HasSubstr("\nfor 1e-3 in t_i, v_i, B_H and peak force: "));
+  EXPECT_THAT(o.out, HasSubstr("The quickest setting with which t_i, v_i, B_H and peak force are that accurate"));
   EXPECT_THAT(o.out, HasSubstr("\nIn acc: report.html, accuracy.svg, accuracy.json\n"));
   EXPECT_THAT(read(here.path() / "acc/accuracy.svg"), HasSubstr("what accuracy costs"));
   EXPECT_THAT(read(here.path() / "acc/report.html"), HasSubstr("softland accuracy gold.toml"));

@@ -29,7 +29,7 @@ TEST(ModesOfAFile, BecomeATableAPictureAndAList) {
   const Outcome o = here.run(words);
   EXPECT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(o.out, HasSubstr("CalculiX .frd: 36 nodes at 6 places over 100 um"));
-  EXPECT_THAT(o.out, HasSubstr("left out    torsional"));
+  EXPECT_THAT(o.out, HasSubstr("left out  torsional"));
   const json j = json::parse(read(here.path() / "modes.json"));
   EXPECT_EQ(j["modes"].size(), 4U);
   EXPECT_EQ(j["modes"][2]["taken_as"], "mode_2");
@@ -153,7 +153,7 @@ TEST(ModesOfAFile, OfAMeshByCalculixCloseAsTheBeam_slow) {
   const Outcome o = here.run(to_table);
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(o.out, HasSubstr("left out    in-plane"));
-  EXPECT_THAT(o.out, HasSubstr("left out    torsional"));
+  EXPECT_THAT(o.out, HasSubstr("left out  torsional"));
   write(here.path() / "modes.toml",
         edited(shipped("mem-gold-modes.toml"), "file = \"mem-gold-modes.csv\"", "file = \"modes.csv\""));
   const json mesh = closing(here, "modes.toml"), beam = closing(here, "gold.toml");

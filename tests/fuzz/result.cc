@@ -1,4 +1,4 @@
-#include "reports/html.h"
+#include "reports/result_document.h"
 #include "reports/result_reader.h"
 #include "reports/svg.h"
 #include "reports/text.h"
@@ -25,11 +25,11 @@ void result(std::string_view input) {
   check(parse_result(read.dump(), "written.json") == read, "a result changes when it is read again");
 
   const Result shown = read_result(read);
-  static const std::size_t own_scripts = scripts(html_report({}));
-  check(scripts(html_report(shown)) <= own_scripts, "a result brings a script into its page");
+  static const std::size_t own_scripts = scripts(page_html(result_document({})));
+  check(scripts(page_html(result_document(shown))) <= own_scripts, "a result brings a script into its page");
   const std::string fault = test::xml_fault(svg_gap_chart(shown));
   check(fault.empty(), "the picture of a result is not XML: " + fault);
-  static_cast<void>(text_report(shown));
+  static_cast<void>(terminal_text(result_document(shown)));
 
   const auto scene = read.find("scene_toml");
   if (scene == read.end() || !scene->is_string()) return;

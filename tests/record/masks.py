@@ -32,7 +32,8 @@ TEXT_MASKS = [(verb, file, re.compile(expression, re.M)) for verb, file, express
     ("status", "stdout", r"(^ +until ).*(, run \d+$)"),
     ("status", "stdout", r"(^  program +)[0-9a-f]{40}($)"),
     ("simulate", "stderr", rf"(: a right-hand side takes ){_TIME}( instead of ){_TIME}(, ).*( less$)"),
-    ("accuracy", "stdout", r"(^for 1e-\d+ in .*?: ).*($)"),
+    ("accuracy", "stdout", r"(\AA closing with [^.]*? takes )[\s\S]*?(\n\n)"),
+    ("accuracy", "stdout", r"(^1e-\d+ ) +[a-z].*($)"),
     ("accuracy", ".html", rf"(</td><td>)(?:{_TIME}|—)(</td></tr>$)"),
     ("accuracy", ".html", r"(^<tr><th scope=\"row\">1e-\d+</th><td>)[a-z].*(</td></tr>$)"),
     ("accuracy", ".html", r"(^<h1>A closing with .* takes ).*(</h1>$)"),
@@ -47,7 +48,7 @@ TEXT_MASKS = [(verb, file, re.compile(expression, re.M)) for verb, file, express
 PROGRESS = re.compile(r"^softland: .*, \d+ s(, about \d+ s left)?(, cost .* \(plain step .*\)|, no feasible waveform yet)?$")
 
 # Columns of tables on standard output that hold times, by verb and heading.
-COLUMN_MASKS = {"effects": {"rhs"}, "accuracy": {"time"}}
+COLUMN_MASKS = {"effects": {"rhs"}, "accuracy": {"time", "Time of a closing"}}
 
 
 def masked_key(kind, path):

@@ -112,7 +112,7 @@ def about_the_clock(name, verb, text, at, line):
             if in_svg or last_cell or re.match(r'<h1>|<tr><th scope="row">1e-\d+</th><td>[a-z]|<script type="application/json"', line):
                 return True
         else:
-            return bool(re.match(r"[\d.]*\s[nµm]?s(\n|$)", after) or line.startswith("for 1e-"))
+            return bool(re.match(r"[\d.]*\s[nµm]?s(\n|$)", after) or re.match(r"1e-\d+ +[a-z]", line) or (text.startswith("A closing with") and "\n\n" not in text[:at]))
     if name.endswith(".html"):
         return "Made with" in line or "Computed by" in line or "Its computing time" in line
     if verb == "effects":

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "reports/findings.h"
-#include "reports/html.h"
+#include "reports/result_document.h"
 #include "reports/result_json.h"
 #include "reports/result_reader.h"
 #include "reports/text.h"
@@ -74,7 +74,7 @@ TEST(DevicesReport, SaysFirstWhatDevicesDo) {
           "for the drawing closes it without a rebound at 33.4\u00a0µs: drawing.toml. Of 2000 devices that differ, 95 % "
           "touch at no more than 33.0\u00a0mm/s instead of 107\u00a0mm/s: best.toml. With Vdp measured to 1 % on each, 95 % "
           "touch at no more than 16.6\u00a0mm/s: calibrated.toml."));
-  const std::string text = text_report(devices_result());
+  const std::string text = terminal_text(result_document(devices_result()));
   EXPECT_EQ(text.find("The waveform for the drawing"), 0U);
   for (const char* part : {"plain step", "for the drawing", "for the devices", "Vdp to 1 %", "107\u00a0mm/s", "732\u00a0nm", "∞",
                            "catch by cvar:0.9: touch within 90.0\u00a0µs",
@@ -118,14 +118,14 @@ TEST(DevicesReport, ComesBackFromJsonAsItWas) {
 }
 
 TEST(DevicesReport, StandsFirstOnThePage) {
-  const std::string page = html_report(devices_result());
+  const std::string page = page_html(result_document(devices_result()));
   const std::size_t table = page.find("id=\"devices\""), figures = page.find("id=\"figures\"");
   ASSERT_NE(table, std::string::npos);
   EXPECT_LT(table, figures);
   EXPECT_THAT(page, HasSubstr("<dt>Impact speed, of 95 %</dt>"));
   EXPECT_THAT(page, HasSubstr("<td class=\"own\">33.0\u00a0mm/s</td>"));
   EXPECT_THAT(page, HasSubstr("aria-label=\"Without a rebound, by the error of Vdp"));
-  EXPECT_THAT(html_report(search_alone()), Not(HasSubstr("id=\"devices\"")));
+  EXPECT_THAT(page_html(result_document(search_alone())), Not(HasSubstr("id=\"devices\"")));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "reports/files.h"
-#include "reports/html.h"
+#include "reports/result_document.h"
 #include "reports/result_json.h"
 #include "reports/result_reader.h"
 #include "reports/svg.h"
@@ -30,8 +30,8 @@ void expect_the_same_reports(const Result& made) {
   const json written = result_json(made);
   const Result again = read_result(parse_result(written.dump(), "result.json"));
   EXPECT_EQ(result_json(again), json::parse(written.dump())) << "a member is written and not read";
-  EXPECT_EQ(text_report(again), text_report(made));
-  EXPECT_EQ(html_report(again), html_report(made));
+  EXPECT_EQ(terminal_text(result_document(again)), terminal_text(result_document(made)));
+  EXPECT_EQ(page_html(result_document(again)), page_html(result_document(made)));
   EXPECT_EQ(svg_gap_chart(again), svg_gap_chart(made));
   EXPECT_EQ(trajectory_csv(again.best.curve), trajectory_csv(made.best.curve));
 }

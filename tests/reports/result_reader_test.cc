@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/require.h"
-#include "reports/html.h"
+#include "reports/result_document.h"
 #include "sample_result.h"
 
 namespace softland {
@@ -82,7 +82,7 @@ TEST(ParseResult, RefusesNestingThatNoReportCanWalkThrough) {
   };
   EXPECT_EQ(parse_refusal(nested(300'000)), "x.json: is nested more than 64 deep");
   EXPECT_EQ(parse_refusal(nested(62)), "x.json: is nested more than 64 deep");
-  EXPECT_NO_THROW((void)html_report(read_result(parse_result(nested(61), "x.json"))));
+  EXPECT_NO_THROW((void)page_html(result_document(read_result(parse_result(nested(61), "x.json")))));
 }
 
 }  // namespace

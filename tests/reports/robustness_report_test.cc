@@ -15,7 +15,6 @@
 
 #include "reports/box_and_chaos_report.h"
 #include "reports/text.h"
-#include "reports/text_table.h"
 #include "studies/closing/auto_settings.h"
 
 namespace softland::robustness_report_test {
@@ -67,20 +66,21 @@ const Study& study() {
 }
 
 TEST(RobustnessReport, OfATerminalHasEveryDriveAndWhatMeasuringIsWorth_optimized) {
-  const std::string text = robustness_text(study().report());
-  for (const char* words : {"64 devices of the spread: gap.electrode and gap.contact ± 2.0 % (normal)", "plain step",
-                            "<slow>, \"mine\"", "Known of every device", "\nnothing ", "\nVdp and frequency, 8 classes ",
-                            "\nVdp and frequency ", "\nVdp ± 1.0 %, frequency exactly ", "Share of the variance, alone / in all",
-                            "\nTo first order", " %/%, ", "\nstructure.thickness ", "Other ways, under <slow>, \"mine\"",
-                            "\nWorst in the box: found by search ", "\nWorst B_H: gaps × ", "± 2.39 standard deviations"})
+  const std::string text = terminal_text(robustness_document(study().report()));
+  for (const char* words :
+       {"64 devices of the spread (sobol points): gap.electrode and gap.contact ± 2.0 % (normal)", "plain step",
+        "<slow>, \"mine\"", "Known of every device", "\nnothing ", "\nVdp and frequency, 8 classes ", "\nVdp and frequency ",
+        "\nVdp ± 1.0 %, frequency exactly ", "Share of the variance ", "\nTo first order", " %/%, ", "\nstructure.thickness ",
+        "Other ways, under <slow>, \"mine\"", "\nWorst in the box: found by search ", "\nWorst B_H ",
+        "± 2.39 standard deviations"})
     EXPECT_THAT(text, HasSubstr(words));
   RobustnessReport bare = study().report();
   bare.sensitivity = {};
   bare.box_and_chaos = {};
   bare.derivatives = {};
-  EXPECT_THAT(robustness_text(bare), Not(HasSubstr("Share of the variance")));
-  EXPECT_THAT(robustness_text(bare), Not(HasSubstr("Other ways")));
-  EXPECT_THAT(robustness_text(bare), Not(HasSubstr("first order")));
+  EXPECT_THAT(terminal_text(robustness_document(bare)), Not(HasSubstr("Share of the variance")));
+  EXPECT_THAT(terminal_text(robustness_document(bare)), Not(HasSubstr("Other ways")));
+  EXPECT_THAT(terminal_text(robustness_document(bare)), Not(HasSubstr("first order")));
 }
 
 TEST(RobustnessReport, AsJsonHoldsWhatTheStudyFound_optimized) {
@@ -123,13 +123,13 @@ TEST(RobustnessReport, SaysWhereChaosFails_optimized) {
   ways.chaos[2].q2 = ways.chaos[2].q2_unseen = Metrics::unset;
   ways.ranges[2].most.figure = std::numeric_limits<double>::infinity();
   report.box_and_chaos = ways;
-  std::string text = robustness_text(report);
+  std::string text = terminal_text(robustness_document(report));
   std::replace(text.begin(), text.end(), '\n', ' ');
   EXPECT_THAT(text, HasSubstr("3 of them do not close; mean, deviation and quantile of chaos go on"));
   EXPECT_THAT(text, HasSubstr("It predicts t_i of those that close. It fails for v_max (60.0 % of the variance): "));
   EXPECT_THAT(text, HasSubstr("It says nothing of B_H"));
   EXPECT_THAT(text, HasSubstr("∞"));
-  const std::string page = robustness_html(report);
+  const std::string page = page_html(robustness_document(report));
   EXPECT_THAT(page, HasSubstr("It fails for v<sub>max</sub> (60.0"));
   EXPECT_TRUE(robustness_json(report)["other_ways"]["box"]["figures"]["major_bounce_height_m"]["most"]["value"].is_null());
 }
@@ -150,10 +150,11 @@ TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge_optimized) {
   file.set(R"(spread={"driver.main.jitter"={distribution="uniform", half_width="50 ns"}})");
   Study jittered{.nominal = prepare(file), .options = {.samples = 64}, .found = {}};
   jittered.found = robustness(jittered.nominal, {}, jittered.options);
-  EXPECT_THAT(robustness_text(jittered.report()), HasSubstr("The sources of the drives err as the spread says."));
+  EXPECT_THAT(terminal_text(robustness_document(jittered.report())),
+              HasSubstr("The sources of the drives err as the spread says."));
   for (const bool err : {false, true}) {
-    const bool said =
-        robustness_html((err ? jittered : study()).report()).find("The sources of the drives err") < std::string::npos;
+    const bool said = page_html(robustness_document((err ? jittered : study()).report())).find("The sources of the drives err") <
+                      std::string::npos;
     EXPECT_EQ(said, err);
   }
   std::istringstream in(robustness_csv(jittered.report()));
@@ -192,7 +193,7 @@ TEST(RobustnessReport, SaysWhatItsDerivativesAreWorth_optimized) {
   }
   RobustnessReport report = study().report();
   report.derivatives = told;
-  const std::string text = robustness_text(report), page = robustness_html(report);
+  const std::string text = terminal_text(robustness_document(report)), page = page_html(robustness_document(report));
   const nlohmann::json j = robustness_json(report)["derivatives"];
   EXPECT_THAT(text, HasSubstr("To first order (grazing)"));
   EXPECT_THAT(page, HasSubstr("has 3.0 % of the speed of the first touch"));
@@ -204,13 +205,13 @@ TEST(RobustnessReport, SaysWhatItsDerivativesAreWorth_optimized) {
   told.figures.clear();
   told.why_none = "there is no gas";
   report.derivatives = told;
-  EXPECT_THAT(robustness_text(report), HasSubstr("The figures have no derivatives here: there is no gas."));
-  EXPECT_THAT(robustness_html(report), HasSubstr("The figures have no derivatives here: there is no gas."));
+  EXPECT_THAT(terminal_text(robustness_document(report)), HasSubstr("The figures have no derivatives here: there is no gas."));
+  EXPECT_THAT(page_html(robustness_document(report)), HasSubstr("The figures have no derivatives here: there is no gas."));
   EXPECT_EQ(robustness_json(report)["derivatives"]["why_none"], "there is no gas");
 }
 
 TEST(RobustnessReport, AsAPageHasEverySectionAndEscapesNames) {
-  const std::string page = robustness_html(study().report());
+  const std::string page = page_html(robustness_document(study().report()));
   for (const char* id :
        {"charts", "knowledge", "figures", "scatter", "sensitivity", "derivatives", "ways", "worst", "reproduce", "scene"})
     EXPECT_THAT(page, HasSubstr(std::string("<section id=\"") + id + "\">")) << id;
@@ -243,7 +244,7 @@ std::vector<double> bins_of(const std::string& page, const std::string& table) {
 }
 
 TEST(RobustnessReport, HasHistogramsOfAllDevicesInView_optimized) {
-  const std::string page = robustness_html(study().report());
+  const std::string page = page_html(robustness_document(study().report()));
   double in_view = 0;
   for (const DriveRobustness& d : study().found.drives) {
     std::vector<double> heights;
@@ -277,7 +278,7 @@ TEST(RobustnessReport, ShowsThePlainStepAloneAndDevicesThatDoNotClose_optimized)
   step.worst = {3};
   step.outcomes[3] = {.metrics = {}, .failure = "gap.contact must be <less>"};
   bare.found.devices = 8;
-  const std::string page = robustness_html(bare.report());
+  const std::string page = page_html(robustness_document(bare.report()));
   EXPECT_THAT(page, HasSubstr("gap.contact must be &lt;less&gt;"));
   EXPECT_THAT(page, HasSubstr("Under the plain step"));
   EXPECT_THAT(page, Not(HasSubstr("id=\"knowledge\"")));
@@ -287,14 +288,14 @@ TEST(RobustnessReport, ShowsThePlainStepAloneAndDevicesThatDoNotClose_optimized)
 TEST(RobustnessReport, LeavesOutAFigureThatNoDeviceHas_optimized) {
   Study rigid{.nominal = study().nominal, .options = study().options, .found = study().found};
   const std::string name = "Peak contact force";
-  EXPECT_THAT(robustness_text(rigid.report()), HasSubstr(name));
+  EXPECT_THAT(terminal_text(robustness_document(rigid.report())), HasSubstr(name));
   for (DriveRobustness& drive : rigid.found.drives) {
     drive.figures[&Metrics::peak_contact_force] = {};
   }
-  EXPECT_THAT(robustness_text(rigid.report()), Not(HasSubstr(name)));
-  EXPECT_THAT(robustness_html(rigid.report()), Not(HasSubstr(name)));
+  EXPECT_THAT(terminal_text(robustness_document(rigid.report())), Not(HasSubstr(name)));
+  EXPECT_THAT(page_html(robustness_document(rigid.report())), Not(HasSubstr(name)));
   for (DriveRobustness& drive : rigid.found.drives) drive.closing.devices = 0;
-  EXPECT_THAT(robustness_text(rigid.report()), HasSubstr(name)) << "where none closes nothing is known";
+  EXPECT_THAT(terminal_text(robustness_document(rigid.report())), HasSubstr(name)) << "where none closes nothing is known";
 }
 
 TEST(Sensitivity, SaysWhereFirstContactComesFrom_optimized) {
@@ -329,9 +330,10 @@ TEST(RobustnessReport, FitsOnATerminalWithManyDrivesOfLongNames) {
     s.found.drives.push_back(s.found.drives.back());
     s.found.drives.back().name = std::string(60, 'x') + "/of_run_" + std::to_string(k);
   }
-  std::istringstream lines(robustness_text(s.report()));
+  std::istringstream lines(terminal_text(robustness_document(s.report())));
   for (std::string line; std::getline(lines, line);) EXPECT_LE(internal::display_width(line), 150U) << line;
-  for (int k = 0; k < 9; ++k) EXPECT_THAT(robustness_text(s.report()), HasSubstr("/of_run_" + std::to_string(k)));
+  for (int k = 0; k < 9; ++k)
+    EXPECT_THAT(terminal_text(robustness_document(s.report())), HasSubstr("/of_run_" + std::to_string(k)));
 }
 
 // An estimate may leave [0, 1] by chance.
@@ -341,30 +343,31 @@ TEST(RobustnessReport, SharesAreNeverBeyondAll) {
     f.estimate.indices->total[0] = {.value = 1.1, .interval = {.low = 0.9, .high = 1.3}};
     f.estimate.indices->first_order[0] = {.value = -0.02, .interval = {.low = -0.1, .high = 0.05}};
   }
-  EXPECT_THAT(robustness_text(s.report()), HasSubstr("0.0 % / 100 %"));
-  EXPECT_THAT(robustness_text(s.report()), Not(HasSubstr("110 %")));
-  EXPECT_THAT(robustness_html(s.report()), HasSubstr("100 % (90 to 100)"));
+  EXPECT_THAT(terminal_text(robustness_document(s.report())),
+              ::testing::ContainsRegex("\ngaps +0 % \\(0 to 5\\) +100 % \\(90 to 100\\) "));
+  EXPECT_THAT(terminal_text(robustness_document(s.report())), Not(HasSubstr("110 %")));
+  EXPECT_THAT(page_html(robustness_document(s.report())), HasSubstr("100 % (90 to 100)"));
   for (FigureChaos& c : s.box_and_chaos->chaos) c.q2 = c.q2_unseen = -0.5;
-  EXPECT_THAT(robustness_text(s.report()), Not(HasSubstr("150 %")));
+  EXPECT_THAT(terminal_text(robustness_document(s.report())), Not(HasSubstr("150 %")));
 }
 
 TEST(RobustnessReport, SaysWhatIsMissingForShares) {
   Study s = study();
   for (FigureSensitivity& f : s.sensitivity.figures) f.estimate = {.rows = 256, .failed_rows = 12};
   const std::string words = "no shares: 12 of the 256 rows of devices made for them";
-  EXPECT_THAT(robustness_html(s.report()), HasSubstr(words));
-  EXPECT_THAT(robustness_text(s.report()), HasSubstr("t_i: " + words));
-  EXPECT_THAT(robustness_text(s.report()), Not(HasSubstr("too many"))) << "all devices of the sample close";
+  EXPECT_THAT(page_html(robustness_document(s.report())), HasSubstr(words));
+  EXPECT_THAT(terminal_text(robustness_document(s.report())), HasSubstr("t_i: " + words));
+  EXPECT_THAT(terminal_text(robustness_document(s.report())), Not(HasSubstr("too many"))) << "all devices of the sample close";
 }
 
 // What is first order says nothing of devices whose spread is another one.
 TEST(RobustnessReport, ShowsNoDerivativesThatTheDevicesContradict) {
   Study s = study();
-  EXPECT_THAT(robustness_text(s.report()), HasSubstr(" %/%"));
+  EXPECT_THAT(terminal_text(robustness_document(s.report())), HasSubstr(" %/%"));
   for (FigureDerivatives& f : s.derivatives.figures) f.deviation *= 100;
-  EXPECT_THAT(robustness_text(s.report()), Not(HasSubstr(" %/%")));
-  EXPECT_THAT(robustness_html(s.report()), Not(HasSubstr(" %/%")));
-  EXPECT_THAT(robustness_text(s.report()), HasSubstr("are not shown"));
+  EXPECT_THAT(terminal_text(robustness_document(s.report())), Not(HasSubstr(" %/%")));
+  EXPECT_THAT(page_html(robustness_document(s.report())), Not(HasSubstr(" %/%")));
+  EXPECT_THAT(terminal_text(robustness_document(s.report())), HasSubstr("are not shown"));
   EXPECT_FALSE(robustness_json(s.report())["derivatives"]["figures"]["initial_contact_time_s"]["agrees_with_devices"]);
 }
 

@@ -4,7 +4,7 @@
 
 #include "reports/exploration_report.h"
 #include "reports/files.h"
-#include "reports/html.h"
+#include "reports/result_document.h"
 #include "reports/result_reader.h"
 #include "reports/svg.h"
 #include "sample_exploration.h"
@@ -18,8 +18,8 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = argv[1];
   const auto optimize = softland::test::sample_optimize_result();
   const auto simulate = softland::test::sample_simulate_result();
-  softland::write_whole(folder / "optimize.html", softland::html_report(softland::read_result(optimize)));
-  softland::write_whole(folder / "simulate.html", softland::html_report(softland::read_result(simulate)));
+  softland::write_whole(folder / "optimize.html", softland::page_html(result_document(softland::read_result(optimize))));
+  softland::write_whole(folder / "simulate.html", softland::page_html(result_document(softland::read_result(simulate))));
   softland::write_whole(folder / "optimize.svg", softland::svg_gap_chart(softland::read_result(optimize)));
   softland::write_whole(folder / "simulate.svg", softland::svg_gap_chart(softland::read_result(simulate)));
   const auto grid = softland::test::sample_grid(200, 200);

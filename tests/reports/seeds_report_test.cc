@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "reports/html.h"
+#include "reports/result_document.h"
 #include "reports/result_json.h"
 #include "reports/result_reader.h"
 #include "sample_result.h"
@@ -67,15 +67,15 @@ TEST(SeedsReport, TellsTheSpreadAndWhatFails) {
 
 TEST(SeedsReport, OfAResultIsReadBackAndStandsInEveryReport) {
   Result result = read_result(test::sample_optimize_result(10));
-  EXPECT_EQ(html_report(result).find("id=\"seeds\""), std::string::npos);
+  EXPECT_EQ(page_html(result_document(result)).find("id=\"seeds\""), std::string::npos);
   result.seeds = ResultSeeds{.planned = 2, .searches = {search(1, 0.1), search(2, 0.2)}, .best = 1};
   const Result again = read_result(result_json(result));
   ASSERT_TRUE(again.seeds);
   EXPECT_EQ(seeds_json(*again.seeds), seeds_json(*result.seeds));
   EXPECT_EQ(again.seeds->best, 1U);
-  EXPECT_NE(html_report(again).find("Searches from other seeds"), std::string::npos);
-  EXPECT_NE(internal::seeds_text(again.seeds).find("\n   2  goal met, confirmed"), std::string::npos)
-      << internal::seeds_text(again.seeds);
+  EXPECT_NE(page_html(result_document(again)).find("Searches from other seeds"), std::string::npos);
+  EXPECT_NE(terminal_text(result_document(again)).find("\n2     goal met, confirmed"), std::string::npos)
+      << terminal_text(result_document(again));
 }
 
 }  // namespace

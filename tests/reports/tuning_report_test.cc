@@ -81,21 +81,21 @@ TEST(TuningReport, SaysInWordsWhatWasSeenAndWhatIsExpected) {
       closing_words(tuned_sample()),
       "closing 6 touched at 38.60\u00a0µs without a bounce; expected of the next: touch at 38.00 to 39.00\u00a0µs, 95 % of the "
       "rebounds below 700\u00a0pm");
-  const std::string text = tuning_text(tuned_sample());
+  const std::string text = terminal_text(tuning_document(tuned_sample(), {}));
   for (const char* words :
        {"After 5 closings the switch lands without a bounce", "stayed open", "no record", "not like its scene"})
     EXPECT_THAT(text, HasSubstr(words));
   TuningReport bounced = tuned_sample();
   bounced.closings.resize(1);
   bounced.bounce_free_in_a_row = 0;
-  EXPECT_THAT(tuning_text(bounced), HasSubstr("After one closing none has landed without a bounce yet."));
+  EXPECT_THAT(terminal_text(tuning_document(bounced, {})), HasSubstr("After one closing none has landed without a bounce yet."));
   EXPECT_THAT(closing_words(bounced), HasSubstr("touched at 40.00\u00a0µs with 2 bounces"));
   bounced.next.predicted.touch_low = bounced.next.predicted.rebound_high = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(closing_words(bounced), HasSubstr("expected of the next: touch at —, rebounds not known"));
 }
 
 TEST(TuningReport, BringsNothingIntoItsPageButText) {
-  const std::string page = tuning_html(tuned_sample(), {.command = "softland tune <s>"});
+  const std::string page = page_html(tuning_document(tuned_sample(), {.command = "softland tune <s>"}));
   for (const char* tag : {"<b>", "<i>", "<u>", "<s>"}) EXPECT_THAT(page, Not(HasSubstr(tag)));
   for (const char* part :
        {"id=\"records\"", "id=\"belief\"", "id=\"waveforms\"", "id=\"reproduce\"", "kept so far", "proposed next"})
@@ -114,13 +114,13 @@ TEST(TuningReport, IsAPageBeforeItsFirstClosing) {
   fresh.closings.clear();
   fresh.bounce_free_in_a_row = 0;
   fresh.kept = fresh.next;
-  EXPECT_THAT(tuning_html(fresh, {}), HasSubstr("No closing yet."));
+  EXPECT_THAT(page_html(tuning_document(fresh, {})), HasSubstr("No closing yet."));
 }
 
 using TuningPage = test::PageInBrowser;
 
 TEST_F(TuningPage, FitsNarrowAndWideScreens_browser) {
-  const std::string page = tuning_html(tuned_sample(), {});
+  const std::string page = page_html(tuning_document(tuned_sample(), {}));
   for (const int width : {420, 1400}) {
     const std::string said =
         test::said(test::in_frame(program, page, width,

@@ -1,4 +1,4 @@
-#include "reports/html.h"
+#include "reports/result_document.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 #include <cmath>
 #include <span>
 
-#include "base/printable.h"
 #include "reports/chart.h"
 #include "reports/closing_clauses.h"
 #include "reports/devices_report.h"
@@ -45,33 +44,32 @@ constexpr std::array leading_figures{figure_of(&Metrics::initial_contact_time), 
                                      figure_of(&Metrics::bounce_count), figure_of(&Metrics::major_bounce_height),
                                      figure_of(&Metrics::impact_velocity)};
 
-std::string key_number(const Result& result, const Figure& shown) {
+KeyNumber key_number(const Result& result, const Figure& shown) {
   const ResultRun &own = result.best, &step = result.baseline;
   const auto words = [&](const ResultRun& run, const ResultRun& beside) {
     const std::string reason = missing_reason(run, shown);
     return reason.empty() ? quantity_beside(figure_of_run(run, shown.member), figure_of_run(beside, shown.member), shown.unit)
                           : reason;
   };
-  std::string out =
-      fmt::format("<div class=\"key\"><dt>{}</dt><dd>", capitalised(std::string(shown.also.empty() ? shown.name : shown.also)));
-  if (result.is_search && step.figures)
-    out += fmt::format("<span class=\"before\">{} <span aria-label=\"becomes\">→</span></span> ", words(step, own));
-  out += fmt::format("<span class=\"after{}\">{}</span>", missing_reason(own, shown).empty() ? "" : " words", words(own, step));
-  if (const Change changed = figure_change(step, own, shown); !changed.words.empty()) {
-    out += fmt::format("<span class=\"change {}\">{}</span>", verdict_class(changed.verdict), changed.words);
-  }
-  return out + "</dd></div>\n";
+  const Change changed = figure_change(step, own, shown);
+  return {.name = capitalised(std::string(shown.also.empty() ? shown.name : shown.also)),
+          .value = words(own, step),
+          .change = changed.words,
+          .before = result.is_search && step.figures ? words(step, own) : "",
+          .style = verdict_class(changed.verdict),
+          .is_words = !missing_reason(own, shown).empty()};
 }
 
-std::string key_numbers(const Result& result) {
+std::vector<KeyNumber> key_numbers(const Result& result) {
+  if (result.devices) return devices_keys(*result.devices);
   if (!result.baseline.figures && !missing_reason(result.best, leading_figures.front()).empty()) return {};
-  std::string out;
-  for (const Figure& one : std::span(leading_figures).subspan(1)) out += key_number(result, one);
-  return out;
+  std::vector<KeyNumber> keys;
+  for (const Figure& one : std::span(leading_figures).subspan(1)) keys.push_back(key_number(result, one));
+  return keys;
 }
 
 /// What every drive demands of its source, where there are several.
-void add_drive_rows(std::vector<TableRow>& rows, const Result& result, bool pair, bool estimated) {
+void add_drive_rows(ReportTable& table, const Result& result, bool pair) {
   if (result.best.waveforms.size() < 2) return;
   for (const auto& [drive, found] : result.best.waveforms) {
     const DriveScale scale = drive_scale(drive);
@@ -79,11 +77,10 @@ void add_drive_rows(std::vector<TableRow>& rows, const Result& result, bool pair
     const DriveDemand own = drive_demand(found, scale.rest);
     const DriveDemand step = drive_demand(waveform(result.baseline, drive), scale.rest);
     const auto add = [&, name = &drive](const Figure& what, const std::string& value, const std::string& before) {
-      TableRow& row = rows.emplace_back(TableRow{fmt::format("{}, {}", what.name, escaped(*name))});
+      TableRow& row = table.rows.emplace_back(TableRow{fmt::format("{}, {}", what.name, *name)});
       if (pair) row.insert(row.end(), {before, ""});
       row.emplace_back(value, "own");
-      if (pair) row.emplace_back("");
-      if (estimated) row.emplace_back("");
+      row.resize(table.head.size(), "");
     };
     const auto slew = [](double value) { return std::isinf(value) ? std::string("jumps") : quantity(value, "V/s"); };
     add(figure_of(&Metrics::peak_voltage), quantity(own.peak(), "V", 4), quantity(step.peak(), "V", 4));
@@ -91,102 +88,104 @@ void add_drive_rows(std::vector<TableRow>& rows, const Result& result, bool pair
   }
 }
 
+TableCell error_cell(const Result& result, const Figure& one) {
+  constexpr double ill = 0.1;  // an error above a tenth of the figure
+  const double own = figure_of_run(result.best, one.member), error = result.best.errors[one];
+  const std::string cloud = cloud_text(result, one), stated = error_text(one, own, error);
+  const bool is_hidden = stated.starts_with('<');  // below the last digit that is shown
+  TableCell cell(cloud.empty() ? stated : cloud);
+  if (!cloud.empty() || (!is_hidden && error > ill * std::abs(own)))
+    cell.html = escaped(cell.text) + " <span class=\"note\">ill-conditioned</span>";
+  return cell;
+}
+
 TableRow figure_row(const Result& result, const Figure& one, bool pair, bool estimated) {
   const double own = figure_of_run(result.best, one.member), step = figure_of_run(result.baseline, one.member);
-  const double error = result.best.errors[one];
   TableRow row{one.label()};
   if (pair) row.insert(row.end(), {figure_text(one, step, result.baseline.errors[one], own), goal_text(result, one)});
-  row.emplace_back(figure_text(one, own, error, step), "own");
+  row.emplace_back(figure_text(one, own, result.best.errors[one], step), "own");
   if (pair) {
     const Change changed = figure_change(result.baseline, result.best, one);
     row.emplace_back(changed.words, "change " + verdict_class(changed.verdict));
   }
-  if (estimated) {
-    constexpr double ill = 0.1;  // an error above a tenth of the figure
-    const std::string cloud = cloud_text(result, one);
-    const std::string stated = error_text(one, own, error);
-    const bool is_hidden = stated.starts_with('<');  // below the last digit that is shown
-    const bool is_ill = !cloud.empty() || (!is_hidden && error > ill * std::abs(own));
-    row.emplace_back((!cloud.empty() ? cloud : stated) + (is_ill ? " <span class=\"note\">ill-conditioned</span>" : ""));
-  }
+  if (estimated) row.push_back(error_cell(result, one));
   return row;
 }
 
-std::string figures_table(const Result& result) {
-  if (!result.best.figures && !result.baseline.figures) return {};
+ReportTable figures_table(const Result& result) {
   const bool pair = result.is_search && result.baseline.figures;
   const bool estimated = std::any_of(all_figures.begin(), all_figures.end(),
                                      [&](const Figure& one) { return std::isfinite(result.best.errors[one]); });
-  std::string out;
-  if (result.goal_met) out += fmt::format("<p>The goal is {}.</p>\n", *result.goal_met ? "met" : "not met");
-  if (const std::string words = limit_words(result); !words.empty()) out += "<p>" + escaped(words) + "</p>\n";
-  TableRow head{"Figure"};
-  if (pair) head.insert(head.end(), {"Plain step", "Goal", "Softland", "Change"});
-  if (!pair) head.emplace_back("Value");
-  if (estimated) head.emplace_back(error_heading(result));
-  std::vector<TableRow> rows;
+  ReportTable table{.head = {"Figure"}, .rows = {}};
+  if (pair) table.head.insert(table.head.end(), {"Plain step", "Goal", "Softland", {"Change", "change"}});
+  if (!pair) table.head.emplace_back("Value");
+  if (estimated) table.head.emplace_back(error_heading(result));
   for (const Figure& one : all_figures) {
     const bool known =
         !std::isnan(figure_of_run(result.best, one.member)) || !std::isnan(figure_of_run(result.baseline, one.member));
-    if (known) rows.push_back(figure_row(result, one, pair, estimated));
+    if (known) table.rows.push_back(figure_row(result, one, pair, estimated));
   }
-  add_drive_rows(rows, result, pair, estimated);
-  out += table_html(head, rows);
-  if (const std::string words = certificate_caption(result); !words.empty()) out += fmt::format("<p>{}</p>\n", escaped(words));
-  if (const std::string words = robust_caption(result); !words.empty()) out += fmt::format("<p>{}</p>\n", escaped(words));
-  return section("figures", "Figures", out);
+  add_drive_rows(table, result, pair);
+  return table;
 }
 
-std::string charts(const Picture& drawn) {
-  std::string time_charts;
-  std::string search;
+ReportSection figures_section(const Result& result) {
+  ReportSection section{.id = "figures", .heading = "Figures", .parts = {}};
+  if (result.devices)
+    section.parts.emplace_back(
+        SubHeading{result.devices->better_than_plain_step ? "best.toml on the drawing" : "The plain step on the drawing"});
+  if (result.best.figures || result.baseline.figures) section.parts.emplace_back(figures_table(result));
+  if (result.goal_met)
+    section.parts.emplace_back(Paragraph{fmt::format("The goal is {}.", *result.goal_met ? "met" : "not met")});
+  for (const std::string& words : {limit_words(result), certificate_caption(result), robust_caption(result)})
+    section.parts.emplace_back(Paragraph{words});
+  return section;
+}
+
+ReportSection closing_section(const Picture& drawn) {
+  std::string charts;
   for (const Chart& chart : drawn.charts) {
-    (chart.group.empty() ? search : time_charts) += figure_html(drawn.tables, chart);
+    if (!chart.group.empty()) charts += figure_html(drawn.tables, chart);
   }
-  std::string out;
-  if (!time_charts.empty()) {
-    out +=
-        "<section id=\"charts\"><h2>The closing</h2>\n<div class=\"tools\" hidden><span role=\"group\" aria-label=\"Time shown\">"
+  if (!charts.empty())
+    charts =
+        "<div class=\"tools\" hidden><span role=\"group\" aria-label=\"Time shown\">"
         "<button type=\"button\" data-view=\"home\" aria-pressed=\"true\">Overview</button>"
         "<button type=\"button\" data-view=\"landing\" aria-pressed=\"false\">Landing</button>"
         "<button type=\"button\" data-view=\"whole\" aria-pressed=\"false\">Whole window</button></span>"
         "<span class=\"hint\">Drag to zoom, double-click to go back. With a chart focused: ← → read, + − zoom, 0 "
         "back.</span></div>\n" +
-        time_charts + "</section>\n";
+        charts;
+  return {.id = "charts", .heading = "The closing", .parts = {Drawing{charts}}};
+}
+
+ReportSection search_section(const Result& result, const Picture& drawn) {
+  ReportSection section{.id = "search", .heading = "The search", .parts = {}};
+  for (const Chart& chart : drawn.charts) {
+    if (chart.group.empty()) section.parts.emplace_back(Drawing{figure_html(drawn.tables, chart)});
   }
-  if (!search.empty()) out += "<section id=\"search\"><h2>The search</h2>\n" + search + "</section>\n";
-  return out;
+  if (const std::string words = families_caption(result); !words.empty())
+    section.parts.emplace_back(Paragraph{fmt::format("Families searched, with the least cost of each: {}.", words)});
+  return section;
 }
 
 /// The switch from the side.
-std::string drawn_switch(const Result& result) {
-  const std::string drawing = sketch(result.scene);
-  if (drawing.empty()) return {};
-  return "<section id=\"sketch\"><h2>The switch at rest</h2>\n" + drawing +
-         "<p class=\"below\">From the side: to scale along the beam, heights exaggerated.</p></section>\n";
+ReportSection drawn_switch(const Result& result) {
+  ReportSection section{.id = "sketch", .heading = "The switch at rest", .parts = {Drawing{sketch(result.scene)}}};
+  if (!std::get<Drawing>(section.parts.front()).html.empty())
+    section.parts.emplace_back(Drawing{"<p class=\"below\">From the side: to scale along the beam, heights exaggerated.</p>\n"});
+  return section;
 }
 
-std::string list_of(const std::vector<std::string>& lines, std::string_view heading, std::string_view id) {
-  if (lines.empty()) return {};
-  std::string out = fmt::format("<section id=\"{}\"><h2>{}</h2>\n<ul>\n", id, heading);
-  std::size_t shown = 0;
-  for (const std::string& line : lines) {
-    if (shown++ == most_lines) {
-      out += fmt::format("<li>… and {} more</li>\n", lines.size() - most_lines);
-      break;
-    }
-    out += fmt::format("<li>{}</li>\n", escaped(shortened(printable_line(line))));
-  }
-  return out + "</ul></section>\n";
-}
-
-std::string checks_table(const Result& result) {
-  if (result.checks.empty()) return {};
-  TableRow head{"Simulated with"};
-  for (const Figure& one : leading_figures) head.emplace_back(one.name);
-  std::vector<TableRow> rows;
+ReportSection checks_section(const Result& result) {
+  ReportSection section{.id = "checks", .heading = "Confirmations", .parts = {}};
+  // Of a winner that bounces there is nothing to confirm.
+  section.is_page_only = figure_of_run(result.best, &Metrics::bounce_count) != 0;
+  if (result.checks.empty()) return section;
+  ReportTable table{.head = {"Simulated with"}, .rows = {}};
+  for (const Figure& one : leading_figures) table.head.emplace_back(one.name);
   const auto add = [&](const std::string& name, const std::optional<FigureValues>& figures) {
-    TableRow& row = rows.emplace_back(TableRow{escaped(name)});
+    TableRow& row = table.rows.emplace_back(TableRow{name});
     for (const Figure& one : leading_figures) {
       const double value = figures ? (*figures)[one] : Metrics::unset;
       row.emplace_back(figure_text(one, value, Metrics::unset, figure_of_run(result.baseline, one.member)));
@@ -194,7 +193,8 @@ std::string checks_table(const Result& result) {
   };
   add("as searched", result.best.figures);
   for (const ResultCheck& check : result.checks) add(check.name, check.figures);
-  return section("checks", "Confirmations", "<p>" + escaped(checks_caption(result)) + "</p>\n" + table_html(head, rows));
+  section.parts = {Paragraph{checks_caption(result)}, Drawing{table_html(table)}};
+  return section;
 }
 
 /// "piezo.level_1_V" as "piezo.level_1" and "V".
@@ -227,22 +227,24 @@ int place_in_time(const std::string& name) {
 }
 
 /// The box that a parameter was searched in.
-std::string searched_words(const Result& result, const std::string& parameter, std::string_view unit) {
+TableCell searched_cell(const Result& result, const std::string& parameter, std::string_view unit) {
   const auto box = result.bounds.find(parameter);
-  if (box == result.bounds.end()) return {};
+  if (box == result.bounds.end()) return "";
   const auto [low, high] = box->second;
   const double value = result.parameters.at(parameter);
   constexpr double near = 0.01;  // of the box
   const char* bound = value - low <= near * (high - low)    ? "at its lower bound"
                       : high - value <= near * (high - low) ? "at its upper bound"
                                                             : "";
-  return fmt::format("{} to {}{}", given_quantity(low, unit, 4), given_quantity(high, unit, 4),
-                     *bound ? fmt::format(" <span class=\"bound\">{}</span>", bound) : "");
+  TableCell cell(fmt::format("{} to {}", given_quantity(low, unit, 4), given_quantity(high, unit, 4)));
+  if (*bound != 0) cell.html = fmt::format("{} <span class=\"bound\">{}</span>", escaped(cell.text), bound);
+  return cell;
 }
 
 /// The parameters in the order in which they act.
-std::string parameters_table(const Result& result) {
-  if (result.parameters.empty()) return {};
+ReportSection parameters_section(const Result& result) {
+  ReportSection section{.id = "parameters", .heading = "The waveform found", .parts = {}, .is_page_only = true};
+  if (result.parameters.empty()) return section;
   struct Row {
     std::string key, drive, name;
     std::string_view unit;
@@ -258,23 +260,24 @@ std::string parameters_table(const Result& result) {
   std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
     return std::pair(a.drive, place_in_time(a.name)) < std::pair(b.drive, place_in_time(b.name));
   });
-  std::string out;
+  std::string drawings;
   std::string drive = "\n";
   for (const Row& row : rows) {
-    if (row.drive != drive) out += parameter_drawing(result, drive = row.drive);
+    if (row.drive != drive) drawings += parameter_drawing(result, drive = row.drive);
   }
-  std::vector<TableRow> cells;
+  ReportTable table{.head = {"Parameter", "Value", "Searched"}, .rows = {}};
   for (const Row& row : rows) {
-    if (cells.size() == most_lines) break;
+    if (table.rows.size() == most_lines) break;
     constexpr int digits = 5;
-    cells.push_back({escaped(row.drive) + (row.drive.empty() ? "" : ".") + escaped(row.name),
-                     quantity(row.value, row.unit, digits), searched_words(result, row.key, row.unit)});
+    table.rows.push_back({row.drive + (row.drive.empty() ? "" : ".") + row.name, quantity(row.value, row.unit, digits),
+                          searched_cell(result, row.key, row.unit)});
   }
-  return section("parameters", "The waveform found", out + table_html({"Parameter", "Value", "Searched"}, cells));
+  section.parts = {Drawing{drawings}, std::move(table)};
+  return section;
 }
 
 /// What was asked for, and what the device is like.
-std::string facts(const Result& result) {
+ReportSection facts(const Result& result) {
   std::string out;
   const auto fact = [&](std::string_view name, std::string value) {
     std::replace(value.begin(), value.end(), '_', ' ');
@@ -287,7 +290,6 @@ std::string facts(const Result& result) {
   fact("Target", result.target);
   fact("Actuator", result.actuator);
   fact("Waveform", result.waveform);
-  fact("Families, least cost", families_caption(result));
   fact("Optimizer", result.optimizer);
   fact("Evaluations", std::isfinite(result.evaluations) ? whole(result.evaluations) : "");
   fact("Ended by", result.termination);
@@ -307,31 +309,34 @@ std::string facts(const Result& result) {
     fact("Steps of the shown run", fmt::format("{}", result.work->steps));
     fact("Its computing time", measured(result.work->wall, "s", 3));
   }
-  return out.empty() ? out
-                     : "<section id=\"facts\"><h2>About this result</h2>\n<dl class=\"facts\">\n" + out + "</dl></section>\n";
+  if (!out.empty()) out = "<dl class=\"facts\">\n" + out + "</dl>\n";
+  return {.id = "facts", .heading = "About this result", .parts = {Drawing{out}}};
 }
 
 }  // namespace
 
-std::string html_report(const Result& result) {
+Document result_document(const Result& result) {
   const Headline line = headline(result);
-  const Picture drawn = picture(result);
-  std::string origin = result.is_search ? "optimize" : "simulate";
+  Document document{.title = result.title,
+                    .origin = result.is_search ? "optimize" : "simulate",
+                    .headline = line.main,
+                    .headline_rest = line.rest,
+                    .doubt = checks_agree(result) ? "" : checks_caption(result),
+                    .keys = key_numbers(result),
+                    .warnings = result.warnings,
+                    .drawn = picture(result),
+                    .made = result};
   for (const std::string& word : {result.target, result.actuator}) {
-    if (!word.empty()) origin += " · " + word;
+    if (!word.empty()) document.origin += " · " + word;
   }
-  return page({.title = result.title,
-               .origin = origin,
-               .headline = line.main,
-               .headline_rest = line.rest,
-               .doubt = checks_agree(result) ? "" : checks_caption(result),
-               .keys = result.devices ? devices_keys(*result.devices) : key_numbers(result),
-               .body = (result.devices ? devices_section(*result.devices) : std::string()) + drawn_switch(result) +
-                       charts(drawn) + figures_table(result) + checks_table(result) + seeds_section(result.seeds) +
-                       list_of(result.warnings, "Warnings", "warnings") + parameters_table(result) + facts(result) +
-                       reproduce(result) + scene(result),
-               .style = chart_style(),
-               .scripts = chart_scripts(drawn)});
+  if (result.devices) document.sections.push_back(devices_section(*result.devices));
+  for (ReportSection& section : std::array{drawn_switch(result), closing_section(document.drawn), figures_section(result),
+                                           checks_section(result), search_section(result, document.drawn)})
+    document.sections.push_back(std::move(section));
+  if (result.seeds) document.sections.push_back(seeds_section(*result.seeds));
+  document.sections.push_back(parameters_section(result));
+  document.sections.push_back(facts(result));
+  return document;
 }
 
 }  // namespace softland

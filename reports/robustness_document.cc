@@ -1,4 +1,4 @@
-// Diagrams and page of `softland robustness`.
+// Diagrams and document of `softland robustness`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -15,10 +16,10 @@
 #include "reports/escape.h"
 #include "reports/estimates.h"
 #include "reports/origin.h"
-#include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/robustness_report.h"
 #include "reports/robustness_words.h"
+#include "reports/text.h"
 #include "sampling/statistics.h"
 
 namespace softland {
@@ -34,13 +35,9 @@ using internal::percent;
 using internal::quantile_95;
 using internal::quantile_text;
 using internal::quantity;
-using internal::section;
 using internal::shown_values;
 using internal::some_collapse;
 using internal::spread_words;
-using internal::symbol_html;
-using internal::table_html;
-using internal::TableRow;
 using internal::worst_words;
 using internal::yield_text;
 
@@ -53,9 +50,9 @@ std::string lower_case(std::string_view name) {
   return words;
 }
 
-std::string label_html(const Figure& f) {
+std::string label_of(const Figure& f) {
   const bool has_index = f.symbol.find('_') != std::string_view::npos;
-  return std::string(f.name) + (has_index ? ", " + symbol_html(f.symbol) : "");
+  return fmt::format("{}{}{}", f.name, has_index ? ", " : "", has_index ? f.symbol : "");
 }
 
 // Softland's pen for the last drive, that of the baseline for the plain step, others between.
@@ -202,12 +199,47 @@ internal::Picture picture_of(const RobustnessReport& report) {
   return drawn;
 }
 
-std::string statistics_table(const Robustness& found) {
-  TableRow head{"Over the devices"};
-  for (const DriveRobustness& d : found.drives) head.emplace_back(escaped(d.name));
-  std::vector<TableRow> rows;
-  const auto add = [&](const std::string& name, const auto& cell) {
-    TableRow& row = rows.emplace_back(TableRow{name});
+// The end of a name tells more of it: of a folder its own name.
+std::string shown_name(const std::string& name, std::size_t columns) {
+  if (internal::display_width(name) <= columns) return name;
+  std::string end = name;
+  while (internal::display_width(end) >= columns) {
+    std::size_t first = 1;
+    while (first < end.size() && (static_cast<unsigned char>(end[first]) & 0xC0U) == 0x80U) ++first;  // UTF-8
+    end.erase(0, first);
+  }
+  return "…" + end;
+}
+
+TableCell drive_cell(const DriveRobustness& drive) {
+  constexpr std::size_t widest = 44;
+  TableCell cell(shown_name(drive.name, widest));
+  cell.html = escaped(drive.name);
+  return cell;
+}
+
+ReportSection about(const RobustnessReport& report) {
+  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, interrupted] = report;
+  const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().known.calibration();
+  return {.id = "charts",
+          .heading = "How the devices differ",
+          .parts = {Paragraph{fmt::format("{} devices of the spread ({} points): {}. {}{}{}", found.devices,
+                                          name_of(point_sets, options.points), spread_words(nominal.scene.spread),
+                                          calibration.is_empty()
+                                              ? "All have the volts that were designed for the nominal device."
+                                              : "The plain step has the volts of the nominal device; every other drive is in "
+                                                "the units of each device, known of it: " +
+                                                    calibration_words(calibration) + ".",
+                                          error_words(nominal.scene.spread), outside_words(found))},
+                    Paragraph{found.interrupted ? "Interrupted: these are not all devices." : ""}}};
+}
+
+ReportSection statistics_section(const RobustnessReport& report) {
+  const Robustness& found = report.found;
+  ReportTable table{.head = {"Over the devices"}, .rows = {}};
+  for (const DriveRobustness& d : found.drives) table.head.push_back(drive_cell(d));
+  const auto add = [&](TableCell name, const auto& cell) {
+    TableRow& row = table.rows.emplace_back(TableRow{std::move(name)});
     for (const DriveRobustness& d : found.drives) row.emplace_back(cell(d), &d == &found.drives.back() ? "own" : "");
   };
   add("Devices that close", [](const DriveRobustness& d) { return yield_text(d.closing); });
@@ -216,33 +248,36 @@ std::string statistics_table(const Robustness& found) {
   for (const Figure& f : device_figures) {
     if (!is_had(found, f)) continue;
     for (const std::size_t q : {std::size_t{1}, std::size_t{2}}) {
-      add(label_html(f) + (q == 1 ? ": median" : ": 95 % below"),
+      add(label_of(f) + (q == 1 ? ": median" : ": 95 % below"),
           [&](const DriveRobustness& d) { return quantile_text(d.figures[f].quantiles[q], f.unit); });
     }
   }
-  return table_html(head, rows) + fmt::format("<p class=\"below\">In brackets: 95 % confidence. {}</p>\n", worst_words);
+  return {.id = "figures",
+          .heading = "Figures",
+          .parts = {std::move(table),
+                    Paragraph{.text = fmt::format(
+                                  "In brackets: 95 % confidence. Seed {}, {} points, window {}, integrator tolerance {}. {}",
+                                  report.options.seed, name_of(point_sets, report.options.points),
+                                  quantity(found.duration, "s", 4), internal::scientific(found.tolerance), worst_words),
+                              .is_note = true},
+                    Paragraph{.text = internal::window_words(report.windows), .is_note = true}}};
 }
 
-std::string window_paragraph(const HoldWindows& windows) {
-  const std::string words = internal::window_words(windows);
-  return words.empty() ? words : "<p>" + escaped(words) + "</p>\n";
-}
-
-std::string knowledge_table(const Robustness& found) {
-  if (found.by_knowledge.empty()) return {};
-  std::vector<TableRow> rows;
+// What each measurement is worth: the last drive with more and more known of the devices.
+ReportSection knowledge_section(const Robustness& found) {
+  ReportSection section{.id = "knowledge", .heading = "What measuring a device is worth", .parts = {}};
+  if (found.by_knowledge.empty()) return section;
+  ReportTable table{.head = {"Known of every device", "Without a rebound", "v_max, 95 % below", "B_H, 95 % below"}, .rows = {}};
   const auto add = [&](const std::string& name, const DriveRobustness& d) {
-    rows.push_back({name, yield_text(d.bounce_free),
-                    quantile_text(quantile_95(d, key_of(&Metrics::largest_impact_velocity)), "m/s"),
-                    quantile_text(quantile_95(d, key_of(&Metrics::major_bounce_height)), "m")});
+    table.rows.push_back({name, yield_text(d.bounce_free),
+                          quantile_text(quantile_95(d, key_of(&Metrics::largest_impact_velocity)), "m/s"),
+                          quantile_text(quantile_95(d, key_of(&Metrics::major_bounce_height)), "m")});
   };
-  for (const DriveRobustness& d : found.by_knowledge) add(escaped(d.name), d);
+  for (const DriveRobustness& d : found.by_knowledge) add(d.name, d);
   const Calibration& c = found.drives.back().known.calibration();
   if (is_erring(c)) add(calibration_words(c), found.drives.back());
-  return section("knowledge", "What measuring a device is worth",
-                 table_html({"Known of every device", "Without a rebound", "Largest impact speed, 95 % below",
-                             "Highest rebound, 95 % below"},
-                            rows));
+  section.parts = {std::move(table)};
+  return section;
 }
 
 // "62 % (55 to 69)"
@@ -252,60 +287,63 @@ std::string index_text(const SobolIndex& index) {
   return fmt::format("{:.0f} % ({:.0f} to {:.0f})", share(index.value), share(index.interval.low), share(index.interval.high));
 }
 
-std::string sensitivity_table(const Sensitivity& sensitivity) {
-  if (sensitivity.figures.empty()) return {};
-  TableRow head{"Varies"};
+ReportSection sensitivity_section(const Sensitivity& sensitivity) {
+  ReportSection section{.id = "sensitivity", .heading = "Where the spread comes from", .parts = {}};
+  if (sensitivity.figures.empty()) return section;
+  ReportTable table{.head = {"Share of the variance"}, .rows = {}};
   for (const FigureSensitivity& f : sensitivity.figures) {
-    const std::string symbol = symbol_html(figure_of(f.key).symbol);
-    head.emplace_back(symbol + ", alone");
-    head.emplace_back(symbol + ", in all");
+    for (const char* how : {"{}, alone", "{}, in all"})
+      table.head.emplace_back(fmt::format(fmt::runtime(how), figure_of(f.key).symbol));
   }
-  std::vector<TableRow> rows;
   for (std::size_t i = 0; i < sensitivity.variables.size(); ++i) {
-    TableRow& row = rows.emplace_back(TableRow{escaped(sensitivity.variables[i])});
+    TableRow& row = table.rows.emplace_back(TableRow{sensitivity.variables[i]});
     for (const FigureSensitivity& f : sensitivity.figures) {
-      if (!f.estimate.indices) {
-        row.emplace_back(escaped(internal::why_no_indices(f.estimate)), "missing", 2);
-        continue;
-      }
-      row.emplace_back(index_text(f.estimate.indices->first_order[i]));
-      row.emplace_back(index_text(f.estimate.indices->total[i]));
+      const auto& indices = f.estimate.indices;
+      row.emplace_back(indices ? index_text(indices->first_order[i]) : "unknown");
+      row.emplace_back(indices ? index_text(indices->total[i]) : "unknown");
     }
   }
-  return section(
-      "sensitivity", "Where the spread comes from",
-      table_html(head, rows) +
-          fmt::format("<p class=\"below\">Sobol' indices under the last drive, {} rows: the share of a figure's variance "
-                      "that would be gone if the quantity were known (alone), and the share in which it has a part (in "
-                      "all). Where rebounds set in at once, variances say less than quantiles.</p>\n",
-                      sensitivity.figures.front().estimate.rows));
+  section.parts = {std::move(table),
+                   Paragraph{.text = fmt::format(
+                                 "Sobol' indices under the last drive, {} rows: the share of a figure's variance that would be "
+                                 "gone if the quantity were known (alone), and the share in which it has a part (in all). "
+                                 "Where rebounds set in at once, variances say less than quantiles.",
+                                 sensitivity.figures.front().estimate.rows),
+                             .is_note = true}};
+  for (const FigureSensitivity& f : sensitivity.figures) {
+    if (!f.estimate.indices)
+      section.parts.emplace_back(
+          Paragraph{fmt::format("{}: {}.", figure_of(f.key).symbol, internal::why_no_indices(f.estimate))});
+  }
+  return section;
 }
 
-std::string worst_table(const RobustnessReport& report) {
+ReportSection worst_section(const RobustnessReport& report) {
+  ReportSection section{.id = "worst", .heading = "The worst devices", .parts = {}, .is_page_only = true};
+  if (report.found.devices == 0) return section;
   const DriveRobustness& last = report.found.drives.back();
   const Ensemble ensemble(report.nominal, report.options.samples, report.options.seed, report.options.points);
   const std::vector<SpreadVariable>& variables = report.nominal.scene.spread.variables;
-  TableRow head{"Device"};
-  for (const SpreadVariable& v : variables) head.emplace_back(escaped(v.name));
-  head.insert(head.end(), {"Highest rebound", "Largest impact speed", "First contact"});
-  std::vector<TableRow> rows;
+  ReportTable table{.head = {"Device"}, .rows = {}};
+  for (const SpreadVariable& v : variables) table.head.emplace_back(v.name);
+  table.head.insert(table.head.end(), {"Highest rebound", "Largest impact speed", "First contact"});
   for (const std::size_t k : last.worst) {
-    TableRow& row = rows.emplace_back(TableRow{fmt::format("{}", k)});
+    TableRow& row = table.rows.emplace_back(TableRow{fmt::format("{}", k)});
     const std::vector<double> values = shown_values(ensemble, k);
     for (std::size_t i = 0; i < values.size(); ++i)
       row.emplace_back(variables[i].is_factor ? fmt::format("× {:.4f}", values[i])
                                               : quantity(values[i], variables[i].keys.front().unit, 5));
     const DeviceOutcome& o = last.outcomes[k];
     if (!o.closed()) {
-      row.emplace_back(escaped(o.failure.empty() ? std::string(to_string(o.metrics.status)) : o.failure), "missing", 3);
+      row.emplace_back(o.failure.empty() ? std::string(to_string(o.metrics.status)) : o.failure, "missing", 3);
       continue;
     }
     for (const std::string_view key : {drawn_figures[1], drawn_figures[0], drawn_figures[2]})
       row.emplace_back(quantity(o.of(figure_of(key)), figure_of(key).unit));
   }
-  return rows.empty() ? std::string()
-                      : section("worst", "The worst devices",
-                                table_html(head, rows) + fmt::format("<p class=\"below\">Under {}.</p>\n", escaped(last.name)));
+  if (!table.rows.empty())
+    section.parts = {std::move(table), Paragraph{.text = fmt::format("Under {}.", last.name), .is_note = true}};
+  return section;
 }
 
 std::pair<std::string, std::string> headline_of(const Robustness& found) {
@@ -321,56 +359,44 @@ std::pair<std::string, std::string> headline_of(const Robustness& found) {
                                   quantity(quantile_95(step, drawn_figures[1]).value, "m"))};
 }
 
-std::string keys_of(const Robustness& found) {
+std::vector<KeyNumber> keys_of(const Robustness& found) {
   const DriveRobustness &step = found.drives.front(), &own = found.drives.back();
   const auto before = [&](const std::string& value) { return found.drives.size() > 1 ? "plain step " + value : std::string(); };
-  std::string keys =
-      internal::key_html("Without a rebound", percent(own.bounce_free.value), before(percent(step.bounce_free.value)));
+  std::vector<KeyNumber> keys{
+      {.name = "Without a rebound", .value = percent(own.bounce_free.value), .change = before(percent(step.bounce_free.value))}};
   for (const std::string_view key : drawn_figures) {
     const Figure& f = figure_of(key);
     const auto value = [&](const DriveRobustness& d) {
       const double q = quantile_95(d, key).value;
       return std::isfinite(q) ? quantity(q, f.unit) : std::string("∞");
     };
-    keys += internal::key_html(label_html(f) + ", 95\u00a0%", value(own), before(value(step)));
+    keys.push_back({.name = label_of(f) + ", 95\u00a0%", .value = value(own), .change = before(value(step))});
   }
   return keys;
 }
 
 }  // namespace
 
-std::string robustness_html(const RobustnessReport& report) {
+Document robustness_document(const RobustnessReport& report) {
   const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, interrupted] = report;
-  const internal::Picture drawn = picture_of(report);
-  std::string charts;
-  for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);
-  Result result = internal::origin(nominal, command);
-  result.seed = options.seed;
-  result.tolerance = found.tolerance;
-  const auto [main, rest] = headline_of(found);
-  const Calibration& calibration = found.drives.back().known.calibration();
-  std::string about = fmt::format(
-      "<p>{} devices of the spread ({} points): {}. {}{}{}</p>\n", found.devices, name_of(point_sets, options.points),
-      escaped(spread_words(nominal.scene.spread)),
-      calibration.is_empty() ? "All have the volts that were designed for the nominal device."
-                             : "The plain step has the volts of the nominal device; every other drive is in the units of each "
-                               "device, known of it: " +
-                                   calibration_words(calibration) + ".",
-      error_words(nominal.scene.spread), escaped(outside_words(found)));
-  if (found.interrupted) about += "<p>Interrupted: these are not all devices.</p>\n";
-  return internal::page({.title = nominal.scene.title,
-                         .origin = "robustness",
-                         .headline = main,
-                         .headline_rest = rest,
-                         .keys = keys_of(found),
-                         .body = section("charts", "How the devices differ", about + charts) + knowledge_table(found) +
-                                 section("figures", "Figures", statistics_table(found) + window_paragraph(windows)) +
-                                 internal::device_scatter_html(report) + sensitivity_table(sensitivity) +
-                                 internal::derivatives_html(derivatives, found.drives.back()) +
-                                 (ways ? internal::other_ways_html(*ways, found.drives.back(), nominal) : "") +
-                                 worst_table(report) + internal::reproduce(result) + internal::scene(result),
-                         .style = internal::chart_style(),
-                         .scripts = internal::chart_scripts(drawn)});
+  Document document{.title = nominal.scene.title,
+                    .origin = "robustness",
+                    .sections = {about(report)},
+                    .warnings = nominal.scene.warnings,
+                    .made = internal::origin(nominal, command)};
+  document.made.seed = options.seed;
+  document.made.tolerance = found.tolerance;
+  if (found.devices == 0) return document;
+  std::tie(document.headline, document.headline_rest) = headline_of(found);
+  document.keys = keys_of(found);
+  document.drawn = picture_of(report);
+  document.sections.front().parts.emplace_back(internal::charts_of(document.drawn));
+  for (ReportSection& section : std::array{
+           knowledge_section(found), statistics_section(report), internal::device_scatter(report),
+           sensitivity_section(sensitivity), internal::derivatives_section(derivatives, found.drives.back()),
+           ways ? internal::other_ways_section(*ways, found.drives.back(), nominal) : ReportSection(), worst_section(report)})
+    document.sections.push_back(std::move(section));
+  return document;
 }
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// Diagrams and page of `softland accuracy`.
+// Diagrams and document of `softland accuracy`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,16 +6,15 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "reports/accuracy_report.h"
 #include "reports/accuracy_words.h"
 #include "reports/chart.h"
-#include "reports/escape.h"
 #include "reports/findings.h"
 #include "reports/origin.h"
-#include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/svg.h"
 
@@ -35,12 +34,8 @@ using internal::recommendations;
 using internal::recommended;
 using internal::restart_text;
 using internal::Role;
-using internal::section;
 using internal::setting_text;
-using internal::symbol_html;
 using internal::symbols;
-using internal::table_html;
-using internal::TableRow;
 
 Chart logarithmic_chart(std::string id, std::string title, std::string x_label, std::string x_unit, int height) {
   Chart chart;
@@ -138,24 +133,28 @@ Picture picture(const AccuracyStudy& study) {
 }
 
 // Errors and costs of settings; `first` says what a row is.
-std::string errors_table(const std::vector<std::string>& first, const std::vector<const AccuracyRow*>& rows,
-                         const std::function<std::vector<std::string>(const AccuracyRow&)>& setting) {
-  TableRow head(first.begin(), first.end());
-  for (const Figure& f : studied_figures) head.emplace_back(symbol_html(f.symbol));
-  head.insert(head.end(), {"right-hand sides", "time"});
-  std::vector<TableRow> body;
+ReportTable errors_table(const TableRow& first, const std::vector<const AccuracyRow*>& rows,
+                         const std::function<TableRow(const AccuracyRow&)>& setting) {
+  ReportTable table{.head = first, .rows = {}};
+  for (const Figure& f : studied_figures) table.head.emplace_back(f.symbol);
+  table.head.insert(table.head.end(), {"right-hand sides", "time"});
   for (const AccuracyRow* row : rows) {
-    const std::vector<std::string> words = setting(*row);
-    TableRow& cells = body.emplace_back(words.begin(), words.end());
+    TableRow& cells = table.rows.emplace_back(setting(*row));
     if (!row->missing.empty()) {
-      cells.emplace_back(internal::escaped(row->missing), "missing", studied_figures.size() + 2);
+      cells.emplace_back(row->missing, "missing", studied_figures.size() + 2);
       continue;
     }
     for (const double error : row->errors) cells.emplace_back(error_cell(error));
     cells.emplace_back(fmt::format("{}", row->work.rhs_evaluations));
     cells.emplace_back(internal::quantity(row->seconds, "s"));
   }
-  return table_html(head, body);
+  return table;
+}
+
+ReportTable by_integrator(const std::vector<const AccuracyRow*>& rows) {
+  return errors_table({"Integrator", "Tolerance"}, rows, [](const AccuracyRow& row) {
+    return TableRow{std::string(to_string(row.integrator)), internal::scientific(row.tolerance)};
+  });
 }
 
 std::vector<const AccuracyRow*> all_of(const std::vector<AccuracyRow>& rows) {
@@ -164,68 +163,115 @@ std::vector<const AccuracyRow*> all_of(const std::vector<AccuracyRow>& rows) {
   return all;
 }
 
-std::string recommendations_html(const AccuracyStudy& study) {
-  if (symbols(study, true).empty()) return "<p>" + recommendations(study).front() + "</p>\n";
-  const bool has_points = own_points(study).has_value();
-  std::vector<TableRow> rows;
-  for (const Recommendation& r : study.recommendations) {
-    const std::string accuracy = internal::scientific(r.accuracy);
-    TableRow cells{accuracy, "nothing that was tried", "", ""};
-    if (r.row) {
-      const AccuracyRow& row = study.rows[*r.row];
-      cells = {accuracy, std::string(to_string(row.integrator)), internal::scientific(row.tolerance),
-               internal::quantity(row.seconds, "s", 2)};
-    }
-    if (has_points) cells.insert(cells.end() - 1, r.row ? fmt::format("{:g}", *study.rows[*r.row].points_per_length) : "");
-    rows.push_back(std::move(cells));
+ReportSection recommendations_section(const AccuracyStudy& study) {
+  ReportSection section{.id = "recommendations", .heading = "Quickest settings", .parts = {}};
+  if (symbols(study, true).empty()) {
+    section.parts.emplace_back(Paragraph{recommendations(study).front()});
+    return section;
   }
-  TableRow head{"Accuracy wanted", "Integrator", "Tolerance", "Time of a closing"};
-  if (has_points) head.insert(head.end() - 1, "Points per length");
+  const bool has_points = own_points(study).has_value();
+  ReportTable table{.head = {"Accuracy wanted", "Integrator", "Tolerance", "Time of a closing"}, .rows = {}};
+  if (has_points) table.head.insert(table.head.end() - 1, "Points per length");
+  for (const Recommendation& r : study.recommendations) {
+    TableRow& cells = table.rows.emplace_back(TableRow{internal::scientific(r.accuracy)});
+    if (!r.row) {
+      cells.emplace_back("nothing that was tried");
+      continue;
+    }
+    const AccuracyRow& row = study.rows[*r.row];
+    cells.emplace_back(to_string(row.integrator));
+    cells.emplace_back(internal::scientific(row.tolerance));
+    if (has_points) cells.emplace_back(fmt::format("{:g}", *row.points_per_length));
+    cells.emplace_back(internal::quantity(row.seconds, "s", 2));
+  }
   const std::string ill = symbols(study, false);
-  return table_html(head, rows) +
-         fmt::format(
-             "<p class=\"below\">The quickest setting with which {} are that accurate, there and at every tighter tolerance "
-             "tried.{}</p>\n",
-             symbols(study, true), ill.empty() ? "" : " Left out, because ill-conditioned here: " + ill + ".");
+  section.parts = {
+      std::move(table),
+      Paragraph{
+          .text = fmt::format("The quickest setting with which {} are that accurate, there and at every tighter tolerance "
+                              "tried.{}",
+                              symbols(study, true), ill.empty() ? "" : " Left out, because ill-conditioned here: " + ill + "."),
+          .is_note = true}};
+  return section;
 }
 
-std::string clouds_html(const AccuracyStudy& study) {
-  std::vector<TableRow> rows;
+ReportSection settings_section(const AccuracyStudy& study) {
+  std::vector<const AccuracyRow*> own;
+  for (const AccuracyRow& row : study.rows) {
+    if (row.points_per_length == own_points(study)) own.push_back(&row);
+  }
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < studied_figures.size(); ++i) {
+    const double value = studied_figures[i].value(study.reference.figures);
+    if (std::isfinite(value))
+      values.push_back(fmt::format("{} {} ({})", studied_figures[i].symbol, four_digits(value, studied_figures[i].unit),
+                                   error_cell(study.resolution[i])));
+  }
+  const std::vector<const AccuracyRow*> quadrature = quadrature_rows(study);
+  const std::string points = points_text(study.rows.front()),
+                    tightest = fmt::format("{} at a tolerance of {}", to_string(study.reference.integrator),
+                                           internal::scientific(quadrature.front()->tolerance));
+  ReportSection section{
+      .id = "settings",
+      .heading = "Every setting that was tried",
+      .parts = {Paragraph{fmt::format("Relative errors of the delivered figures against a reference: {}, {}: {}. In brackets "
+                                      "what a second reference differs by. Times are medians of processor time.",
+                                      setting_text(study.reference), modes_text(study.reference), fmt::join(values, ", "))},
+                Paragraph{study.message.empty() ? "" : "The reference: " + study.message + "."},
+                SubHeading{"Integrator and tolerance" + (points.empty() ? "" : ", with " + points)}, by_integrator(own),
+                SubHeading{"The same without a restart at make and break of contact"}, Paragraph{restart_text(study)}}};
+  if (!study.through.empty()) section.parts.emplace_back(by_integrator(all_of(study.through)));
+  section.parts.emplace_back(SubHeading{"Quadrature, with " + tightest});
+  if (points.empty()) {
+    section.parts.emplace_back(Paragraph{internal::no_quadrature});
+  } else {
+    section.parts.emplace_back(errors_table({"Points per length"}, quadrature, [](const AccuracyRow& row) {
+      return TableRow{fmt::format("{:g}", *row.points_per_length)};
+    }));
+  }
+  if (study.modes.empty()) return section;
+  section.parts.emplace_back(SubHeading{fmt::format("Another number of modes, with {}: another model, not an error", tightest)});
+  section.parts.emplace_back(errors_table({"Modes"}, all_of(study.modes),
+                                          [](const AccuracyRow& row) { return TableRow{fmt::format("{}", row.modes)}; }));
+  return section;
+}
+
+ReportSection cloud_section(const AccuracyStudy& study) {
+  ReportTable table{.head = {"Figure", "lowest", "median", "highest", "runs", ""}, .rows = {}};
   const auto add = [&](const Figure& f, const Spread& s, bool ill) {
     const auto value = [&](double v) { return s.runs > 0 ? four_digits(v, f.unit) : std::string("—"); };
-    rows.push_back({symbol_html(f.symbol), value(s.low), value(s.median), value(s.high), fmt::format("{}", s.runs),
-                    fmt::format("<span class=\"note\">{}</span>", ill ? "ill-conditioned" : "")});
+    table.rows.push_back({f.symbol,
+                          value(s.low),
+                          value(s.median),
+                          value(s.high),
+                          fmt::format("{}", s.runs),
+                          {ill ? "ill-conditioned" : "", "note"}});
   };
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
     if (study.cloud[i].runs > 0) add(studied_figures[i], study.cloud[i], !study.conditioned[i]);
   }
   add(figure_of(&Metrics::permanent_contact_time), study.permanent_contact_time, ill_conditioned(study.permanent_contact_time));
   add(figure_of(&Metrics::bounce_count), study.bounce_count, ill_conditioned(study.bounce_count));
-  return table_html({"Figure", "lowest", "median", "highest", "runs", ""}, rows) +
-         "<p class=\"below\">Runs whose drives differ by one part in 1e9 to 1e7, which nobody could notice. Permanent contact "
-         "time and "
-         "bounce count are properties of such a cloud, not of one run.</p>\n";
+  return {.id = "cloud",
+          .heading = "What no setting can tell",
+          .parts = {std::move(table),
+                    Paragraph{.text = "Runs whose drives differ by one part in 1e9 to 1e7, which nobody could notice. Permanent "
+                                      "contact time and bounce count are properties of such a cloud, not of one run.",
+                              .is_note = true}}};
 }
 
-std::string charts_html(const Picture& drawn) {
-  std::string out;
-  for (const Chart& chart : drawn.charts) out += internal::figure_html(drawn.tables, chart);
-  return out;
-}
-
-std::string reference_keys(const AccuracyStudy& study) {
-  std::string out;
+std::vector<KeyNumber> reference_keys(const AccuracyStudy& study) {
+  std::vector<KeyNumber> keys;
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
     const Figure& f = studied_figures[i];
     const double value = f.value(study.reference.figures);
-    const bool has_index = f.symbol.find('_') != std::string_view::npos;
-    out += internal::key_html(std::string(f.name) + (has_index ? ", " + symbol_html(f.symbol) : ""),
-                              internal::quantity(value, f.unit, 4),
-                              !std::isfinite(value)   ? ""
+    keys.push_back({.name = f.label(),
+                    .value = internal::quantity(value, f.unit, 4),
+                    .change = !std::isfinite(value)   ? ""
                               : !study.conditioned[i] ? "ill-conditioned"
-                                                      : "known to " + error_cell(study.resolution[i]));
+                                                      : "known to " + error_cell(study.resolution[i])});
   }
-  return out;
+  return keys;
 }
 
 // What the accuracy takes that is nearest to the one the scene asks for.
@@ -246,54 +292,23 @@ std::pair<std::string, std::string> headline(const PreparedScene& prepared, cons
 
 }  // namespace
 
-std::string accuracy_html(const PreparedScene& prepared, const AccuracyStudy& study, const Provenance& provenance) {
-  const auto integrator = [](const AccuracyRow& row) {
-    return std::vector<std::string>{std::string(to_string(row.integrator)), internal::scientific(row.tolerance)};
-  };
-  std::vector<const AccuracyRow*> own;
-  for (const AccuracyRow& row : study.rows) {
-    if (row.points_per_length == own_points(study)) own.push_back(&row);
+Document accuracy_document(const PreparedScene& prepared, const AccuracyStudy& study, const Provenance& provenance) {
+  Document document{.title = prepared.scene.title, .origin = "accuracy", .made = internal::origin(prepared, provenance.command)};
+  if (study.rows.empty()) {
+    document.headline = study.status == Status::no_contact
+                            ? "The switch does not touch within its window: there are no figures to be accurate in."
+                            : fmt::format("There is no reference to compare with: {}",
+                                          study.message.empty() ? std::string(to_string(study.status)) : study.message);
+    return document;
   }
-  std::string settings = fmt::format(
-      "<p>Relative errors of the delivered figures against the reference: {}, {}. {}Times are medians of processor time.</p>\n",
-      setting_text(study.reference), modes_text(study.reference),
-      study.message.empty() ? "" : "The reference: " + internal::escaped(study.message) + ". ");
-  const std::string points = points_text(study.rows.front());
-  settings += fmt::format("<h3>Integrator and tolerance{}{}</h3>\n", points.empty() ? "" : ", with ", points) +
-              errors_table({"Integrator", "Tolerance"}, own, integrator);
-  settings += "<h3>The same without a restart at make and break of contact</h3>\n";
-  settings += study.through.empty()
-                  ? "<p>" + restart_text(study) + "</p>\n"
-                  : "<details><summary>" + restart_text(study) + "</summary>\n" +
-                        errors_table({"Integrator", "Tolerance"}, all_of(study.through), integrator) + "</details>\n";
-  const std::vector<const AccuracyRow*> quadrature = quadrature_rows(study);
-  const std::string tightest = fmt::format("{} at a tolerance of {}", to_string(study.reference.integrator),
-                                           internal::scientific(quadrature.front()->tolerance));
-  settings += fmt::format("<h3>Quadrature, with {}</h3>\n", tightest);
-  settings += points.empty() ? fmt::format("<p>{}</p>\n", internal::no_quadrature)
-                             : errors_table({"Points per length"}, quadrature, [](const AccuracyRow& row) {
-                                 return std::vector{fmt::format("{:g}", *row.points_per_length)};
-                               });
-  if (!study.modes.empty()) {
-    settings += fmt::format("<h3>Another number of modes, with {}: another model, not an error</h3>\n", tightest) +
-                errors_table({"Modes"}, all_of(study.modes),
-                             [](const AccuracyRow& row) { return std::vector{fmt::format("{}", row.modes)}; });
-  }
-  const Picture drawn = picture(study);
-  const auto [main, rest] = headline(prepared, study);
-  const Result result = internal::origin(prepared, provenance.command);
-  return internal::page({.title = prepared.scene.title,
-                         .origin = "accuracy",
-                         .headline = main,
-                         .headline_rest = rest,
-                         .keys = reference_keys(study),
-                         .body = section("recommendations", "Quickest settings", recommendations_html(study)) +
-                                 section("charts", "What accuracy costs", charts_html(drawn)) +
-                                 section("settings", "Every setting that was tried", settings) +
-                                 section("cloud", "What no setting can tell", clouds_html(study)) + internal::reproduce(result) +
-                                 internal::scene(result),
-                         .style = internal::chart_style(),
-                         .scripts = internal::chart_scripts(drawn)});
+  std::tie(document.headline, document.headline_rest) = headline(prepared, study);
+  document.keys = reference_keys(study);
+  document.drawn = picture(study);
+  document.sections = {recommendations_section(study),
+                       {.id = "charts", .heading = "What accuracy costs", .parts = {internal::charts_of(document.drawn)}},
+                       settings_section(study),
+                       cloud_section(study)};
+  return document;
 }
 
 std::string accuracy_svg(const std::string& title, const AccuracyStudy& study) {

@@ -1,0 +1,101 @@
+// What a study says, once: a terminal and a page show the same sentences and tables.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "reports/chart.h"
+#include "reports/result.h"
+
+namespace softland {
+
+/// A cell of a table, or a heading. Symbols of figures get their indices on a page: "t_i".
+struct TableCell {
+  std::string text;
+  std::string style = {};                                   ///< name of a class of the page; may be empty
+  std::size_t columns = 1;                                  ///< that it takes
+  std::string html = {};                                    ///< on a page in the place of the text
+  TableCell(std::string words) : text(std::move(words)) {}  // NOLINT(google-explicit-constructor): a cell is its text
+  TableCell(const char* words) : text(words) {}             // NOLINT(google-explicit-constructor)
+  TableCell(std::string_view words) : text(words) {}        // NOLINT(google-explicit-constructor)
+  TableCell(std::string words, std::string name, std::size_t wide = 1)
+      : text(std::move(words)), style(std::move(name)), columns(wide) {}
+};
+/// What a page alone shows; `html` is not escaped.
+[[nodiscard]] TableCell drawn_cell(std::string html, std::string style);
+
+/// The first cell of a row is its heading.
+using TableRow = std::vector<TableCell>;
+struct ReportTable {
+  TableRow head;
+  std::vector<TableRow> rows;
+};
+
+struct Paragraph {
+  std::string text;
+  bool is_note = false;  ///< below a table
+};
+/// Of a part of a section.
+struct SubHeading {
+  std::string text;
+};
+/// Lines that are not broken, as commands are.
+struct ReportList {
+  std::vector<std::string> lines;
+};
+/// What a page alone shows: pictures.
+struct Drawing {
+  std::string html;
+};
+
+/// A part of a page under a heading, which a terminal does without.
+struct ReportSection {
+  std::string id, heading;
+  std::vector<std::variant<Paragraph, SubHeading, ReportTable, ReportList, Drawing>> parts;
+  bool is_page_only = false;
+};
+
+/// A number that stands above everything else of a page, with its name.
+struct KeyNumber {
+  std::string name, value;
+  std::string change = {};  ///< in words; may be empty
+  std::string before = {};  ///< of the plain step; may be empty
+  std::string style = {};   ///< of the change, a class of the page
+  bool is_words = false;    ///< a value without a number
+};
+
+struct Document {
+  std::string title;  ///< of the scene; may be empty
+  std::string origin;
+  std::string headline, headline_rest;
+  std::string doubt;
+  std::vector<KeyNumber> keys;
+  std::vector<ReportSection> sections;
+  std::vector<std::string> warnings;
+  internal::Picture drawn;  ///< by the page's script
+  Result made;              ///< how to make it again
+};
+
+/// Headline, sentences and tables for a terminal, at most `screen` columns wide where words permit it.
+[[nodiscard]] std::string terminal_text(const Document& document, std::size_t screen = 130);
+/// A self-contained HTML page (< 1 MB): it makes no request, styles, script and data are inside. Without JavaScript and in print
+/// the charts are static SVG. All text is escaped.
+[[nodiscard]] std::string page_html(const Document& document);
+
+namespace internal {
+
+/// Columns that do not fit on the screen stand below the others, but for a last one of words. Lines have no blanks at their end.
+[[nodiscard]] std::string table_text(const ReportTable& table, std::size_t screen = 130);
+[[nodiscard]] std::string table_html(const ReportTable& table);
+[[nodiscard]] std::string key_html(const KeyNumber& key);
+/// Every chart with its title and caption.
+[[nodiscard]] Drawing charts_of(const Picture& drawn);
+/// Escaped, with the indices of figures' symbols below: "t_i".
+[[nodiscard]] std::string words_html(std::string_view words);
+
+}  // namespace internal
+}  // namespace softland
