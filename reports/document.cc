@@ -230,8 +230,8 @@ std::string page_html(const Document& document) {
                .doubt = document.doubt,
                .keys = keys,
                .body = body + reproduce(document.made) + scene(document.made),
-               .style = chart_style(),
-               .scripts = chart_scripts(document.drawn)});
+               .style = document.style.empty() ? chart_style() : document.style,
+               .scripts = document.scripts.empty() ? chart_scripts(document.drawn) : document.scripts});
 }
 
 }  // namespace softland

@@ -78,6 +78,8 @@ struct Document {
   std::vector<std::string> warnings;
   internal::Picture drawn;  ///< by the page's script
   Result made;              ///< how to make it again
+  /// CSS and HTML of pictures that are not `drawn`.
+  std::string style = {}, scripts = {};
 };
 
 /// Headline, sentences and tables for a terminal, at most `screen` columns wide where words permit it.

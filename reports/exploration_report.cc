@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "base/printable.h"
 #include "base/require.h"
@@ -20,17 +21,14 @@
 #include "reports/page_files.h"
 #include "reports/quantity.h"
 #include "reports/svg.h"
-#include "reports/text.h"
 #include "version.h"
 
 namespace softland {
 namespace {
 
 using internal::columns_of;
-using internal::escaped;
 using internal::explored_text;
 using internal::json_number;
-using internal::section;
 using nlohmann::json;
 
 constexpr std::size_t most_front_rows = 40;  // in words
@@ -93,7 +91,7 @@ std::pair<std::string, std::string> headline_of(const ExplorationReport& report)
                           : "")};
 }
 
-std::string range_key(const ExplorationReport& report) {
+void add_range_key(std::vector<KeyNumber>& keys, const ExplorationReport& report) {
   const std::size_t c = internal::leading_figure(report);
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const ExploredPoint& point : report.points) {
@@ -101,43 +99,33 @@ std::string range_key(const ExplorationReport& report) {
     low = std::min(low, point.values[c]);
     high = std::max(high, point.values[c]);
   }
-  if (!(low <= high)) return {};
-  return internal::key_html({.name = report.columns[c].name + ", least",
-                             .value = explored_text(report.columns[c], low, 3),
-                             .change = "up to " + explored_text(report.columns[c], high, 3)});
+  if (!(low <= high)) return;
+  keys.push_back({.name = report.columns[c].name + ", least",
+                  .value = explored_text(report.columns[c], low, 3),
+                  .change = "up to " + explored_text(report.columns[c], high, 3)});
 }
 
-std::string keys_of(const ExplorationReport& report, const ExploredFront& front) {
+std::vector<KeyNumber> keys_of(const ExplorationReport& report, const ExploredFront& front) {
   const auto finished =
       std::count_if(report.points.begin(), report.points.end(), [](const auto& p) { return has_figures(p.status); });
-  std::string keys = internal::key_html({.name = "Points",
-                                         .value = fmt::format("{}", report.points.size()),
-                                         .change = report.planned > 0 ? fmt::format("of {} in the plan", report.planned) : ""});
-  keys += internal::key_html(
+  std::vector<KeyNumber> keys{
+      {.name = "Points",
+       .value = fmt::format("{}", report.points.size()),
+       .change = report.planned > 0 ? fmt::format("of {} in the plan", report.planned) : ""},
       {.name = "With figures",
        .value = fmt::format("{}", finished),
-       .change = fmt::format("{} ended otherwise", static_cast<std::int64_t>(report.points.size()) - finished)});
-  keys += range_key(report);
+       .change = fmt::format("{} ended otherwise", static_cast<std::int64_t>(report.points.size()) - finished)}};
+  add_range_key(keys, report);
   if (!front.members.empty())
-    keys += internal::key_html(
+    keys.push_back(
         {.name = "On the front",
          .value = fmt::format("{}", front.members.size()),
          .change = std::isfinite(front.share) ? fmt::format("hypervolume {} of its box", internal::percent(front.share)) : ""});
   return keys;
 }
 
-std::string values_text(const ExplorationReport& report, std::size_t point, const std::vector<std::size_t>& columns) {
-  std::vector<std::string> parts;
-  for (const std::size_t c : columns)
-    parts.push_back(
-        fmt::format("{} {}", report.columns[c].name, explored_text(report.columns[c], report.points[point].values[c])));
-  return fmt::format("{}", fmt::join(parts, ", "));
-}
-
-/// A part of the page that the script fills.
-std::string drawn_section(std::string_view id, std::string_view heading, std::string_view words, const std::string& still = {}) {
-  return section(id, heading, fmt::format("<p>{}</p>\n<div class=\"part\"></div>\n{}", words, still));
-}
+/// What the script fills.
+Drawing drawn(const std::string& still = {}) { return {"<div class=\"part\"></div>\n" + still}; }
 
 /// A map without a script, of as many cells as a print shows.
 std::string still_map(const ExplorationReport& report, const internal::ExploredGrid& grid) {
@@ -147,12 +135,12 @@ std::string still_map(const ExplorationReport& report, const internal::ExploredG
   if (map.values.size() > most_cells) return {};
   constexpr double width = 960;
   return fmt::format("<svg class=\"still\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", width,
-                     internal::heat_map_height(width), escaped(map.label), internal::heat_map_elements(map, width));
+                     internal::heat_map_height(width), internal::escaped(map.label), internal::heat_map_elements(map, width));
 }
 
-std::string outcome_section(const ExplorationReport& report) {
-  ReportTable table{.head = {"Ended", "Points", "Reasons"}, .rows = {}};
+ReportSection outcome_section(const ExplorationReport& report) {
   constexpr std::size_t most_reasons = 5;
+  ReportTable table{.head = {"Ended", "Points", {"Reasons", "words"}}, .rows = {}};
   for (const auto& [status, outcome] : outcomes_of(report)) {
     std::vector<std::pair<std::string, std::int64_t>> ranked(outcome.reasons.begin(), outcome.reasons.end());
     std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
@@ -163,7 +151,7 @@ std::string outcome_section(const ExplorationReport& report) {
     if (ranked.size() > most_reasons) reasons += fmt::format("; {} more", ranked.size() - most_reasons);
     table.rows.push_back({with_blanks(status), fmt::format("{}", outcome.points), {reasons, "missing"}});
   }
-  return section("outcomes", "How the points ended", internal::table_html(table));
+  return {.id = "outcomes", .heading = "How the points ended", .parts = {std::move(table)}};
 }
 
 std::string front_words(const ExplorationReport& report, const ExploredFront& front) {
@@ -182,12 +170,47 @@ std::string front_words(const ExplorationReport& report, const ExploredFront& fr
   return words + ".";
 }
 
-std::string front_section(const ExplorationReport& report, const ExploredFront& front) {
-  if (report.aims.empty()) return {};
-  if (front.members.empty()) return section("front", "The front", "<p>No point settles and has all of the figures.</p>\n");
-  return drawn_section("front", "The front",
-                       escaped(front_words(report, front)) +
-                           " Move over the picture, or focus it and press ← →, to see a point; grey dots are the other points.");
+// A page may break a key behind its dots.
+TableCell column_head(const std::string& name) {
+  TableCell cell(name);
+  for (const std::string_view part : split(name, '.'))
+    cell.html += (cell.html.empty() ? "" : ".<wbr>") + internal::words_html(part);
+  return cell;
+}
+
+// As many as fit on a screen, evenly along the front, with its knee and its ends.
+ReportTable front_table(const ExplorationReport& report, const ExploredFront& front, std::size_t stride) {
+  std::vector<std::size_t> columns;
+  for (const ExploredAim& aim : report.aims) columns.push_back(aim.column);
+  for (const std::size_t c : columns_of(report, true)) columns.push_back(c);
+  ReportTable table{.head = {"Point"}, .rows = {}};
+  for (const std::size_t c : columns) table.head.push_back(column_head(report.columns[c].name));
+  for (std::size_t k = 0; k < front.members.size(); ++k) {
+    const bool is_knee = front.members[k] == front.knee;
+    if (k % stride != 0 && !is_knee && k + 1 < front.members.size()) continue;
+    const ExploredPoint& point = report.points[front.members[k]];
+    TableRow& row = table.rows.emplace_back(TableRow{fmt::format("{}{}", point.number, is_knee ? " *" : "")});
+    for (const std::size_t c : columns) row.emplace_back(explored_text(report.columns[c], point.values[c]), is_knee ? "own" : "");
+  }
+  return table;
+}
+
+ReportSection front_section(const ExplorationReport& report, const ExploredFront& front) {
+  ReportSection section{.id = "front", .heading = "The front", .parts = {}};
+  if (report.aims.empty()) return section;
+  if (front.members.empty()) {
+    section.parts = {Paragraph{"No point settles and has all of the figures of the front."}};
+    return section;
+  }
+  const std::size_t stride = (front.members.size() + most_front_rows - 1) / most_front_rows;
+  section.parts = {
+      Paragraph{"Front: " + front_words(report, front)},
+      Drawing{"<p>Move over the picture, or focus it and press ← →, to see a point; grey dots are the other points.</p>\n"},
+      drawn(),
+      front_table(report, front, stride),
+      Paragraph{.text = front.knee ? "* the knee, where the front bends most" : "", .is_note = true},
+      Paragraph{.text = stride > 1 ? fmt::format("One in {} of the front is shown.", stride) : "", .is_note = true}};
+  return section;
 }
 
 std::string script_of(const internal::ExplorationData& data) {
@@ -243,73 +266,47 @@ ExploredFront explored_front(const ExplorationReport& report) {
   return front;
 }
 
-std::string exploration_html(const ExplorationReport& report) {
+Document exploration_document(const ExplorationReport& report) {
   const ExploredFront front = explored_front(report);
   const std::optional<internal::ExploredGrid> grid = internal::grid_of(report);
   const internal::ExplorationData data = internal::exploration_data(report, grid, front);
-  const std::string thinning = data.thinning.empty() ? "" : " " + escaped(data.thinning);
-  std::string body;
+  const std::string thinning = data.thinning.empty() ? "" : " " + data.thinning;
+  Document document{.title = report.title,
+                    .origin = "exploration: " + report.study,
+                    .keys = keys_of(report, front),
+                    .made = {.command = report.command, .version = std::string(version)},
+                    .style = std::string(internal::page_file("page/exploration.css")),
+                    .scripts = script_of(data)};
+  std::tie(document.headline, document.headline_rest) = headline_of(report);
+  const auto add = [&](const char* id, const char* heading, const std::string& words, const std::string& still = {}) {
+    document.sections.push_back({.id = id, .heading = heading, .parts = {Paragraph{words}, drawn(still)}, .is_page_only = true});
+  };
   if (grid)
-    body += drawn_section(
-        "map", "Map",
-        "Hatched: the figure does not exist there, for the reason in the legend. Move over the map, or focus it and "
-        "press ← → ↑ ↓, to read a point." +
+    add("map", "Map",
+        "Hatched: the figure does not exist there, for the reason in the legend. Move over the map, or focus it and press ← → ↑ "
+        "↓, to read a point." +
             thinning,
         still_map(report, *grid));
-  body += front_section(report, front);
-  body +=
-      drawn_section("parallel", "All columns at once",
-                    "Every line is a point. Drag along an axis to keep what is within, click it to let go; with the keys: ← → "
-                    "choose an axis, ↑ ↓ move its limits, + − widen and narrow them, Delete takes them away. The limits hold "
-                    "for every picture of this page." +
-                        (grid ? std::string() : thinning));
-  body += drawn_section("matrix", "Every pair", "Columns and colour are those chosen above.");
-  body +=
-      drawn_section("effects", "What each variable does",
-                    "Median of the figure over all points at a value of the variable, whatever the others are; the bands hold 50 "
-                    "and 90&nbsp;% of the points.");
-  body += outcome_section(report);
-  Result result{.command = report.command, .version = std::string(version)};
-  body += internal::reproduce(result);
-  if (!report.made_with.empty()) body += fmt::format("<p class=\"below\">Computed by {}.</p>\n", escaped(report.made_with));
+  document.sections.push_back(front_section(report, front));
+  add("parallel", "All columns at once",
+      "Every line is a point. Drag along an axis to keep what is within, click it to let go; with the keys: ← → choose an axis, "
+      "↑ "
+      "↓ move its limits, + − widen and narrow them, Delete takes them away. The limits hold for every picture of this page." +
+          (grid ? std::string() : thinning));
+  add("matrix", "Every pair", "Columns and colour are those chosen above.");
+  add("effects", "What each variable does",
+      "Median of the figure over all points at a value of the variable, whatever the others are; the bands hold 50 and 90\u00a0% "
+      "of "
+      "the points.");
+  document.sections.push_back(outcome_section(report));
+  ReportSection plan{.id = "plan", .heading = "The plan", .parts = {}, .is_page_only = true};
   if (!report.plan.empty())
-    body += section("plan", "The plan",
-                    "<details><summary>As a file</summary>\n<pre><code>" + escaped(internal::shortened(report.plan)) +
-                        "</code></pre></details>\n");
-  const auto [main, rest] = headline_of(report);
-  return internal::page({.title = report.title,
-                         .origin = "exploration: " + report.study,
-                         .headline = main,
-                         .headline_rest = rest,
-                         .keys = keys_of(report, front),
-                         .body = body,
-                         .style = std::string(internal::page_file("page/exploration.css")),
-                         .scripts = script_of(data)});
-}
-
-std::string exploration_text(const ExplorationReport& report) {
-  const auto [main, rest] = headline_of(report);
-  std::string text = wrapped(main + rest) + "\n";
-  for (const auto& [status, outcome] : outcomes_of(report))
-    text += fmt::format("  {:<24}{:>10}\n", with_blanks(status), outcome.points);
-  if (report.aims.empty()) return text;
-  const ExploredFront front = explored_front(report);
-  if (front.members.empty()) return text + "\nNo point settles and has all of the figures of the front.\n";
-  text += "\n" + wrapped("Front: " + front_words(report, front)) + "\n";
-  std::vector<std::size_t> columns;
-  for (const ExploredAim& aim : report.aims) columns.push_back(aim.column);
-  for (const std::size_t c : columns_of(report, true)) columns.push_back(c);
-  // As many as fit on a screen, evenly along the front, with its knee and its ends.
-  const std::size_t stride = (front.members.size() + most_front_rows - 1) / most_front_rows;
-  for (std::size_t k = 0; k < front.members.size(); ++k) {
-    const bool is_knee = front.members[k] == front.knee;
-    if (k % stride != 0 && !is_knee && k + 1 < front.members.size()) continue;
-    text += fmt::format("{} point {}: {}\n", is_knee ? "*" : " ", report.points[front.members[k]].number,
-                        values_text(report, front.members[k], columns));
-  }
-  if (front.knee) text += "* the knee, where the front bends most\n";
-  if (stride > 1) text += fmt::format("One in {} of the front is shown.\n", stride);
-  return text;
+    plan.parts.emplace_back(Drawing{"<details><summary>As a file</summary>\n<pre><code>" +
+                                    internal::escaped(internal::shortened(report.plan)) + "</code></pre></details>\n"});
+  if (!report.made_with.empty())
+    plan.parts.emplace_back(Paragraph{.text = "Computed by " + report.made_with + ".", .is_note = true});
+  document.sections.push_back(std::move(plan));
+  return document;
 }
 
 json exploration_json(const ExplorationReport& report) {

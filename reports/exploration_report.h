@@ -1,5 +1,5 @@
-// What an exploration found, made ready to be looked at: a page, the map of a figure as a picture, the front of several figures
-// as words and as JSON. The points may come from anywhere; the store of `softland explore` is one maker.
+// What an exploration found, made ready to be looked at: a document, the map of a figure as a picture, the front of several
+// figures as JSON. The points may come from anywhere; the store of `softland explore` is one maker.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "reports/document.h"
 #include "reports/result.h"
 #include "studies/exploration/aims.h"
 
@@ -51,13 +52,10 @@ struct ExploredFront {
 };
 [[nodiscard]] ExploredFront explored_front(const ExplorationReport& report);
 
-/// A self-contained page, below 2 MB whatever the number of points: maps of every figure over two variables of a grid, parallel
+/// The page is below 2 MB whatever the number of points: maps of every figure over two variables of a grid, parallel
 /// coordinates, a scatter matrix, the front with waveforms, the effect of each variable, failures. Where not all points fit, what
 /// is drawn is thinned and the page says how; counts, effects and the front are of all points.
-[[nodiscard]] std::string exploration_html(const ExplorationReport& report);
-
-/// How many points ended how, and the front with its knee.
-[[nodiscard]] std::string exploration_text(const ExplorationReport& report);
+[[nodiscard]] Document exploration_document(const ExplorationReport& report);
 [[nodiscard]] nlohmann::json exploration_json(const ExplorationReport& report);
 
 /// The variables of a grid, in their order; none where the points are no grid of at least two.

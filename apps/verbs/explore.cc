@@ -164,9 +164,10 @@ int search_the_front(const Common& c, const ExploreRequest& r, Exploration& expl
             {"store", out},
             {"made_with", made_with_json()}});
   print_json_or(c, j,
-                exploration_text(report) + fmt::format("\n{} computed. The scene of a point: softland explore {} --point K\n"
-                                                       "The page: softland report {}\n",
-                                                       whole(front.computed), shell_word(out), shell_word(out)));
+                terminal_text(exploration_document(report)) +
+                    fmt::format("\n{} computed. The scene of a point: softland explore {} --point K\n"
+                                "The page: softland report {}\n",
+                                whole(front.computed), shell_word(out), shell_word(out)));
   return status_of(found, interrupted);
 }
 

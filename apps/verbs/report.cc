@@ -78,11 +78,12 @@ int report_exploration(const Common& given, const ReportRequest& request) {
   Common c = given;
   if (c.out.empty()) c.out = (path.parent_path() / path.stem()).string() + "-report";
   ResultFolder folder = *claim_places(c, files);
-  folder.write("report.html", exploration_html(report));
+  const Document document = exploration_document(report);
+  folder.write("report.html", page_html(document));
   folder.write("exploration.json", json_text(exploration_json(report), 2) + "\n");
   if (!map.empty()) folder.write("map.svg", map);
   folder.publish(false);
-  print(exploration_text(report) + left_in(c.out, files));
+  print(terminal_text(document) + left_in(c.out, files));
   return exit_done;
 }
 

@@ -160,14 +160,14 @@ TEST(ExplorationPage, HoldsValuesToAFourThousandthOfTheirRange) {
 }
 
 TEST(ExplorationPage, IsBelowTwoMegabytesWhateverTheNumberOfPoints_optimized) {
-  const std::string grid = exploration_html(sample_grid(200, 200));
+  const std::string grid = page_html(exploration_document(sample_grid(200, 200)));
   EXPECT_LT(grid.size(), most_bytes);
   EXPECT_FALSE(holds(grid, "Drawn are")) << "all of 40 000 points fit";
-  const std::string large = exploration_html(sample_grid(400, 500));
+  const std::string large = page_html(exploration_document(sample_grid(400, 500)));
   EXPECT_LT(large.size(), most_bytes);
   EXPECT_THAT(large, HasSubstr("Drawn are 50000 of 200000 points: one in 2 of the 400 values of structure.length, one in 2 of "
                                "the 500 values of gap.contact. Counts and effects are"));
-  const std::string cloud = exploration_html(sample_cloud(100'000));
+  const std::string cloud = page_html(exploration_document(sample_cloud(100'000)));
   EXPECT_LT(cloud.size(), most_bytes);
   EXPECT_TRUE(holds(cloud, "of 100000 points: chosen at random, each with the same chance, and the front."));
 }
@@ -186,13 +186,13 @@ TEST(ExplorationPage, KeepsEveryPointOfTheFrontWhenItThins_optimized) {
 }
 
 TEST(ExplorationPage, IsWhole) {
-  const std::string page = exploration_html(sample_cloud(500));
+  const std::string page = page_html(exploration_document(sample_cloud(500)));
   for (const char* part : {"id=\"front\"", "id=\"parallel\"", "id=\"matrix\"", "id=\"effects\"", "id=\"outcomes\""})
     EXPECT_TRUE(holds(page, part));
   EXPECT_FALSE(holds(page, "id=\"map\""));
   EXPECT_FALSE(holds(page, "http://"));
   EXPECT_FALSE(holds(page, "https://"));
-  EXPECT_TRUE(holds(exploration_html(sample_grid(30, 20)), "<svg class=\"still\""));
+  EXPECT_TRUE(holds(page_html(exploration_document(sample_grid(30, 20))), "<svg class=\"still\""));
 }
 
 TEST(ExplorationPage, BearsNoPointsAndOneAndNoneThatIsDone) {
@@ -201,12 +201,12 @@ TEST(ExplorationPage, BearsNoPointsAndOneAndNoneThatIsDone) {
     point.status = "numerical_failure";
     std::fill(point.values.begin() + 5, point.values.end(), Metrics::unset);
   }
-  EXPECT_TRUE(holds(exploration_html(report), "No point settles and has all of the figures."));
+  EXPECT_TRUE(holds(page_html(exploration_document(report)), "No point settles and has all of the figures of the front."));
   report.points.resize(1);
-  EXPECT_FALSE(exploration_html(report).empty());
+  EXPECT_FALSE(page_html(exploration_document(report)).empty());
   report.points.clear();
-  EXPECT_FALSE(exploration_html(report).empty());
-  EXPECT_FALSE(exploration_text(report).empty());
+  EXPECT_FALSE(page_html(exploration_document(report)).empty());
+  EXPECT_FALSE(terminal_text(exploration_document(report)).empty());
   EXPECT_TRUE(exploration_json(report)["pareto"]["knee"].is_null());
 }
 
@@ -216,12 +216,12 @@ TEST(ExplorationPage, EscapesWhatComesFromOutside) {
   report.title = report.study = report.command = report.plan = report.made_with = hostile;
   for (ExploredColumn& c : report.columns) c.name = hostile;
   for (ExploredPoint& p : report.points) p.status = p.reason = hostile;
-  EXPECT_FALSE(holds(exploration_html(report), hostile));
+  EXPECT_FALSE(holds(page_html(exploration_document(report)), hostile));
   EXPECT_EQ(test::xml_fault(exploration_map_svg(report, 0, 1, 6)), "");
 }
 
 TEST(ExplorationText, TellsTheFrontWithItsKnee) {
-  const std::string text = exploration_text(sample_cloud(400));
+  const std::string text = terminal_text(exploration_document(sample_cloud(400)));
   EXPECT_THAT(text, HasSubstr("400 points over structure.thickness, gap.electrode, "));
   EXPECT_THAT(text, HasSubstr("Front: "));
   EXPECT_THAT(text, HasSubstr("hypervolume "));
@@ -249,7 +249,7 @@ TEST(ExplorationMap, IsAPictureOfItsOwn) {
 
 TEST_F(PageInBrowser, DrawsAnExplorationInSilence_browser) {
   for (const ExplorationReport& report : {sample_grid(40, 30), sample_cloud(2000), sample_cloud(3)}) {
-    const test::Visit seen = test::visit(program, exploration_html(report));
+    const test::Visit seen = test::visit(program, page_html(exploration_document(report)));
     EXPECT_EQ(seen.console, "");
     EXPECT_THAT(seen.dom, HasSubstr("class=\"drawn\""));
     EXPECT_THAT(seen.dom, HasSubstr("<canvas"));
@@ -259,7 +259,7 @@ TEST_F(PageInBrowser, DrawsAnExplorationInSilence_browser) {
 TEST_F(PageInBrowser, CutsNothingOfAnExplorationOnANarrowScreen_browser) {
   for (const int width : {360, 420, 1280}) {
     const std::string dom =
-        in_frame(program, exploration_html(width == 420 ? sample_grid(40, 30) : sample_cloud(2000)), width,
+        in_frame(program, page_html(exploration_document(width == 420 ? sample_grid(40, 30) : sample_cloud(2000))), width,
                  "for (const one of page.querySelectorAll('html, main, .scroll, .keys, figure, .part, canvas')) if "
                  "(one.scrollWidth > one.clientWidth + 1) say(one.className || one.tagName);");
     EXPECT_EQ(said(dom), "end;") << width;
@@ -270,11 +270,11 @@ TEST_F(PageInBrowser, ReadsAnExplorationWithTheKeysAlone_browser) {
   const std::string press =
       "const press = (id, key) => page.querySelector(`#${id} canvas`).dispatchEvent(new "
       "frame.contentWindow.KeyboardEvent('keydown', {key}));";
-  const std::string map = in_frame(program, exploration_html(sample_grid(21, 11)), 900,
+  const std::string map = in_frame(program, page_html(exploration_document(sample_grid(21, 11))), 900,
                                    press + "press('map', 'ArrowRight'); say(page.querySelector('#map .readout').textContent);");
   EXPECT_THAT(said(map), HasSubstr("Point 126: structure.length 255.0"));
   const std::string front =
-      in_frame(program, exploration_html(sample_cloud(2000)), 900,
+      in_frame(program, page_html(exploration_document(sample_cloud(2000))), 900,
                press +
                    "press('front', 'Home'); const first = page.querySelector('#front .readout').textContent; "
                    "press('front', 'ArrowRight'); say(first !== page.querySelector('#front "
@@ -301,12 +301,12 @@ TEST(ExplorationPage, IsMadeOfAnyFigures) {
     ExplorationReport report = sample_grid(7, 5);
     for (ExploredPoint& point : report.points) point.values[6] = point.number % 2 == 0 ? low : high;
     report.aims = explored_aims(report.columns, "impact_velocity,initial_contact_time");
-    EXPECT_LT(exploration_html(report).size(), most_bytes) << low << " " << high;
-    EXPECT_FALSE(exploration_text(report).empty());
+    EXPECT_LT(page_html(exploration_document(report)).size(), most_bytes) << low << " " << high;
+    EXPECT_FALSE(terminal_text(exploration_document(report)).empty());
     EXPECT_TRUE(holds(exploration_map_svg(report, 0, 1, 6), "</svg>"));
     for (ExploredPoint& point : report.points)
       point.values[0] = std::isfinite(low) ? std::lerp(low, high, static_cast<double>(point.number / 5) / 6) : 1;
-    EXPECT_LT(exploration_html(report).size(), most_bytes) << "over " << low << " " << high;
+    EXPECT_LT(page_html(exploration_document(report)).size(), most_bytes) << "over " << low << " " << high;
   }
 }
 

@@ -23,8 +23,8 @@ int main(int argc, char** argv) {
   softland::write_whole(folder / "optimize.svg", softland::svg_gap_chart(softland::read_result(optimize)));
   softland::write_whole(folder / "simulate.svg", softland::svg_gap_chart(softland::read_result(simulate)));
   const auto grid = softland::test::sample_grid(200, 200);
-  softland::write_whole(folder / "grid.html", softland::exploration_html(grid));
+  softland::write_whole(folder / "grid.html", softland::page_html(exploration_document(grid)));
   softland::write_whole(folder / "grid.svg", softland::exploration_map_svg(grid, 0, 1, 6));
-  softland::write_whole(folder / "cloud.html", softland::exploration_html(softland::test::sample_cloud(100'000)));
+  softland::write_whole(folder / "cloud.html", softland::page_html(exploration_document(softland::test::sample_cloud(100'000))));
   return 0;
 }
