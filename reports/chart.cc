@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "reports/closing_clauses.h"
-#include "reports/findings.h"
+#include "reports/closing_words.h"
 #include "reports/quantity.h"
 #include "reports/result_view.h"
+#include "reports/result_words.h"
 
 namespace softland::internal {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "reports/closing_clauses.h"
+#include "reports/closing_words.h"
 #include "reports/escape.h"
 #include "reports/figure_text.h"
 #include "reports/page.h"

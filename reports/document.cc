@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/printable.h"
 #include "objectives/figures.h"
 #include "reports/escape.h"
+#include "reports/made_with.h"
 #include "reports/page.h"
+#include "reports/page_files.h"
+#include "reports/quantity.h"
 #include "reports/text.h"
 
 namespace softland {
@@ -17,15 +21,18 @@ using namespace internal;
 namespace {
 
 constexpr std::string_view words_style = "words", missing_style = "missing", part_style = "part";
-constexpr std::size_t gap = 2;  // blanks between columns of a terminal
+constexpr std::size_t most_warnings = 200;  // on a page
+constexpr std::size_t gap = 2;              // blanks between columns of a terminal
 
-// Numbers stand to the right, words to the left.
-bool is_words(const TableCell& cell) { return cell.style == words_style || cell.style == missing_style || cell.columns > 1; }
-
-std::string_view shown_text(const TableCell& cell, std::string& indented) {
-  if (cell.style != part_style) return cell.text;
-  return indented = "  " + cell.text;
+// Of the column at `place`; null beyond the heads.
+const TableCell* head_of(const ReportTable& table, std::size_t place) {
+  return place < table.head.size() ? &table.head[place] : nullptr;
 }
+
+bool is_of_words(const TableCell* head) { return head != nullptr && head->style == words_style; }
+
+// What comes from names must not act on a terminal.
+std::string shown_text(const TableCell& cell) { return (cell.style == part_style ? "  " : "") + printable_line(cell.text); }
 
 // Calls `use(cell, place)` for every cell of a row with the column at which it begins.
 template <class Use>
@@ -38,11 +45,11 @@ void each_cell(const TableRow& row, Use use) {
 }
 
 std::vector<std::size_t> widths_of(const ReportTable& table) {
-  std::vector<std::size_t> widths(table.head.size(), 0);
+  std::vector<std::size_t> widths(std::max<std::size_t>(table.head.size(), 1), 0);
   const auto measure = [&](const TableRow& row) {
     each_cell(row, [&](const TableCell& cell, std::size_t place) {
-      std::string indented;
-      if (cell.columns == 1) widths[place] = std::max(widths[place], display_width(shown_text(cell, indented)));
+      widths.resize(std::max(widths.size(), place + cell.columns), 0);
+      if (cell.columns == 1) widths[place] = std::max(widths[place], display_width(shown_text(cell)));
     });
   };
   measure(table.head);
@@ -50,19 +57,18 @@ std::vector<std::size_t> widths_of(const ReportTable& table) {
   return widths;
 }
 
-// The columns from `first` to before `last`, beside that of the headings.
+// The columns from `first` to before `last`, beside that of the headings. Numbers stand to the right, words to the left.
 std::string line_of(const TableRow& row, const ReportTable& table, const std::vector<std::size_t>& widths, std::size_t first,
                     std::size_t last) {
   std::string line;
   each_cell(row, [&](const TableCell& cell, std::size_t place) {
-    std::string indented;
-    const std::string text(shown_text(cell, indented));
+    const std::string text = shown_text(cell);
     if (place == 0) line += left_aligned(text, widths[0]);
     if (place < first || place >= last) return;
     std::size_t width = widths[place];
     for (std::size_t i = place + 1; i < std::min(place + cell.columns, last); ++i) width += gap + widths[i];
-    const bool left = is_words(cell) || table.head[place].style == words_style;
-    line += std::string(gap, ' ') + (left ? left_aligned(text, width) : right_aligned(text, width));
+    const bool is_words = cell.columns > 1 || cell.style == missing_style || is_of_words(head_of(table, place));
+    line += std::string(gap, ' ') + (is_words ? left_aligned(text, width) : right_aligned(text, width));
   });
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";
@@ -78,9 +84,8 @@ bool has_index(std::string_view word) {
          std::any_of(figure_table.begin(), figure_table.end(), [&](const Figure& f) { return f.symbol == word; });
 }
 
-std::string cell_html(const TableCell& cell, const TableCell* column, std::string_view tag, std::string_view scope) {
-  const bool is_column_of_words = column != nullptr && column->style == words_style;
-  const std::string_view style = cell.style.empty() && is_column_of_words ? words_style : std::string_view(cell.style);
+std::string cell_html(const TableCell& cell, const TableCell* head, std::string_view tag, std::string_view scope) {
+  const std::string_view style = cell.style.empty() && is_of_words(head) ? words_style : std::string_view(cell.style);
   std::string out = fmt::format("<{}", tag);
   if (!scope.empty()) out += fmt::format(" scope=\"{}\"", scope);
   if (!style.empty()) out += fmt::format(" class=\"{}\"", style);
@@ -130,6 +135,57 @@ struct OnPage {
   std::string operator()(const Drawing& part) const { return part.html; }
 };
 
+std::string section_html(std::string_view id, std::string_view heading, const std::string& body) {
+  return fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, heading, body);
+}
+
+std::string key_html(const KeyNumber& key) {
+  const auto part = [](std::string_view style, const std::string& html) {
+    return fmt::format("<span class=\"{}\">{}</span> ", style, html);
+  };
+  std::string shown;
+  if (!key.before.empty()) shown += part("before", words_html(key.before) + " <span aria-label=\"becomes\">→</span>");
+  shown += part(key.is_words ? "after words" : "after", words_html(key.value));
+  if (!key.change.empty()) shown += part(key.style.empty() ? "change" : "change " + key.style, words_html(key.change));
+  return fmt::format("<div class=\"key\"><dt>{}</dt><dd>{}</dd></div>\n", words_html(key.name), shown);
+}
+
+std::string reproduce(const Result& result) {
+  std::string commands;
+  for (const std::string& line : result.reproduce) commands += line + "\n";
+  if (commands.empty()) commands = result.command;
+  std::string with;
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) with += (with.empty() ? "With " : ", ") + (name + value);
+  };
+  add("softland ", result.version);
+  add("seed ", result.seed ? fmt::format("{}", *result.seed) : "");
+  add("integrator tolerance ", std::isfinite(result.tolerance) ? plain_number(result.tolerance, 6) : "");
+  if (commands.empty() && with.empty()) return {};
+  const std::string made = made_with_text(result.made_with);
+  return fmt::format("<section id=\"reproduce\"><h2>Reproduce it</h2>\n<p>{}</p>\n<pre><code>{}</code></pre>\n{}</section>\n",
+                     with.empty() ? "" : escaped(with) + ":", escaped(shortened(commands)),
+                     made.empty() ? ""
+                                  : "<p>Made with " + escaped(made) +
+                                        ". The same bits are to be expected of the same program on the same kind of processor; "
+                                        "elsewhere rounding differs, and a search may end elsewhere.</p>\n");
+}
+
+std::string scene_of(const Result& result) {
+  if (result.scene.text.empty()) return {};
+  return "<section id=\"scene\"><h2>The switch</h2>\n<details><summary>Resolved scene</summary>\n<pre><code>" +
+         escaped(shortened(result.scene.text)) + "</code></pre></details></section>\n";
+}
+
+std::string warnings_section(const std::vector<std::string>& warnings) {
+  if (warnings.empty()) return {};
+  std::string lines;
+  for (std::size_t i = 0; i < std::min(most_warnings, warnings.size()); ++i)
+    lines += fmt::format("<li>{}</li>\n", escaped(shortened(printable_line(warnings[i]))));
+  if (warnings.size() > most_warnings) lines += fmt::format("<li>… and {} more</li>\n", warnings.size() - most_warnings);
+  return section_html("warnings", "Warnings", "<ul>\n" + lines + "</ul>\n");
+}
+
 }  // namespace
 
 TableCell drawn_cell(std::string html, std::string style) {
@@ -152,17 +208,6 @@ std::string internal::words_html(std::string_view words) {
   return out;
 }
 
-std::string internal::key_html(const KeyNumber& key) {
-  const auto part = [](std::string_view style, const std::string& html) {
-    return fmt::format("<span class=\"{}\">{}</span> ", style, html);
-  };
-  std::string shown;
-  if (!key.before.empty()) shown += part("before", words_html(key.before) + " <span aria-label=\"becomes\">→</span>");
-  shown += part(key.is_words ? "after words" : "after", words_html(key.value));
-  if (!key.change.empty()) shown += part(key.style.empty() ? "change" : "change " + key.style, words_html(key.change));
-  return fmt::format("<div class=\"key\"><dt>{}</dt><dd>{}</dd></div>\n", words_html(key.name), shown);
-}
-
 std::string internal::table_text(const ReportTable& table, std::size_t screen) {
   const std::vector<std::size_t> widths = widths_of(table);
   std::string text;
@@ -170,7 +215,7 @@ std::string internal::table_text(const ReportTable& table, std::size_t screen) {
   do {
     std::size_t last = first, used = widths.front();
     const auto fits = [&](std::size_t column) {
-      const bool is_last_words = column + 1 == widths.size() && table.head[column].style == words_style;
+      const bool is_last_words = column + 1 == widths.size() && is_of_words(head_of(table, column));
       return column == first || is_last_words || used + gap + widths[column] <= screen;
     };
     while (last < widths.size() && fits(last)) used += gap + widths[last++];
@@ -189,7 +234,7 @@ std::string internal::table_html(const ReportTable& table) {
   for (const TableRow& row : table.rows) {
     out += "<tr>";
     each_cell(row, [&](const TableCell& cell, std::size_t place) {
-      out += place == 0 ? cell_html(cell, nullptr, "th", "row") : cell_html(cell, &table.head[place], "td", "");
+      out += place == 0 ? cell_html(cell, nullptr, "th", "row") : cell_html(cell, head_of(table, place), "td", "");
     });
     out += "</tr>\n";
   }
@@ -217,21 +262,25 @@ std::string terminal_text(const Document& document, std::size_t screen) {
 std::string page_html(const Document& document) {
   std::string keys, body;
   for (const KeyNumber& key : document.keys) keys += key_html(key);
-  for (const ReportSection& one : document.sections) {
+  for (const ReportSection& section : document.sections) {
     std::string parts;
-    for (const auto& part : one.parts) parts += std::visit(OnPage{}, part);
-    if (!parts.empty()) body += section(one.id, escaped(one.heading), parts);
+    for (const auto& part : section.parts) parts += std::visit(OnPage{}, part);
+    if (!parts.empty()) body += section_html(section.id, escaped(section.heading), parts);
   }
-  body += warnings_section(document.warnings);
-  return page({.title = document.title,
-               .origin = document.origin,
-               .headline = document.headline,
-               .headline_rest = document.headline_rest,
-               .doubt = document.doubt,
-               .keys = keys,
-               .body = body + reproduce(document.made) + scene(document.made),
-               .style = document.style.empty() ? chart_style() : document.style,
-               .scripts = document.scripts.empty() ? chart_scripts(document.drawn) : document.scripts});
+  body += warnings_section(document.warnings) + reproduce(document.made) + scene_of(document.made);
+  const std::string title = escaped(printable_line(document.title));
+  return filled(page_file("page/page.html"),
+                {{"page_title", title.empty() ? "softland report" : title + " – softland"},
+                 {"style", document.style.empty() ? chart_style() : document.style},
+                 {"css", std::string(page_file("page/page.css"))},
+                 {"origin", escaped(document.origin)},
+                 {"title", title},
+                 {"headline", escaped(document.headline)},
+                 {"headline_rest", escaped(document.headline_rest)},
+                 {"doubt", escaped(document.doubt)},
+                 {"keys", keys},
+                 {"body", body},
+                 {"scripts", document.scripts.empty() ? chart_scripts(document.drawn) : document.scripts}});
 }
 
 }  // namespace softland

@@ -93,7 +93,6 @@ namespace internal {
 /// Columns that do not fit on the screen stand below the others, but for a last one of words. Lines have no blanks at their end.
 [[nodiscard]] std::string table_text(const ReportTable& table, std::size_t screen = 130);
 [[nodiscard]] std::string table_html(const ReportTable& table);
-[[nodiscard]] std::string key_html(const KeyNumber& key);
 /// Every chart with its title and caption.
 [[nodiscard]] Drawing charts_of(const Picture& drawn);
 /// Escaped, with the indices of figures' symbols below: "t_i".

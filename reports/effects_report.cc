@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "reports/document.h"
-#include "reports/findings.h"
 #include "reports/json_number.h"
 #include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/result_json.h"
+#include "reports/result_words.h"
 
 namespace softland {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/closing_clauses.h"
+#include "reports/closing_words.h"
 #include "reports/quantity.h"
 #include "studies/search/optimize.h"
 

@@ -101,6 +101,14 @@ void check_writable(const std::filesystem::path& path) {
   require(!was_read(target), path.string() + ": is read by this run, so its output does not replace it");
 }
 
+std::string name_to_be(const std::string& name) {
+  constexpr std::string_view ending = ".tmp";
+  if (!name.ends_with(ending)) return name;
+  const std::size_t end = name.size() - ending.size(), dot = name.rfind('.', end - 1);
+  const bool is_ours = dot != std::string::npos && name.find_first_not_of("0123456789-", dot + 1) == end;
+  return is_ours ? name.substr(0, dot) : name;
+}
+
 void write_whole(const std::filesystem::path& path, std::string_view content) {
   write_whole(path, [&](const std::function<void(std::string_view)>& sink) { sink(content); });
 }

@@ -24,6 +24,10 @@ void write_whole(const std::filesystem::path& path, std::string_view content);
 void write_whole(const std::filesystem::path& path,
                  const std::function<void(const std::function<void(std::string_view)>&)>& content);
 
+/// Of the temporary name under which a killed run left a file that it wrote: the name that it was to get. Other names are as they
+/// are.
+[[nodiscard]] std::string name_to_be(const std::string& name);
+
 /// The curve of a run as CSV: header time_s,tip_gap_m,tip_velocity_m_s,contact_force_N (those that exist); one line per row,
 /// shortest text that reads back to the same number, an empty field for what is not finite.
 [[nodiscard]] std::string trajectory_csv(const ResultCurve& curve);

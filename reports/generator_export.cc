@@ -9,7 +9,7 @@
 #include "base/choice.h"
 #include "base/require.h"
 #include "config/told_quantity.h"
-#include "reports/closing_clauses.h"
+#include "reports/closing_words.h"
 #include "reports/quantity.h"
 #include "reports/result_maker.h"
 #include "studies/closing/simulate.h"

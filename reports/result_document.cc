@@ -8,14 +8,14 @@
 #include <span>
 
 #include "reports/chart.h"
-#include "reports/closing_clauses.h"
+#include "reports/closing_words.h"
 #include "reports/devices_report.h"
 #include "reports/escape.h"
 #include "reports/figure_text.h"
-#include "reports/findings.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/result_view.h"
+#include "reports/result_words.h"
 #include "reports/seeds_report.h"
 #include "reports/sketch.h"
 

@@ -78,7 +78,7 @@ void ResultFolder::remove_abandoned() const {
     // Only what this kind of run leaves: a search is not given up for a simulation in the same folder.
     bool ours = true;
     for (const auto& entry : fs::directory_iterator(stage, error)) {
-      std::string name = entry.path().filename();
+      std::string name = name_to_be(entry.path().filename());
       for (const std::string_view end : companion_endings) {  // of a store whose writer was killed
         if (name.ends_with(end)) name.resize(name.size() - end.size());
       }

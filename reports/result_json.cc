@@ -1,7 +1,7 @@
 #include "reports/result_json.h"
 
-#include "reports/findings.h"
 #include "reports/result_members.h"
+#include "reports/result_words.h"
 #include "reports/seeds_report.h"
 
 namespace softland {

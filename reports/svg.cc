@@ -9,8 +9,8 @@
 #include "base/require.h"
 #include "reports/chart.h"
 #include "reports/escape.h"
-#include "reports/findings.h"
 #include "reports/result_view.h"
+#include "reports/result_words.h"
 
 namespace softland {
 namespace {

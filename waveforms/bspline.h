@@ -31,6 +31,7 @@ struct FamilyOf<BSpline> {
       {"levels", ParameterKind::level, &BSpline::levels, true, "four or more that draw the curve; the last is held for ever"},
       {"duration", ParameterKind::time, &BSpline::duration, true, "of the curve"},
   });
+  [[nodiscard]] static BSpline example() { return {.levels = {1, -2, 0.5, 3, 0.7}, .duration = 7}; }
 };
 
 namespace internal {

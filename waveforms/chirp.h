@@ -50,6 +50,18 @@ struct FamilyOf<Chirp> {
       {"decay_time", ParameterKind::end_time, &Chirp::decay_time, false,
        "in which the amplitude falls by 1/e; absent: it does not"},
   });
+  [[nodiscard]] static Chirp example() {
+    return {.base = 1,
+            .rise_time = 0.5,
+            .amplitude = 2,
+            .angular_frequency = 3,
+            .frequency_ratio = 0.4,
+            .phase = 0.3,
+            .start = 1,
+            .end = 9,
+            .fade = 2,
+            .decay_time = 3};
+  }
 };
 
 /// The pieces of a valid chirp, whose base rises from `before` [V].

@@ -41,6 +41,9 @@ struct FamilyOf<Harmonic> {
       {"end", ParameterKind::end_time, &Harmonic::end, false, "when the sine ends; absent: never"},
       {"fade", ParameterKind::time, &Harmonic::fade, false, "linear fade in after start and out before end"},
   });
+  [[nodiscard]] static Harmonic example() {
+    return {.base = 1, .rise_time = 0.5, .amplitude = 2, .angular_frequency = 3, .phase = 0.3, .start = 1, .end = 9, .fade = 2};
+  }
 };
 
 namespace internal {

@@ -30,7 +30,8 @@ struct Parameter {
   std::string_view about = {};
 };
 
-/// Specialised beside each family, with its `name` and its `parameters`; `from_file` where the rows may stand in a file.
+/// Specialised beside each family, with its `name`, its `parameters` and an `example`, which tests of all families take;
+/// `from_file` where the rows may stand in a file.
 template <class Family>
 struct FamilyOf;
 

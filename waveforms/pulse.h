@@ -29,6 +29,7 @@ struct FamilyOf<Pulse> {
       {"times", ParameterKind::time, &Pulse::times, false, "n - 1 times at which the edge to the next level begins"},
       {"edge", ParameterKind::time, &Pulse::edge, false, "duration of every linear edge"},
   });
+  [[nodiscard]] static Pulse example() { return {.levels = {1, -2, 0.5}, .times = {1, 4}, .edge = 0.5}; }
 };
 
 /// The points [s, V] that straight lines connect, of a valid pulse, which begins at `before` [V].

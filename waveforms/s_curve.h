@@ -32,6 +32,7 @@ struct FamilyOf<SCurve> {
       {"times", ParameterKind::time, &SCurve::times, false, "n - 1 times at which the edge to the next level begins"},
       {"edge", ParameterKind::time, &SCurve::edge, false, "duration of every edge, half a cosine"},
   });
+  [[nodiscard]] static SCurve example() { return {.levels = {1, -2, 0.5}, .times = {1, 4}, .edge = 0.5}; }
 };
 
 /// The pieces of a valid S-curve, which begins at `before` [V].

@@ -38,6 +38,9 @@ struct FamilyOf<Sines> {
       {"start", ParameterKind::time, &Sines::start, false, "when the sines begin"},
       {"duration", ParameterKind::time, &Sines::duration, true, "of the sines"},
   });
+  [[nodiscard]] static Sines example() {
+    return {.base = 1, .rise_time = 0.5, .amplitudes = {2, 0, -1}, .start = 0.3, .duration = 6};
+  }
 };
 
 /// The pieces of valid sines, whose base rises from `before` [V].

@@ -22,6 +22,7 @@ struct FamilyOf<Step> {
       {"level", ParameterKind::level, &Step::level, true, "held for ever"},
       {"rise_time", ParameterKind::time, &Step::rise_time, false, "linear rise, from 0 V or `before`"},
   });
+  [[nodiscard]] static Step example() { return {.level = 3, .rise_time = 1}; }
 };
 
 /// The pieces of a valid step, which begins at `before` [V].

@@ -28,6 +28,7 @@ struct FamilyOf<Table> {
       {"times", ParameterKind::time, &Table::time, true, "of the rows, from 0 s on"},
       {"voltages", ParameterKind::level, &Table::voltage, true, "of the rows; linear between them"},
   });
+  [[nodiscard]] static Table example() { return {.time = {0, 1, 1, 2}, .voltage = {1, 2, 3, -1}}; }
 };
 
 /// The points [s, V] that straight lines connect, of a valid table.

@@ -325,6 +325,7 @@ TEST(KilledSearch, LeavesWholeFiles) {
   const Outcome checked = here.run({"check", "out/unfinished/best.toml"});
   EXPECT_EQ(checked.status, 0) << checked.err;
   expect_complete_log(read(here.path() / "out/unfinished/evaluations.csv"));
+  write(here.path() / "out/unfinished/best.toml.4711-23.tmp", "as far as it was written when it was killed");
   const Outcome next = search(here, "out", {}, "12");
   EXPECT_TRUE(next.status == 0 || next.status == 4) << next.err;
   EXPECT_TRUE(fs::exists(here.path() / "out/result.json"));

@@ -7,10 +7,10 @@
 #include <limits>
 #include <string>
 
-#include "reports/findings.h"
 #include "reports/result_document.h"
 #include "reports/result_json.h"
 #include "reports/result_reader.h"
+#include "reports/result_words.h"
 #include "reports/text.h"
 #include "sample_result.h"
 

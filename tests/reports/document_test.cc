@@ -40,6 +40,16 @@ TEST(ReportTable, OfATerminalPutsBelowWhatDoesNotFitBeside) {
             "  one of them  late\n")
       << "words in the last column may go beyond the screen";
   EXPECT_EQ(table_text({.head = {"alone"}, .rows = {{"1"}}}), "alone\n1\n");
+  EXPECT_EQ(table_text({}), "\n");
+}
+
+TEST(ReportTable, BearsRowsBeyondItsHeadsAndNamesThatActOnATerminal) {
+  const ReportTable table{.head = {"a", "b"}, .rows = {{"1", "2", "and 3"}, {"\x1b[31m\n", "4"}}};
+  EXPECT_EQ(table_text(table),
+            "a                 b\n"
+            "1                 2  and 3\n"
+            "\\u001b[31m\\u000a  4\n");
+  EXPECT_THAT(table_html(table), HasSubstr("<td>and 3</td>"));
 }
 
 TEST(ReportTable, OfAPageEscapesSetsIndicesAndNamesItsClasses) {

@@ -147,6 +147,12 @@ TEST(WriteWhole, IsAskedBeforeWhetherItMay) {
   EXPECT_THROW(check_writable(folder.path()), InvalidInput);
 }
 
+TEST(NameToBe, IsThatOfAFileWhoseWriterWasKilled) {
+  EXPECT_EQ(name_to_be("best.toml.4711-23.tmp"), "best.toml");
+  for (const char* other : {"best.toml", "best.tmp", "best.toml.tmp", "my.files.tmp", ".tmp", "", "best.4711-23"})
+    EXPECT_EQ(name_to_be(other), other);
+}
+
 TEST(TrajectoryCsv, HasOneLinePerRowAndReadsBackExactly) {
   const ResultCurve curve{
       .time = {0, 1.0 / 3.0}, .gap = {2e-6, Metrics::unset}, .velocity = {0.1, 0.2}, .force = {}, .rebounds = {}};

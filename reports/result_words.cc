@@ -1,4 +1,4 @@
-#include "reports/findings.h"
+#include "reports/result_words.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "reports/closing_clauses.h"
+#include "reports/closing_words.h"
 #include "reports/devices_report.h"
 #include "reports/figure_text.h"
 #include "reports/quantity.h"

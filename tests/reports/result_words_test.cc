@@ -1,4 +1,4 @@
-#include "reports/findings.h"
+#include "reports/result_words.h"
 
 #include <gtest/gtest.h>
 

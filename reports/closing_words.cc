@@ -1,4 +1,4 @@
-#include "reports/closing_clauses.h"
+#include "reports/closing_words.h"
 
 #include <fmt/format.h>
 
