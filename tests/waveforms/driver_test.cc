@@ -140,6 +140,14 @@ TEST(Driver, FiltersEveryFamilyAsItsEquationDoes) {
   }
 }
 
+TEST(Driver, FiltersACurveThatOutlastsItsTransients) {
+  constexpr double quick = 0.1e-6;  // forgets where a piece began long before it ends
+  const Signal curve = signal(BSpline{.levels = {0, 40, 1, 7, 30}, .duration = 50_us});
+  const Signal out = driven(curve, of_time_constant(quick), limits, 1);
+  EXPECT_GT(out.pieces().size(), curve.pieces().size());
+  for (const double t : {6e-6, 13e-6, 24e-6, 31e-6, 49e-6}) EXPECT_NEAR(out.voltage(t), integrated(curve, quick, t), 1e-5) << t;
+}
+
 TEST(Driver, OfBandwidthAndResistanceHasTwoPoles) {
   // The answer of 1 / ((1 + a p) (1 + b p)) to a step is 1 - (a exp(-t / a) - b exp(-t / b)) / (a - b), of equal ones
   // 1 - (1 + t / a) exp(-t / a).
@@ -203,6 +211,13 @@ TEST(Driver, GoesFromSampleToSampleNoFasterThanItsSlewLimit) {
   EXPECT_NEAR(two.voltage(2.9e-6), 14.5, 40 * kDriverRounding);
   EXPECT_NEAR(two.voltage(3.5e-6), 12.5, 40 * kDriverRounding);
   EXPECT_NEAR(two.voltage(4.1e-6), 10, 40 * kDriverRounding);
+}
+
+TEST(Driver, FollowsARampAsSteepAsItsSlewLimitLateByASample) {
+  DriverLimits slow = limits;
+  slow.max_slew = 5e6;
+  const Signal out = driven(signal(Step{.level = 40_V, .rise_time = 8_us}), {.sample_rate = 1e6}, slow, 1);
+  for (double t = 1.3e-6; t < 9e-6; t += 0.4e-6) EXPECT_NEAR(out.voltage(t), 5e6 * (t - 1e-6), 40 * kDriverRounding) << t;
 }
 
 TEST(Driver, FiltersHeldSamplesExactly) {

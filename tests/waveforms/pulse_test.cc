@@ -61,6 +61,7 @@ TEST(Pulse, NamesParameterValueAndRule) {
   expect_invalid([] { (void)signal(Pulse{}); }, {"levels", "at least one"});
   expect_invalid([] { (void)signal(Pulse{.levels = {1, 2}}); }, {"times", "0 for 2 levels", "one fewer"});
   expect_invalid([] { (void)signal(Pulse{.levels = {1, kNaN}, .times = {1}}); }, {"level 2", "nan V"});
+  expect_invalid([] { (void)signal(Pulse{.levels = {kNaN, 1}, .times = {1}}); }, {"level 1", "nan V"});
   expect_invalid([] { (void)signal(Pulse{.levels = {1, 2}, .times = {kNaN}}); }, {"time 1", "nan s"});
   expect_invalid([] { (void)signal(Pulse{.levels = {1}, .edge = -1}); }, {"edge", "-1 s", ">= 0"});
   expect_invalid([] { (void)signal(Pulse{.levels = {1, 2}, .times = {1}, .edge = 2}); }, {"time 1", "1 s", "at least 2 s"});

@@ -18,10 +18,11 @@ constexpr double rounding = 1e-12;  // relative
 const Pulse throw_and_catch{.levels = {20, 5, 17}, .times = {22e-6, 30e-6}, .edge = 1e-6};
 const Harmonic dither{
     .base = 15, .amplitude = 1, .angular_frequency = 3e5, .phase = 0.4, .start = 10e-6, .end = 90e-6, .fade = 20e-6};
+const Harmonic endless{.base = 15, .amplitude = 1, .angular_frequency = 3e5, .phase = 0.4, .start = 10e-6};
 const Table corners{.time = {0, 10e-6, 20e-6, 40e-6}, .voltage = {0, 10, 4, 15}};
 
 const std::vector<Waveform>& one_of_each() {
-  static const std::vector<Waveform> all{Step{.level = 17}, dither, throw_and_catch, corners};
+  static const std::vector<Waveform> all{Step{.level = 17}, dither, endless, throw_and_catch, corners};
   return all;
 }
 

@@ -60,9 +60,14 @@ TEST(Terms, BoundsHoldEveryDifferenceQuotient) {
   std::mt19937_64 random(4);
   constexpr double h = 1e-3;
   for (int i = 0; i < 200; ++i) {
-    const SignalPiece piece = random_piece(random);
-    const double second = internal::derivative_bound(piece, 2, 0, 1), third = internal::derivative_bound(piece, 3, 0, 1);
-    for (double t = h; t < 1 - h; t += 0.017) {
+    SignalPiece piece = random_piece(random);
+    piece.begin = i % 2;
+    if (piece.oscillates()) piece.amplitude_slope = 0.5 * (i % 3 - 1);
+    if (i % 4 == 1) piece.terms.clear();
+    const double begin = piece.begin, end = begin + 1;
+    const double second = internal::derivative_bound(piece, 2, begin, end),
+                 third = internal::derivative_bound(piece, 3, begin, end);
+    for (double t = begin + h; t < end - h; t += 0.017) {
       // Means of the second and of the third derivative over 2 h.
       EXPECT_LE(std::abs(piece.voltage(t + h) - 2 * piece.voltage(t) + piece.voltage(t - h)) / (h * h), second + 1e-8);
       EXPECT_LE(std::abs(piece.rate(t + h) - 2 * piece.rate(t) + piece.rate(t - h)) / (h * h), third + 1e-6);
