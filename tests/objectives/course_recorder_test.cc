@@ -91,6 +91,22 @@ TEST(CourseRecorder, KeepsTheExtremesOfWhatItLeavesOut) {
   EXPECT_NEAR(static_cast<double>(late), 0.5 * static_cast<double>(kept.size()), 0.2 * static_cast<double>(kept.size()));
 }
 
+TEST(CourseRecorder, KeepsTheFirstAndTheLastKnotOfABucket) {
+  constexpr int count = 4096;  // as buckets have a power of two of knots, quarters are ends of some
+  std::vector<TrajectoryPoint> all;
+  for (int k = 0; k < count; ++k) {
+    all.push_back({.time = static_cast<double>(k),
+                   .position = gap * (1 + std::sin(0.7 * k)),
+                   .velocity = std::sin(0.9 * k),
+                   .contact_force = 1 + std::sin(1.1 * k)});
+  }
+  const std::vector<TrajectoryPoint> kept = record(all, few).run.points;
+  ASSERT_LE(kept.size(), few);
+  for (int end = count / 4; end < count; end += count / 4) {
+    for (const int k : {end - 1, end}) EXPECT_EQ(std::ranges::count(kept, k, &TrajectoryPoint::time), 1) << k;
+  }
+}
+
 TEST(CourseRecorder, LeavesNothingOutOfAShortCourseNorOfOneThatStaysOpen) {
   std::vector<TrajectoryPoint> all = bounces(300, 40);
   EXPECT_EQ(record(all, all.size()).run.points.size(), all.size());
