@@ -457,6 +457,7 @@ TEST(BeamModes, FromThoseOfASimilarBeamAreTheSame) {
   std::mt19937_64 random(5);
   for (const int modes : {1, 4, 6}) {
     for (int shape = 0; shape < 6; ++shape) {
+      int searched_again = 0;
       const Sample nominal = sampled(shape, 0, random);
       const BeamModes known(nominal.sections, modes, nominal.support);
       for (const double spread : {0.0, 0.02, 0.1, 0.4}) {
@@ -486,8 +487,11 @@ TEST(BeamModes, FromThoseOfASimilarBeamAreTheSame) {
           }
           const Eigen::MatrixXd products = searched->slope_products();
           EXPECT_LT((followed->slope_products() - products).cwiseAbs().maxCoeff(), shape_rounding * products.maxCoeff());
+          const bool is_known = followed->normalised() == known.normalised();
+          if (spread == 0.02 && !is_known && followed->slope_products() == products) ++searched_again;
         }
       }
+      EXPECT_LT(searched_again, 10) << "a beam so near has other roundings, as it is mostly found without a search";
     }
   }
 }

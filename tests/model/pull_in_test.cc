@@ -72,6 +72,18 @@ TEST(StaticPullIn, IsTheContactWhereThatComesFirst) {
   EXPECT_NEAR(release_voltage(model, 0), found.voltage, 1e-9 * found.voltage);
 }
 
+TEST(StaticPullIn, AtTheContactIsWhatABiasLeavesOfTheBalance) {
+  // k x = eps0 (A V^2 + B U^2) / (2 (g - x)^2) where the plate touches.
+  Device d = test::full_plate();
+  d.gap.contact = 1_um;  // before the fold
+  for (Electrode& e : d.electrodes) e.fringing = Fringing::none;
+  const double bias = 3, x = d.gap.contact, A = 70_um * 100_um, B = 30_um * 100_um;
+  const double both = 2 * d.structure.stiffness * x * std::pow(d.gap.electrode - x, 2) / vacuum_permittivity;
+  const StaticPullIn found = static_pull_in(Switch(d), 0, std::vector<double>{0, bias});
+  EXPECT_EQ(found.kind, StaticKind::contact);
+  EXPECT_NEAR(found.voltage, std::sqrt((both - B * bias * bias) / A), 1e-9 * found.voltage);
+}
+
 TEST(StaticPullIn, DoesNotDependOnGasDampingOrDensity) {
   Device d = test::gold_cantilever();
   d.gas.reset();

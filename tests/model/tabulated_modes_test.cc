@@ -108,6 +108,16 @@ TEST(TabulatedModes, OfSwitchesOfOneTableShareTheirQuadrature) {
               1e-9 * nominal.basis().angular_frequencies()[2]);
 }
 
+TEST(TabulatedModes, OfAnotherTableAreNotTakenFromASwitch) {
+  Device layered = test::gold_cantilever();
+  layered.piezo = test::gold_pzt_cantilever().piezo;  // other shapes along the same length
+  const auto one = modal_table_of(test::gold_cantilever(), 4, table_places), other = modal_table_of(layered, 4, table_places);
+  const Switch like(by_modes(test::gold_cantilever(), one));
+  const Switch alone(by_modes(test::gold_cantilever(), other)), beside(by_modes(test::gold_cantilever(), other), {}, &like);
+  EXPECT_EQ(beside.quadrature().shapes(), alone.quadrature().shapes());
+  EXPECT_NE(beside.quadrature().shapes(), like.quadrature().shapes());
+}
+
 TEST(TabulatedModes, AreRefusedWithTheRule) {
   const auto make = [](std::vector<double> x, std::vector<double> f, std::vector<std::vector<double>> y) {
     return [=] { (void)ModalTable(x, f, y); };
@@ -128,11 +138,13 @@ TEST(TabulatedModes, AreRefusedWithTheRule) {
   expect_refused_with([&] { (void)Switch(device); }, "must be the length of the table of modes");
   device = by_modes(test::gold_pzt_cantilever(), table);
   expect_refused_with([&] { (void)Switch(device); }, "a layer changes the modes");
-  device = by_modes(test::gold_cantilever(),
-                    std::make_shared<const ModalTable>(std::vector<double>{0, 125e-6, 250e-6}, std::vector<double>{1e4},
-                                                       std::vector<std::vector<double>>{{0, 1e5, 0}}));
-  device.structure.modes = 1;
-  expect_refused_with([&] { (void)Switch(device); }, "the far end stands still in every mode");
+  for (const double middle : {1e5, -1e5}) {
+    device = by_modes(test::gold_cantilever(),
+                      std::make_shared<const ModalTable>(std::vector<double>{0, 125e-6, 250e-6}, std::vector<double>{1e4},
+                                                         std::vector<std::vector<double>>{{0, middle, 1}}));
+    device.structure.modes = 1;
+    expect_refused_with([&] { (void)Switch(device); }, "the far end stands still in every mode");
+  }
 }
 
 }  // namespace
