@@ -132,6 +132,43 @@ TEST(Gradient, OfAPlasticContact_optimized) {
 TEST(Gradient, OfADampedContact_optimized) {
   expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "pulse", Target::bounce, {"contact.damping=0.5 s/m"}), 5);
 }
+
+TEST(Gradient, ByTheTimesOfJumps) {
+  constexpr double step = 1e-10, differenced = 1e-6;
+  const SearchSetting s = setting_of("mem-gold.toml", Actuator::electrostatic, "pulse");
+  const std::vector<double> x{20e-6, 25e-6}, lower{19e-6, 24e-6}, upper{21e-6, 26e-6};
+  const auto signals_at = [](std::span<const double> times) {
+    return std::vector<Signal>{signal(Pulse{.levels = {20, 0, 19}, .times = {times.begin(), times.end()}})};
+  };
+  const auto closed = [&](std::span<const double> times, ClosingObserver& observer) {
+    return observe_closing(s.given.model, signals_at(times), {.duration = 60e-6, .tolerance = tight}, observer);
+  };
+  RecordedMotion tape;
+  (void)closed(x, tape);
+  const std::vector<Signal> signals = signals_at(x);
+  LinearizedClosing motion(s.given.model, signals, tape, 16);
+  const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
+  const SignalSlopes by(signals_at, x, lower, upper);
+  const std::array figures{&Metrics::initial_contact_time, &Metrics::impact_velocity};
+  const std::vector<FigureSlope> wanted{slopes.of[figures[0]], slopes.of[figures[1]]};
+  const Eigen::MatrixXd backward = motion.backward(wanted, by), forward = motion.forward(wanted, by);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    std::array<Metrics, 2> sides;
+    for (const int side : {0, 1}) {
+      std::vector<double> moved = x;
+      moved[k] += side == 0 ? -step : step;
+      MetricsObserver observer(s.scale.contact_gap, s.given.scene.metrics);
+      sides[static_cast<std::size_t>(side)] = observer.metrics(closed(moved, observer));
+    }
+    for (std::size_t f = 0; f < figures.size(); ++f) {
+      const auto row = static_cast<Eigen::Index>(f), column = static_cast<Eigen::Index>(k);
+      const double expected = (sides[1].*figures[f] - sides[0].*figures[f]) / (2 * step);
+      EXPECT_NEAR(backward(row, column), expected, differenced * std::abs(expected)) << f << " by time " << k + 1;
+      EXPECT_NEAR(forward(row, column), expected, differenced * std::abs(expected)) << f << " by time " << k + 1;
+    }
+  }
+}
+
 // What follows the last moment that a figure depends on is not linearised, and changes nothing.
 TEST(Gradient, OfOneFigureIsThatOfAll) {
   const SearchSetting s = setting_of("mem-gold.toml", Actuator::electrostatic, "pulse");
