@@ -10,6 +10,7 @@
 
 #include "base/require.h"
 #include "model/beam.h"
+#include "model/mode_shapes.h"
 #include "model/switch.h"
 #include "tests/support/devices.h"
 
@@ -116,6 +117,30 @@ TEST(TabulatedModes, OfAnotherTableAreNotTakenFromASwitch) {
   const Switch alone(by_modes(test::gold_cantilever(), other)), beside(by_modes(test::gold_cantilever(), other), {}, &like);
   EXPECT_EQ(beside.quadrature().shapes(), alone.quadrature().shapes());
   EXPECT_NE(beside.quadrature().shapes(), like.quadrature().shapes());
+}
+
+TEST(ModeShapes, OfATableAreThoseOfItsBeam) {
+  constexpr double interpolated = 1e-6;  // of the tip
+  constexpr int places = 9;
+  Device device = by_modes(test::gold_cantilever(), modal_table_of(test::gold_cantilever(), 5, table_places));
+  device.structure.modes = 4;
+  const ModeShapes table = mode_shapes(Switch(device), places), beam = mode_shapes(Switch(test::gold_cantilever()), places);
+  ASSERT_EQ(beam.shapes.rows(), places);
+  ASSERT_EQ(beam.shapes.cols(), 4);
+  EXPECT_EQ(table.places, beam.places);
+  EXPECT_EQ(table.places[places - 1], device.structure.length);
+  EXPECT_LT((table.shapes - beam.shapes).cwiseAbs().maxCoeff(), interpolated * beam.shapes(places - 1, 0));
+  EXPECT_LT(beam.shapes.row(0).norm(), 1e-12 * beam.shapes(places - 1, 0)) << "the clamp";
+  EXPECT_NEAR(beam.shapes(places - 1, 0), BeamModes(beam_sections(device), 1).value(device.structure.length)[0],
+              1e-12 * beam.shapes(places - 1, 0));
+  EXPECT_THROW((void)mode_shapes(Switch(device), 1), InvalidInput);
+}
+
+TEST(ModeShapes, OfAPlateAreItsMotion) {
+  const Device plate = test::full_plate();
+  const ModeShapes shapes = mode_shapes(Switch(plate), 2);
+  EXPECT_EQ(shapes.shapes.cols(), 1);
+  for (const double shape : shapes.shapes.reshaped()) EXPECT_DOUBLE_EQ(shape, 1 / std::sqrt(plate.structure.mass));
 }
 
 TEST(TabulatedModes, AreRefusedWithTheRule) {
