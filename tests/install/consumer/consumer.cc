@@ -1,6 +1,6 @@
 // A user's program against the installed libraries: when does the switch of a scene first touch, and where is a parabola lowest?
 #include <softland/optimizers/problem.h>
-#include <softland/studies/simulate.h>
+#include <softland/studies/closing/simulate.h>
 
 #include <cstdio>
 
