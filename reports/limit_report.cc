@@ -187,7 +187,9 @@ json limit_json(const Limit& limit, const Provenance& provenance) {
 
 std::string limit_text(const Limit& limit) {
   const std::string peak = std::isfinite(limit.touch.peak) ? fmt::format(", up to {}", quantity(limit.touch.peak, "V")) : "";
-  ReportSection section{.id = "least-times", .heading = "Least times", .parts = {touches_table(limit)}};
+  ReportSection section{.id = "least-times", .heading = "Least times", .parts = {}};
+  if (!limit.hold_warning.empty()) section.parts.emplace_back(Paragraph{"warning: " + limit.hold_warning});  // before all figures
+  section.parts.emplace_back(touches_table(limit));
   if (!limit.over_velocity.empty())
     section.parts.emplace_back(
         list_table("touch at or below", limit.over_velocity, [](const LeastTime& l) { return quantity(l.permitted, "m/s"); }));
@@ -204,8 +206,7 @@ std::string limit_text(const Limit& limit) {
         " A beam whose modes still ring may bounce after a soft touch: the landing was simulated."});
   return terminal_text({.headline = fmt::format("How quickly {} can close the switch{}", drives_of(limit.options.actuator), peak),
                         .doubt = limit.interrupted ? "Interrupted: what follows is not all." : "",
-                        .sections = {std::move(section)},
-                        .warnings = limit.hold_warning.empty() ? std::vector<std::string>{} : std::vector{limit.hold_warning}});
+                        .sections = {std::move(section)}});
 }
 
 std::string limit_svg(const Limit& limit) {
