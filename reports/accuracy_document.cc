@@ -303,9 +303,9 @@ Document accuracy_document(const PreparedScene& prepared, const AccuracyStudy& s
   }
   std::tie(document.headline, document.headline_rest) = headline(prepared, study);
   document.keys = reference_keys(study);
-  document.drawn = picture(study);
+  document.draw = [&study] { return picture(study); };
   document.sections = {recommendations_section(study),
-                       {.id = "charts", .heading = "What accuracy costs", .parts = {internal::charts_of(document.drawn)}},
+                       {.id = "charts", .heading = "What accuracy costs", .parts = {internal::all_charts()}},
                        settings_section(study),
                        cloud_section(study)};
   return document;

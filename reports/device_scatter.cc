@@ -98,11 +98,8 @@ std::string scatter(const VariedQuantity& quantity, const Figure& figure, const 
   return small_picture(tables, chart);
 }
 
-}  // namespace
-
-ReportSection internal::device_scatter(const RobustnessReport& report) {
-  ReportSection section{.id = "scatter", .heading = "Each figure against each quantity", .parts = {}, .is_page_only = true};
-  if (report.found.devices == 0) return section;
+std::string scatter_html(const RobustnessReport& report) {
+  if (report.found.devices == 0) return {};
   const DriveRobustness& drive = report.found.drives.back();
   const std::vector<VariedQuantity> quantities = quantities_of(report);
   std::string pictures;
@@ -112,11 +109,19 @@ ReportSection internal::device_scatter(const RobustnessReport& report) {
     for (const DeviceOutcome& o : drive.outcomes) values.push_back(o.of(figure));
     for (const VariedQuantity& quantity : quantities) pictures += scatter(quantity, figure, values);
   }
-  if (pictures.empty()) return section;
-  section.parts = {Paragraph{fmt::format("Devices under {}, a dot each for the first {}; the line joins medians of neighbours.",
-                                         drive.name, std::min(most_dots, report.found.devices))},
-                   Drawing{"<div class=\"multiples\">\n" + pictures + "</div>\n"}};
-  return section;
+  if (pictures.empty()) return {};
+  return fmt::format(
+      "<p>Devices under {}, a dot each for the first {}; the line joins medians of neighbours.</p>\n"
+      "<div class=\"multiples\">\n{}</div>\n",
+      escaped(drive.name), std::min(most_dots, report.found.devices), pictures);
+}
+
+}  // namespace
+
+ReportSection internal::device_scatter(const RobustnessReport& report) {
+  return {.id = "scatter",
+          .heading = "Each figure against each quantity",
+          .parts = {Drawing{[&report](const Picture&) { return scatter_html(report); }}}};
 }
 
 }  // namespace softland

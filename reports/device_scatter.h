@@ -6,7 +6,7 @@
 namespace softland::internal {
 
 /// Small pictures of the last drive, a dot for each of at most 300 devices and a line for the medians of groups of all of them;
-/// without parts where nothing can be drawn.
+/// empty where nothing can be drawn.
 [[nodiscard]] ReportSection device_scatter(const RobustnessReport& report);
 
 }  // namespace softland::internal

@@ -268,7 +268,7 @@ ReportSection internal::devices_section(const ResultDevices& d) {
   if (d.front.size() > 1) list("Sooner or softer, of 95 % of the devices", d.front, front_words);
   if (!d.by_error.empty())
     list("What a measured Vdp is worth, by its error, with one waveform or another", d.by_error, known_words);
-  section.parts.emplace_back(Drawing{error_curve(d)});
+  section.parts.emplace_back(Drawing{[&d](const Picture&) { return error_curve(d); }});
   note(window_words(d.windows));
   for (const ResultRobust::Condition& c : d.conditions)
     note(fmt::format("The condition {} {}: {} of the devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
@@ -278,8 +278,8 @@ ReportSection internal::devices_section(const ResultDevices& d) {
     section.parts.emplace_back(ReportList{{d.next_command}});
   }
   section.parts.emplace_back(
-      Drawing{"<p class=\"below\">More: <a href=\"robustness.html\">how the devices do</a>, device by device and figure by "
-              "figure.</p>\n"});
+      drawing_of("<p class=\"below\">More: <a href=\"robustness.html\">how the devices do</a>, device by device and figure by "
+                 "figure.</p>\n"));
   return section;
 }
 

@@ -121,6 +121,8 @@ struct OnTerminal {
 };
 
 struct OnPage {
+  const Picture& drawn;
+
   std::string operator()(const Paragraph& part) const {
     if (part.text.empty()) return {};
     return fmt::format("<p{}>{}</p>\n", part.is_note ? " class=\"below\"" : "", words_html(part.text));
@@ -132,7 +134,7 @@ struct OnPage {
     for (const std::string& line : part.lines) lines += "<li>" + words_html(shortened(line)) + "</li>\n";
     return "<ul>\n" + lines + "</ul>\n";
   }
-  std::string operator()(const Drawing& part) const { return part.html; }
+  std::string operator()(const Drawing& part) const { return part.html(drawn); }
 };
 
 std::string section_html(std::string_view id, std::string_view heading, const std::string& body) {
@@ -241,10 +243,16 @@ std::string internal::table_html(const ReportTable& table) {
   return out + "</tbody></table></div>\n";
 }
 
-Drawing internal::charts_of(const Picture& drawn) {
-  Drawing all;
-  for (const Chart& chart : drawn.charts) all.html += figure_html(drawn.tables, chart);
-  return all;
+Drawing drawing_of(std::string html) {
+  return {[html = std::move(html)](const Picture&) { return html; }};
+}
+
+Drawing internal::all_charts() {
+  return {[](const Picture& drawn) {
+    std::string all;
+    for (const Chart& chart : drawn.charts) all += figure_html(drawn.tables, chart);
+    return all;
+  }};
 }
 
 std::string terminal_text(const Document& document, std::size_t screen) {
@@ -260,27 +268,27 @@ std::string terminal_text(const Document& document, std::size_t screen) {
 }
 
 std::string page_html(const Document& document) {
+  const Picture drawn = document.draw ? document.draw() : Picture();
   std::string keys, body;
   for (const KeyNumber& key : document.keys) keys += key_html(key);
   for (const ReportSection& section : document.sections) {
     std::string parts;
-    for (const auto& part : section.parts) parts += std::visit(OnPage{}, part);
+    for (const auto& part : section.parts) parts += std::visit(OnPage{drawn}, part);
     if (!parts.empty()) body += section_html(section.id, escaped(section.heading), parts);
   }
   body += warnings_section(document.warnings) + reproduce(document.made) + scene_of(document.made);
   const std::string title = escaped(printable_line(document.title));
-  return filled(page_file("page/page.html"),
-                {{"page_title", title.empty() ? "softland report" : title + " – softland"},
-                 {"style", document.style.empty() ? chart_style() : document.style},
-                 {"css", std::string(page_file("page/page.css"))},
-                 {"origin", escaped(document.origin)},
-                 {"title", title},
-                 {"headline", escaped(document.headline)},
-                 {"headline_rest", escaped(document.headline_rest)},
-                 {"doubt", escaped(document.doubt)},
-                 {"keys", keys},
-                 {"body", body},
-                 {"scripts", document.scripts.empty() ? chart_scripts(document.drawn) : document.scripts}});
+  return filled(page_file("page/page.html"), {{"page_title", title.empty() ? "softland report" : title + " – softland"},
+                                              {"style", document.style.empty() ? chart_style() : document.style},
+                                              {"css", std::string(page_file("page/page.css"))},
+                                              {"origin", escaped(document.origin)},
+                                              {"title", title},
+                                              {"headline", escaped(document.headline)},
+                                              {"headline_rest", escaped(document.headline_rest)},
+                                              {"doubt", escaped(document.doubt)},
+                                              {"keys", keys},
+                                              {"body", body},
+                                              {"scripts", document.scripts.empty() ? chart_scripts(drawn) : document.scripts}});
 }
 
 }  // namespace softland

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -47,10 +48,11 @@ struct SubHeading {
 struct ReportList {
   std::vector<std::string> lines;
 };
-/// What a page alone shows: pictures.
+/// What a page alone shows, made when the page is: a terminal does not wait for pictures.
 struct Drawing {
-  std::string html;
+  std::function<std::string(const internal::Picture&)> html;  ///< of the document's picture; not escaped
 };
+[[nodiscard]] Drawing drawing_of(std::string html);
 
 /// A part of a page under a heading, which a terminal does without.
 struct ReportSection {
@@ -68,6 +70,7 @@ struct KeyNumber {
   bool is_words = false;    ///< a value without a number
 };
 
+/// Refers to what it was made of, which is to outlive it.
 struct Document {
   std::string title;  ///< of the scene; may be empty
   std::string origin;
@@ -76,9 +79,9 @@ struct Document {
   std::vector<KeyNumber> keys;
   std::vector<ReportSection> sections;
   std::vector<std::string> warnings;
-  internal::Picture drawn;  ///< by the page's script
-  Result made;              ///< how to make it again
-  /// CSS and HTML of pictures that are not `drawn`.
+  std::function<internal::Picture()> draw;  ///< what the page's script draws; may be empty
+  Result made;                              ///< how to make it again
+  /// CSS and HTML of pictures that `draw` does not make.
   std::string style = {}, scripts = {};
 };
 
@@ -93,8 +96,8 @@ namespace internal {
 /// Columns that do not fit on the screen stand below the others, but for a last one of words. Lines have no blanks at their end.
 [[nodiscard]] std::string table_text(const ReportTable& table, std::size_t screen = 130);
 [[nodiscard]] std::string table_html(const ReportTable& table);
-/// Every chart with its title and caption.
-[[nodiscard]] Drawing charts_of(const Picture& drawn);
+/// Every chart of the document with its title and caption.
+[[nodiscard]] Drawing all_charts();
 /// Escaped, with the indices of figures' symbols below: "t_i".
 [[nodiscard]] std::string words_html(std::string_view words);
 

@@ -125,7 +125,7 @@ std::vector<KeyNumber> keys_of(const ExplorationReport& report, const ExploredFr
 }
 
 /// What the script fills.
-Drawing drawn(const std::string& still = {}) { return {"<div class=\"part\"></div>\n" + still}; }
+Drawing drawn(const std::string& still = {}) { return drawing_of("<div class=\"part\"></div>\n" + still); }
 
 /// A map without a script, of as many cells as a print shows.
 std::string still_map(const ExplorationReport& report, const internal::ExploredGrid& grid) {
@@ -205,7 +205,7 @@ ReportSection front_section(const ExplorationReport& report, const ExploredFront
   const std::size_t stride = (front.members.size() + most_front_rows - 1) / most_front_rows;
   section.parts = {
       Paragraph{"Front: " + front_words(report, front)},
-      Drawing{"<p>Move over the picture, or focus it and press ← →, to see a point; grey dots are the other points.</p>\n"},
+      drawing_of("<p>Move over the picture, or focus it and press ← →, to see a point; grey dots are the other points.</p>\n"),
       drawn(),
       front_table(report, front, stride),
       Paragraph{.text = front.knee ? "* the knee, where the front bends most" : "", .is_note = true},
@@ -301,8 +301,8 @@ Document exploration_document(const ExplorationReport& report) {
   document.sections.push_back(outcome_section(report));
   ReportSection plan{.id = "plan", .heading = "The plan", .parts = {}, .is_page_only = true};
   if (!report.plan.empty())
-    plan.parts.emplace_back(Drawing{"<details><summary>As a file</summary>\n<pre><code>" +
-                                    internal::escaped(internal::shortened(report.plan)) + "</code></pre></details>\n"});
+    plan.parts.emplace_back(drawing_of("<details><summary>As a file</summary>\n<pre><code>" +
+                                       internal::escaped(internal::shortened(report.plan)) + "</code></pre></details>\n"));
   if (!report.made_with.empty())
     plan.parts.emplace_back(Paragraph{.text = "Computed by " + report.made_with + ".", .is_note = true});
   document.sections.push_back(std::move(plan));

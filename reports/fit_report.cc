@@ -364,6 +364,13 @@ void add_courses(const Fit& fit, internal::Picture& drawn) {
   }
 }
 
+internal::Picture picture_of(const Fit& fit) {
+  internal::Picture drawn;
+  add_residual_chart(fit, drawn);
+  add_courses(fit, drawn);
+  return drawn;
+}
+
 std::vector<KeyNumber> keys_of(const Fit& fit) {
   const auto n = static_cast<double>(fit.residuals.size());
   return {{.name = "Off the data by",
@@ -403,11 +410,9 @@ Document fit_document(const Fit& fit, const Provenance& provenance) {
          .is_page_only = true});
   if (fit.found) {
     document.keys = keys_of(fit);
-    add_residual_chart(fit, document.drawn);
-    add_courses(fit, document.drawn);
+    document.draw = [&fit] { return picture_of(fit); };
   }
-  document.sections.push_back(
-      {.id = "courses", .heading = "Residuals", .parts = {internal::charts_of(document.drawn)}, .is_page_only = true});
+  document.sections.push_back({.id = "courses", .heading = "Residuals", .parts = {internal::all_charts()}, .is_page_only = true});
   document.sections.push_back(data_section(fit));
   return document;
 }

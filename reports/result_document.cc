@@ -142,39 +142,42 @@ ReportSection figures_section(const Result& result) {
   return section;
 }
 
-ReportSection closing_section(const Picture& drawn) {
+// Charts of one time share their zoom.
+std::string closing_charts(const Picture& drawn) {
   std::string charts;
   for (const Chart& chart : drawn.charts) {
     if (!chart.group.empty()) charts += figure_html(drawn.tables, chart);
   }
-  if (!charts.empty())
-    charts =
-        "<div class=\"tools\" hidden><span role=\"group\" aria-label=\"Time shown\">"
-        "<button type=\"button\" data-view=\"home\" aria-pressed=\"true\">Overview</button>"
-        "<button type=\"button\" data-view=\"landing\" aria-pressed=\"false\">Landing</button>"
-        "<button type=\"button\" data-view=\"whole\" aria-pressed=\"false\">Whole window</button></span>"
-        "<span class=\"hint\">Drag to zoom, double-click to go back. With a chart focused: ← → read, + − zoom, 0 "
-        "back.</span></div>\n" +
-        charts;
-  return {.id = "charts", .heading = "The closing", .parts = {Drawing{charts}}};
+  if (charts.empty()) return charts;
+  return "<div class=\"tools\" hidden><span role=\"group\" aria-label=\"Time shown\">"
+         "<button type=\"button\" data-view=\"home\" aria-pressed=\"true\">Overview</button>"
+         "<button type=\"button\" data-view=\"landing\" aria-pressed=\"false\">Landing</button>"
+         "<button type=\"button\" data-view=\"whole\" aria-pressed=\"false\">Whole window</button></span>"
+         "<span class=\"hint\">Drag to zoom, double-click to go back. With a chart focused: ← → read, + − zoom, 0 "
+         "back.</span></div>\n" +
+         charts;
 }
 
-ReportSection search_section(const Result& result, const Picture& drawn) {
-  ReportSection section{.id = "search", .heading = "The search", .parts = {}};
+std::string search_charts(const Picture& drawn) {
+  std::string charts;
   for (const Chart& chart : drawn.charts) {
-    if (chart.group.empty()) section.parts.emplace_back(Drawing{figure_html(drawn.tables, chart)});
+    if (chart.group.empty()) charts += figure_html(drawn.tables, chart);
   }
+  return charts;
+}
+
+ReportSection search_section(const Result& result) {
+  ReportSection section{.id = "search", .heading = "The search", .parts = {Drawing{search_charts}}};
   if (const std::string words = families_caption(result); !words.empty())
     section.parts.emplace_back(Paragraph{fmt::format("Families searched, with the least cost of each: {}.", words)});
   return section;
 }
 
 /// The switch from the side.
-ReportSection drawn_switch(const Result& result) {
-  ReportSection section{.id = "sketch", .heading = "The switch at rest", .parts = {Drawing{sketch(result.scene)}}};
-  if (!std::get<Drawing>(section.parts.front()).html.empty())
-    section.parts.emplace_back(Drawing{"<p class=\"below\">From the side: to scale along the beam, heights exaggerated.</p>\n"});
-  return section;
+std::string drawn_switch(const Result& result) {
+  const std::string drawing = sketch(result.scene);
+  if (drawing.empty()) return {};
+  return drawing + "<p class=\"below\">From the side: to scale along the beam, heights exaggerated.</p>\n";
 }
 
 ReportSection checks_section(const Result& result) {
@@ -193,7 +196,7 @@ ReportSection checks_section(const Result& result) {
   };
   add("as searched", result.best.figures);
   for (const ResultCheck& check : result.checks) add(check.name, check.figures);
-  section.parts = {Paragraph{checks_caption(result)}, Drawing{table_html(table)}};
+  section.parts = {Paragraph{checks_caption(result)}, drawing_of(table_html(table))};
   return section;
 }
 
@@ -272,7 +275,7 @@ ReportSection parameters_section(const Result& result) {
     table.rows.push_back({row.drive + (row.drive.empty() ? "" : ".") + row.name, quantity(row.value, row.unit, digits),
                           searched_cell(result, row.key, row.unit)});
   }
-  section.parts = {Drawing{drawings}, std::move(table)};
+  section.parts = {drawing_of(drawings), std::move(table)};
   return section;
 }
 
@@ -310,7 +313,7 @@ ReportSection facts(const Result& result) {
     fact("Its computing time", measured(result.work->wall, "s", 3));
   }
   if (!out.empty()) out = "<dl class=\"facts\">\n" + out + "</dl>\n";
-  return {.id = "facts", .heading = "About this result", .parts = {Drawing{out}}};
+  return {.id = "facts", .heading = "About this result", .parts = {drawing_of(out)}};
 }
 
 }  // namespace
@@ -324,14 +327,22 @@ Document result_document(const Result& result) {
                     .doubt = checks_agree(result) ? "" : checks_caption(result),
                     .keys = key_numbers(result),
                     .warnings = result.warnings,
-                    .drawn = picture(result),
-                    .made = result};
+                    .draw = [&result] { return picture(result); },
+                    .made = {.command = result.command, .version = result.version}};
+  document.made.seed = result.seed;
+  document.made.tolerance = result.tolerance;
+  document.made.reproduce = result.reproduce;
+  document.made.made_with = result.made_with;
+  document.made.scene.text = result.scene.text;
   for (const std::string& word : {result.target, result.actuator}) {
     if (!word.empty()) document.origin += " · " + word;
   }
   if (result.devices) document.sections.push_back(devices_section(*result.devices));
-  for (ReportSection& section : std::array{drawn_switch(result), closing_section(document.drawn), figures_section(result),
-                                           checks_section(result), search_section(result, document.drawn)})
+  document.sections.push_back({.id = "sketch", .heading = "The switch at rest", .parts = {Drawing{[&result](const Picture&) {
+                                                                                  return drawn_switch(result);
+                                                                                }}}});
+  document.sections.push_back({.id = "charts", .heading = "The closing", .parts = {Drawing{closing_charts}}});
+  for (ReportSection& section : std::array{figures_section(result), checks_section(result), search_section(result)})
     document.sections.push_back(std::move(section));
   if (result.seeds) document.sections.push_back(seeds_section(*result.seeds));
   document.sections.push_back(parameters_section(result));

@@ -389,8 +389,8 @@ Document robustness_document(const RobustnessReport& report) {
   if (found.devices == 0) return document;
   std::tie(document.headline, document.headline_rest) = headline_of(found);
   document.keys = keys_of(found);
-  document.drawn = picture_of(report);
-  document.sections.front().parts.emplace_back(internal::charts_of(document.drawn));
+  document.draw = [&report] { return picture_of(report); };
+  document.sections.front().parts.emplace_back(internal::all_charts());
   for (ReportSection& section : std::array{
            knowledge_section(found), statistics_section(report), internal::device_scatter(report),
            sensitivity_section(sensitivity), internal::derivatives_section(derivatives, found.drives.back()),

@@ -299,9 +299,9 @@ ReportSection records_section(const TuningReport& report) {
       .heading = "Each closing under its prediction",
       .parts = {
           std::move(table),
-          Drawing{fmt::format("<p class=\"below\">Grey: where the touch was expected before it was seen, with 95 %. Blue: "
-                              "where the contact was closed. The pictures show {}.</p>\n",
-                              escaped(range_words(shown.from, shown.to)))},
+          drawing_of(fmt::format("<p class=\"below\">Grey: where the touch was expected before it was seen, with 95 %. Blue: "
+                                 "where the contact was closed. The pictures show {}.</p>\n",
+                                 escaped(range_words(shown.from, shown.to)))),
           Paragraph{.text = first > 0 ? fmt::format("The first {} closings are not shown.", first) : "", .is_note = true},
           Paragraph{.text = "Expected of the waveform kept: " + expected_words(report.kept.predicted) + ".", .is_note = true}}};
 }
@@ -444,15 +444,13 @@ Document tuning_document(const TuningReport& report, const Provenance& provenanc
                     .doubt = report.broken_assumption.value_or(""),
                     .keys = keys_of(report),
                     .sections = {records_section(report), belief_section(report.belief)},
-                    .drawn = picture_of(report),
+                    .draw = [&report] { return picture_of(report); },
                     .made = internal::origin(report.scene, provenance.command)};
   std::tie(document.headline, document.headline_rest) = headline_of(report);
   if (report.end == TuningEnd::interrupted)
     document.headline = "Interrupted: what follows is what there is. " + document.headline;
-  document.sections.push_back({.id = "waveforms",
-                               .heading = "What the source is told",
-                               .parts = {internal::charts_of(document.drawn)},
-                               .is_page_only = true});
+  document.sections.push_back(
+      {.id = "waveforms", .heading = "What the source is told", .parts = {internal::all_charts()}, .is_page_only = true});
   document.made.seed = report.seed;
   document.made.tolerance = report.scene.tolerance;
   return document;

@@ -78,8 +78,8 @@ Document sample_document() {
           .sections = {{.id = "one",
                         .heading = "First & only",
                         .parts = {SubHeading{"Of devices"}, sample_table(), Paragraph{.text = "A note.", .is_note = true},
-                                  ReportList{{"a  command"}}, Drawing{"<svg></svg>"}, Paragraph{}}},
-                       {.id = "none", .heading = "Nothing", .parts = {Paragraph{}, Drawing{}}},
+                                  ReportList{{"a  command"}}, drawing_of("<svg></svg>"), Paragraph{}}},
+                       {.id = "none", .heading = "Nothing", .parts = {Paragraph{}, drawing_of("")}},
                        {.id = "more", .heading = "More", .parts = {Paragraph{"Of a page."}}, .is_page_only = true}},
           .warnings = {"so & so"}};
 }
