@@ -77,12 +77,12 @@ SearchRun::SearchRun(const Common& c, StoredSearch& search, const std::optional<
   options.on_preparation = [this](std::string_view what, double part) {
     if (preparation_) preparation_->watch().tell(what, part);
   };
-  options.on_start = [this, &search, is_told = places == nullptr && !c.quiet](const std::vector<std::string>& variables) {
+  options.on_start = [this, &search, is_told = places == nullptr && !c.quiet](const FamilyColumns& columns) {
     preparation_.emplace(common_.quiet, common_.stop);
-    session_.begin(variables);
+    session_.begin(columns);
     if (is_told)
       say(search_words(common_, search) +
-          fmt::format("; it shapes {}; results go to {}", fmt::join(shaped_in(variables), " and "), common_.out));
+          fmt::format("; it shapes {}; results go to {}", fmt::join(shaped_in(columns.names()), " and "), common_.out));
   };
   options.on_evaluation = [this](const Evaluation& e, const OptimizeProgress& p) {
     session_.evaluated(e);

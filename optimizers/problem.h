@@ -54,6 +54,7 @@ struct Evaluation {
   long index = 0;
   double value = 0;  ///< the objective; non-finite (NaN where it threw) when infeasible
   std::vector<double> x;
+  std::size_t problem = 0;  ///< of several that share a log: which
 };
 
 struct OptimizerOptions {

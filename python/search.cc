@@ -76,7 +76,7 @@ void listen(OptimizeOptions& options, const Request& request, Run& run, SearchSe
     run.watch().tell(what, part);
   };
   if (session != nullptr) {
-    options.on_start = [session](const std::vector<std::string>& variables) { session->begin(variables); };
+    options.on_start = [session](const FamilyColumns& columns) { session->begin(columns); };
     options.on_improvement = [session](const Evaluation&, const SceneFile& best) { session->improved(best); };
   }
   options.on_evaluation = [&request, &run, session, budget = options.max_evaluations](const Evaluation& evaluation,

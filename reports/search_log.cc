@@ -7,10 +7,7 @@
 
 namespace softland {
 
-SearchLog::SearchLog(ResultFolder& folder, std::vector<std::string> variables)
-    : folder_(folder), variables_(std::move(variables)) {
-  flush();
-}
+SearchLog::SearchLog(ResultFolder& folder, FamilyColumns columns) : folder_(folder), columns_(std::move(columns)) { flush(); }
 
 void SearchLog::evaluated(const Evaluation& evaluation) {
   evaluations_[evaluation.index] = evaluation;
@@ -26,11 +23,11 @@ void SearchLog::improved(const SceneFile& best) {
 void SearchLog::flush() {
   if (!best_.empty()) folder_.write("best.toml", best_);
   std::string log = "index,cost";
-  for (const std::string& name : variables_) log += "," + name;
+  for (const std::string& name : columns_.names()) log += "," + name;
   log += "\n";
   for (const auto& [index, e] : evaluations_) {
     log += fmt::format("{},{}", index, e.value);
-    for (const double x : e.x) log += std::isnan(x) ? "," : fmt::format(",{}", x);
+    for (const double x : columns_.row(e.problem, e.x)) log += std::isnan(x) ? "," : fmt::format(",{}", x);
     log += "\n";
   }
   folder_.write("evaluations.csv", log);

@@ -9,15 +9,16 @@
 #include "config/scene.h"
 #include "optimizers/problem.h"
 #include "reports/result_folder.h"
+#include "studies/search/evaluation_memory.h"
 
 namespace softland {
 
 /// best.toml and evaluations.csv among the unfinished results of a folder.
 class SearchLog {
  public:
-  /// `variables` are the columns of evaluations.csv. Writes the file with its header, so that a
+  /// `columns` of evaluations.csv. Writes the file with its header, so that a
   /// folder that takes none ends the run before its first evaluation.
-  SearchLog(ResultFolder& folder, std::vector<std::string> variables);
+  SearchLog(ResultFolder& folder, FamilyColumns columns);
 
   /// Notes an evaluation for evaluations.csv.
   void evaluated(const Evaluation& evaluation);
@@ -30,7 +31,7 @@ class SearchLog {
 
  private:
   ResultFolder& folder_;
-  std::vector<std::string> variables_;
+  FamilyColumns columns_;
   std::map<long, Evaluation> evaluations_;  // by index: the order that does not depend on the number of jobs
   std::string best_;
   bool pending_ = false;

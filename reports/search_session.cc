@@ -46,10 +46,10 @@ ResultFolder claimed(const SearchOutput& output, const StoredSearch& search, con
 }  // namespace
 
 SearchPlaces::SearchPlaces(const SearchOutput& output, const StoredSearch& search, const std::optional<KnownSearch>& known,
-                           const std::vector<std::string>& variables)
+                           const FamilyColumns& columns)
     : kept_(kept_stores(output, known)),
       folder_(claimed(output, search, known)),
-      evaluations_(store(evaluations_file), search.plan, evaluations_at_most(search), search.options.seed, variables,
+      evaluations_(store(evaluations_file), search.plan, evaluations_at_most(search), search.options.seed, columns,
                    stored_origin(output.command)) {}
 
 fs::path SearchPlaces::store(const std::string& name) { return kept_ ? *kept_ / name : folder_.place(name); }
@@ -58,11 +58,11 @@ SearchSession::SearchSession(StoredSearch& search, const std::optional<KnownSear
                              SearchPlaces* places)
     : search_(search), known_(known), output_(output), places_(places) {}
 
-void SearchSession::begin(const std::vector<std::string>& variables) {
-  if (places_ == nullptr) places_ = &own_.emplace(output_, search_, known_, variables);
+void SearchSession::begin(const FamilyColumns& columns) {
+  if (places_ == nullptr) places_ = &own_.emplace(output_, search_, known_, columns);
   search_.options.memory = &places_->evaluations();
-  std::vector<std::string> of_log = variables;  // that of the race is in the store alone
-  std::erase_if(of_log, [](const std::string& name) { return name.starts_with(raced_prefix); });
+  FamilyColumns of_log = columns;  // those of the race are in the store alone
+  std::erase_if(of_log.families, [](const auto& names) { return names.front().starts_with(raced_prefix); });
   log_.emplace(places_->folder(), of_log);
 }
 

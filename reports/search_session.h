@@ -2,7 +2,7 @@
 // which it can be gone on with, and its log.
 //
 //   SearchSession session(search, known, output);
-//   search.options.on_start = [&](const auto& variables) { session.begin(variables); };
+//   search.options.on_start = [&](const auto& columns) { session.begin(columns); };
 //   search.options.on_evaluation = [&](const Evaluation& e, const auto&) { session.evaluated(e); };
 //   search.options.on_improvement = [&](const Evaluation&, const SceneFile& best) { session.improved(best); };
 //   SearchReport report(run(search));
@@ -41,7 +41,7 @@ class SearchPlaces {
  public:
   /// Takes the folder and opens the store of evaluations, for a search of these parameters.
   SearchPlaces(const SearchOutput& output, const StoredSearch& search, const std::optional<KnownSearch>& known,
-               const std::vector<std::string>& variables);
+               const FamilyColumns& columns);
 
   [[nodiscard]] ResultFolder& folder() { return folder_; }
   [[nodiscard]] EvaluationStore& evaluations() { return evaluations_; }
@@ -64,7 +64,7 @@ class SearchSession {
                 SearchPlaces* places = nullptr);
 
   /// When the parameters are known: opens folder, store and log, and gives the search its memory. Throws what these throw.
-  void begin(const std::vector<std::string>& variables);
+  void begin(const FamilyColumns& columns);
   /// Throws what kept the store from keeping an evaluation.
   void evaluated(const Evaluation& evaluation);
   void improved(const SceneFile& best) { log_->improved(best); }

@@ -199,8 +199,8 @@ std::pair<double, std::string> words_of(const SeedStudy::State& now, const Store
 
 // Shows how far they are, and keeps the best scene in the folder.
 void run_shown(SeedStudy& study, const Common& c, const StoredSearch& search, SearchPlaces& places,
-               const std::vector<std::string>& variables) {
-  SearchLog log(places.folder(), variables);
+               const FamilyColumns& columns) {
+  SearchLog log(places.folder(), columns);
   Bar bar(c.quiet);
   std::mutex one_at_a_time;
   study.run({.progress =
@@ -219,13 +219,13 @@ int run_seeds(const Common& c, StoredSearch& search, const std::optional<KnownSe
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const SearchedParameters searched = searched_parameters(search.scene, search.options, search.robust.has_value(), work->watch());
   work.reset();
-  SearchPlaces places(output, search, known, searched.names);
+  SearchPlaces places(output, search, known, searched.columns);
   if (!c.quiet) {
     say(search_words(c, search) +
         fmt::format(", from seeds {} to {}; results go to {}", search.seed(0), search.seed(search.seeds - 1), c.out));
   }
-  SeedStudy study(search, places.evaluations(), places.store(seeds_file), searched.names, stored_origin(c.command));
-  run_shown(study, c, search, places, searched.names);
+  SeedStudy study(search, places.evaluations(), places.store(seeds_file), searched.columns.names(), stored_origin(c.command));
+  run_shown(study, c, search, places, searched.columns);
   const ResultSeeds seeds = ranked(study, search, searched.significant_rebound);
   if (study.missing() > 0) {
     places.evaluations().close();

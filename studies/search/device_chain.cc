@@ -17,7 +17,7 @@ constexpr std::size_t fewest_remembered = 5;
 StagedCost::Tried StagedCost::tried(const std::vector<double>& x, std::size_t devices, double hopeless, int jobs) const {
   const DriveWaveforms searched = setting_.space.waveforms(x);
   if (!setting_.is_allowed(searched)) return {};
-  const EvaluationKey key{.x = x, .devices = devices, .seed = seed_, .hopeless = hopeless};
+  const EvaluationKey key{.family = setting_.family, .x = x, .devices = devices, .seed = seed_, .hopeless = hopeless};
   if (memory_ != nullptr) {
     if (const auto known = memory_->recall(key)) return {.cost = known->cost, .closings = known->closings};
   }

@@ -108,16 +108,20 @@ DevicesSearch::DevicesSearch(const SceneFile& file, const OptimizeOptions& optio
   known_ = known_units(first().given, std::array{first().given.scene.calibration}, options.jobs, watch_).front();
 }
 
-std::vector<std::string> DevicesSearch::parameter_names() const {
+FamilyColumns DevicesSearch::columns() const {
   std::string families;
   for (const std::string& name : names_) families += (families.empty() ? "" : "+") + name;
-  return searched_names(settings_, families);
+  FamilyColumns all = searched_columns(settings_, families);
+  for (std::vector<std::string>& own : all.families) {
+    for (std::string& name : own) name.insert(0, raced_prefix);
+  }
+  return all;
 }
 
 double DevicesSearch::seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
 
 void DevicesSearch::run(std::size_t before) {
-  before_ = before;
+  for (std::size_t k = 0; k < settings_.size(); ++k) settings_[k].family = before + k;
   race_families();
   choose();
   if (!gave_up_ && known_->calibration().is_empty()) measure_ahead();
@@ -172,8 +176,6 @@ RaceOptions DevicesSearch::race_options() {
           .jobs = options_.jobs,
           .stop = options_.stop,
           .memory = options_.memory,
-          .first = before_,
-          .all = before_ + parameter_names().size(),
           .out_of_time = [this] { return gave_up_ || seconds() > race_end_; },
           .progress = [this](double part) { watch_.tell("searching for the devices", part); }};
 }

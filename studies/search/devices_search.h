@@ -73,6 +73,9 @@ struct InMeasuredUnits {
   DriveWaveforms best_waveforms = {};  ///< of the searched drives, in these units
 };
 
+/// What names of parameters of the race begin with, among those of all searches.
+inline constexpr std::string_view raced_prefix = "devices.";
+
 class DevicesSearch {
  public:
   /// Keeps references to the options. `tell` may be called from any thread. Throws as optimize() does.
@@ -83,13 +86,13 @@ class DevicesSearch {
   [[nodiscard]] const SearchSetting& first() const { return settings_.front(); }
   [[nodiscard]] const KnownUnits& known() const { return *known_; }
   [[nodiscard]] bool spread_assumed() const { return spread_assumed_; }
-  /// The parameters of all families.
-  [[nodiscard]] std::vector<std::string> parameter_names() const;
+  /// The parameters of all families, their names with raced_prefix.
+  [[nodiscard]] FamilyColumns columns() const;
   /// Since it was made.
   [[nodiscard]] double seconds() const;
 
-  /// Races, places what the race came to, and measures the devices of the verdict. `before`: parameters in front of those of the
-  /// race, among those of the memory. Throws Interrupted where it is told to stop.
+  /// Races, places what the race came to, and measures the devices of the verdict. `before`: families in front of those of the
+  /// race, among those that share the memory. Throws Interrupted where it is told to stop.
   void run(std::size_t before);
   /// From any thread: run() ends soon, with nothing that is of use.
   void give_up() { gave_up_ = true; }
@@ -158,7 +161,6 @@ class DevicesSearch {
   std::vector<SearchSetting> settings_;
   std::vector<std::string> names_;  // of the families
   std::optional<KnownUnits> known_;
-  std::size_t before_ = 0;
   std::atomic<bool> gave_up_ = false;
   double race_end_ = 0;                // since the beginning [s]
   std::vector<Criterion> conditions_;  // with limits of their own

@@ -3,10 +3,12 @@
 // same bits as one that was never interrupted, and simulates only what is not there.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,7 +18,8 @@ namespace softland {
 
 /// A candidate, and on what it is tried.
 struct EvaluationKey {
-  std::vector<double> x;      ///< the searched parameters
+  std::size_t family = 0;     ///< of those that share the memory: which
+  std::vector<double> x;      ///< its searched parameters
   std::uint64_t devices = 0;  ///< of a spread; 0: the nominal device alone
   std::uint64_t seed = 0;     ///< that decides which devices these are
   /// Above this cost on some of the devices it is not tried on the rest.
@@ -37,6 +40,16 @@ class EvaluationMemory {
   virtual ~EvaluationMemory() = default;
   [[nodiscard]] virtual std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept = 0;
   virtual void note(const EvaluationKey& key, const EvaluationValues& values) noexcept = 0;
+};
+
+/// The parameters of families that share a memory or a log, as columns of a table.
+struct FamilyColumns {
+  std::vector<std::vector<std::string>> families;  ///< of each the names of its parameters
+
+  /// Of all columns.
+  [[nodiscard]] std::vector<std::string> names() const;
+  /// At a point of one family: NaN in the columns of the others.
+  [[nodiscard]] std::vector<double> row(std::size_t family, std::span<const double> x) const;
 };
 
 /// Waveforms that a search is to begin with.

@@ -1,34 +1,16 @@
 #include "studies/search/family_search.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace softland {
-bool ParameterBlock::holds(std::span<const double> point) const { return !std::isnan(point[begin_]); }
-
-std::vector<double> ParameterBlock::point(std::span<const double> own) const {
-  std::vector<double> all(all_, std::numeric_limits<double>::quiet_NaN());
-  std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(begin_));
-  return all;
-}
-
-FamilySearch::FamilySearch(const SearchSetting& setting, const ParameterBlock& block, const OptimizeOptions& options,
+FamilySearch::FamilySearch(const SearchSetting& setting, std::size_t number, const OptimizeOptions& options,
                            std::function<void(const Evaluation&)> on_evaluation)
     : setting_(setting),
-      block_(block),
+      number_(number),
       options_(options),
       problem_{.variables = setting.space.variables(), .starts = setting.space.starts()},
-      stages_([this](std::span<const double> x) { return price(x); },
-              [this, told = std::move(on_evaluation)](const Evaluation& e) { told(among_all(e)); }, slopes()) {}
-
-SearchCosts FamilySearch::price(std::span<const double> own) const {
-  LastClosing& last = last_of_thread();
-  if (options_.memory == nullptr) return setting_.price_at(own, nullptr, &last);
-  MemoryOfFamily memory(*options_.memory, block_);
-  return setting_.price_at(own, &memory, &last);
-}
+      stages_([this](std::span<const double> x) { return setting_.price_at(x, options_.memory, &last_of_thread()); },
+              [this, told = std::move(on_evaluation)](const Evaluation& e) { told(numbered(e)); }, slopes()) {}
 
 LastClosing& FamilySearch::last_of_thread() const {
   const std::lock_guard lock(last_mutex_);
@@ -62,18 +44,8 @@ void FamilySearch::begin_at(const DriveWaveforms& waveforms) {
   }
 }
 
-void FamilySearch::begin_at_point(const std::vector<double>& own) {
-  problem_.starts.insert(problem_.starts.end() - static_cast<std::ptrdiff_t>(setting_.space.starts().size()), own);
-}
-
-std::vector<double> FamilySearch::own(const Evaluation& e) const {
-  const std::span<const double> x = block_.own(e.x);
-  return {x.begin(), x.end()};
-}
-
-std::vector<double> FamilySearch::point(const DriveWaveforms& waveforms) const {
-  const auto own = setting_.space.parameters(waveforms);
-  return own ? block_.point(*own) : std::vector<double>();
+void FamilySearch::begin_at_point(const std::vector<double>& x) {
+  problem_.starts.insert(problem_.starts.end() - static_cast<std::ptrdiff_t>(setting_.space.starts().size()), x);
 }
 
 OptimizerResult FamilySearch::run(const OptimizerOptions& share, Costs costs, long more, long first_index) {
@@ -82,16 +54,14 @@ OptimizerResult FamilySearch::run(const OptimizerOptions& share, Costs costs, lo
 
 std::optional<GuidedSearch::Best> FamilySearch::best(Costs costs) const {
   std::optional<GuidedSearch::Best> found = stages_.best(costs);
-  if (found) found->evaluation = among_all(std::move(found->evaluation));
+  if (found) found->evaluation.problem = number_;
   return found;
 }
 
-Evaluation FamilySearch::among_all(Evaluation e) const {
-  e.x = block_.point(e.x);
+Evaluation FamilySearch::numbered(Evaluation e) const {
+  e.problem = number_;
   return e;
 }
-
-DriveWaveforms FamilySearch::waveforms(const Evaluation& e) const { return setting_.space.waveforms(block_.own(e.x)); }
 
 std::optional<SceneFile> FamilySearch::scene(const Evaluation& e) const {
   const DriveWaveforms all = waveforms(e);
@@ -100,25 +70,23 @@ std::optional<SceneFile> FamilySearch::scene(const Evaluation& e) const {
 
 std::map<std::string, double> FamilySearch::named(const Evaluation& e) const {
   std::map<std::string, double> parameters;
-  const std::span<const double> x = block_.own(e.x);
-  for (std::size_t k = 0; k < x.size(); ++k) parameters[problem_.variables[k].name] = x[k];
+  for (std::size_t k = 0; k < e.x.size(); ++k) parameters[problem_.variables[k].name] = e.x[k];
   return parameters;
 }
 
 std::vector<Evaluation> FamilySearch::log() const {
   std::vector<Evaluation> all;
-  for (const auto& [index, e] : stages_.log()) all.push_back(among_all(e));
+  for (const auto& [index, e] : stages_.log()) all.push_back(numbered(e));
   return all;
 }
 
-std::optional<Evaluation> FamilySearch::surest_below(double own, const std::vector<std::vector<double>>& others) const {
-  std::vector<std::vector<double>> own_others;
-  for (const std::vector<double>& other : others) {
-    const std::span<const double> x = block_.own(other);
-    if (block_.holds(other)) own_others.emplace_back(x.begin(), x.end());
+std::optional<Evaluation> FamilySearch::surest_below(double own, const std::vector<Evaluation>& others) const {
+  std::vector<std::vector<double>> of_family;
+  for (const Evaluation& other : others) {
+    if (other.problem == number_) of_family.push_back(other.x);
   }
-  const std::optional<Evaluation> found = stages_.surest_below(own, own_others);
-  return found ? std::optional(among_all(*found)) : std::nullopt;
+  const std::optional<Evaluation> found = stages_.surest_below(own, of_family);
+  return found ? std::optional(numbered(*found)) : std::nullopt;
 }
 
 }  // namespace softland

@@ -11,7 +11,6 @@
 #include "base/executor.h"
 #include "base/require.h"
 #include "studies/closing/plain_step.h"
-#include "studies/search/family_search.h"
 #include "studies/search/worse_than_step.h"
 
 namespace softland {
@@ -78,16 +77,12 @@ class DevicesStudy {
     own.keep_tried = true;
     if (std::isfinite(own.max_seconds)) own.max_seconds = end_of_drawing * own.max_seconds - searched_.seconds();
     own.max_seconds = std::max(own.max_seconds, 1e-3);
-    own.on_start = [this](const std::vector<std::string>& names) {
-      std::vector<std::string> all = names;
-      for (const std::string& name : searched_.parameter_names()) all.push_back(std::string(raced_prefix) + name);
+    own.on_start = [this](const FamilyColumns& of_drawing) {
+      FamilyColumns all = of_drawing;
+      std::ranges::copy(searched_.columns().families, std::back_inserter(all.families));
       if (options_.on_start) options_.on_start(all);
-      if (options_.memory != nullptr) {  // which may be there from now on only
-        block_of_drawing_.emplace(0, names.size(), all.size());
-        memory_of_drawing_.emplace(*options_.memory, *block_of_drawing_);
-        drawing_options_.memory = &*memory_of_drawing_;
-      }
-      search_beside(names.size());
+      drawing_options_.memory = options_.memory;  // which may be there from now on only
+      search_beside(of_drawing.families.size());
     };
     return own;
   }
@@ -300,8 +295,6 @@ class DevicesStudy {
   std::atomic<bool> searches_drawing_ = false;
   DevicesSearch searched_;
   OptimizeOptions drawing_options_;
-  std::optional<ParameterBlock> block_of_drawing_;  // its parameters among those of all searches
-  std::optional<MemoryOfFamily> memory_of_drawing_;
   std::optional<ForDevicesResult> result_;  // once there is a drawing
   std::future<void> beside_;                // the last: what it uses outlives it
 };

@@ -31,9 +31,6 @@
 
 namespace softland {
 
-/// What names of parameters of the race begin with, among those of all searches.
-inline constexpr std::string_view raced_prefix = "devices.";
-
 /// Shares a budget of closings, which is that of everything together: a fifth of options.max_evaluations is for the drawing, the
 /// rest for the race.
 void share_budget(OptimizeOptions& options, ForDevicesOptions& devices);

@@ -70,15 +70,9 @@ class Search {
         max_seconds_(max_seconds),
         names_(families_of(options.family)),
         progress_{.baseline_cost = settings.front().baseline_cost} {
-    const std::vector<std::string> variables = searched_names(settings, options.family);
-    std::size_t begin = 0;
-    for (const SearchSetting& setting : settings) {
-      const std::size_t size = setting.space.variables().size();
-      families_.emplace_back(setting, ParameterBlock(begin, size, variables.size()), options,
-                             [this](const Evaluation& e) { evaluated(e); });
-      begin += size;
-    }
-    if (options.on_start) options.on_start(variables);
+    for (std::size_t k = 0; k < settings.size(); ++k)
+      families_.emplace_back(settings[k], k, options, [this](const Evaluation& e) { evaluated(e); });
+    if (options.on_start) options.on_start(searched_columns(settings, options.family));
   }
 
   // A scene that holds a landing already is refined, and so are landings that other searches have found: they are the first
@@ -95,7 +89,7 @@ class Search {
     if (!is_divided(options_.max_evaluations)) begin_at_rest();
     for (const auto& swing : joint_swings(setting.given, setting.space)) {
       for (FamilySearch& family : families_) {
-        if (!family.point(swing).empty()) family.begin_at(swing);
+        if (family.point(swing)) family.begin_at(swing);
       }
     }
   }
@@ -107,7 +101,7 @@ class Search {
   }
 
   // Of a search of one family.
-  void begin_at_point(const std::vector<double>& own) { families_.front().begin_at_point(own); }
+  void begin_at_point(const std::vector<double>& x) { families_.front().begin_at_point(x); }
 
   // Of a piezo and of several drives, which can bring all modes to rest.
   [[nodiscard]] std::vector<DriveWaveforms> landings_at_rest() const {
@@ -128,11 +122,9 @@ class Search {
   // The landings that were given and the best of what the search came upon.
   void verify(Verification& all) const {
     for (const FoundWaveform& given : landings_) all.add(given);
-    std::vector<std::vector<double>> tried;
-    std::vector<long> numbers;  // theirs
+    std::vector<Evaluation> tried;
     const auto add = [&](const Evaluation& e) {
-      tried.push_back(e.x);
-      numbers.push_back(e.index);
+      tried.push_back(e);
       all.add(found(e));
     };
     for (const Evaluation& e : candidates(all_.improvements)) {
@@ -144,7 +136,7 @@ class Search {
       std::size_t added = 0;
       for (const Evaluation& e : candidates(improvements_of(families_[k].log()))) {
         if (added == most_of_family || all.decided(e.value)) break;
-        if (std::ranges::find(numbers, e.index) != numbers.end()) continue;
+        if (std::ranges::find(tried, e.index, &Evaluation::index) != tried.end()) continue;
         add(e);
         ++added;
       }
@@ -166,7 +158,7 @@ class Search {
   struct Promising {
     std::size_t family = 0;
     double least = std::numeric_limits<double>::infinity();
-    std::vector<std::vector<double>> points = {};  ///< of the family's own parameters
+    std::vector<std::vector<double>> points = {};
   };
 
   // By another cost, of every family that has any; that of the best first.
@@ -176,7 +168,7 @@ class Search {
       std::vector<std::pair<double, std::vector<double>>> own;
       for (const Evaluation& e : candidates(improvements_of(families_[k].log()))) {
         const DriveWaveforms waveforms = families_[k].waveforms(e);
-        own.emplace_back(other.price(other.given.driven(other.drives(waveforms))).own, families_[k].own(e));
+        own.emplace_back(other.price(other.given.driven(other.drives(waveforms))).own, e.x);
       }
       if (own.empty()) continue;
       std::ranges::stable_sort(own, {}, &std::pair<double, std::vector<double>>::first);
@@ -200,7 +192,7 @@ class Search {
     std::vector<std::size_t> of_family(families_.size(), 0);
     const std::size_t rung = std::max<std::size_t>(1, all.size() / kept_of_ladder);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const std::size_t k = family_of(all[i]);
+      const std::size_t k = all[i].problem;
       if (i >= kept_best && i % rung != 0 && of_family[k] >= kept_of_family) continue;
       ++of_family[k];
       kept.push_back({.family = names_[k], .cost = all[i].value, .waveforms = families_[k].waveforms(all[i])});
@@ -257,7 +249,7 @@ class Search {
   }
 
   [[nodiscard]] FoundWaveform found(const Evaluation& e) const {
-    const std::size_t k = family_of(e);
+    const std::size_t k = e.problem;
     return {.scene = families_[k].prepared(e),
             .cost = settings_[k].richer.empty() ? e.value : own_cost(k, e),
             .family = names_[k],
@@ -290,8 +282,10 @@ class Search {
     FoundWaveform& landing = landings_.emplace_back(FoundWaveform{
         .scene = prepared(), .cost = cost, .family = names_[0], .variables = settings_[0].space.variables(), .parameters = {}});
     for (std::size_t k = 0; k < families_.size() && given.x.empty(); ++k) {
-      given.x = families_[k].point(waveforms);
-      if (given.x.empty()) continue;
+      const auto x = families_[k].point(waveforms);
+      if (!x) continue;
+      given.x = *x;
+      given.problem = k;
       landing.family = names_[k];
       landing.variables = settings_[k].space.variables();
       landing.parameters = families_[k].named(given);
@@ -307,13 +301,7 @@ class Search {
     if (improves) progress_.best_cost = e.value;
     if (options_.on_evaluation) options_.on_evaluation(e, progress_);
     if (!improves || !options_.on_improvement || !(e.value < never_touched)) return;
-    if (const std::optional<SceneFile> scene = families_[family_of(e)].scene(e)) options_.on_improvement(e, *scene);
-  }
-
-  [[nodiscard]] std::size_t family_of(const Evaluation& e) const {
-    std::size_t k = 0;
-    while (!families_[k].holds(e)) ++k;
-    return k;
+    if (const std::optional<SceneFile> scene = families_[e.problem].scene(e)) options_.on_improvement(e, *scene);
   }
 
   // The family of the least cost; of equals the first.

@@ -70,9 +70,9 @@ struct OptimizeOptions {
   /// Told before and after the search itself, of the pull-in voltages, the baseline and the runs that verify the winner: see
   /// Watch.
   std::function<void(std::string_view what, double part)> on_preparation = {};
-  /// Called once, when scene and options have been found valid and before the first evaluation, with the names of the searched
-  /// parameters in the order of Evaluation::x: searched_names(). Of several families those that a point is not of are NaN.
-  std::function<void(const std::vector<std::string>&)> on_start = {};
+  /// Called once, when scene and options have been found valid and before the first evaluation, with the searched
+  /// parameters of every family: an evaluation is of the one that is its problem.
+  std::function<void(const FamilyColumns&)> on_start = {};
   /// Called under a lock after every evaluation.
   std::function<void(const Evaluation&, const OptimizeProgress&)> on_evaluation = {};
   /// Called under the same lock where a search is at work that is not on record, as on a part of the devices.
@@ -127,7 +127,7 @@ struct OptimizeResult {
   std::vector<std::string> broken_conditions = {};  ///< by the winner
   std::vector<TriedWaveform> tried = {};            ///< see OptimizeOptions::keep_tried
 
-  /// The winner's value of one of searched_names(); NaN where its family has no such parameter, or there is no winner.
+  /// The winner's value of one of searched_columns(); NaN where its family has no such parameter, or there is no winner.
   [[nodiscard]] double parameter(std::string_view name) const;
 };
 

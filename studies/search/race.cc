@@ -11,7 +11,6 @@
 #include "optimizers/sobol.h"
 #include "studies/devices/robustness.h"
 #include "studies/search/device_chain.h"
-#include "studies/search/family_search.h"
 
 namespace softland {
 namespace {
@@ -49,14 +48,7 @@ class Race {
  public:
   Race(const std::vector<SearchSetting>& settings, std::size_t first_family, const RobustCost& cost, const RaceAims& aims,
        const RaceOptions& options)
-      : settings_(settings), first_family_(first_family), cost_(cost), aims_(aims), options_(options) {
-    std::size_t begin = options.first;
-    for (const SearchSetting& setting : settings) {
-      const std::size_t size = setting.space.variables().size();
-      blocks_.emplace_back(begin, size, std::max(options.all, begin + size));
-      begin += size;
-    }
-  }
+      : settings_(settings), first_family_(first_family), cost_(cost), aims_(aims), options_(options) {}
 
   RaceResult run(std::vector<Runner> runners, const std::vector<DriveWaveforms>& begun, bool all_rungs) {
     const double length = static_cast<double>(options_.closings) / static_cast<double>(race_closings);
@@ -164,9 +156,7 @@ class Race {
         runners.size(), options_.jobs,
         [&](std::size_t i) {
           Runner& r = runners[i];
-          std::optional<MemoryOfFamily> memory;
-          if (options_.memory != nullptr) memory.emplace(*options_.memory, blocks_[r.family]);
-          const StagedCost staged(setting(r), cost_, aim(r), memory ? &*memory : nullptr, identity(r));
+          const StagedCost staged(setting(r), cost_, aim(r), options_.memory, identity(r));
           const std::size_t devices = std::min(rung.devices, cost_.devices());
           const double before = staged.tried(r.x, devices, without_limit, options_.jobs).cost;
           const ChainEnd end = search_chain(staged, setting(r).space.variables(),
@@ -248,8 +238,7 @@ class Race {
   const RobustCost& cost_;
   const RaceAims& aims_;
   const RaceOptions& options_;
-  std::vector<ParameterBlock> blocks_;  // of the families
-  bool alone_ = false;                  // one search, not a race
+  bool alone_ = false;  // one search, not a race
   std::atomic<long> closings_ = 0;
   double planned_ = 1;
 };

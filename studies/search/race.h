@@ -63,8 +63,7 @@ struct RaceOptions {
   std::uint64_t seed = 1;
   int jobs = 1;  ///< threads; does not change the result
   const std::atomic<bool>* stop = nullptr;
-  EvaluationMemory* memory = nullptr;         ///< asked in the parameters of all families: see ParameterBlock
-  std::size_t first = 0, all = 0;             ///< where these parameters stand among those of the memory
+  EvaluationMemory* memory = nullptr;         ///< asked with SearchSetting::family
   std::function<bool()> out_of_time = {};     ///< may be null
   std::function<void(double)> progress = {};  ///< told the part that is done, from any thread
 };

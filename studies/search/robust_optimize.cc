@@ -347,7 +347,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& optio
   out.variables = setting.space.variables();
   std::vector<std::string> names;
   for (const Variable& v : out.variables) names.push_back(v.name);
-  if (options.on_start) options.on_start(names);
+  if (options.on_start) options.on_start({.families = {names}});
   const std::vector<DeviceOutcome> of_step = cost.close(setting.drives({}), 0, cost.devices(), options.jobs);
   robust.aim.conditions = beside_step(std::move(robust.aim.conditions), of_step);
   out.baseline_cost = cost.value(of_step);
@@ -397,7 +397,7 @@ SearchedParameters searched_parameters(const SceneFile& file, const OptimizeOpti
     static_cast<void>(known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch));
     static_cast<void>(Ensemble(setting.given, 1, options.seed));
   }
-  return {.names = searched_names(settings, options.family),
+  return {.columns = searched_columns(settings, options.family),
           .significant_rebound = setting.given.scene.metrics.significant_rebound};
 }
 

@@ -60,7 +60,7 @@ struct RobustResult {
 
 /// What a search will vary, and the height from which on a rebound counts.
 struct SearchedParameters {
-  std::vector<std::string> names;
+  FamilyColumns columns;
   double significant_rebound = 0;  ///< [m]
 };
 /// Of optimize(), or of robust_optimize() `over_devices`; throws what these would throw before they begin.

@@ -211,7 +211,7 @@ SearchCosts SearchSetting::price_of(const RecordedClosing& closing) const {
 SearchCosts SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memory, LastClosing* last) const {
   std::optional<std::vector<Signal>> told = allowed_told(space.waveforms(x));
   if (!told) return {};
-  const EvaluationKey key{.x = {x.begin(), x.end()}};
+  const EvaluationKey key{.family = family, .x = {x.begin(), x.end()}};
   if (memory != nullptr) {
     if (const auto known = memory->recall(key)) return {.leading = known->leading, .own = known->cost, .lands = known->lands};
   }
@@ -376,16 +376,18 @@ std::vector<SearchSetting> search_settings(const SceneFile& file, const Aim& tar
   std::vector<SearchSetting> all = {search_setting(file, target, actuator, names.front(), watch, std::move(conditions), own)};
   for (std::size_t k = 1; k < names.size(); ++k) {
     all.push_back(all.front());
+    all.back().family = k;
     all.back().space = SearchSpace(all.front().given, actuator, names[k], all.front().scale.step.initial_contact_time, own);
   }
   return all;
 }
 
-std::vector<std::string> searched_names(const std::vector<SearchSetting>& settings, const std::string& families) {
+FamilyColumns searched_columns(const std::vector<SearchSetting>& settings, const std::string& families) {
   const std::vector<std::string> names = families_of(families);
-  std::vector<std::string> all;
+  FamilyColumns all;
   for (std::size_t k = 0; k < settings.size(); ++k) {
-    for (const Variable& v : settings[k].space.variables()) all.push_back(prefix_of(families, names[k]) + v.name);
+    std::vector<std::string>& own = all.families.emplace_back();
+    for (const Variable& v : settings[k].space.variables()) own.push_back(prefix_of(families, names[k]) + v.name);
   }
   return all;
 }

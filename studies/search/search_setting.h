@@ -50,6 +50,7 @@ struct SearchSetting {
   double baseline_cost = 0;
   ClosingOptions run;  ///< of a candidate
   SearchSpace space;
+  std::size_t family = 0;                      ///< its number among those that share a memory
   std::map<std::string, DriverLimits> limits;  ///< that searched waveforms keep: those of the drivers, or gentler edges
   /// Where there are any, a candidate is priced by the worst of its closings with the scene's modes and with these.
   std::vector<RicherBeam> richer = {};
@@ -107,12 +108,12 @@ struct SearchSetting {
                                            const Watch& watch, std::vector<Criterion> conditions = {},
                                            const OwnWaveforms& own = {});
 
-/// One for each of the families that are named: families_of(). They differ in their space alone.
+/// One for each of the families that are named: families_of(). They differ in family and space alone.
 [[nodiscard]] std::vector<SearchSetting> search_settings(const SceneFile& file, const Aim& target, Actuator actuator,
                                                          const std::string& families, const Watch& watch,
                                                          std::vector<Criterion> conditions = {}, const OwnWaveforms& own = {});
 /// The parameters of all families, by drive.name, of several by family.drive.name.
-[[nodiscard]] std::vector<std::string> searched_names(const std::vector<SearchSetting>& settings, const std::string& families);
+[[nodiscard]] FamilyColumns searched_columns(const std::vector<SearchSetting>& settings, const std::string& families);
 
 /// By how much a closing breaks the conditions, added up; each by at most 10.
 [[nodiscard]] double broken(const std::vector<Criterion>& conditions, const Metrics& metrics);

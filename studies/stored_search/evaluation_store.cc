@@ -25,10 +25,10 @@ std::vector<StoredColumn> columns_for(const std::vector<std::string>& variables)
   return columns;
 }
 
-// Equal keys ask for the same number.
-ContentKey content_of(const EvaluationKey& key) {
+// Equal keys ask for the same number. `row`: of all columns, as the stores of former versions have it.
+ContentKey content_of(const EvaluationKey& key, const std::vector<double>& row) {
   std::string text = fmt::format("{} {} {:016x}", key.devices, key.seed, std::bit_cast<std::uint64_t>(key.hopeless));
-  for (const double x : key.x) text += fmt::format(" {:016x}", std::bit_cast<std::uint64_t>(x));
+  for (const double x : row) text += fmt::format(" {:016x}", std::bit_cast<std::uint64_t>(x));
   return content_key(text);
 }
 
@@ -45,8 +45,10 @@ StoredPlan evaluation_plan(const nlohmann::json& plan, std::int64_t points, std:
 }  // namespace
 
 EvaluationStore::EvaluationStore(const std::filesystem::path& file, const nlohmann::json& plan, std::int64_t points,
-                                 std::uint64_t seed, const std::vector<std::string>& variables, const StoredOrigin& origin)
-    : store_(file, evaluation_plan(plan, points, seed, variables), origin, StudyStore::Opening::resume), points_(points) {
+                                 std::uint64_t seed, FamilyColumns columns, const StoredOrigin& origin)
+    : columns_(std::move(columns)),
+      store_(file, evaluation_plan(plan, points, seed, columns_.names()), origin, StudyStore::Opening::resume),
+      points_(points) {
   StudyReader(file).read([&](const StoredRow& row) {
     known_.emplace(row.content, values_of(row));
     next_ = row.point + 1;
@@ -55,7 +57,8 @@ EvaluationStore::EvaluationStore(const std::filesystem::path& file, const nlohma
 
 std::optional<EvaluationValues> EvaluationStore::recall(const EvaluationKey& key) noexcept {
   try {
-    const ContentKey content = content_of(key);
+    const std::vector<double> row = columns_.row(key.family, key.x);
+    const ContentKey content = content_of(key, row);
     {
       const std::scoped_lock lock(mutex_);
       if (const auto found = known_.find(content); found != known_.end()) {
@@ -66,7 +69,7 @@ std::optional<EvaluationValues> EvaluationStore::recall(const EvaluationKey& key
     const std::optional<StoredRow> earlier = store_.find(content);
     if (!earlier) return std::nullopt;
     const EvaluationValues values = values_of(*earlier);
-    add(content, key, values);
+    add(content, key, row, values);
     const std::scoped_lock lock(mutex_);
     ++recalled_;
     return values;
@@ -83,15 +86,18 @@ void EvaluationStore::note(const EvaluationKey& key, const EvaluationValues& val
       const std::scoped_lock lock(mutex_);
       ++computed_;
     }
-    add(content_of(key), key, values);
+    std::vector<double> row = columns_.row(key.family, key.x);
+    const ContentKey content = content_of(key, row);
+    add(content, key, std::move(row), values);
   } catch (...) {
     const std::scoped_lock lock(mutex_);
     if (!failure_) failure_ = std::current_exception();
   }
 }
 
-void EvaluationStore::add(const ContentKey& content, const EvaluationKey& key, const EvaluationValues& values) {
-  StoredRow row{.content = content, .status = std::isfinite(values.cost) ? "done" : "infeasible", .values = key.x};
+void EvaluationStore::add(const ContentKey& content, const EvaluationKey& key, std::vector<double> x,
+                          const EvaluationValues& values) {
+  StoredRow row{.content = content, .status = std::isfinite(values.cost) ? "done" : "infeasible", .values = std::move(x)};
   const auto or_none = [&](double value) {
     return key.devices > 0 && std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
   };

@@ -22,9 +22,10 @@ inline constexpr const char* evaluations_file = "evaluations.sqlite";
 /// another budget, is taken over when it is asked for.
 class EvaluationStore : public EvaluationMemory {
  public:
-  /// `points`: how many evaluations the plan asks for at the most; those beyond are not kept. Throws as StudyStore does.
+  /// `columns` of all families, `points`: how many evaluations the plan asks for at the most; those beyond are not kept. Throws
+  /// as StudyStore does.
   EvaluationStore(const std::filesystem::path& file, const nlohmann::json& plan, std::int64_t points, std::uint64_t seed,
-                  const std::vector<std::string>& variables, const StoredOrigin& origin);
+                  FamilyColumns columns, const StoredOrigin& origin);
 
   [[nodiscard]] std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override;
   void note(const EvaluationKey& key, const EvaluationValues& values) noexcept override;
@@ -38,8 +39,9 @@ class EvaluationStore : public EvaluationMemory {
   void close();
 
  private:
-  void add(const ContentKey& content, const EvaluationKey& key, const EvaluationValues& values);
+  void add(const ContentKey& content, const EvaluationKey& key, std::vector<double> x, const EvaluationValues& values);
 
+  FamilyColumns columns_;
   StudyStore store_;
   std::int64_t points_;
   mutable std::mutex mutex_;

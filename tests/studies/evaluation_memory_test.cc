@@ -39,8 +39,8 @@ class Memory : public EvaluationMemory {
   void count_anew() { noted_ = 0; }
 
  private:
-  using Key = std::tuple<std::vector<double>, std::uint64_t, std::uint64_t, double>;
-  static Key tied(const EvaluationKey& key) { return {key.x, key.devices, key.seed, key.hopeless}; }
+  using Key = std::tuple<std::size_t, std::vector<double>, std::uint64_t, std::uint64_t, double>;
+  static Key tied(const EvaluationKey& key) { return {key.family, key.x, key.devices, key.seed, key.hopeless}; }
   std::mutex mutex_;
   std::map<Key, EvaluationValues> known_;
   long noted_ = 0;
@@ -148,7 +148,7 @@ TEST(StartingWaveforms, ThatDoNotFitAreRefusedBeforeTheSearchBegins) {
   const auto refused = [](const Waveform& waveform, const char* family) {
     OptimizeOptions options{.family = family, .max_evaluations = 6};
     options.starts = {{.name = "earlier", .waveforms = {{"main", waveform}}}};
-    options.on_start = [](const std::vector<std::string>&) { ADD_FAILURE() << "begun"; };
+    options.on_start = [](const FamilyColumns&) { ADD_FAILURE() << "begun"; };
     return refusal([&] { (void)optimize(quick(), options); });
   };
   EXPECT_EQ(refused(Pulse{.levels = {20, 5, 17}, .times = {20e-6, 32e-6}, .edge = 1e-6}, "pulse"),

@@ -28,8 +28,6 @@ class Race : public testing::Test {
 
   RaceResult run(RaceOptions options) {
     options.closings = race_closings / 4;
-    options.first = 1;
-    options.all = 1 + settings_[0].space.variables().size() + settings_[1].space.variables().size();
     return race(settings_, cost_, aims_, options);
   }
   [[nodiscard]] double cost_of(const Racer& racer) const {
@@ -55,15 +53,17 @@ class Remembered final : public EvaluationMemory {
   }
   void note(const EvaluationKey& key, const EvaluationValues& values) noexcept override {
     const std::scoped_lock lock(mutex_);
-    size = key.x.size();
+    sizes[key.family] = key.x.size();
     ++noted;
     known_.emplace(text(key), values);
   }
-  std::size_t recalled = 0, noted = 0, size = 0;
+  std::size_t recalled = 0, noted = 0;
+  std::map<std::size_t, std::size_t> sizes;  // of points, by family
 
  private:
   static std::string text(const EvaluationKey& key) {
-    std::string all = std::to_string(key.devices) + " " + std::to_string(key.seed) + " " + std::to_string(key.hopeless);
+    std::string all = std::to_string(key.family) + " " + std::to_string(key.devices) + " " + std::to_string(key.seed) + " " +
+                      std::to_string(key.hopeless);
     for (const double x : key.x) all.append(reinterpret_cast<const char*>(&x), sizeof x);
     return all;
   }
@@ -77,7 +77,8 @@ TEST_F(Race, EndsWithTheSameBitsWhateverTheJobsAndTheMemory_optimized) {
   Remembered memory;
   const RaceResult two = run({.seed = 3, .jobs = 2, .memory = &memory});
   EXPECT_GT(memory.noted, 100U);
-  EXPECT_EQ(memory.size, 1 + settings_[0].space.variables().size() + settings_[1].space.variables().size());
+  EXPECT_EQ(memory.sizes, (std::map<std::size_t, std::size_t>{{0, settings_[0].space.variables().size()},
+                                                              {1, settings_[1].space.variables().size()}}));
   const std::size_t noted = memory.noted;
   const RaceResult again = run({.seed = 3, .jobs = 2, .memory = &memory});
   EXPECT_EQ(memory.noted, noted) << "all is known";

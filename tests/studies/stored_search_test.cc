@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <filesystem>
 #include <initializer_list>
@@ -46,8 +47,8 @@ class StoredSearches : public testing::Test {
     StoredSearch search = stored_search(asked, fs::exists(file()) ? std::vector{file()} : std::vector<fs::path>(), known);
     EXPECT_EQ(known.has_value(), fs::exists(file()));
     std::optional<EvaluationStore> store;
-    search.options.on_start = [&](const std::vector<std::string>& variables) {
-      store.emplace(file(), search.plan, evaluations_at_most(search), search.options.seed, variables, StoredOrigin{});
+    search.options.on_start = [&](const FamilyColumns& columns) {
+      store.emplace(file(), search.plan, evaluations_at_most(search), search.options.seed, columns, StoredOrigin{});
       search.options.memory = &*store;
     };
     const FoundSearch found = run(search);
@@ -107,17 +108,44 @@ TEST_F(StoredSearches, SayWhatTheyDifferIn) {
   EXPECT_EQ(refusal(asked("50")), "taken");
 }
 
+// So that what former versions have left is not simulated again.
+TEST_F(StoredSearches, KnowAPointOfAFamilyByTheValuesOfAllColumns) {
+  const FamilyColumns columns{
+      .families = {{"pulse.main.level_1_V", "pulse.main.time_1_s"}, {"step.main.level_V"}, {"a.x", "a.y"}}};
+  EXPECT_THAT(columns.names(),
+              testing::ElementsAre("pulse.main.level_1_V", "pulse.main.time_1_s", "step.main.level_V", "a.x", "a.y"));
+  EXPECT_THAT(columns.row(1, std::array{2.0}),
+              testing::ElementsAre(testing::IsNan(), testing::IsNan(), 2, testing::IsNan(), testing::IsNan()));
+  {
+    EvaluationStore store(file(), {{"a", 1}}, 10, 1, columns, {});
+    store.note({.family = 1, .x = {2}}, {.cost = 0.5, .leading = 0.25});
+    store.note({.family = 0, .x = {2, 3}}, {.cost = 0.75, .leading = 0.25});
+    EXPECT_EQ(store.recall({.family = 1, .x = {2}})->cost, 0.5);
+    EXPECT_FALSE(store.recall({.family = 1, .x = {3}}));
+    store.close();
+  }
+  std::vector<StoredRow> rows;
+  StudyReader(file()).read([&](const StoredRow& row) { rows.push_back(row); });
+  ASSERT_EQ(rows.size(), 2);
+  EXPECT_EQ(
+      rows[0].content,
+      content_key("0 0 7ff0000000000000 7ff8000000000000 7ff8000000000000 4000000000000000 7ff8000000000000 7ff8000000000000"));
+  EXPECT_EQ(
+      rows[1].content,
+      content_key("0 0 7ff0000000000000 4000000000000000 4008000000000000 7ff8000000000000 7ff8000000000000 7ff8000000000000"));
+}
+
 TEST_F(StoredSearches, OfSeveralSeedsAreRowsThatAreNotComputedAgain) {
   AskedSearch several = asked("60");
   several.request.seeds = "3";
   several.jobs = 2;
   const StoredSearch search = stored_search(several);
-  const std::vector<std::string> variables = searched_parameters(search.scene, search.options, false, {}).names;
+  const FamilyColumns columns = searched_parameters(search.scene, search.options, false, {}).columns;
   const auto study = [&](std::atomic<bool>* stop) {
     StoredSearch own = search;
     own.options.stop = stop;
-    EvaluationStore evaluations(file(), own.plan, evaluations_at_most(own), own.options.seed, variables, {});
-    SeedStudy seeds(own, evaluations, folder_.path() / "seeds.sqlite", variables, {});
+    EvaluationStore evaluations(file(), own.plan, evaluations_at_most(own), own.options.seed, columns, {});
+    SeedStudy seeds(own, evaluations, folder_.path() / "seeds.sqlite", columns.names(), {});
     int improved = 0;
     seeds.run({.improvement = [&](const SceneFile&) { ++improved; }});
     const std::vector<SearchOfSeed> all = seeds.searches();
