@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
   for (const std::string key : {"structure.thickness", "structure.youngs_modulus", "gap.electrode"})
     file.set("spread.\"" + key + R"("={distribution="normal",cov="2 %"})");
   const PreparedScene nominal = prepare_and_choose(file, true);
-  const std::vector<EnsembleDrive> drives{{.waveforms = nominal.in_drive_order(nominal.drives.waveforms)}};
+  const std::vector<EnsembleDrive> drives{{.waveforms = nominal.waveforms()}};
   const Ensemble ensemble(nominal, 10'000);
   const double many =
       least(1, [&] { static_cast<void>(close_all(ensemble, drives, {.duration = nominal.duration, .jobs = jobs})); });

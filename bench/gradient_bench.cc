@@ -41,8 +41,8 @@ struct Rise {
 
 Rise rise_of(const SearchSetting& s, std::size_t levels) {
   const std::string drive = searched_electrode(s.given.scene.device);
-  const DriverLimits& limits = s.given.drives.limits.at(drive);
-  const double hold = signal(s.given.drives.waveforms.at(drive)).hold_level(), t0 = s.baseline.metrics.initial_contact_time;
+  const DriverLimits& limits = s.given.drives.at(drive).limits.value();
+  const double hold = s.given.drives.at(drive).hold_level(), t0 = s.baseline.metrics.initial_contact_time;
   Rise rise;
   for (std::size_t k = 0; k < levels; ++k) {
     rise.x.push_back((0.7 + 0.2 * static_cast<double>(k) / static_cast<double>(levels)) * hold);
@@ -54,7 +54,7 @@ Rise rise_of(const SearchSetting& s, std::size_t levels) {
 
 void measure(const SearchSetting& s, std::size_t levels) {
   const std::string drive = searched_electrode(s.given.scene.device);
-  const double hold = signal(s.given.drives.waveforms.at(drive)).hold_level();
+  const double hold = s.given.drives.at(drive).hold_level();
   const auto [x, lower, upper] = rise_of(s, levels);
   const auto signals_at = [&](std::span<const double> at) {
     BSpline spline{.levels = {at.begin(), at.end() - 1}, .duration = at.back()};

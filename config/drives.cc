@@ -230,53 +230,50 @@ std::string_view main_electrode(const Device& device) {
 
 Drives read_all(const SceneFile::Impl& file, const Device& device, const std::map<std::string, PullInVoltages>& pull_in,
                 LimitChecks checks) {
-  Drives drives;
+  std::vector<Drive> drives;
+  std::vector<std::string> notes;
   std::optional<double> main_hold;
   if (!main_electrode(device).empty()) main_hold = 0;
   for (const std::string_view drive : drive_names(device)) {  // the piezo comes last: it may refer to the main hold level
-    const std::string name(drive);
-    const auto found = pull_in.find(name);
+    Drive& one = drives.emplace_back(Drive{.name = std::string(drive)});
+    const auto found = pull_in.find(one.name);
     const PullInVoltages known = found == pull_in.end() ? PullInVoltages{} : found->second;
 
     const SectionReader driver(file, "driver", drive);
-    const std::optional<DriverLimits> limits = read_limits(driver, drive, known);
+    const std::optional<DriverLimits>& limits = one.limits = read_limits(driver, drive, known);
     const bool check_limits =
         limits && (checks == LimitChecks::all || (driver.keys_in_pull_in_units().empty() && driver.is_given("max_voltage")));
     if (check_limits) check_order(driver, *limits);
-    if (limits) drives.limits[name] = *limits;
-    if (const DriverModel model = read_model(driver, drive); !model.is_ideal()) drives.models[name] = model;
-    if (const SourceErrors errors = read_errors(driver); !errors.are_none()) drives.errors[name] = errors;
+    if (const DriverModel model = read_model(driver, drive); !model.is_ideal()) one.source = model;
+    one.errors = read_errors(driver);
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
     const double offset = drive == dispersion_drive ? -1 : 0;  // the value of a force factor is what it has beyond 1
-    double before = 0;
-    if (in.is_given(before_key)) {
-      before = drives.before[name] = offset + volts(in.quantities(before_key).front(), known);
-    }
+    if (in.is_given(before_key)) one.before = offset + volts(in.quantities(before_key).front(), known);
     Waveform waveform;
     if (in.is_given(file_key)) {
       FileRows rows = read_file_rows(in, drive, driver);
-      if (rows.before && !in.is_given(before_key)) before = drives.before[name] = offset + *rows.before;
-      if (!rows.told.empty()) drives.notes.push_back(std::move(rows.told));
+      if (rows.before && !in.is_given(before_key)) one.before = offset + *rows.before;
+      if (!rows.told.empty()) notes.push_back(std::move(rows.told));
       waveform = std::move(rows.table);
     } else {
       waveform = read_waveform(in, {.drive = drive,
                                     .pull_in = known,
                                     .main_hold = main_hold,
                                     .max_slew = limits ? limits->max_slew : std::numeric_limits<double>::infinity(),
-                                    .before = before});
+                                    .before = one.before.value_or(0)});
     }
     if (offset != 0) waveform = raised(std::move(waveform), offset);
+    const double before = one.before.value_or(0);
     const Signal compiled = compile(in, waveform, before);
     if (const double peak = compiled.peak(); drive != dispersion_drive && !any_voltage().contains(peak)) {
       file.fail_section(in.path(), fmt::format("reaches {}: {}", engineering(peak, "V"), any_voltage().rule("V")));
     }
     if (drive == main_electrode(device)) main_hold = compiled.hold_level();
     if (limits && checks == LimitChecks::all) {
-      const auto model = drives.models.find(name);
-      const bool may_be_samples = model != drives.models.end() && std::holds_alternative<Table>(waveform);
-      std::string broken = violation(compiled, may_be_samples ? limits_of_samples(*limits, model->second) : *limits);
+      const bool may_be_samples = !one.source.is_ideal() && std::holds_alternative<Table>(waveform);
+      std::string broken = violation(compiled, may_be_samples ? limits_of_samples(*limits, one.source) : *limits);
       if (!broken.empty()) {
         if (!driver.is_present())
           broken += fmt::format("; without [{}] the limits are 0 V and {} Vdp", driver.path(), default_max_voltage);
@@ -284,9 +281,11 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
         file.fail_section(in.path(), broken);
       }
     }
-    drives.waveforms[name] = std::move(waveform);
+    one.waveform = std::move(waveform);
   }
-  return drives;
+  Drives all(std::move(drives));
+  all.notes = std::move(notes);
+  return all;
 }
 
 /// The hold levels of all drives, in order, where every pull-in voltage that a scene needs is `volt` [V]. Of files that were read
@@ -297,10 +296,7 @@ std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene,
   const Drives drives = read_all(file, scene.device, pull_in, LimitChecks::without_pull_in);
   if (notes != nullptr) notes->insert(notes->end(), drives.notes.begin(), drives.notes.end());
   std::vector<double> levels;
-  for (const std::string_view drive : drive_names(scene.device)) {
-    const auto found = drives.waveforms.find(std::string(drive));
-    levels.push_back(found == drives.waveforms.end() ? 0 : signal(found->second).hold_level());
-  }
+  for (const Drive& drive : drives) levels.push_back(drive.hold_level());
   return levels;
 }
 

@@ -178,6 +178,44 @@ Scene read_scene(const SceneFile& file) {
   return scene;
 }
 
+double Drive::hold_level() const { return waveform ? signal(*waveform).hold_level() : 0; }
+
+const Drive* Drives::find(std::string_view name) const {
+  const auto found = std::ranges::find(drives_, name, &Drive::name);
+  return found == drives_.end() ? nullptr : &*found;
+}
+
+const Drive& Drives::at(std::string_view name) const {
+  const Drive* const found = find(name);
+  require(found != nullptr, [&] { return fmt::format("there is no drive '{}'", name); });
+  return *found;
+}
+
+Drive& Drives::at(std::string_view name) { return const_cast<Drive&>(std::as_const(*this).at(name)); }
+
+Drives Drives::of(const std::vector<std::string>& names) const {
+  Drives some;
+  some.notes = notes;
+  for (const std::string& name : names) some.drives_.push_back(at(name));
+  return some;
+}
+
+DriveWaveforms Drives::waveforms() const {
+  DriveWaveforms all;
+  for (const Drive& drive : drives_) {
+    if (drive.waveform) all.emplace(drive.name, *drive.waveform);
+  }
+  return all;
+}
+
+std::map<std::string, double> Drives::before() const {
+  std::map<std::string, double> all;
+  for (const Drive& drive : drives_) {
+    if (drive.before) all.emplace(drive.name, *drive.before);
+  }
+  return all;
+}
+
 Drives Scene::drives(const std::map<std::string, PullInVoltages>& pull_in) const {
   for (const std::string& name : need_pull_in) {
     const auto known = pull_in.find(name);
@@ -197,37 +235,33 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
   internal::hold_table(root, scene.device.structure);
   for (const char* drive_section : {"waveform", "driver"}) root.erase(drive_section);
   toml::table drivers;
-  for (const auto& [name, limits] : drives.limits) {
+  for (const Drive& drive : drives) {
+    if (!drive.limits) continue;
     toml::table keys;
     const auto insert = [&](std::string_view key, double value, const Dimension& unit) {
       if (std::isfinite(value)) keys.insert(key, quantity_text(value, unit));
     };
-    insert("min_voltage", limits.min_voltage, dimension::voltage);
-    insert("max_voltage", limits.max_voltage, dimension::voltage);
-    insert("max_slew", limits.max_slew, dimension::slew_rate);
-    if (const auto found = drives.models.find(name); found != drives.models.end()) {
-      const DriverModel& model = found->second;
-      if (model.bandwidth) insert("bandwidth", *model.bandwidth, dimension::frequency);
-      if (model.source_resistance) insert("source_resistance", *model.source_resistance, dimension::resistance);
-      if (model.parallel_capacitance > 0) insert("parallel_capacitance", model.parallel_capacitance, dimension::capacitance);
-      if (model.sample_rate) insert("sample_rate", *model.sample_rate, dimension::frequency);
-      if (model.bits) keys.insert("bits", *model.bits);
-    }
-    if (const auto found = drives.errors.find(name); found != drives.errors.end()) {
-      const SourceErrors& errors = found->second;
-      if (errors.gain != 1) keys.insert("gain", errors.gain);
-      if (errors.offset != 0) insert("offset", errors.offset, dimension::voltage);
-      if (errors.delay != 0) insert("delay", errors.delay, dimension::time);
-    }
-    drivers.insert(name, std::move(keys));
+    insert("min_voltage", drive.limits->min_voltage, dimension::voltage);
+    insert("max_voltage", drive.limits->max_voltage, dimension::voltage);
+    insert("max_slew", drive.limits->max_slew, dimension::slew_rate);
+    const DriverModel& source = drive.source;
+    if (source.bandwidth) insert("bandwidth", *source.bandwidth, dimension::frequency);
+    if (source.source_resistance) insert("source_resistance", *source.source_resistance, dimension::resistance);
+    if (source.parallel_capacitance > 0) insert("parallel_capacitance", source.parallel_capacitance, dimension::capacitance);
+    if (source.sample_rate) insert("sample_rate", *source.sample_rate, dimension::frequency);
+    if (source.bits) keys.insert("bits", *source.bits);
+    if (drive.errors.gain != 1) keys.insert("gain", drive.errors.gain);
+    if (drive.errors.offset != 0) insert("offset", drive.errors.offset, dimension::voltage);
+    if (drive.errors.delay != 0) insert("delay", drive.errors.delay, dimension::time);
+    drivers.insert(drive.name, std::move(keys));
   }
   if (!drivers.empty()) root.insert("driver", std::move(drivers));
 
   // Written and read once more: like any other file, the result then has lines to cite.
   SceneFile file = SceneFile::parse(internal::write_scene(root), impl.name + " (resolved)", impl.directory);
   if (impl.own_contact) file.add_contact(*impl.own_contact);
-  for (const auto& [name, waveform] : drives.waveforms) file.set_waveform(name, waveform);
-  for (const auto& [name, value] : drives.before) {
+  for (const auto& [name, waveform] : drives.waveforms()) file.set_waveform(name, waveform);
+  for (const auto& [name, value] : drives.before()) {
     const bool is_factor = name == internal::dispersion_drive;
     file.assign(internal::join_path(internal::join_path("waveform", name), internal::before_key),
                 is_factor ? Quantity{.value = 1 + value, .dimension = dimension::none}

@@ -94,17 +94,50 @@ struct PullInVoltages {
   double dynamic_pull_in = 0;  ///< Vdp [V]
 };
 
-/// Waveforms and limits in volts. Names are electrode names and "piezo".
 /// Of an electrode without [driver], in a search [Vdp].
 inline constexpr double default_max_voltage = 1.5;
 
-struct Drives {
-  DriveWaveforms waveforms;
-  std::map<std::string, double> before;        ///< what is given of them before t = 0 [V]; others stand at 0 V
-  std::map<std::string, DriverLimits> limits;  ///< only drives that have limits (electrodes always do, by default [0, 1.5 Vdp])
-  std::map<std::string, DriverModel> models;   ///< only sources that are not ideal
-  std::vector<std::string> notes = {};         ///< what was taken from files of other programs, one line each
-  std::map<std::string, SourceErrors> errors;  ///< only sources that have some: gain, offset and delay
+/// What drives a switch at one place, in volts: of an electrode, of the piezo, or of the dispersion force, whose factor less one
+/// stands for them.
+struct Drive {
+  std::string name = {};                    ///< of the electrode, "piezo" or "dispersion"
+  std::optional<Waveform> waveform = {};    ///< none: it stays at 0 V
+  std::optional<double> before = {};        ///< what is given of it before t = 0 [V]; none: 0 V
+  std::optional<DriverLimits> limits = {};  ///< electrodes always have some, by default [0, 1.5 Vdp]
+  DriverModel source = {};                  ///< ideal where the scene says nothing of it
+  SourceErrors errors = {};                 ///< gain, offset and delay of the source
+
+  [[nodiscard]] double hold_level() const;  ///< [V]
+};
+
+/// The drives of a switch, in the order of Switch::drives().
+class Drives {
+ public:
+  Drives() = default;
+  explicit Drives(std::vector<Drive> drives) : drives_(std::move(drives)) {}
+
+  std::vector<std::string> notes = {};  ///< what was taken from files of other programs, one line each
+
+  [[nodiscard]] std::size_t size() const { return drives_.size(); }
+  [[nodiscard]] auto begin() const { return drives_.begin(); }
+  [[nodiscard]] auto end() const { return drives_.end(); }
+  [[nodiscard]] auto begin() { return drives_.begin(); }
+  [[nodiscard]] auto end() { return drives_.end(); }
+  [[nodiscard]] const Drive& operator[](std::size_t k) const { return drives_[k]; }
+  [[nodiscard]] Drive& operator[](std::size_t k) { return drives_[k]; }
+  /// Null where the switch has no such drive.
+  [[nodiscard]] const Drive* find(std::string_view name) const;
+  /// Throws InvalidInput where the switch has no such drive.
+  [[nodiscard]] const Drive& at(std::string_view name) const;
+  [[nodiscard]] Drive& at(std::string_view name);
+  /// Those of these names, in their order.
+  [[nodiscard]] Drives of(const std::vector<std::string>& names) const;
+  /// What is given of them, by name: waveforms, and what they stand at before t = 0 [V].
+  [[nodiscard]] DriveWaveforms waveforms() const;
+  [[nodiscard]] std::map<std::string, double> before() const;
+
+ private:
+  std::vector<Drive> drives_;
 };
 
 struct SimulateOptions {

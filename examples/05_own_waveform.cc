@@ -50,15 +50,15 @@ int main(int argc, char** argv) try {
   if (argc != 2) return std::fputs("usage: 05_own_waveform SCENE\n", stderr), 2;
   const SceneFile scene = SceneFile::load(argv[1]);
   PreparedScene prepared = prepare_and_choose(scene, true);  // with the limits that drivers have where the scene names none
-  const double hold = signal(prepared.drives.waveforms.at("main")).hold_level();
-  const auto swell = std::make_shared<Swell>(hold, prepared.drives.limits.at("main").max_voltage);
+  const double hold = prepared.drives.at("main").hold_level();
+  const auto swell = std::make_shared<Swell>(hold, prepared.drives.at("main").limits->max_voltage);
   const auto row = [](const char* what, const Metrics& m) {
     std::printf("%-14s touches at %.4g us with %.4g mm/s, highest rebound %.4g nm\n", what, 1e6 * m.initial_contact_time,
                 1e3 * m.impact_velocity, 1e9 * m.major_bounce_height);
   };
 
   // 1. In the place of the scene's own waveform.
-  prepared.drives.waveforms["main"] = own(swell);
+  prepared.drives.at("main").waveform = own(swell);
   row("as it stands", simulate(prepared, false).metrics);
 
   // 2. Searched: it is named like a family, and could stand beside some, "swell+pulse".
@@ -73,7 +73,7 @@ int main(int argc, char** argv) try {
 
   // 3. On devices. No scene file can hold the waveform: what would write one refuses it by name.
   const Robustness devices =
-      robustness(*found.best_scene, {{.name = "swell", .waveforms = found.best_scene->drives.waveforms}}, {.samples = 200});
+      robustness(*found.best_scene, {{.name = "swell", .waveforms = found.best_scene->drives.waveforms()}}, {.samples = 200});
   for (const DriveRobustness& drive : devices.drives)
     std::printf("%-14s 95 %% of 200 devices touch at up to %.4g mm/s\n", drive.name.c_str(),
                 1e3 * drive.figures[figure_of("impact_velocity_m_s")].quantiles[2].value);

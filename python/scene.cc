@@ -64,17 +64,17 @@ std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const Prepa
   for (const auto& [drive, waveform] : waveforms) {
     const auto found = std::find(names.begin(), names.end(), drive);
     require(found != names.end(), [&] { return fmt::format("waveforms: the scene has no drive '{}'", drive); });
-    const auto limits = own->drives.limits.find(drive);
-    if (limits != own->drives.limits.end()) {
+    Drive& driven = own->drives.at(drive);
+    if (driven.limits) {
       const Signal told = own->told(static_cast<std::size_t>(found - names.begin()), waveform);
       // An own waveform is followed by cubics, which may miss it by as much.
       const double missed = std::holds_alternative<Own>(waveform) ? own_waveform_accuracy * told.peak() : 0;
-      const std::string why = violation(told, {.min_voltage = limits->second.min_voltage - missed,
-                                               .max_voltage = limits->second.max_voltage + missed,
-                                               .max_slew = limits->second.max_slew});
+      const std::string why = violation(told, {.min_voltage = driven.limits->min_voltage - missed,
+                                               .max_voltage = driven.limits->max_voltage + missed,
+                                               .max_slew = driven.limits->max_slew});
       require(why.empty(), [&] { return fmt::format("waveforms: {}: {}", drive, why); });
     }
-    own->drives.waveforms[drive] = waveform;
+    driven.waveform = waveform;
   }
   return own;
 }
@@ -316,10 +316,10 @@ Outcome judged(PyScene& scene, std::string name, const py::dict& others, std::ui
   kept->nominal = assumed ? spread.ready(true, run) : scene.ready(true, run);
   const PreparedScene& nominal = *kept->nominal;
   const Calibration& calibration = nominal.scene.calibration;
-  std::vector<NamedDrive> drives{{.name = std::move(name), .waveforms = nominal.drives.waveforms, .calibration = calibration}};
+  std::vector<NamedDrive> drives{{.name = std::move(name), .waveforms = nominal.drives.waveforms(), .calibration = calibration}};
   for (const auto& [other, given] : others) {
-    NamedDrive drive{.name = other.cast<std::string>(), .waveforms = nominal.drives.waveforms, .calibration = calibration};
-    for (auto& [of, waveform] : driven_by(kept->nominal, waveforms_of(given.cast<py::dict>(), run))->drives.waveforms)
+    NamedDrive drive{.name = other.cast<std::string>(), .waveforms = nominal.drives.waveforms(), .calibration = calibration};
+    for (auto& [of, waveform] : driven_by(kept->nominal, waveforms_of(given.cast<py::dict>(), run))->drives.waveforms())
       drive.waveforms[of] = waveform;
     drives.push_back(std::move(drive));
   }
@@ -483,7 +483,7 @@ void bind_scene(py::module_& m) {
       .def("waveforms",
            [](PyScene& s) {
              std::map<std::string, PyWaveform> all;
-             for (const auto& [drive, waveform] : s.ready()->drives.waveforms) all.emplace(drive, PyWaveform{waveform});
+             for (const auto& [drive, waveform] : s.ready()->drives.waveforms()) all.emplace(drive, PyWaveform{waveform});
              return all;
            })
       .def("duration", [](PyScene& s) { return s.ready()->duration; })

@@ -143,8 +143,8 @@ Outcome outcome_of_own(const OptimizeResult& found) {
 }
 
 bool is_own(const OptimizeResult& found) {
-  return found.best && found.best_scene && std::ranges::any_of(found.best_scene->drives.waveforms, [](const auto& one) {
-           return std::holds_alternative<Own>(one.second);
+  return found.best && found.best_scene && std::ranges::any_of(found.best_scene->drives, [](const Drive& one) {
+           return one.waveform && std::holds_alternative<Own>(*one.waveform);
          });
 }
 

@@ -99,7 +99,7 @@ class Maker {
  private:
   void find_drives() {
     const std::vector<std::string> names = p_.drive_names();
-    const std::vector<Signal> told = p_.told(p_.in_drive_order(p_.drives.waveforms));
+    const std::vector<Signal> told = p_.told(p_.waveforms());
     for (std::size_t k = 0; k < names.size(); ++k) {
       const std::string pin = spice_name(names[k]);
       const DriveKind kind = model_.drive_kind(k);

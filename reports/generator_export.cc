@@ -46,7 +46,7 @@ bool is_worse(const Metrics& sampled, const Metrics& drawn) {
 
 std::vector<std::string> exported_drives(const PreparedScene& p, const std::string& named) {
   const std::vector<std::string> names = p.drive_names();
-  const std::vector<Signal> told = p.told(p.in_drive_order(p.drives.waveforms));
+  const std::vector<Signal> told = p.told(p.waveforms());
   std::vector<std::string> driven, all;
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == dispersion_drive) continue;
@@ -68,7 +68,7 @@ void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const
 
 std::string generator_text(const GeneratorFormat& format, const PreparedScene& p, const std::string& drive, const Signal& told,
                            const Sampling& sampling) {
-  const DriverModel source = p.source(place_of(p, drive));
+  const DriverModel& source = p.drives.at(drive).source;
   require_field(source.sample_rate.has_value(), "format", format.name, [&] {
     return fmt::format("drive '{}' takes no samples: give {}, or [driver.{}] a sample_rate", drive, requested("sample-rate"),
                        drive);
@@ -92,7 +92,7 @@ std::vector<std::string> sampled_words(const PreparedScene& sampled, const Prepa
                                        const Watch& watch) {
   const Closing as_sampled = simulate(sampled, false, watch);
   std::vector<std::string> all{
-      fmt::format("as sampled, {}: {}", words(sampled.source(place_of(sampled, drive))), clause(sampled, as_sampled))};
+      fmt::format("as sampled, {}: {}", words(sampled.drives.at(drive).source), clause(sampled, as_sampled))};
   if (drawn == nullptr) return all;
   const Closing as_drawn = simulate(*drawn, false, watch);
   if (is_worse(as_sampled.metrics, as_drawn.metrics))

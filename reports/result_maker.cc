@@ -74,7 +74,7 @@ std::map<std::string, PullInVoltages> pull_in(const PreparedScene& p) {
 
 // What is the same for every study: of its scene, and of this program.
 Result started(const PreparedScene& p, const Provenance& provenance) {
-  for (const auto& [drive, waveform] : p.drives.waveforms) {
+  for (const auto& [drive, waveform] : p.drives.waveforms()) {
     if (const Own* own = std::get_if<Own>(&waveform))
       throw InvalidInput(fmt::format("waveform.{}: {} cannot be written into a result", drive, described(*own)));
   }

@@ -174,11 +174,10 @@ DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int j
 // The waveforms of that device. Throws InvalidInput where a source cannot give them.
 std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& measured, int jobs, const Watch& watch,
                                    const Say& say) {
-  const std::vector<Waveform> own =
-      in_units(p.in_drive_order(p.drives.waveforms), p.scene.device, units_of(p, measured, jobs, watch, say));
+  const std::vector<Waveform> own = in_units(p.waveforms(), p.scene.device, units_of(p, measured, jobs, watch, say));
   const std::vector<std::string> names = p.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (!p.drives.limits.contains(names[k])) continue;
+    if (!p.drives[k].limits) continue;
     const std::string broken = violation(p.told(k, own[k]), p.limits(k));
     const std::string& said = measured.said();
     require_request(broken.empty(),
@@ -194,7 +193,7 @@ std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& se
   for (std::size_t k = 0; k < names.size(); ++k) {
     const auto signal = sent.signals.find(names[k]);
     if (signal == sent.signals.end()) continue;
-    const DriverModel source = p.source(k);
+    const DriverModel& source = p.drives[k].source;
     if (!source.bits) {
       say(fmt::format("drive '{}' is left out: [driver.{}] has no sample_rate and bits", names[k], names[k]));
       continue;
@@ -274,9 +273,8 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
                   [] { return "is of the drawing, and of no device that was measured"; });
     return *std::move(model);
   }
-  SentSignals sent = sent_signals(
-      p, measured.are_none() ? p.in_drive_order(p.drives.waveforms) : waveforms_of(p, measured, request.jobs, watch, say),
-      sent_as);
+  SentSignals sent =
+      sent_signals(p, measured.are_none() ? p.waveforms() : waveforms_of(p, measured, request.jobs, watch, say), sent_as);
   if (!request.sampling.drive.empty())
     std::erase_if(sent.signals, [&](const auto& one) { return one.first != request.sampling.drive; });
   const double end = std::max(p.duration, last_breakpoint(sent.signals));  // the hold level belongs to the waveform

@@ -104,8 +104,8 @@ std::vector<Waveform> ToldShot::waveforms(const PreparedScene& nominal) const {
     });
     all.emplace(name, table);
   }
-  if (const auto scene = nominal.drives.waveforms.find(std::string(dispersion_drive)); scene != nominal.drives.waveforms.end())
-    all.insert(*scene);
+  if (const Drive* const force = nominal.drives.find(dispersion_drive); force != nullptr && force->waveform)
+    all.emplace(force->name, *force->waveform);
   return nominal.in_drive_order(all);
 }
 

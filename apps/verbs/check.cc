@@ -116,11 +116,6 @@ nlohmann::json by_electrode(std::map<std::string, nlohmann::json> of) {
   return of.size() == 1 ? std::move(of.begin()->second) : nlohmann::json(std::move(of));
 }
 
-DriverModel source_of(const PreparedScene& p, const std::string& drive) {
-  const std::vector<std::string> names = p.drive_names();
-  return p.source(static_cast<std::size_t>(std::find(names.begin(), names.end(), drive) - names.begin()));
-}
-
 // What --json gives, besides the state of the closed switch.
 nlohmann::json check_json(const PreparedScene& p, const std::map<std::string, nlohmann::json>& pull_in,
                           const std::vector<std::string>& warnings, const std::string& command) {
@@ -202,12 +197,12 @@ int check_verb(const Common& c) {
                                       plain_number(lambda / closed), given_quantity(lambda, "m", 3)));
   }
   for (const auto& [name, signal] : named_signals(p)) {
-    const auto limits = p.drives.limits.find(name);
+    const Drive& drive = p.drives.at(name);
     const auto searched = searched_to.find(name);
     std::string driver = "driver without limits";
-    if (limits != p.drives.limits.end()) {
-      driver = fmt::format("driver {} to {}", given_quantity(limits->second.min_voltage, "V"),
-                           given_quantity(limits->second.max_voltage, "V"));
+    if (drive.limits) {
+      driver = fmt::format("driver {} to {}", given_quantity(drive.limits->min_voltage, "V"),
+                           given_quantity(drive.limits->max_voltage, "V"));
     } else if (searched != searched_to.end()) {
       driver = fmt::format("no [driver.{}]: a search takes 0 V to {} Vdp, {}", name, plain_number(default_max_voltage),
                            quantity(searched->second, "V", 5));
@@ -217,12 +212,12 @@ int check_verb(const Common& c) {
                         "optimize, release, limit and robustness refuse the scene as it is",
                         name, given_quantity(signal.peak(), "V"), name));
     }
-    if (const auto errors = p.drives.errors.find(name); errors != p.drives.errors.end()) {
-      const auto& [gain, offset, delay, edges] = errors->second;
+    if (!drive.errors.are_none()) {
+      const auto& [gain, offset, delay, edges] = drive.errors;
       driver += fmt::format(", gain {}, offset {}, delay {}", plain_number(gain, 6), given_quantity(offset, "V"),
                             given_quantity(delay, "s"));
     }
-    if (const double charging = source_of(p, name).charging_time(); charging > 0)
+    if (const double charging = drive.source.charging_time(); charging > 0)
       driver += fmt::format(", charges the open switch with a time constant of {}", quantity(charging, "s", 3));
     const std::string before = signal.before() == 0 ? "" : fmt::format("{} before t = 0, ", given_quantity(signal.before(), "V"));
     add("drive " + name, fmt::format("{}hold {}, peak {}, {}", before, given_quantity(signal.hold_level(), "V"),

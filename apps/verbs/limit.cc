@@ -54,9 +54,9 @@ int limit_verb(const Common& c, const LimitRequest& request) {
   const SceneFile file = load_scene(c);
   if (request.start) {
     require(!request.start->empty(), "--start: must not be empty");
-    Drives drives = prepare(scene_of_result(*request.start), false, {.stop = c.stop}).drives;
-    options.start = std::move(drives.waveforms);
-    options.before = std::move(drives.before);
+    const Drives drives = prepare(scene_of_result(*request.start), false, {.stop = c.stop}).drives;
+    options.start = drives.waveforms();
+    options.before = drives.before();
   }
   std::optional<ResultFolder> folder = claim_places(c, {"limit.json", "limit.svg", "best.toml", "best.csv"});
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);

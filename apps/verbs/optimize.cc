@@ -57,7 +57,7 @@ std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, c
   constexpr std::uint64_t devices = 200;
   try {
     const WatchedWork work(c.quiet, c.stop);
-    const Robustness found = robustness(winner, {{.name = "found", .waveforms = winner.drives.waveforms}},
+    const Robustness found = robustness(winner, {{.name = "found", .waveforms = winner.drives.waveforms()}},
                                         {.samples = devices, .jobs = jobs}, work.watch());
     if (found.interrupted || found.drives.size() < 2) return {};
     const auto at_95_percent = [](const DriveRobustness& drive, std::string_view key) {
@@ -103,11 +103,11 @@ struct Asked {
 // with more modes than four of a cantilever, whose frequencies are 34 to 1.
 bool takes_little(const Asked& asked, const OptimizeResult& result) {
   constexpr double widest_band = 40;  // the highest natural frequency over the lowest
-  const auto& limits = result.best_scene->drives.limits;
   const Eigen::VectorXd& omega = result.best_scene->model.basis().angular_frequencies();
   return asked.search.options.max_evaluations >= evaluations_worth_a_limit &&
          omega.maxCoeff() <= widest_band * omega.minCoeff() &&
-         std::none_of(limits.begin(), limits.end(), [](const auto& one) { return std::isfinite(one.second.max_slew); });
+         std::ranges::none_of(result.best_scene->drives,
+                              [](const Drive& one) { return one.limits && std::isfinite(one.limits->max_slew); });
 }
 
 // The least time of any waveform of the winner's drives at its impact speed; none where the scene does not fit the question.

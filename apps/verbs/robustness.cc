@@ -54,12 +54,12 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const PreparedScene nominal = prepare_and_choose(file, true, work->watch());
   const Calibration& calibration = nominal.scene.calibration;
-  std::vector<NamedDrive> drives{{.name = c.scene, .waveforms = nominal.drives.waveforms, .calibration = calibration}};
+  std::vector<NamedDrive> drives{{.name = c.scene, .waveforms = nominal.drives.waveforms(), .calibration = calibration}};
   for (const std::string& result : request.results) {
     const PreparedScene other = prepare(scene_of_result(result), false, work->watch());
-    const std::string elsewhere = begins_elsewhere(other.drives.waveforms, other.drives.before, nominal);
+    const std::string elsewhere = begins_elsewhere(other.drives.waveforms(), other.drives.before(), nominal);
     require(elsewhere.empty(), [&] { return result + ": " + elsewhere; });
-    drives.push_back({.name = result, .waveforms = other.drives.waveforms, .calibration = calibration});
+    drives.push_back({.name = result, .waveforms = other.drives.waveforms(), .calibration = calibration});
   }
   std::vector<std::string> files(robustness_files.begin(), robustness_files.end());
   constexpr std::size_t most_worst = 3;

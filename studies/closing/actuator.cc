@@ -38,7 +38,7 @@ std::size_t searched_drive(const Device& device) {
 std::vector<std::string> braking_electrodes(const PreparedScene& prepared) {
   std::vector<std::string> names;
   for (const Electrode& e : prepared.scene.device.electrodes) {
-    if (e.side == Side::far && prepared.drives.limits.contains(e.name)) names.push_back(e.name);
+    if (e.side == Side::far && prepared.drives.at(e.name).limits) names.push_back(e.name);
   }
   return names;
 }

@@ -53,7 +53,8 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
       units[name].dynamic_pull_in += sign * by_dynamic;
       PreparedScene moved = prepared;
       try {
-        moved.drives = written.drives(units);
+        moved.drives = written.drives(units).of(prepared.drive_names());
+        for (std::size_t i = 0; i < moved.drives.size(); ++i) moved.drives[i].source.load = prepared.drives[i].source.load;
       } catch (const InvalidInput&) {  // a drive at a limit of its driver, or no better voltage: the error is not known
         found.emplace_back();
         continue;

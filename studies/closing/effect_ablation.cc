@@ -150,7 +150,7 @@ std::vector<OmissibleEffect> omissible_effects(const PreparedScene& prepared) {
   add_omissible_fringing(prepared, list);
   if (d.gas) add_omissible_gas(prepared, list);
   if (d.contact) add_omissible_contact(prepared, list);
-  if (d.dispersion && !prepared.drives.waveforms.contains(std::string(dispersion_drive))) {
+  if (d.dispersion && !prepared.drives.at(dispersion_drive).waveform) {
     const double bent = prepared.model.rest() ? prepared.model.contact_deflection(prepared.model.rest()->data()) : d.gap.contact;
     list.push_back({.effect = "dispersion",
                     .magnitude = {.name = "deflection at rest", .unit = "m", .value = bent},
@@ -180,8 +180,7 @@ PreparedScene without(const PreparedScene& prepared, const std::vector<Omissible
   PreparedScene p = prepare(file);
   p.scene.warnings = prepared.scene.warnings;
   p.pull_in = prepared.pull_in;
-  p.drives = prepared.drives;
-  p.loads = prepared.loads;
+  p.drives = prepared.drives.of(p.drive_names());
   p.duration = prepared.duration;
   p.tolerance = prepared.tolerance;
   return p;

@@ -9,14 +9,13 @@ namespace softland {
 namespace {
 
 Step step_to(const PreparedScene& given, const std::string& drive, double level) {
-  const auto limits = given.drives.limits.find(drive);
-  const double slew = limits == given.drives.limits.end() ? std::numeric_limits<double>::infinity() : limits->second.max_slew;
-  return {.level = level, .rise_time = std::abs(level - given.before(drive)) / slew};
+  const Drive& own = given.drives.at(drive);
+  const double slew = own.limits ? own.limits->max_slew : std::numeric_limits<double>::infinity();
+  return {.level = level, .rise_time = std::abs(level - own.before.value_or(0)) / slew};
 }
 
 Step step_of(const PreparedScene& given, const std::string& drive) {
-  const auto found = given.drives.waveforms.find(drive);
-  return step_to(given, drive, found == given.drives.waveforms.end() ? 0.0 : signal(found->second).hold_level());
+  return step_to(given, drive, given.drives.at(drive).hold_level());
 }
 
 }  // namespace
@@ -30,13 +29,11 @@ DriveWaveforms plain_step(const PreparedScene& prepared, Actuator actuator) {
   }
   if (prepared.model.has_piezo()) {
     const std::string piezo(piezo_drive);
-    const std::vector<std::string> drives = prepared.drive_names();
+    DriveWaveforms others = plain;
+    others.merge(prepared.drives.waveforms());
+    others.erase(piezo);
     // A piezo that nothing else helps has to close the switch itself.
-    const bool alone = std::none_of(drives.begin(), drives.end(), [&](const std::string& drive) {
-      const auto& waveforms = plain.contains(drive) ? plain : prepared.drives.waveforms;
-      const auto found = waveforms.find(drive);
-      return drive != piezo && found != waveforms.end() && !signal(found->second).is_zero();
-    });
+    const bool alone = std::ranges::all_of(others, [](const auto& one) { return signal(one.second).is_zero(); });
     plain[piezo] = alone ? step_of(prepared, piezo) : step_to(prepared, piezo, 0);
   }
   return plain;

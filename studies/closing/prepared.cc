@@ -30,14 +30,9 @@ std::vector<Waveform> PreparedScene::in_drive_order(const DriveWaveforms& wavefo
   return result;
 }
 
-double PreparedScene::before(const std::string& drive) const {
-  const auto found = drives.before.find(drive);
-  return found == drives.before.end() ? 0 : found->second;
-}
-
 std::vector<double> PreparedScene::values_before() const {
   std::vector<double> values;
-  for (const std::string& name : drive_names()) values.push_back(before(name));
+  for (const Drive& drive : drives) values.push_back(drive.before.value_or(0));
   return values;
 }
 
@@ -50,35 +45,14 @@ std::vector<Signal> PreparedScene::told(const std::vector<Waveform>& waveforms) 
   return signals;
 }
 
-std::vector<Signal> PreparedScene::signals() const { return driven(in_drive_order(drives.waveforms)); }
-
-SourceErrors PreparedScene::errors(std::size_t k) const {
-  if (drives.errors.empty()) return {};
-  const auto found = drives.errors.find(drive_names()[k]);
-  return found == drives.errors.end() ? SourceErrors{} : found->second;
-}
-
-DriverModel PreparedScene::source(std::size_t k) const {
-  if (drives.models.empty()) return {};
-  const std::string name = drive_names()[k];
-  const auto found = drives.models.find(name);
-  if (found == drives.models.end()) return {};
-  DriverModel source = found->second;
-  if (const auto load = loads.find(name); load != loads.end()) source.load = load->second;
-  return source;
-}
-
-DriverLimits PreparedScene::limits(std::size_t k) const {
-  const auto found = drives.limits.find(drive_names()[k]);
-  return found == drives.limits.end() ? DriverLimits{} : found->second;
-}
+std::vector<Signal> PreparedScene::signals() const { return driven(waveforms()); }
 
 Signal PreparedScene::told_samples(std::size_t k, const Signal& told) const {
-  return softland::told_samples(told, source(k), limits(k), duration);
+  return softland::told_samples(told, drives[k].source, limits(k), duration);
 }
 
 Signal PreparedScene::driven(std::size_t k, const Signal& told, const SourceErrors& errors) const {
-  const DriverModel own = source(k);
+  const DriverModel& own = drives[k].source;
   if (own.is_ideal()) return errors.are_none() ? told : with_errors(told, errors);
   return softland::driven(told, own, limits(k), duration, errors);
 }
@@ -100,7 +74,7 @@ std::string begins_elsewhere(const DriveWaveforms& waveforms, const std::map<std
                              const PreparedScene& scene) {
   for (const auto& [drive, waveform] : waveforms) {
     const auto found = before.find(drive);
-    const double own = found == before.end() ? 0 : found->second, due = scene.before(drive);
+    const double own = found == before.end() ? 0 : found->second, due = scene.drives.at(drive).before.value_or(0);
     if (own != due)
       return fmt::format(
           "the drive '{}' stands at {} before its waveform, and at {} in the scene: both have to begin at one rest", drive,
@@ -150,9 +124,9 @@ double default_window(const Switch& model, const std::vector<Signal>& signals) {
 
 /// The drives but for what sampling and filters make of them.
 std::vector<Signal> without_sources(const PreparedScene& p) {
-  std::vector<Signal> signals = p.told(p.in_drive_order(p.drives.waveforms));
+  std::vector<Signal> signals = p.told(p.waveforms());
   for (std::size_t k = 0; k < signals.size(); ++k) {
-    if (const SourceErrors errors = p.errors(k); !errors.are_none()) signals[k] = with_errors(signals[k], errors);
+    if (!p.drives[k].errors.are_none()) signals[k] = with_errors(signals[k], p.drives[k].errors);
   }
   return signals;
 }
@@ -167,7 +141,7 @@ void check_window(const PreparedScene& p) {
                             engineering(p.duration, "s"), engineering(longest_window, "s")));
   }
   constexpr double most_periods = 1e5;
-  for (const auto& [name, waveform] : p.drives.waveforms) {
+  for (const auto& [name, waveform] : p.drives.waveforms()) {
     const double periods = periods_of(waveform, p.duration);
     if (!(periods > most_periods)) continue;
     const std::string section = "waveform." + name + ".";
@@ -184,22 +158,20 @@ void load_sources(PreparedScene& p) {
   std::vector<double> open(static_cast<std::size_t>(model.modes()), 0.0);
   if (const auto rest = p.rest()) std::copy_n(rest->data(), open.size(), open.begin());
   Switch::Workspace work = model.workspace();
-  const std::vector<std::string> names = p.drive_names();
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    const auto found = p.drives.models.find(names[k]);
-    if (found == p.drives.models.end() || !found->second.source_resistance) continue;
-    p.loads[names[k]] = model.capacitance(k, open.data(), work);
+  for (std::size_t k = 0; k < p.drives.size(); ++k) {
+    if (p.drives[k].source.source_resistance) p.drives[k].source.load = model.capacitance(k, open.data(), work);
   }
 }
 
 /// Sources that take more samples than a run can follow.
 void check_sources(const PreparedScene& p) {
   constexpr double most_samples = 1e5;
-  for (const auto& [name, model] : p.drives.models) {
-    if (!model.sample_rate || *model.sample_rate * p.duration <= most_samples) continue;
+  for (const Drive& drive : p.drives) {
+    const std::optional<double>& rate = drive.source.sample_rate;
+    if (!rate || *rate * p.duration <= most_samples) continue;
     p.scene.file.refuse(
-        "driver." + name + ".sample_rate",
-        fmt::format("takes {} samples in the window of {}; there may be {}", engineering(*model.sample_rate * p.duration, "", 3),
+        "driver." + drive.name + ".sample_rate",
+        fmt::format("takes {} samples in the window of {}; there may be {}", engineering(*rate * p.duration, "", 3),
                     engineering(p.duration, "s"), engineering(most_samples, "")));
   }
 }

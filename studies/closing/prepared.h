@@ -40,8 +40,7 @@ struct PreparedScene {
   Scene scene;
   Switch model;
   std::map<std::string, ElectrodePullIn> pull_in;  ///< electrodes whose pull-in was needed
-  Drives drives;                                   ///< in volts
-  std::map<std::string, double> loads = {};        ///< capacitance of the open switch, where a source has a resistance [F]
+  Drives drives;                                   ///< a source that has a resistance charges the open switch
   double duration = 0;                             ///< window [s]
   double tolerance = 0;                            ///< of the integrator
   SwitchOptions quadrature = {};
@@ -52,9 +51,9 @@ struct PreparedScene {
   [[nodiscard]] std::vector<std::string> drive_names() const;
   /// One waveform per drive in that order; what has none stays at 0 V.
   [[nodiscard]] std::vector<Waveform> in_drive_order(const DriveWaveforms& waveforms) const;
-  /// What a drive stands at before t = 0 [V].
-  [[nodiscard]] double before(const std::string& drive) const;
-  /// The same of every drive, in that order.
+  /// The same of the scene's own.
+  [[nodiscard]] std::vector<Waveform> waveforms() const { return in_drive_order(drives.waveforms()); }
+  /// What every drive stands at before t = 0, in that order [V].
   [[nodiscard]] std::vector<double> values_before() const;
   /// Where runs start: the open switch at rest under those. None where there is no stable equilibrium.
   [[nodiscard]] std::optional<Eigen::VectorXd> rest() const { return model.open_equilibrium(values_before()); }
@@ -69,15 +68,12 @@ struct PreparedScene {
   /// What the sources make of signals that they are told to give, one per drive in that order.
   [[nodiscard]] std::vector<Signal> driven(std::vector<Signal> told) const;
   /// What the source of drive k makes of a signal, with gain, offset and delay of the scene, or with others.
-  [[nodiscard]] Signal driven(std::size_t k, const Signal& told) const { return driven(k, told, errors(k)); }
+  [[nodiscard]] Signal driven(std::size_t k, const Signal& told) const { return driven(k, told, drives[k].errors); }
   [[nodiscard]] Signal driven(std::size_t k, const Signal& told, const SourceErrors& errors) const;
   /// The samples that its converter is told; what it is told where it takes none.
   [[nodiscard]] Signal told_samples(std::size_t k, const Signal& told) const;
-  /// Gain, offset and delay of the source of drive k.
-  [[nodiscard]] SourceErrors errors(std::size_t k) const;
-  /// What that source makes of a waveform beside them, and its limits: none that a scene does not have.
-  [[nodiscard]] DriverModel source(std::size_t k) const;
-  [[nodiscard]] DriverLimits limits(std::size_t k) const;
+  /// The limits of drive k: none that a scene does not have.
+  [[nodiscard]] DriverLimits limits(std::size_t k) const { return drives[k].limits.value_or(DriverLimits{}); }
   /// The pull-in voltages as units.
   [[nodiscard]] std::map<std::string, PullInVoltages> voltage_units() const;
   /// The scene with everything that it leaves to be worked out.

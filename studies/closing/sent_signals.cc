@@ -23,13 +23,13 @@ SentSignals sent_signals(const PreparedScene& p, const std::vector<Waveform>& wa
     if (names[k] == dispersion_drive) continue;
     const Signal told = p.told(k, waveforms[k]);
     all.signals.emplace(names[k], sent == Sent::output ? p.driven(k, told) : p.told_samples(k, told));
-    if (const auto rate = p.source(k).sample_rate; rate && sent == Sent::told) all.sample_rates.emplace(names[k], *rate);
+    if (const auto rate = p.drives[k].source.sample_rate; rate && sent == Sent::told) all.sample_rates.emplace(names[k], *rate);
   }
   return all;
 }
 
 std::string told_csv(const PreparedScene& p) {
-  const SentSignals sent = sent_signals(p, p.in_drive_order(p.drives.waveforms));
+  const SentSignals sent = sent_signals(p, p.waveforms());
   return csv(sent.signals, p.duration, sent.sample_rates);
 }
 

@@ -110,7 +110,7 @@ double DeviceDrives::value(const Source& source, const std::vector<double>& valu
 }
 
 SourceErrors DeviceDrives::errors(std::size_t k, const std::vector<double>& values) const {
-  SourceErrors errors = nominal_->errors(k);
+  SourceErrors errors = nominal_->drives[k].errors;
   for (const Source& source : sources_[k]) {
     if (double* const member = member_of(errors, source.error)) *member = value(source, values);
   }
@@ -134,11 +134,11 @@ DeviceDrives::Driven DeviceDrives::driven(const std::vector<Waveform>& nominal, 
   Driven all{.waveforms = in_units(nominal, nominal_->scene.device, units), .signals = {}, .errors = {}};
   all.errors.resize(nominal.size());
   for (std::size_t k = 0; k < nominal.size(); ++k) {
-    SourceErrors& errors = all.errors[k] = nominal_->errors(k);
+    SourceErrors& errors = all.errors[k] = nominal_->drives[k].errors;
     for (const Source& source : sources_[k]) {
       if (source.error == DriveError::gain) errors.gain = value(source, values);
     }
-    if (has_errors(k) && !nominal_->source(k).sample_rate)
+    if (has_errors(k) && !nominal_->drives[k].source.sample_rate)
       all.waveforms[k] = scaled(std::move(all.waveforms[k]), std::exchange(errors.gain, 1), 1);
     all.signals.push_back(nominal_->told(k, all.waveforms[k]));
     for (const Source& source : sources_[k]) {
@@ -169,7 +169,7 @@ std::vector<Signal> DeviceDrives::signals(const std::vector<Waveform>& nominal, 
   const Driven all = driven(nominal, units, values);
   std::vector<Signal> own;
   for (std::size_t k = 0; k < all.signals.size(); ++k) {
-    own.push_back(nominal_->source(k).sample_rate
+    own.push_back(nominal_->drives[k].source.sample_rate
                       ? nominal_->driven(k, all.jittered(k).first, all.after_samples(k))
                       : nominal_->driven(k, with_errors(all.signals[k], all.errors[k], all.origin), SourceErrors{}));
   }
@@ -185,7 +185,7 @@ std::vector<DeviceDrives::Written> DeviceDrives::written(const std::vector<Wavef
     const auto write = [&](const Signal& own) {
       if (own.pieces() != all.signals[k].pieces()) one.waveform = as_table(own, nominal_->duration);
     };
-    if (nominal_->source(k).sample_rate) {
+    if (nominal_->drives[k].source.sample_rate) {
       write(all.jittered(k).first);
       one.errors = all.after_samples(k);
       one.errors.delay = std::max(0.0, one.errors.delay);

@@ -147,7 +147,7 @@ Evaluator::Evaluator(const SceneFile& file, std::vector<std::string> keys, std::
   units_.resize(keys_.size());
   values_.assign(keys_.size(), Metrics::unset);
   vary_device(file, watch);
-  waveforms_ = nominal_->in_drive_order(nominal_->drives.waveforms);
+  waveforms_ = nominal_->waveforms();
   if (options_.volts == VoltsOf::nominal) {
     for (std::size_t i = 0; i < keys_.size(); ++i) {
       if (waveform_key(key_and_element(keys_[i]).first)) read_waveform_key(i);
@@ -231,11 +231,10 @@ std::vector<Waveform> Evaluator::waveforms_of(std::span<const double> values) co
 
 // Why a driver cannot give what a row asks of it; empty where it can.
 std::string Evaluator::violation_of(const std::vector<Waveform>& own) const {
-  const std::vector<std::string> names = nominal_->drive_names();
   for (const WaveformKey& key : of_waveforms_) {
-    const auto limits = nominal_->drives.limits.find(names[key.drive]);
-    if (limits == nominal_->drives.limits.end()) continue;
-    const std::string why = violation(nominal_->told(key.drive, own[key.drive]), limits->second);
+    const std::optional<DriverLimits>& limits = nominal_->drives[key.drive].limits;
+    if (!limits) continue;
+    const std::string why = violation(nominal_->told(key.drive, own[key.drive]), *limits);
     if (!why.empty()) return why;
   }
   return {};
@@ -370,7 +369,7 @@ struct WrittenVolts {
 };
 WrittenVolts written_volts(const SceneFile& file, const PreparedScene& there) {
   WrittenVolts found;
-  for (const auto& [drive, waveform] : there.drives.waveforms) {
+  for (const auto& [drive, waveform] : there.drives.waveforms()) {
     if (drive == dispersion_drive || drive == piezo_drive) continue;
     const auto look = [&, &drive = drive](std::string_view name, std::size_t element) {
       const std::optional<Quantity> given = written_quantity(file, fmt::format("waveform.{}.{}", drive, name), element);
@@ -442,11 +441,10 @@ Evaluator::Place Evaluator::place_of(std::span<const double> row, const Watch& w
       file.assign(key.path, Quantity{.value = row[of_device_[i]], .dimension = key.measured_in}, key.element);
     }
     PreparedScene there = prepare(scene_that_varies(file, device_keys), false, watch);
-    const std::vector<std::string> names = there.drive_names();
     const std::vector<Waveform> own = waveforms_of(row);
     const std::string why = violation_of(own);
     require(why.empty(), [&] { return "jacobian: " + why; });
-    for (std::size_t k = 0; k < names.size(); ++k) there.drives.waveforms[names[k]] = own[k];
+    for (std::size_t k = 0; k < own.size(); ++k) there.drives[k].waveform = own[k];
     return with_columns(std::move(there), of_waveforms_, {});
   }
   const SceneFile file = scene_of(row);
@@ -470,7 +468,7 @@ Evaluator::Place Evaluator::place_of(std::span<const double> row, const Watch& w
 // The parameters of waveforms among the columns, by the units that they are written in.
 std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& in_volts, std::span<const double> row) const {
   std::vector<WaveformKey> all;
-  std::vector<Waveform> waveforms = in_volts.in_drive_order(in_volts.drives.waveforms);
+  std::vector<Waveform> waveforms = in_volts.waveforms();
   const std::vector<std::string> drives = in_volts.drive_names();
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     const auto [path, element] = key_and_element(keys_[i]);
@@ -496,10 +494,10 @@ std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& 
 // Figures by parameters of waveforms.
 void Evaluator::derive_by_waveforms(const Place& place, std::span<const double> row, Eigen::MatrixXd& all,
                                     const Watch& watch) const {
-  const std::vector<Waveform> here = place.scene.in_drive_order(place.scene.drives.waveforms);
+  const std::vector<Waveform> here = place.scene.waveforms();
   std::vector<WaveformParameter> parameters;
   for (const WaveformKey& key : place.of_waveforms) {
-    require(!place.scene.source(key.drive).bits, [&] {
+    require(!place.scene.drives[key.drive].source.bits, [&] {
       return fmt::format("jacobian: no derivative by {}: its source rounds to so many bits, and jumps", keys_[key.column]);
     });
     const Signal told = place.scene.told(key.drive, here[key.drive]);
@@ -540,8 +538,7 @@ Eigen::MatrixXd Evaluator::jacobian(std::span<const double> row, const Watch& wa
   if (!place.of_waveforms.empty()) derive_by_waveforms(place, row, all, watch);
   if (place.of_device.empty()) return all;
   const PreparedScene& there = place.scene;
-  const Derivatives found =
-      derivatives(there, {.waveforms = there.in_drive_order(there.drives.waveforms), .known = place.known}, {}, watch);
+  const Derivatives found = derivatives(there, {.waveforms = there.waveforms(), .known = place.known}, {}, watch);
   watch.throw_if_stopped();
   for (std::size_t f = 0; f < figures_.size(); ++f) {
     const FigureDerivatives& of = derived(found, figures_[f]);

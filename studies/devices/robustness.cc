@@ -64,13 +64,12 @@ std::vector<Waveform> waveforms_of(const PreparedScene& nominal, const NamedDriv
   for (const auto& [name, waveform] : drive.waveforms) {
     require(std::find(names.begin(), names.end(), name) != names.end(),
             [&] { return fmt::format("{}: drives '{}', which the first scene does not have", drive.name, name); });
-    const auto limits = nominal.drives.limits.find(name);
-    if (limits == nominal.drives.limits.end()) continue;
     const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-    const DriverLimits own = limits_for(waveform, limits->second);
+    const Drive& given = nominal.drives[k];
+    if (!given.limits) continue;
+    const DriverLimits own = limits_for(waveform, *given.limits);
     const bool may_be_samples = std::holds_alternative<Table>(waveform);
-    const std::string broken =
-        violation(nominal.told(k, waveform), may_be_samples ? limits_of_samples(own, nominal.source(k)) : own);
+    const std::string broken = violation(nominal.told(k, waveform), may_be_samples ? limits_of_samples(own, given.source) : own);
     require(broken.empty(), [&] { return fmt::format("{}: drive '{}': {}", drive.name, name, broken); });
   }
   return nominal.in_drive_order(drive.waveforms);
@@ -170,7 +169,7 @@ Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive
   Robustness result{.duration = run.duration, .tolerance = run.tolerance};
   const Actuator driven = has_pulling_electrode(nominal.scene.device) ? Actuator::both : Actuator::pzt;
   NamedDrive plain{.name = "plain step", .waveforms = plain_step(nominal, driven)};
-  plain.waveforms.insert(nominal.drives.waveforms.begin(), nominal.drives.waveforms.end());  // of the drives that do not step
+  plain.waveforms.merge(nominal.drives.waveforms());  // of the drives that do not step
   std::vector<NamedDrive> all;
   const auto is_judged = [&](const NamedDrive& drive) {  // the scene's own drive may be the plain step
     const std::vector<Signal> own = nominal.told(waveforms_of(nominal, drive));
@@ -306,8 +305,8 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
     set_errors(file, driver, own[k].errors);
     if (!drive.waveforms.contains(names[k]) && !drives.has_errors(k)) continue;
     file.set_waveform(names[k], own[k].waveform);
-    if (const auto limits = nominal.drives.limits.find(names[k]); limits != nominal.drives.limits.end())
-      allow(file, driver, nominal.told(k, own[k].waveform), limits->second);
+    if (const std::optional<DriverLimits>& limits = nominal.drives[k].limits; limits)
+      allow(file, driver, nominal.told(k, own[k].waveform), *limits);
   }
   return file;
 }

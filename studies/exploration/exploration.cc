@@ -347,7 +347,7 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Watch& watch) {
 PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Watch& watch) {
   const PreparedScene nominal = prepared(scene, true, watch);
   const Robustness found =
-      robustness(nominal, {{.name = "scene", .waveforms = nominal.drives.waveforms, .calibration = nominal.scene.calibration}},
+      robustness(nominal, {{.name = "scene", .waveforms = nominal.drives.waveforms(), .calibration = nominal.scene.calibration}},
                  {.samples = std::stoull(plan_.options().at("samples")), .seed = plan_.seed(), .jobs = jobs}, watch);
   if (found.interrupted) throw Interrupted();
   const DriveRobustness& own = found.drives.back();

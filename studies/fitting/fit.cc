@@ -139,7 +139,7 @@ class Instruments {
     if (!m.levels.empty()) one.level = m.levels[i];
     const bool closes = one.what != Measurable::pull_in && one.what != Measurable::release && one.what != Measurable::frequency &&
                         one.what != Measurable::capacitance;
-    if (closes && !m.waveform && m.levels.empty()) one.waveforms = p.in_drive_order(p.drives.waveforms);
+    if (closes && !m.waveform && m.levels.empty()) one.waveforms = p.waveforms();
     one.times = m.times;
     one.edges = m.values.size();
     const bool needs_contact = closes && one.what != Measurable::position && one.what != Measurable::velocity;
@@ -174,7 +174,7 @@ class Instruments {
   }
   [[nodiscard]] std::vector<Waveform> waveforms_of(const BenchMeasurement& m) const {
     const PreparedScene& p = device_.nominal;
-    if (*m.waveform == "scene") return p.in_drive_order(p.drives.waveforms);
+    if (*m.waveform == "scene") return p.waveforms();
     DriveWaveforms all;
     std::string first_fault;
     for (const std::string& name : p.drive_names()) {

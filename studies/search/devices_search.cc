@@ -186,8 +186,7 @@ std::vector<DeviceOutcome> DevicesSearch::closed(const RobustCost& cost, const D
 }
 
 DriveWaveforms DevicesSearch::all_drives(DriveWaveforms searched) const {
-  const PreparedScene& step = first().baseline_scene;
-  searched.insert(step.drives.waveforms.begin(), step.drives.waveforms.end());
+  searched.merge(first().baseline_scene.drives.waveforms());
   return searched;
 }
 

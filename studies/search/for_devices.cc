@@ -101,7 +101,7 @@ class DevicesStudy {
   }
 
   [[nodiscard]] DriveWaveforms drawing_waveforms() const {
-    return first().space.searched(result_->drawing.best_scene->drives.waveforms);
+    return first().space.searched(result_->drawing.best_scene->drives.waveforms());
   }
 
   // Of what the nominal search has tried the best on devices.

@@ -31,7 +31,7 @@ FreeFlight::FreeFlight(const PreparedScene& prepared, Actuator actuator, double 
       work_(prepared.model.workspace()) {
   require(model_.film_states() == 0, "the least time is not known where the gas film is compressible: gas.model = strip or none");
   require(model_.rest().has_value(), "the least time is not known of a switch without an open state");
-  for (const auto& [name, value] : prepared.drives.before)
+  for (const auto& [name, value] : prepared.drives.before())
     require(value == 0,
             fmt::format("the least time is known from rest without drives only: waveform.{}.{} must be absent", name, "before"));
   const VectorXd& at_contact = model_.basis().contact_shape();
@@ -48,7 +48,7 @@ FreeFlight::FreeFlight(const PreparedScene& prepared, Actuator actuator, double 
   start_.head(modes_) = model_.rest()->cwiseQuotient(per_q_);
 
   DriveWaveforms plain = plain_step(prepared, actuator);
-  plain.insert(prepared.drives.waveforms.begin(), prepared.drives.waveforms.end());
+  plain.merge(prepared.drives.waveforms());
   for (const Waveform& w : prepared.in_drive_order(plain)) {
     hold_.push_back(signal(w).hold_level());
     held_.push_back(strength(held_.size(), hold_.back()));
@@ -64,25 +64,25 @@ FreeFlight::FreeFlight(const PreparedScene& prepared, Actuator actuator, double 
     add_free(prepared, std::string(piezo_drive), std::numeric_limits<double>::infinity(), false);
   }
   for (const Free& f : free_) {
-    const bool limited = std::isfinite(prepared.drives.limits.at(f.name).max_slew);
+    const bool limited = std::isfinite(prepared.drives[f.drive].limits->max_slew);
     require(limited == ramps_,
             "the least time is known only where max_slew is given for all drives that are shaped, or for none");
   }
 }
 
 void FreeFlight::add_free(const PreparedScene& prepared, const std::string& name, double peak, bool brakes) {
-  const auto limits = prepared.drives.limits.find(name);
-  require(limits != prepared.drives.limits.end(),
-          fmt::format("the least time needs [driver.{}] with min_voltage and max_voltage", name));
-  require(!prepared.drives.models.contains(name),
+  const Drive& own = prepared.drives.at(name);
+  const std::optional<DriverLimits>& limits = own.limits;
+  require(limits.has_value(), fmt::format("the least time needs [driver.{}] with min_voltage and max_voltage", name));
+  require(own.source.is_ideal(),
           fmt::format("the least time is not known of a source that samples or filters: driver.{}.sample_rate, bandwidth and "
                       "source_resistance must be absent",
                       name));
   const std::vector<std::string> names = prepared.drive_names();
   const auto drive = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-  const double low = limits->second.min_voltage, high = limits->second.max_voltage;
-  if (free_.empty()) ramps_ = std::isfinite(limits->second.max_slew);
-  Free f{.drive = drive, .name = name, .largest = 0, .sign = 1, .max_slew = limits->second.max_slew};
+  const double low = limits->min_voltage, high = limits->max_voltage;
+  if (free_.empty()) ramps_ = std::isfinite(limits->max_slew);
+  Free f{.drive = drive, .name = name, .largest = 0, .sign = 1, .max_slew = limits->max_slew};
   ControlBound bound;
   double pull = 1, release = 0;
   if (model_.drive_kind(drive) == DriveKind::piezo) {
@@ -99,7 +99,7 @@ void FreeFlight::add_free(const PreparedScene& prepared, const std::string& name
     bound = {.lower = 0, .upper = 1};
     if (brakes) std::swap(pull, release);
   }
-  if (ramps_) bound.slew = limits->second.max_slew / f.largest * time_unit();
+  if (ramps_) bound.slew = limits->max_slew / f.largest * time_unit();
   const Index n = controls();
   pull_.conservativeResize(n + 1);
   release_.conservativeResize(n + 1);

@@ -307,7 +307,7 @@ IdentificationStudy identify(const SceneFile& file, const IdentificationOptions&
   require(has_pulling_electrode(device), "calibrate needs an electrode that pulls in: its voltage is what devices differ in");
   const SearchSetting setting = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", watch);
   const PreparedScene& nominal = setting.given;
-  const std::vector<Waveform> recipe = nominal.in_drive_order(nominal.drives.waveforms);
+  const std::vector<Waveform> recipe = nominal.waveforms();
   require(!same_drives(nominal.told(recipe), setting.baseline_scene.signals()), [&] {
     return fmt::format(
         "{}: its drive is the plain step, which lands no device softly: there is no waveform to pin. Give what "

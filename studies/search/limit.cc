@@ -105,7 +105,7 @@ DriveWaveforms with_catch(const FreeFlight& flight, const LeastTime& found, cons
 // The drives under searched waveforms; what is not searched is that of the plain step, else of the scene.
 std::vector<Signal> driven(const PreparedScene& prepared, DriveWaveforms searched, const DriveWaveforms& plain) {
   searched.insert(plain.begin(), plain.end());
-  searched.insert(prepared.drives.waveforms.begin(), prepared.drives.waveforms.end());
+  searched.merge(prepared.drives.waveforms());
   return prepared.driven(prepared.in_drive_order(searched));
 }
 
@@ -127,7 +127,7 @@ class LeastTimeSearch {
       : prepared_(prepared), options_(options), flight_(prepared, options.actuator, options.peak) {
     result_.permitted = options.impact_velocity;
     if (options.actuator == Actuator::pzt) return;
-    const DriverLimits& limits = prepared.drives.limits.at(searched_electrode(prepared.scene.device));
+    const DriverLimits& limits = prepared.drives.at(searched_electrode(prepared.scene.device)).limits.value();
     result_.peak = std::min(options.peak, std::max(std::abs(limits.max_voltage), std::abs(limits.min_voltage)));
   }
 
@@ -312,8 +312,10 @@ std::vector<DriveWaveforms> landings_at_rest(const PreparedScene& prepared, Actu
                     }};
     own.tell("landings at rest to begin with", 0);
     PreparedScene smooth = prepared;
-    for (auto& [name, limits] : smooth.drives.limits)
-      limits.max_slew = std::min(limits.max_slew, (limits.max_voltage - limits.min_voltage) / (ramp * period));
+    for (Drive& drive : smooth.drives) {
+      if (std::optional<DriverLimits>& own = drive.limits; own)
+        own->max_slew = std::min(own->max_slew, (own->max_voltage - own->min_voltage) / (ramp * period));
+    }
     try {
       const LeastTimeOptions options{.actuator = actuator, .impact_velocity = impact_velocity, .watch = own};
       std::ranges::move(LeastTimeSearch(smooth, options).ways_to_rest(plain_step(prepared, actuator)), std::back_inserter(found));

@@ -69,7 +69,7 @@ class ReleaseSearch {
         gap_(given.scene.device.gap.contact),
         period_(2 * pi / given.model.basis().angular_frequencies()[0]),
         names_(given.drive_names()),
-        told_holds_(hold_levels(signals_of(given.in_drive_order(given.drives.waveforms)))) {
+        told_holds_(hold_levels(signals_of(given.waveforms()))) {
     add_brakes();
     for (std::size_t k = 0; k < names_.size(); ++k) {
       told_plain_.push_back({{0, told_holds_[k]}, {fall_time(k, told_holds_[k]), 0}});
@@ -167,12 +167,12 @@ class ReleaseSearch {
     for (std::size_t k = 0; k < names_.size(); ++k) {
       const bool is_electrode = k < device.electrodes.size();
       if (!(is_electrode ? electrodes : piezo && names_[k] == piezo_drive)) continue;
-      const auto limits = given_.drives.limits.find(names_[k]);
-      if (is_electrode && limits == given_.drives.limits.end()) continue;
-      require_request(limits != given_.drives.limits.end(), [&] {
+      const std::optional<DriverLimits>& limits = given_.drives[k].limits;
+      if (is_electrode && !limits) continue;
+      require_request(limits.has_value(), [&] {
         return asked + " pzt|both needs limits for the piezo: write min_voltage and max_voltage under [driver.piezo]";
       });
-      add_brake(k, names_[k], limits->second);
+      add_brake(k, names_[k], *limits);
     }
     require(!brakes_.empty(), "release needs a drive with limits: write max_voltage under [driver.NAME] of an electrode");
   }
@@ -236,14 +236,14 @@ class ReleaseSearch {
   }
 
   [[nodiscard]] double fall_time(std::size_t k, double from) const {
-    const auto limits = given_.drives.limits.find(names_[k]);
-    return limits == given_.drives.limits.end() ? 0 : std::abs(from) / limits->second.max_slew;
+    const std::optional<DriverLimits>& limits = given_.drives[k].limits;
+    return limits ? std::abs(from) / limits->max_slew : 0;
   }
 
   // What the source of drive k gives when it is told these points after it has stood at the first one for long.
   [[nodiscard]] Signal driven(std::size_t k, Line points) const {
-    const DriverModel source = given_.source(k);
-    const SourceErrors errors = given_.errors(k);
+    const DriverModel& source = given_.drives[k].source;
+    const SourceErrors& errors = given_.drives[k].errors;
     if (source.is_ideal() && errors.are_none()) return Signal::piecewise_linear(points);
     double stands = period_ + errors.delay;
     if (source.bandwidth) stands += settled_after / (2 * pi * *source.bandwidth);

@@ -80,7 +80,7 @@ class Search {
   void begin() {
     const SearchSetting& setting = settings_.front();
     if (!setting.begins_plainly())
-      refine(setting.given.signals(), setting.given.drives.waveforms,
+      refine(setting.given.signals(), setting.given.drives.waveforms(),
              [&] { return prepared_with(setting.given, {}, setting.given); });
     for (const StartingWaveforms& start : options_.starts) {
       const DriveWaveforms searched = setting.space.searched(start.waveforms);

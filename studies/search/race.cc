@@ -130,7 +130,7 @@ class Race {
     const SearchSpace& space = settings_[family].space;
     const std::vector<Variable> variables = space.variables();
     std::vector<Point> all = space.starts();
-    if (const auto given = space.parameters(settings_[family].given.drives.waveforms)) all.push_back(*given);
+    if (const auto given = space.parameters(settings_[family].given.drives.waveforms())) all.push_back(*given);
     for (const auto& waveforms : begun) {
       if (space.misfit(waveforms).empty()) all.push_back(space.nearest(waveforms));
     }

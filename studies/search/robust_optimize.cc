@@ -190,7 +190,7 @@ class RobustSearch {
     std::vector<Candidate> all;
     const auto add = [&](const Point& x) { all.push_back({.x = x}); };
     for (const Point& x : setting_.space.starts()) add(x);
-    if (const auto given = setting_.space.parameters(setting_.given.drives.waveforms)) add(*given);
+    if (const auto given = setting_.space.parameters(setting_.given.drives.waveforms())) add(*given);
     for (const StartingWaveforms& start : options_.starts) add(setting_.space.nearest(start.waveforms));
     for (const Point& x : nominal_winners()) add(x);
     for (Point u : internal::sobol_points(options_.seed, variables_.size(), 0, scouting_.box_points)) {
@@ -299,7 +299,7 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
   OptimizeResult& out = result.found;
   const PreparedScene& best = *out.best_scene;
   result.verdict =
-      robustness(best, {{.name = "found", .waveforms = best.drives.waveforms, .calibration = best.scene.calibration}},
+      robustness(best, {{.name = "found", .waveforms = best.drives.waveforms(), .calibration = best.scene.calibration}},
                  {.samples = robust.verdict,
                   .seed = options.seed,
                   .jobs = options.jobs,

@@ -98,8 +98,7 @@ PreparedScene prepared_with(const PreparedScene& prepared, DriveWaveforms wavefo
     one = next;
   }
   PreparedScene read = read_back(with_waveforms(prepared, waveforms), "best.toml", given);
-  own.merge(std::move(read.drives.waveforms));
-  read.drives.waveforms = std::move(own);
+  for (auto& [drive, waveform] : own) read.drives.at(drive).waveform = std::move(waveform);
   return read;
 }
 
@@ -118,7 +117,7 @@ PreparedScene SearchSetting::prepared(const DriveWaveforms& searched) const {
 
 std::vector<Waveform> SearchSetting::drives(const DriveWaveforms& searched) const {
   DriveWaveforms all = searched;
-  all.insert(baseline_scene.drives.waveforms.begin(), baseline_scene.drives.waveforms.end());
+  all.merge(baseline_scene.drives.waveforms());
   return given.in_drive_order(all);
 }
 
@@ -305,7 +304,7 @@ bool SearchSetting::begins_plainly() const { return same_drives(given.signals(),
 
 PreparedScene SearchSetting::within_limits() const {
   PreparedScene limited = given;
-  limited.drives.limits = limits;
+  for (const auto& [drive, own] : limits) limited.drives.at(drive).limits = own;
   return limited;
 }
 
@@ -356,7 +355,10 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
   });
   run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
   SearchSpace space(given, actuator, family, scale.step.initial_contact_time, own);
-  std::map<std::string, DriverLimits> limits = given.drives.limits;
+  std::map<std::string, DriverLimits> limits;
+  for (const Drive& drive : given.drives) {
+    if (drive.limits) limits.emplace(drive.name, *drive.limits);
+  }
   return {.target = target,
           .conditions = std::move(beside),
           .given = std::move(given),

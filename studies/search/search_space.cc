@@ -20,11 +20,6 @@ using Eigen::VectorXd;
 
 constexpr double rounding = 1e-9;  // of the distance of two bounds: a scene file writes rounded numbers
 
-double hold_level(const PreparedScene& p, const std::string& drive) {
-  const auto found = p.drives.waveforms.find(drive);
-  return found == p.drives.waveforms.end() ? 0 : signal(found->second).hold_level();
-}
-
 /// The families that "pulse" or "main=step,pzt=pulse" names for the drives.
 class FamilyOfDrives {
  public:
@@ -261,16 +256,16 @@ SearchSpace::SearchSpace(const PreparedScene& prepared, Actuator actuator, const
                          const OwnWaveforms& own) {
   FamilyOfDrives families(family);
   const auto add = [&](const std::string& drive, bool brakes) {
-    const auto limits = prepared.drives.limits.find(drive);
+    const Drive& given = prepared.drives.at(drive);
     require(
-        limits != prepared.drives.limits.end(),
+        given.limits.has_value(),
         fmt::format("optimize needs [driver.{}] with min_voltage and max_voltage: it never searches an unlimited drive", drive));
     DriveSearch s{.drive = drive,
-                  .hold = hold_level(prepared, drive),
-                  .before = prepared.before(drive),
+                  .hold = given.hold_level(),
+                  .before = given.before.value_or(0),
                   .brakes = brakes,
                   .first_touch = first_touch,
-                  .limits = limits->second,
+                  .limits = *given.limits,
                   .variables = {},
                   .starts = {}};
     require(s.limits.max_voltage > s.limits.min_voltage,

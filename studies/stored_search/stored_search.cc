@@ -129,10 +129,9 @@ StoredSearch stored_search(const AskedSearch& asked, const json& known) {
   const std::vector<StartingScene> starts = starting_scenes(asked, known);
   search.plan = plan_of(request, search, starts, as_given);
   for (const StartingScene& start : starts) {
-    Drives drives = prepare(start.scene, false, {.stop = asked.stop}).drives;
-    search.options.starts.push_back({.name = requested("start") + " " + start.name,
-                                     .waveforms = std::move(drives.waveforms),
-                                     .before = std::move(drives.before)});
+    const Drives drives = prepare(start.scene, false, {.stop = asked.stop}).drives;
+    search.options.starts.push_back(
+        {.name = requested("start") + " " + start.name, .waveforms = drives.waveforms(), .before = drives.before()});
   }
   return search;
 }

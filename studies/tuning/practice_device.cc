@@ -145,7 +145,7 @@ PracticeClosing PracticeDevice::close(std::uint64_t shot, const std::vector<Wave
   require(duration > 0, [&] { return fmt::format("a closing of {} s: must be longer than 0 s", number_text(duration)); });
   const std::vector<std::string> names = nominal_.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (!nominal_.drives.limits.contains(names[k])) continue;
+    if (!nominal_.drives[k].limits) continue;
     const std::string broken = violation(nominal_.told(k, waveforms[k]), nominal_.limits(k));
     require(broken.empty(), [&] { return fmt::format("drives.{}: {}", names[k], broken); });
   }

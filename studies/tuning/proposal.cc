@@ -46,7 +46,7 @@ Shapes::Shapes(const TunedScene& scene) : scene_(&scene) {
   const SearchSpace space(p, scene.options().actuator, families_for(scene), scene.scales().closing_time);
   drives_ = space.drives();
   starts_ = space.starts();
-  others_ = p.drives.waveforms;
+  others_ = p.drives.waveforms();
   for (const auto& [drive, waveform] : plain_step(p, scene.options().actuator)) others_[drive] = waveform;
   describe();
 }

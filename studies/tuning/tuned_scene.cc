@@ -42,7 +42,7 @@ void vary(SceneFile& file, const std::string& name, const std::vector<std::strin
 std::vector<std::string> shaped_drives_of(const PreparedScene& prepared, Actuator actuator) {
   std::vector<std::string> names;
   for (const auto& [name, waveform] : plain_step(prepared, actuator)) {
-    if (prepared.drives.limits.contains(name)) names.push_back(name);
+    if (prepared.drives.at(name).limits) names.push_back(name);
   }
   return names;
 }
@@ -164,7 +164,7 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
   nuisances_.push_back(true);
   ensemble_ = std::make_unique<const Ensemble>(nominal_, 1);
   drives_ = std::make_unique<const DeviceDrives>(nominal_);
-  DriveWaveforms step = nominal_.drives.waveforms;
+  DriveWaveforms step = nominal_.drives.waveforms();
   for (const auto& [drive, waveform] : plain_step(nominal_, options.actuator)) step[drive] = waveform;
   const std::vector<Signal> signals = nominal_.driven(nominal_.in_drive_order(step));
   const double longest = periods_to_close * 2 * std::numbers::pi / nominal_.model.basis().angular_frequencies()[0];

@@ -115,20 +115,19 @@ TEST(Drives, SourcesAreReadAndWrittenBack) {
   const auto with_driver = [](const std::string& keys) {
     return read_scene(SceneFile::parse(std::string(small_scene) + "[driver.main]\nmax_voltage = \"60 V\"\n" + keys, "x.toml"));
   };
-  EXPECT_TRUE(with_driver("").drives(pull_in).models.empty());
+  EXPECT_TRUE(with_driver("").drives(pull_in).at("main").source.is_ideal());
   const Scene scene = with_driver(
       "sample_rate = \"5 MHz\"\nbits = 10\nbandwidth = \"2 MHz\"\n"
       "source_resistance = \"1 Mohm\"\nparallel_capacitance = \"3 pF\"\n");
   for (const Scene& one : {scene, read_scene(resolved(scene, pull_in))}) {
     const Drives drives = one.drives(pull_in);
-    ASSERT_TRUE(drives.models.contains("main"));
-    const DriverModel& model = drives.models.at("main");
+    const DriverModel& model = drives.at("main").source;
     EXPECT_EQ(model.sample_rate, 5e6);
     EXPECT_EQ(model.bits, 10);
     EXPECT_EQ(model.bandwidth, 2e6);
     EXPECT_EQ(model.source_resistance, 1e6);
     EXPECT_EQ(model.parallel_capacitance, 3e-12);
-    EXPECT_FALSE(drives.models.contains("piezo"));
+    EXPECT_TRUE(drives.at("piezo").source.is_ideal());
   }
   EXPECT_EQ(resolved(scene, pull_in).json()["driver"]["main"]["bits"], 10);
 }

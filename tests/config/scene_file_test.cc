@@ -169,7 +169,7 @@ TEST(SceneFile, ANewWaveformKeepsWhatItsDriveStandsAtBefore) {
   file.set("waveform.main.before=0.5 Vdp");
   file.set_waveform("main", Pulse{.levels = {45}});
   EXPECT_EQ(file.written("waveform.main.before"), "0.5 Vdp");
-  EXPECT_EQ(read_scene(file).drives({{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}}).before.at("main"), 20);
+  EXPECT_EQ(read_scene(file).drives({{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}}).at("main").before, 20);
 }
 
 TEST(SceneFile, ANewWaveformReplacesAllKeysOfTheOldOne) {

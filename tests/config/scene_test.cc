@@ -453,8 +453,8 @@ TEST(Scene, TheReferenceScenesAreFine) {
     EXPECT_EQ(scene.device.structure.length, 250e-6) << name;
     EXPECT_THAT(scene.need_pull_in, testing::ElementsAre("main")) << name;
     const Drives drives = scene.drives({{"main", {.static_pull_in = 50_V, .dynamic_pull_in = 45_V}}});
-    EXPECT_EQ(std::get<Step>(drives.waveforms.at("main")).level, 1.25 * 45) << name;
-    EXPECT_EQ(drives.limits.at("main").max_voltage, 1.5 * 45) << name;
+    EXPECT_EQ(std::get<Step>(drives.at("main").waveform.value()).level, 1.25 * 45) << name;
+    EXPECT_EQ(drives.at("main").limits.value().max_voltage, 1.5 * 45) << name;
   }
 }
 

@@ -60,7 +60,7 @@ TEST(ResultOf, AClosingUnderAWaveformThatNoSceneHoldsIsRefusedByItsName) {
     [[nodiscard]] double voltage(double, std::span<const double>) const override { return 20; }
   };
   PreparedScene prepared = prepare(shipped("mem-gold.toml", {"simulate.duration=50 us"}));
-  prepared.drives.waveforms["main"] = own(std::make_shared<Mine>());
+  prepared.drives.at("main").waveform = own(std::make_shared<Mine>());
   const Closing closing = simulate(prepared, false);
   EXPECT_TRUE(closing.metrics.touched());
   try {

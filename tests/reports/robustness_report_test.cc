@@ -53,7 +53,7 @@ const Study& study() {
     Study s{.nominal = prepare(file), .options = {.samples = 64, .jobs = 2, .worth_of_measuring = true}, .found = {}};
     s.found = robustness(s.nominal,
                          {{.name = "<slow>, \"mine\"",
-                           .waveforms = s.nominal.drives.waveforms,
+                           .waveforms = s.nominal.drives.waveforms(),
                            .calibration = {.pull_in_error = 0.01, .frequency_error = 0.0}}},
                          s.options);
     s.sensitivity = sensitivity(s.nominal, s.found.drives.back(), 32, s.options);

@@ -51,7 +51,7 @@ TEST(BangBang, LandsASimulatedSwitchOfOneModeWithoutSpeed) {
   for (const std::string name : {"mem-gold.toml", "gap-closing-actuator.toml"}) {
     const PreparedScene p = prepare(undamped_with_one_mode(name), true);
     std::vector<double> full(p.model.drives(), 0.0), none = full;
-    full[0] = p.drives.limits.at(p.scene.device.electrodes[0].name).max_voltage;
+    full[0] = p.drives.at(p.scene.device.electrodes[0].name).limits.value().max_voltage;
     const auto plan = bang_bang(p.model, full, none);
     ASSERT_TRUE(plan) << name;
     std::vector<Signal> signals(p.model.drives());

@@ -86,7 +86,7 @@ TEST(Before, OfTheResolvedSceneGivesTheSameDigits) {
   const SceneFile file = small_beam({R"(waveform.piezo={family="s-curve", levels=["-1 V"], edge="3 us", before="2 V"})",
                                      R"(waveform.main={family="step", level="1.2 Vdp", before="0.3 Vdp", rise_time="1 us"})"});
   const PreparedScene p = prepare(file);
-  EXPECT_EQ(p.before("main"), 0.3 * p.pull_in.at("main").dynamically.voltage);
+  EXPECT_EQ(p.drives.at("main").before, 0.3 * p.pull_in.at("main").dynamically.voltage);
   const SceneFile written = p.resolved();
   const PreparedScene again = prepare(SceneFile::parse(written.text(), "again.toml"));
   EXPECT_TRUE(again.pull_in.empty());

@@ -28,7 +28,7 @@ struct Judged {
 };
 Judged judged(const SceneFile& file, std::uint64_t samples, const Calibration& calibration = {}) {
   Judged all{.nominal = prepare(file), .options = {.samples = samples, .jobs = 2}, .found = {}};
-  all.found = robustness(all.nominal, {{.name = "own", .waveforms = all.nominal.drives.waveforms, .calibration = calibration}},
+  all.found = robustness(all.nominal, {{.name = "own", .waveforms = all.nominal.drives.waveforms(), .calibration = calibration}},
                          all.options);
   return all;
 }

@@ -163,7 +163,7 @@ TEST(ClosedState, DevicesThatAreNotHeldHaveNotSettled) {
   const Ensemble ensemble(p, 40, 3);
   const EnsembleRun run{.duration = p.duration, .tolerance = 1e-6, .jobs = 2};
   std::size_t settled = 0, left = 0;
-  const auto outcomes = close_all(ensemble, {{.waveforms = p.in_drive_order(p.drives.waveforms)}}, run);
+  const auto outcomes = close_all(ensemble, {{.waveforms = p.waveforms()}}, run);
   ASSERT_EQ(outcomes.size(), 1U);
   DeviceBuilder builder(ensemble);
   for (std::size_t k = 0; k < outcomes[0].size(); ++k) {

@@ -310,7 +310,7 @@ TEST(Derivatives, OfDevicesInTheirOwnUnits_optimized) {
   expect_agreement({"mem-gold.toml", Actuator::electrostatic, "pulse", {in_100_us}, beam, "Vdp,frequency"}, 1);
 }
 
-EnsembleDrive own_drive(const PreparedScene& p) { return {.waveforms = p.in_drive_order(p.drives.waveforms)}; }
+EnsembleDrive own_drive(const PreparedScene& p) { return {.waveforms = p.waveforms()}; }
 
 const FigureDerivatives& figure(const Derivatives& of, std::string_view key) {
   return *std::find_if(of.figures.begin(), of.figures.end(), [&](const FigureDerivatives& f) { return f.key == key; });

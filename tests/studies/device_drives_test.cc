@@ -40,7 +40,7 @@ Metrics alone(const SceneFile& file) {
 
 std::vector<DeviceOutcome> closings(const PreparedScene& nominal, const Ensemble& ensemble, int jobs = 1) {
   // One at a time, as simulate_closing() does it: to the bit.
-  return close_all(ensemble, {{.waveforms = nominal.in_drive_order(nominal.drives.waveforms)}},
+  return close_all(ensemble, {{.waveforms = nominal.waveforms()}},
                    {.duration = nominal.duration, .jobs = jobs, .vectors = Vectors::none})[0];
 }
 
@@ -84,7 +84,7 @@ TEST(DeviceDrives, OfOneDeviceHaveOneClock) {
                         "spread={\"driver.piezo.delay\"={distribution=\"empirical\", values=[\"-40 ns\", "
                         "\"-40 ns\"]}, \"driver.piezo.gain\"={distribution=\"normal\", cov=\"1 %\"}}"}));
   const DeviceDrives drives(nominal);
-  const std::vector<Waveform> waveforms = nominal.in_drive_order(nominal.drives.waveforms);
+  const std::vector<Waveform> waveforms = nominal.waveforms();
   const std::vector<Signal> own = drives.signals(waveforms, {}, {-40e-9, 1.02});
   ASSERT_EQ(own.size(), 2U);
   EXPECT_EQ(own[1].pieces()[0].begin, 0);
@@ -100,7 +100,7 @@ TEST(DeviceDrives, OfOneDeviceHaveOneClock) {
 TEST(DeviceDrives, GiveAPiezoVoltsOfItsOwnUnit) {
   const PreparedScene nominal =
       prepare(gold_pzt({"waveform.piezo={family=\"pulse\", levels=[\"0.5 V\", \"0 V\"], times=[\"9 us\"]}"}));
-  const std::vector<Waveform> waveforms = nominal.in_drive_order(nominal.drives.waveforms);
+  const std::vector<Waveform> waveforms = nominal.waveforms();
   const DeviceUnits units{.volts = 1.1, .time = 0.9, .piezo = 0.8};
   const std::vector<Waveform> own = in_units(waveforms, nominal.scene.device, units);
   ASSERT_EQ(own.size(), 2U);
@@ -115,7 +115,7 @@ TEST(DeviceDrives, JitterOfEdgesIsAsWideAsItIsSaid) {
   const PreparedScene nominal = prepare(gold_at_17_volts({throw_and_catch, normal("jitter", "50 ns")}));
   const Ensemble ensemble(nominal, 4096);
   const DeviceDrives drives(nominal);
-  const std::vector<Waveform> waveforms{nominal.drives.waveforms.at("main")};
+  const std::vector<Waveform> waveforms{nominal.drives.at("main").waveform.value()};
   std::vector<double> throwing, catching;
   for (std::size_t k = 0; k < ensemble.size(); ++k) {
     const Signal own = drives.signals(waveforms, {}, ensemble.values(k)).front();
@@ -181,7 +181,7 @@ TEST(DeviceDrives, AreWrittenIntoTheScenesOfDevices) {
                           "waveform.main={family=\"harmonic\", base=\"17.7 V\", amplitude=\"1 V\", "
                           "angular_frequency=\"180543 rad/s\"}"})}) {
     const PreparedScene nominal = prepare(file);
-    const NamedDrive drive{.name = "own", .waveforms = nominal.drives.waveforms, .calibration = nominal.scene.calibration};
+    const NamedDrive drive{.name = "own", .waveforms = nominal.drives.waveforms(), .calibration = nominal.scene.calibration};
     const RobustnessOptions options{.samples = 12, .vectors = Vectors::none};
     const Robustness found = robustness(nominal, {drive}, options);
     for (const std::size_t k : {std::size_t{3}, found.drives.back().worst[0]}) {
@@ -213,7 +213,7 @@ TEST(DeviceDrives, OfASineAreWrittenAsCloseLines) {
       {normal("delay", "300 ns"),
        "waveform.main={family=\"harmonic\", base=\"17.7 V\", amplitude=\"1 V\", angular_frequency=\"180543 rad/s\"}"}));
   const DeviceDrives drives(nominal);
-  const std::vector<Waveform> given{nominal.drives.waveforms.at("main")};
+  const std::vector<Waveform> given{nominal.drives.at("main").waveform.value()};
   const Signal exact = drives.signals(given, {}, {250e-9}).front();
   const Waveform written = drives.written(given, {}, {250e-9}).front().waveform;
   ASSERT_EQ(family(written), "table");
@@ -235,7 +235,7 @@ TEST(DeviceDrives, AnOffsetIsThereOnADriveThatIsNotDriven) {
   for (std::size_t k = 0; k < 4; ++k) {
     const PreparedScene own =
         prepare(SceneFile::parse(scene_of_device(nominal, found.drives.back(), k, options).text(), "alone.toml"));
-    EXPECT_EQ(signal(own.drives.waveforms.at("piezo")).hold_level(), ensemble.values(k)[0]);
+    EXPECT_EQ(own.drives.at("piezo").hold_level(), ensemble.values(k)[0]);
     EXPECT_TRUE(same(found.drives.back().outcomes[k], alone(own.scene.file))) << k;
   }
 }
@@ -311,7 +311,7 @@ TEST(SourceKeys, StandInTheScenesOfDevices) {
     SceneFile varied = file;
     if (!varied.written("spread")) varied.set("spread={\"structure.thickness\"={distribution=\"normal\", cov=\"2 %\"}}");
     const PreparedScene nominal = prepare(varied);
-    const NamedDrive drive{.name = "own", .waveforms = nominal.drives.waveforms};
+    const NamedDrive drive{.name = "own", .waveforms = nominal.drives.waveforms()};
     const RobustnessOptions options{.samples = 6, .vectors = Vectors::none};
     const Robustness found = robustness(nominal, {drive}, options);
     for (const std::size_t k : {std::size_t{1}, std::size_t{4}}) {
@@ -327,7 +327,7 @@ TEST(DeviceDrives, HaveSharesOfTheVariance) {
       prepare(gold_at_17_volts({"spread={\"driver.main.gain\"={distribution=\"normal\", cov=\"0.03 %\"}, \"driver.main.delay\"="
                                 "{distribution=\"uniform\", half_width=\"20 ns\"}, \"driver.main.jitter\"="
                                 "{distribution=\"uniform\", half_width=\"20 ns\"}}"}));
-  const DriveRobustness step{.name = "step", .waveforms = nominal.drives.waveforms, .outcomes = {}, .figures = {}};
+  const DriveRobustness step{.name = "step", .waveforms = nominal.drives.waveforms(), .outcomes = {}, .figures = {}};
   const Sensitivity found = sensitivity(nominal, step, 128, {.jobs = 2});
   ASSERT_EQ(found.variables, (std::vector<std::string>{"driver.main.delay", "driver.main.gain", "driver.main.jitter"}));
   ASSERT_TRUE(found.figures[0].estimate.indices);

@@ -62,7 +62,7 @@ bool same(const DeviceOutcome& a, const DeviceOutcome& b) {
 
 TEST(Ensemble, DoesNotDependOnThreadsOrderOrSize) {
   const PreparedScene nominal = prepare(gold_at_17_volts());
-  const std::vector<EnsembleDrive> drives{{.waveforms = {nominal.drives.waveforms.at("main")}}};
+  const std::vector<EnsembleDrive> drives{{.waveforms = {nominal.drives.at("main").waveform.value()}}};
   const EnsembleRun run{.duration = nominal.duration};
   const std::vector<DeviceOutcome> all = close_all(Ensemble(nominal, 600), drives, run)[0];
   EnsembleRun threads = run;
@@ -130,7 +130,7 @@ TEST(Calibration, GivesEveryDeviceTheWaveformInItsOwnUnits) {
       {"waveform.main={family=\"pulse\", levels=[\"20 V\", \"5 V\", \"17 V\"], times=[\"22 us\", \"30 us\"], edge=\"1 us\"}"}));
   const Ensemble ensemble(nominal, 6);
   const Calibration exact{.pull_in_error = 0, .frequency_error = 0};
-  const std::vector<Waveform> drive{nominal.drives.waveforms.at("main")};
+  const std::vector<Waveform> drive{nominal.drives.at("main").waveform.value()};
   const EnsembleRun run{.duration = nominal.duration};
   const auto outcomes = close_all(ensemble, {{.waveforms = drive}, {.waveforms = drive, .known = exact}}, run);
   const double own = pull_in_by_bisection(nominal.model, 10, 20);
@@ -238,7 +238,7 @@ TEST(Calibration, OfAPiezoUndoesWhatItsLayerDoes) {
       {"waveform.piezo={family=\"pulse\", levels=[\"1 V\", \"-1 V\", \"0 V\"], times=[\"9 us\", \"40 us\"], edge=\"1 us\"}",
        "spread={\"piezo.d31\"={distribution=\"normal\", cov=\"5 %\"}}", "simulate.duration=60 us"}));
   const Ensemble ensemble(nominal, 6);
-  const std::vector<Waveform> drive = nominal.in_drive_order(nominal.drives.waveforms);
+  const std::vector<Waveform> drive = nominal.waveforms();
   const EnsembleRun run{.duration = nominal.duration};
   const Calibration exact{.pull_in_error = 0, .piezo_error = 0}, without{.pull_in_error = 0};
   const auto outcomes = close_all(ensemble, {{.waveforms = drive, .known = exact}, {.waveforms = drive, .known = without}}, run);
@@ -352,7 +352,7 @@ TEST(Calibration, DrivesADeviceWithTheWaveformOfItsClass) {
 TEST(Robustness, SaysWhatAPiezosUnitIsWorthBesideTheOthers_slow) {
   const PreparedScene nominal = prepare(gold_pzt({"simulate.duration=60 us"}));
   const Calibration all{.pull_in_error = 0.01, .frequency_error = 0.005, .piezo_error = 0.01};
-  const Robustness found = robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms, .calibration = all}},
+  const Robustness found = robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms(), .calibration = all}},
                                       {.samples = 4, .jobs = 2, .worth_of_measuring = true});
   std::vector<std::string> names;
   for (const DriveRobustness& d : found.by_knowledge) names.push_back(d.name);
@@ -368,7 +368,7 @@ TEST(Robustness, SaysWhatEachMeasurementIsWorth_optimized) {
   const Calibration errors{.pull_in_error = 0.01, .frequency_error = 0.01};
   RobustnessOptions options{.samples = 24, .jobs = 2, .vectors = Vectors::none, .worth_of_measuring = true};
   const Robustness found =
-      robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms, .calibration = errors}}, options);
+      robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms(), .calibration = errors}}, options);
   ASSERT_EQ(found.drives.size(), 2U);
   std::vector<std::string> names;
   for (const DriveRobustness& d : found.by_knowledge) names.push_back(d.name);
@@ -377,7 +377,7 @@ TEST(Robustness, SaysWhatEachMeasurementIsWorth_optimized) {
                                       "Vdp and frequency, 8 classes", "Vdp and frequency, 16 classes", "Vdp and frequency"}));
   EXPECT_TRUE(found.drives[0].known.calibration().is_empty()) << "the plain step is that of the nominal device";
   const std::vector<DeviceOutcome> fixed =
-      robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms}}, options).drives[1].outcomes;
+      robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms()}}, options).drives[1].outcomes;
   EXPECT_TRUE(std::equal(fixed.begin(), fixed.end(), found.by_knowledge[0].outcomes.begin(), same))
       << "nothing known: fixed volts";
   for (std::size_t i = 1; i < names.size(); ++i)
@@ -411,7 +411,7 @@ TEST(Robustness, SaysWhatEachMeasurementIsWorth_optimized) {
 
 TEST(Robustness, JudgesEveryDriveOnTheSameDevicesBesideThePlainStep) {
   const PreparedScene nominal = prepare(gold_at_17_volts({"waveform.main.rise_time=40 us"}));
-  const Robustness found = robustness(nominal, {{.name = "slow", .waveforms = nominal.drives.waveforms}}, {.samples = 128});
+  const Robustness found = robustness(nominal, {{.name = "slow", .waveforms = nominal.drives.waveforms()}}, {.samples = 128});
   ASSERT_EQ(found.drives.size(), 2U);
   EXPECT_EQ(found.drives[0].name, "plain step");
   EXPECT_EQ(found.drives[1].name, "slow");
@@ -438,7 +438,7 @@ TEST(Robustness, JudgesEveryDriveOnTheSameDevicesBesideThePlainStep) {
   EXPECT_EQ(found.drives[0].outcomes[found.drives[0].worst[0]].metrics.major_bounce_height, heights.back());
   // A drive that is the plain step is not judged twice.
   const PreparedScene step = prepare(gold_at_17_volts());
-  EXPECT_EQ(robustness(step, {{.name = "step", .waveforms = step.drives.waveforms}}, {.samples = 2}).drives.size(), 1U);
+  EXPECT_EQ(robustness(step, {{.name = "step", .waveforms = step.drives.waveforms()}}, {.samples = 2}).drives.size(), 1U);
 }
 
 TEST(Robustness, GivesTheSceneOfEveryDevice) {

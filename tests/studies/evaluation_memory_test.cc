@@ -135,7 +135,7 @@ TEST(StartingWaveforms, AreCandidatesThatStayTheBestUntilABetterOneIsFound) {
   const Found long_search = searched({.max_evaluations = 400}, nullptr);
   OptimizeOptions options{.max_evaluations = 6};
   const Found short_search = searched(options, nullptr);
-  options.starts = {{.name = "earlier", .waveforms = long_search.result->best_scene->drives.waveforms}};
+  options.starts = {{.name = "earlier", .waveforms = long_search.result->best_scene->drives.waveforms()}};
   const Found refined = searched(options, nullptr);
   EXPECT_LT(long_search.result->best_cost, short_search.result->best_cost);
   constexpr double rounding = 1e-6;  // of the parameters, which a scene writes

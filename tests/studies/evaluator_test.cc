@@ -24,8 +24,7 @@ TEST(Evaluator, RowsHaveTheBitsOfTheDevicesOfASpread) {
   file.set(R"(spread."gap.contact"={distribution="normal",standard_deviation="40 nm"})");
   const PreparedScene nominal = prepare_and_choose(file);
   const Ensemble ensemble(nominal, 5);
-  const auto closed =
-      close_all(ensemble, {{.waveforms = nominal.in_drive_order(nominal.drives.waveforms)}}, {.duration = nominal.duration});
+  const auto closed = close_all(ensemble, {{.waveforms = nominal.waveforms()}}, {.duration = nominal.duration});
   const Evaluator evaluator(gold(), {"gap.contact"}, {first_contact});
   std::vector<double> rows, figures(5);
   for (std::uint64_t k = 0; k < 5; ++k) rows.push_back(ensemble.values(k)[0]);

@@ -169,7 +169,7 @@ TEST(Exploration, OfDevicesGivesTheYieldsOfRobustness_optimized) {
   scene.set("waveform.main.level=\"1.2 Vdp\"");
   const PreparedScene nominal = prepare_and_choose(scene, true);
   const Robustness found =
-      robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms}}, {.samples = 24, .seed = 5});
+      robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms()}}, {.samples = 24, .seed = 5});
   EXPECT_EQ(row.figures[0], found.drives.back().closing.value);
   EXPECT_EQ(row.figures[index_of(e, "bounce_free_yield")], found.drives.back().bounce_free.value);
   const auto height = &Metrics::major_bounce_height;

@@ -127,7 +127,7 @@ TEST(Instruments, HaveExactSlopesOfClosingTimes) {
   const PreparedScene p = prepared(gold({"structure.modes=2", "driver.main.delay=1 us"}),
                                    with(beam, {"gas.viscosity", "driver.main.gain", "driver.main.delay"}));
   expect_slopes(p, {.what = Measurable::closing_time, .level = 20});
-  expect_slopes(p, {.what = Measurable::closing_time, .waveforms = p.in_drive_order(p.drives.waveforms)});
+  expect_slopes(p, {.what = Measurable::closing_time, .waveforms = p.waveforms()});
 }
 TEST(Instruments, HaveSlopesOfMotionsAndContactRecords) {
   const PreparedScene p = prepared(gold({"structure.modes=2"}), {"structure.thickness", "gap.electrode", "driver.main.gain"});

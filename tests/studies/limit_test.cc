@@ -164,7 +164,7 @@ TEST(LeastTime, PullsWithTheSignThatTheDriverHas) {
   const LeastTime usual = least_time(prepare_and_choose(spring_plate(), true), {.impact_velocity = 0.01});
   ASSERT_EQ(found.status, Status::done) << found.message;
   EXPECT_NEAR(found.time / usual.time, 1, 1e-6);
-  EXPECT_EQ(violation(signal(found.waveforms.at("main")), negative.drives.limits.at("main")), "");
+  EXPECT_EQ(violation(signal(found.waveforms.at("main")), negative.drives.at("main").limits.value()), "");
 }
 
 TEST(LeastTime, KeepsTheSlewOfTheDriver) {
@@ -177,8 +177,8 @@ TEST(LeastTime, KeepsTheSlewOfTheDriver) {
   ASSERT_EQ(fast.status, Status::done) << fast.message;
   ASSERT_EQ(slow.status, Status::done) << slow.message;
   EXPECT_GT(slow.time, fast.time);
-  EXPECT_TRUE(violation(signal(slow.waveforms.at("main")), ramps.drives.limits.at("main")).empty())
-      << violation(signal(slow.waveforms.at("main")), ramps.drives.limits.at("main"));
+  EXPECT_TRUE(violation(signal(slow.waveforms.at("main")), ramps.drives.at("main").limits.value()).empty())
+      << violation(signal(slow.waveforms.at("main")), ramps.drives.at("main").limits.value());
 }
 
 // The nearer to rest all modes are when the contact point touches, the less it rebounds.
@@ -187,7 +187,7 @@ TEST(LandingsAtRest, BringAPiezoToRestWithoutJumps_slow) {
   const PreparedScene p = prepare_and_choose(file, true);
   const auto found = landings_at_rest(p, Actuator::pzt, 1.3e-3, {});
   ASSERT_GE(found.size(), 4U);
-  const DriverLimits& limits = p.drives.limits.at("piezo");
+  const DriverLimits& limits = p.drives.at("piezo").limits.value();
   const double period = 2 * pi / p.model.basis().angular_frequencies()[0],
                steepest = (limits.max_voltage - limits.min_voltage) / period * 18;
   std::vector<double> heights;
@@ -246,7 +246,7 @@ TEST(Limit, LandsAPlateAtRestWhereTheSlewIsLimited_optimized) {
     ASSERT_EQ(rest.status, Status::done) << level << ": " << rest.message;
     EXPECT_GT(rest.time, touch.time);
     EXPECT_LT(rest.time, 1.2 * touch.time);
-    EXPECT_EQ(violation(signal(rest.waveforms.at("main")), p.drives.limits.at("main")), "");
+    EXPECT_EQ(violation(signal(rest.waveforms.at("main")), p.drives.at("main").limits.value()), "");
   }
 }
 

@@ -52,13 +52,13 @@ TEST(GentleEdges, AreThoseOfEveryWaveformOfEveryFamily) {
     for (std::uint64_t n = 0; n < 40; ++n) {
       const std::vector<double> x = somewhere(gentle[k].space, n);
       for (const auto& [drive, waveform] : gentle[k].space.waveforms(x)) {
-        const DriverLimits& own = steep[k].given.drives.limits.at(drive);
+        const DriverLimits& own = steep[k].given.drives.at(drive).limits.value();
         const double most = (own.max_voltage - own.min_voltage) * fastest / (2 * pi);
         EXPECT_LE(signal(waveform).peak_slew(), most * (1 + 1e-6)) << families_of(families_with_slew)[k] << ", " << drive;
         steeper = steeper || signal(steep[k].space.waveforms(somewhere(steep[k].space, n)).at(drive)).peak_slew() > 2 * most;
       }
     }
-    EXPECT_EQ(gentle[k].given.drives.limits.at("piezo").max_slew, std::numeric_limits<double>::infinity())
+    EXPECT_EQ(gentle[k].given.drives.at("piezo").limits.value().max_slew, std::numeric_limits<double>::infinity())
         << "what the sources do stays as the scene says";
   }
   EXPECT_TRUE(steeper) << "there is something to be gentle about";
@@ -136,7 +136,7 @@ TEST(WorstOfModes, IsTheHighestOfTheCostsOfEveryBeam) {
   EXPECT_GT(expected, 1.05 * own);
   EXPECT_TRUE(plain.price(signals).lands);
   EXPECT_FALSE(worst.price(signals).lands);
-  const auto x = plain.space.parameters(plain.given.drives.waveforms);
+  const auto x = plain.space.parameters(plain.given.drives.waveforms());
   ASSERT_TRUE(x);
   EXPECT_NEAR(worst.price_at(*x).own, expected, 1e-9);
   EXPECT_FALSE(worst.gradient_refusal(Target::bounce).empty());
@@ -189,7 +189,8 @@ TEST(WorstOfModes, GoesOnWhereALandingBelongsToTheModesOfItsScene) {
   ASSERT_TRUE(free.best);
   EXPECT_TRUE(free.goal_met);
   EXPECT_GT(free.evaluations_of_modes, 50) << "half the budget with gentle edges, then the worst of beams";
-  EXPECT_EQ(free.best_scene->drives.limits.at("piezo").max_slew, std::numeric_limits<double>::infinity()) << "the driver's own";
+  EXPECT_EQ(free.best_scene->drives.at("piezo").limits.value().max_slew, std::numeric_limits<double>::infinity())
+      << "the driver's own";
   EXPECT_EQ(free.confirmed, std::ranges::all_of(free.checks, [](const ConfirmingRun& run) {
               return run.varied == Varied::gas || run.metrics.bounce_count == 0;
             }));

@@ -87,7 +87,7 @@ TEST(OpeningResult, StopsTheShippedSwitchesInTheirBand_slow) {
     EXPECT_TRUE(r.better) << name;
     EXPECT_LT(r.best->figures.residual_vibration, 0.1 * r.plain.figures.residual_vibration) << name;
     EXPECT_EQ(r.best->figures.touches, 0) << name;
-    const auto& limits = r.given.drives.limits.at("main");
+    const auto& limits = r.given.drives.at("main").limits.value();
     EXPECT_LE(r.best->signals[0].maximum(), limits.max_voltage * (1 + 1e-12)) << name;
     EXPECT_EQ(r.best->signals[0].hold_level(), 0) << name;
   }

@@ -83,9 +83,9 @@ TEST(Optimize, ComparesWithAPlainStepToTheSameHoldLevel) {
                                    "waveform.main.rise_time=30 us"}),
                          {.actuator = Actuator::electrostatic}, 12);
   const PreparedScene& baseline = log.result.baseline_scene;
-  const auto& main = std::get<Step>(baseline.drives.waveforms.at("main"));
+  const auto& main = std::get<Step>(baseline.drives.at("main").waveform.value());
   EXPECT_EQ(main.rise_time, 0);
-  EXPECT_DOUBLE_EQ(main.level, signal(log.result.scene.drives.waveforms.at("main")).hold_level());
+  EXPECT_DOUBLE_EQ(main.level, log.result.scene.drives.at("main").hold_level());
   EXPECT_TRUE(baseline.signals().back().is_zero());
   EXPECT_EQ(baseline.duration, log.result.scene.duration);
 }
@@ -96,7 +96,7 @@ TEST(Optimize, StepsAPiezoThatIsTheOnlyDriveToItsHoldLevel_optimized) {
                              "driver.piezo.max_slew=2 V/us"});
   for (const char* section : {"electrode.main", "waveform.main", "driver.main"}) file = without(file, section);
   const Log log = search(file, {.actuator = Actuator::pzt}, 40);
-  const auto& piezo = std::get<Step>(log.result.baseline_scene.drives.waveforms.at("piezo"));
+  const auto& piezo = std::get<Step>(log.result.baseline_scene.drives.at("piezo").waveform.value());
   EXPECT_DOUBLE_EQ(piezo.level, -6);
   EXPECT_DOUBLE_EQ(piezo.rise_time, 3e-6);
   EXPECT_GT(log.result.baseline.metrics.initial_contact_time, 0) << "it closes the switch";
@@ -209,7 +209,7 @@ TEST(Optimize, KeepsALandingThatTheSearchedFamilyCannotDescribe) {
   ASSERT_TRUE(log.result.best);
   EXPECT_TRUE(log.result.goal_met);
   EXPECT_TRUE(log.result.parameters.empty());
-  EXPECT_EQ(family(log.result.best_scene->drives.waveforms.at("main")), "pulse");
+  EXPECT_EQ(family(log.result.best_scene->drives.at("main").waveform.value()), "pulse");
   EXPECT_EQ(improved, std::vector<long>{given_index}) << "nothing worse is written over it";
 }
 
@@ -381,7 +381,7 @@ TEST(Optimize, UnderASlewLimitComparesWithTheFastestPermittedStep) {
   const SceneFile slow = gold({"simulate.duration=200 us", "waveform.main.rise_time=50 us", "driver.main.max_slew=2 V/us"});
   for (const char* family : {"pulse", "harmonic"}) {
     const Log log = search(slow, {.family = family}, 30);
-    const auto& main = std::get<Step>(log.result.baseline_scene.drives.waveforms.at("main"));
+    const auto& main = std::get<Step>(log.result.baseline_scene.drives.at("main").waveform.value());
     EXPECT_DOUBLE_EQ(main.rise_time, main.level / 2e6);
     bool feasible = false;
     for (const auto& [index, e] : log.evaluations) feasible = feasible || std::isfinite(e.value);

@@ -62,7 +62,7 @@ TEST(OwnContactOfAScene, IsRefusedByNameWhereAFileWouldHaveToSayIt) {
 
 TEST(OwnContactOfAScene, HasNoExactDerivatives) {
   const PreparedScene own = prepare(own_gold());
-  const Derivatives none = derivatives(own, {.waveforms = own.in_drive_order(own.drives.waveforms)});
+  const Derivatives none = derivatives(own, {.waveforms = own.waveforms()});
   EXPECT_THAT(none.why_none, testing::HasSubstr("contact law of one's own"));
 }
 

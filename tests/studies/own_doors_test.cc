@@ -255,8 +255,8 @@ TEST(OwnWaveform, ClosesASwitchAsTheFamilyOfItsVoltages) {
     Signal signal_;
   };
   PreparedScene built_in = given, own_one = given;
-  built_in.drives.waveforms["main"] = curve;
-  own_one.drives.waveforms["main"] = own(std::make_shared<Copy>(of_curve));
+  built_in.drives.at("main").waveform = curve;
+  own_one.drives.at("main").waveform = own(std::make_shared<Copy>(of_curve));
   const Metrics a = simulate(built_in, false).metrics, b = simulate(own_one, false).metrics;
   constexpr double near = 1e-5;  // an accuracy of 1e-4, and a voltage to 1e-7
   EXPECT_NEAR(b.initial_contact_time, a.initial_contact_time, near * a.initial_contact_time);

@@ -36,17 +36,17 @@ TEST(Prepare, ComputesPullInOnlyWhereAUnitNeedsIt) {
   const ElectrodePullIn& p = needed.pull_in.at("main");
   EXPECT_GT(p.dynamically.voltage, 0);
   EXPECT_LT(p.dynamically.voltage, p.statically.voltage);
-  EXPECT_DOUBLE_EQ(signal(needed.drives.waveforms.at("main")).hold_level(), 1.25 * p.dynamically.voltage);
-  EXPECT_DOUBLE_EQ(needed.drives.limits.at("main").max_voltage, 1.5 * p.dynamically.voltage);
+  EXPECT_DOUBLE_EQ(needed.drives.at("main").hold_level(), 1.25 * p.dynamically.voltage);
+  EXPECT_DOUBLE_EQ(needed.drives.at("main").limits.value().max_voltage, 1.5 * p.dynamically.voltage);
   EXPECT_DOUBLE_EQ(needed.voltage_units().at("main").dynamic_pull_in, p.dynamically.voltage);
 }
 
 TEST(Prepare, ComputesPullInForDefaultLimitsWhenAsked) {
   const SceneFile file = without(gold({"waveform.main.level=15 V"}), "driver.main");
-  EXPECT_THAT(prepare(file).drives.limits, IsEmpty());
+  EXPECT_FALSE(prepare(file).drives.at("main").limits);
   const PreparedScene limited = prepare(file, true);
-  EXPECT_DOUBLE_EQ(limited.drives.limits.at("main").min_voltage, 0);
-  EXPECT_DOUBLE_EQ(limited.drives.limits.at("main").max_voltage, 1.5 * limited.pull_in.at("main").dynamically.voltage);
+  EXPECT_DOUBLE_EQ(limited.drives.at("main").limits.value().min_voltage, 0);
+  EXPECT_DOUBLE_EQ(limited.drives.at("main").limits.value().max_voltage, 1.5 * limited.pull_in.at("main").dynamically.voltage);
 }
 
 TEST(Prepare, OrdersSignalsAsTheSwitchDoesAndLeavesUndrivenDrivesAtZero) {

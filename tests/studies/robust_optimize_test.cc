@@ -52,7 +52,7 @@ TEST(RobustOptimize, DoesBetterOnFreshDevicesThanTheStep_optimized) {
   EXPECT_EQ(drives[0].name, "plain step");
   EXPECT_EQ(drives[1].outcomes.size(), 60U);
   // The winner is what best.toml says.
-  EXPECT_EQ(drives[1].waveforms.size(), found.best_scene->drives.waveforms.size());
+  EXPECT_EQ(drives[1].waveforms.size(), found.best_scene->drives.waveforms().size());
   EXPECT_EQ(signal(drives[1].waveforms.at("main")).pieces(), found.best_scene->signals()[0].pieces());
 }
 

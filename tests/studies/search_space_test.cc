@@ -76,7 +76,7 @@ void expect_within_limits(const PreparedScene& prepared, Actuator actuator, cons
   }
   for (const std::vector<double>& x : points) {
     for (const auto& [drive, waveform] : space.waveforms(x)) {
-      const std::string said = violation(signal(waveform), prepared.drives.limits.at(drive));
+      const std::string said = violation(signal(waveform), prepared.drives.at(drive).limits.value());
       ASSERT_EQ(said, "") << drive << " " << family << " " << testing::PrintToString(x);
     }
   }
@@ -168,7 +168,7 @@ TEST(SearchSpace, BrakesWithTheElectrodeOnTheFarSide) {
 }
 
 TEST(SearchSpace, NeverTouchesTheHoldLevel) {
-  const double hold = signal(plain().drives.waveforms.at("main")).hold_level();
+  const double hold = plain().drives.at("main").hold_level();
   for (const std::string& family : every_family) {
     const SearchSpace space(plain(), Actuator::both, family, first_touch);
     for (const auto& x : space.starts()) {
@@ -208,7 +208,7 @@ TEST(SearchSpace, HasNoParametersForWhatItCannotReach) {
 TEST(SearchSpace, BoundsLevelsByTheDriversLimits) {
   for (const Actuator actuator : {Actuator::electrostatic, Actuator::pzt}) {
     const std::string drive = actuator == Actuator::pzt ? "piezo" : "main";
-    const DriverLimits& limits = plain().drives.limits.at(drive);
+    const DriverLimits& limits = plain().drives.at(drive).limits.value();
     for (const Variable& v : SearchSpace(plain(), actuator, "pulse", first_touch).variables()) {
       EXPECT_LT(v.lower, v.upper) << v.name;
       if (!v.name.ends_with("_V")) continue;
@@ -250,7 +250,7 @@ TEST(SearchSpace, OfPulsesCoastsBetweenThem) {
                                         "main.coast_1_s", "main.edge_s"));
   const auto waveforms = space.waveforms(std::vector<double>{20, 15, 20e-6, 40e-6, 10e-6, 1e-6});
   const Pulse& pulse = std::get<Pulse>(waveforms.at("main"));
-  EXPECT_THAT(pulse.levels, ElementsAre(20, 0, 15, signal(plain().drives.waveforms.at("main")).hold_level()));
+  EXPECT_THAT(pulse.levels, ElementsAre(20, 0, 15, plain().drives.at("main").hold_level()));
   EXPECT_THAT(pulse.times, ElementsAre(20e-6, testing::DoubleEq(30e-6), testing::DoubleEq(70e-6)));
   const SearchSpace dual(plain(), Actuator::electrostatic, "dual-pulse", first_touch);
   EXPECT_EQ(names(dual), names(space));
@@ -260,7 +260,7 @@ TEST(SearchSpace, OfACoastEndsItsOnlyPulseBeforeTheHoldLevel) {
   const SearchSpace space(plain(), Actuator::electrostatic, "coast", first_touch);
   const auto waveforms = space.waveforms(std::vector<double>{20, 18e-6, 12e-6, 1e-6});
   const Pulse& pulse = std::get<Pulse>(waveforms.at("main"));
-  EXPECT_THAT(pulse.levels, ElementsAre(20, 0, signal(plain().drives.waveforms.at("main")).hold_level()));
+  EXPECT_THAT(pulse.levels, ElementsAre(20, 0, plain().drives.at("main").hold_level()));
   EXPECT_THAT(pulse.times, ElementsAre(18e-6, testing::DoubleEq(30e-6)));
 }
 
@@ -279,7 +279,7 @@ TEST(SearchSpace, WaitsBeforeAPulseThatBrakes) {
 
 TEST(SearchSpace, BeginsWithTheQuickestSwing) {
   // Full voltage, none, hold: among the starts of every family that can say so, with the same times.
-  const double high = plain().drives.limits.at("main").max_voltage;
+  const double high = plain().drives.at("main").limits.value().max_voltage;
   const auto thrown = [&](const std::string& family, std::size_t level, std::size_t driven, std::size_t coasting) {
     const SearchSpace space(plain(), Actuator::electrostatic, family, first_touch);
     const std::vector<double> x = space.starts().back();
@@ -304,7 +304,7 @@ TEST(SearchSpace, BeginsWithTheQuickestSwing) {
 
 TEST(SearchSpace, OfACompressibleFilmBeginsWithTheLandingOfItsFirstModeWithoutDamping) {
   const PreparedScene p = prepare(gold({"gas.model=reynolds"}), true);
-  const double high = p.drives.limits.at("main").max_voltage;
+  const double high = p.drives.at("main").limits.value().max_voltage;
   const auto landing = bang_bang(p.model, {high}, {0});
   ASSERT_TRUE(landing);
   const std::vector<double> x = SearchSpace(p, Actuator::electrostatic, "dual-pulse", first_touch).starts().back();
@@ -323,7 +323,7 @@ double apart(const Waveform& a, const Waveform& b, double end) {
 
 TEST(SearchSpace, FindsTheNearestWaveformOfAFamily) {
   const double end = 2.5 * first_touch;
-  const double hold = signal(plain().drives.waveforms.at("main")).hold_level();
+  const double hold = plain().drives.at("main").hold_level();
   const Waveform thrown =
       Pulse{.levels = {20, 2, 19, hold}, .times = {0.55 * first_touch, 0.9 * first_touch, 1.8 * first_touch}, .edge = 0.5e-6};
   const auto miss = [&](const std::string& family, const Waveform& given) {
@@ -369,8 +369,7 @@ TEST(SearchSpace, GivesEveryDriveTheFamilyThatIsNamedForIt) {
 
 TEST(SearchSpace, OfSinesKeepsTheirRatiosInsideTheLimits) {
   const SearchSpace space(plain(), Actuator::electrostatic, "sines:2", first_touch);
-  const double hold = signal(plain().drives.waveforms.at("main")).hold_level(),
-               high = plain().drives.limits.at("main").max_voltage;
+  const double hold = plain().drives.at("main").hold_level(), high = plain().drives.at("main").limits.value().max_voltage;
   const auto waveforms = space.waveforms(std::vector<double>{5 * hold, -2.5 * hold, 40e-6});
   const Sines& sines = std::get<Sines>(waveforms.at("main"));
   EXPECT_NEAR(sines.amplitudes[0] / sines.amplitudes[1], -2, 1e-12);
@@ -383,7 +382,7 @@ TEST(SearchSpace, OfKnotsIsALineThroughThemToTheHoldLevel) {
                                         "main.part_2", "main.part_3"));
   const auto waveforms = space.waveforms(std::vector<double>{4, 8, 2, 60e-6, 0.5, 1, 0.5});
   const Table& line = std::get<Table>(waveforms.at("main"));
-  const double hold = signal(plain().drives.waveforms.at("main")).hold_level();
+  const double hold = plain().drives.at("main").hold_level();
   EXPECT_THAT(line.voltage, ElementsAre(0, 4, 8, 2, hold));
   EXPECT_THAT(line.time, ElementsAre(0, 0, testing::DoubleEq(15e-6), testing::DoubleEq(45e-6), testing::DoubleEq(60e-6)));
 }
@@ -392,7 +391,7 @@ TEST(SearchSpace, OfACatchHoldsTheBeamFastAndThenLetsItBe) {
   const SearchSpace space(plain(), Actuator::electrostatic, "catch", first_touch);
   const auto waveforms = space.waveforms(std::vector<double>{20, 1, 15, 20e-6, 10e-6, 40e-6, 1e-6});
   const Pulse& pulse = std::get<Pulse>(waveforms.at("main"));
-  EXPECT_THAT(pulse.levels, ElementsAre(20, 1, 15, signal(plain().drives.waveforms.at("main")).hold_level()));
+  EXPECT_THAT(pulse.levels, ElementsAre(20, 1, 15, plain().drives.at("main").hold_level()));
   EXPECT_THAT(pulse.times, ElementsAre(20e-6, testing::DoubleEq(30e-6), testing::DoubleEq(70e-6)));
 }
 

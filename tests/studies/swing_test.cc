@@ -22,7 +22,7 @@ double longest(const PreparedScene& p) { return 3 * 2 * pi / p.model.basis().ang
 
 std::vector<double> full_pull(const PreparedScene& p) {
   std::vector<double> values(p.model.drives(), 0.0);
-  values[0] = p.drives.limits.at(p.scene.device.electrodes[0].name).max_voltage;
+  values[0] = p.drives.at(p.scene.device.electrodes[0].name).limits.value().max_voltage;
   return values;
 }
 
@@ -67,7 +67,7 @@ DriveWaveforms without_edges(DriveWaveforms swing) {
 // Each touches far more slowly than the step that goes to the same hold levels.
 void expect_soft_touches(const PreparedScene& p, const SearchSpace& space, std::size_t least) {
   const auto landing = [&](DriveWaveforms searched) {
-    searched.insert(p.drives.waveforms.begin(), p.drives.waveforms.end());
+    searched.merge(p.drives.waveforms());
     return metrics(simulate_closing(p.model, signals_of(p.in_drive_order(searched)),
                                     {.duration = p.duration, .tolerance = 1e-6, .after_contact = 0}));
   };

@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   try {
     const softland::PracticeDevice device(softland::SceneFile::load(argv[1]), {.seed = 7});
     const softland::PreparedScene& scene = device.nominal();
-    const auto closing = device.close(1, scene.in_drive_order(scene.drives.waveforms), scene.duration);
+    const auto closing = device.close(1, scene.waveforms(), scene.duration);
     std::printf("closed %zu times\n", (closing.record.edges.size() + 1) / 2);
   } catch (const softland::InvalidKey& error) {
     std::printf("%s\n", error.place().key.c_str());
