@@ -20,11 +20,6 @@ namespace {
 using internal::plain_number;
 using internal::quantity;
 
-std::size_t place_of(const PreparedScene& p, const std::string& drive) {
-  const std::vector<std::string> names = p.drive_names();
-  return static_cast<std::size_t>(std::ranges::find(names, drive) - names.begin());
-}
-
 // "27 MS/s, 14 bit"
 std::string words(const DriverModel& source) {
   const std::string rate = internal::given_quantity(*source.sample_rate, "S/s");

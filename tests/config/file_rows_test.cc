@@ -30,7 +30,7 @@ struct FileScene {
   }
   [[nodiscard]] Scene scene() const { return read_scene(SceneFile::load(path)); }
   [[nodiscard]] Drives drives() const { return scene().drives({{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}}); }
-  [[nodiscard]] Table table() const { return std::get<Table>(drives().waveforms.at("main")); }
+  [[nodiscard]] Table table() const { return std::get<Table>(drives().at("main").waveform.value()); }
   void refused(const std::vector<std::string>& parts) const {
     try {
       (void)drives();
@@ -50,12 +50,12 @@ TEST(FileRows, RowsBeforeTheTriggerAreWhatItStandsAtBefore) {
   const FileScene of(scope, "column = 2\n");
   EXPECT_EQ(of.table().time, (std::vector<double>{0, 1e-6, 2e-6}));
   EXPECT_EQ(of.table().voltage, (std::vector<double>{1, 4, 5}));
-  EXPECT_EQ(of.drives().before.at("main"), 0.25);
+  EXPECT_EQ(of.drives().at("main").before, 0.25);
   EXPECT_THAT(of.scene().warnings,
               testing::Contains(HasSubstr(
                   "Keysight CSV, \"1\": 5 samples, every 1 us, from -2 us to 2 us; before t = 0: 250 mV, the mean of 2 rows")));
   const FileScene given(scope, "column = 2\nbefore = \"0 V\"\n");
-  EXPECT_EQ(given.drives().before.at("main"), 0);
+  EXPECT_EQ(given.drives().at("main").before, 0);
 }
 
 TEST(FileRows, AResolvedAndACanonicalSceneNeedNoFile) {
@@ -63,11 +63,11 @@ TEST(FileRows, AResolvedAndACanonicalSceneNeedNoFile) {
   const Scene again = read_scene(
       SceneFile::parse(resolved(of.scene(), {{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}}).text(), "y.toml"));
   const std::map<std::string, PullInVoltages> known{{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}};
-  EXPECT_EQ(std::get<Table>(again.drives(known).waveforms.at("main")).voltage, (std::vector<double>{2, 8, 10}));
-  EXPECT_EQ(again.drives(known).before.at("main"), 0.5);
+  EXPECT_EQ(std::get<Table>(again.drives(known).at("main").waveform.value()).voltage, (std::vector<double>{2, 8, 10}));
+  EXPECT_EQ(again.drives(known).at("main").before, 0.5);
   const Scene same = read_scene(canonical(SceneFile::load(of.path), "z.toml"));
-  EXPECT_EQ(same.drives(known).before.at("main"), 0.5);
-  EXPECT_EQ(std::get<Table>(same.drives(known).waveforms.at("main")).time, of.table().time);
+  EXPECT_EQ(same.drives(known).at("main").before, 0.5);
+  EXPECT_EQ(std::get<Table>(same.drives(known).at("main").waveform.value()).time, of.table().time);
 }
 
 TEST(FileRows, KeysShiftAndScaleThem) {
@@ -75,7 +75,7 @@ TEST(FileRows, KeysShiftAndScaleThem) {
   EXPECT_EQ(first.table().time.size(), 5U);
   EXPECT_EQ(first.table().time.front(), 0);
   EXPECT_EQ(first.table().voltage.front(), 2.5);
-  EXPECT_FALSE(first.drives().before.contains("main"));
+  EXPECT_FALSE(first.drives().at("main").before);
   const FileScene later(scope, "column = \"1\"\nshift = \"1.5 us\"\n");
   EXPECT_EQ(later.table().time[0], 0);
   EXPECT_DOUBLE_EQ(later.table().voltage[0], 0.25);

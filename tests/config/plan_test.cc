@@ -77,8 +77,9 @@ TEST(Plan, InMultiplesOfAPullInVoltageKeepsThem) {
   EXPECT_EQ(p.values(11).front(), 1.6);
   const Scene scene = scene_at(p, 0);
   EXPECT_EQ(scene.need_pull_in, std::vector<std::string>{"main"});
-  EXPECT_EQ(std::get<Step>(scene.drives({{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}}).waveforms.at("main")).level,
-            1.05 * 40);
+  EXPECT_EQ(
+      std::get<Step>(scene.drives({{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}}).at("main").waveform.value()).level,
+      1.05 * 40);
 }
 
 // Of a place that is a length a percentage is of that length; of one that is a percentage it is one of the beam's.

@@ -117,7 +117,7 @@ Waveform after_text(const Waveform& waveform) {
   file.set("driver.main={ min_voltage = \"-1e9 V\", max_voltage = \"1e9 V\" }");
   file.set_waveform("main", waveform);
   const Scene scene = read_scene(SceneFile::parse(file.text(), "y.toml"));
-  return scene.drives({}).waveforms.at("main");
+  return scene.drives({}).at("main").waveform.value();
 }
 
 TEST(SceneFile, WaveformsReadBackDigitForDigit_long) {
@@ -265,11 +265,11 @@ TEST(Resolved, IsTheSameSceneDigitForDigitAndNeedsNoPullIn) {
   const Drives before = scene.drives(measured_pull_in);
   const Drives after = again.drives({});
   for (const char* drive : {"main", "piezo"}) {
-    const auto a = std::get<Harmonic>(before.waveforms.at(drive));
-    const auto b = std::get<Harmonic>(after.waveforms.at(drive));
+    const auto a = std::get<Harmonic>(before.at(drive).waveform.value());
+    const auto b = std::get<Harmonic>(after.at(drive).waveform.value());
     EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0) << drive;
-    EXPECT_EQ(before.limits.at(drive).max_voltage, after.limits.at(drive).max_voltage) << drive;
-    EXPECT_EQ(before.limits.at(drive).min_voltage, after.limits.at(drive).min_voltage) << drive;
+    EXPECT_EQ(before.at(drive).limits.value().max_voltage, after.at(drive).limits.value().max_voltage) << drive;
+    EXPECT_EQ(before.at(drive).limits.value().min_voltage, after.at(drive).limits.value().min_voltage) << drive;
   }
   EXPECT_EQ(resolved(again, {}).text(), resolved(scene, measured_pull_in).text());
 }

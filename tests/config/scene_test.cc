@@ -133,7 +133,7 @@ TEST(Scene, ElectrodesStandOnTheirSide) {
   const Scene far = read(edited(edited(small_scene, "1.25 Vdp", "20 V"), "[gas]", "side = \"far\"\ngap = \"3 um\"\n[gas]"));
   EXPECT_EQ(far.device.electrodes[0].side, Side::far);
   EXPECT_TRUE(far.need_pull_in.empty());
-  EXPECT_FALSE(far.drives({}).limits.contains("main")) << "no pull-in voltage, no default limit";
+  EXPECT_FALSE(far.drives({}).at("main").limits) << "no pull-in voltage, no default limit";
 }
 
 TEST(Scene, SpansMayFollowTheLengthAndHaveSeveralPads) {
@@ -413,8 +413,7 @@ contact = "2 um"
   EXPECT_FALSE(scene.device.gas);
   EXPECT_FALSE(scene.device.contact);
   EXPECT_FALSE(scene.device.piezo);
-  EXPECT_TRUE(scene.drives({}).waveforms.empty());
-  EXPECT_TRUE(scene.drives({}).limits.empty());
+  EXPECT_EQ(scene.drives({}).size(), 0U);
   EXPECT_THAT(scene.warnings, testing::ElementsAre("x.toml: neither an electrode nor a piezo layer: nothing drives this switch"));
 }
 

@@ -35,7 +35,7 @@ void check_scene(const SceneFile& file) {
   const auto whole = taken([&] { return resolved(*scene, pull_in); });
   check(drives.has_value() == whole.has_value(), "drives() and resolved() disagree:\n" + file.text());
   if (!whole) return;
-  for (const auto& [name, waveform] : drives->waveforms) static_cast<void>(signal(waveform));
+  for (const auto& [name, waveform] : drives->waveforms()) static_cast<void>(signal(waveform));
   const Scene whole_scene = read_scene(reread(*whole));
   check(whole_scene.need_pull_in.empty(), "a resolved scene needs pull-in voltages:\n" + whole->text());
   check(resolved(whole_scene, {}).text() == whole->text(), "a resolved scene does not resolve to itself:\n" + whole->text());

@@ -102,14 +102,13 @@ TEST(Prepare, LoadsASourceWithTheCapacitanceOfTheOpenSwitch) {
   const Device& device = p.scene.device;
   const double area = (device.electrodes[0].end.value - device.electrodes[0].begin.value) * device.structure.width;
   const double capacitance = 8.8541878128e-12 * area / device.gap.electrode;
-  ASSERT_TRUE(p.loads.contains("main"));
-  EXPECT_NEAR(p.loads.at("main"), capacitance, 1e-9 * capacitance);
+  EXPECT_NEAR(p.drives.at("main").source.load, capacitance, 1e-9 * capacitance);
   EXPECT_NEAR(p.signals()[0].voltage(10e6 * capacitance), 30 * (1 - std::exp(-1.0)), 1e-6);
 
   SceneFile with_cable = file;
   with_cable.set("driver.main.parallel_capacitance=0.2 pF");
   const PreparedScene cabled = prepare(with_cable);
-  EXPECT_EQ(cabled.loads.at("main"), p.loads.at("main"));
+  EXPECT_EQ(cabled.drives.at("main").source.load, p.drives.at("main").source.load);
   EXPECT_NEAR(cabled.signals()[0].voltage(10e6 * (capacitance + 0.2e-12)), 30 * (1 - std::exp(-1.0)), 1e-6);
 }
 
