@@ -74,7 +74,8 @@ std::string begins_elsewhere(const DriveWaveforms& waveforms, const std::map<std
                              const PreparedScene& scene) {
   for (const auto& [drive, waveform] : waveforms) {
     const auto found = before.find(drive);
-    const double own = found == before.end() ? 0 : found->second, due = scene.drives.at(drive).before.value_or(0);
+    const Drive* const here = scene.drives.find(drive);
+    const double own = found == before.end() ? 0 : found->second, due = here != nullptr ? here->before.value_or(0) : 0;
     if (own != due)
       return fmt::format(
           "the drive '{}' stands at {} before its waveform, and at {} in the scene: both have to begin at one rest", drive,
