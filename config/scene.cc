@@ -185,13 +185,11 @@ const Drive* Drives::find(std::string_view name) const {
   return found == drives_.end() ? nullptr : &*found;
 }
 
-const Drive& Drives::at(std::string_view name) const {
+std::size_t Drives::place(std::string_view name) const {
   const Drive* const found = find(name);
   require(found != nullptr, [&] { return fmt::format("there is no drive '{}'", name); });
-  return *found;
+  return static_cast<std::size_t>(found - drives_.data());
 }
-
-Drive& Drives::at(std::string_view name) { return const_cast<Drive&>(std::as_const(*this).at(name)); }
 
 Drives Drives::of(const std::vector<std::string>& names) const {
   Drives some;

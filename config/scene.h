@@ -97,8 +97,7 @@ struct PullInVoltages {
 /// Of an electrode without [driver], in a search [Vdp].
 inline constexpr double default_max_voltage = 1.5;
 
-/// What drives a switch at one place, in volts: of an electrode, of the piezo, or of the dispersion force, whose factor less one
-/// stands for them.
+/// One drive of a switch in volts: an electrode, the piezo, or the dispersion force, of which it is the factor less one.
 struct Drive {
   std::string name = {};                    ///< of the electrode, "piezo" or "dispersion"
   std::optional<Waveform> waveform = {};    ///< none: it stays at 0 V
@@ -128,8 +127,8 @@ class Drives {
   /// Null where the switch has no such drive.
   [[nodiscard]] const Drive* find(std::string_view name) const;
   /// Throws InvalidInput where the switch has no such drive.
-  [[nodiscard]] const Drive& at(std::string_view name) const;
-  [[nodiscard]] Drive& at(std::string_view name);
+  [[nodiscard]] const Drive& at(std::string_view name) const { return drives_[place(name)]; }
+  [[nodiscard]] Drive& at(std::string_view name) { return drives_[place(name)]; }
   /// Those of these names, in their order.
   [[nodiscard]] Drives of(const std::vector<std::string>& names) const;
   /// What is given of them, by name: waveforms, and what they stand at before t = 0 [V].
@@ -137,6 +136,8 @@ class Drives {
   [[nodiscard]] std::map<std::string, double> before() const;
 
  private:
+  [[nodiscard]] std::size_t place(std::string_view name) const;
+
   std::vector<Drive> drives_;
 };
 

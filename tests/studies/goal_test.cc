@@ -1,6 +1,9 @@
 // When a search may say that it has reached its goal.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <variant>
+
 #include "scenes.h"
 #include "studies/search/optimize.h"
 
@@ -17,9 +20,10 @@ Metrics closing(bool settled, int bounces, double settling_time, double velocity
   m.major_bounce_height = bounces > 0 ? 50e-9 : 0;
   m.impact_velocity = velocity;
   m.impact_energy = energy;
-  m.peak_contact_force = 1e-3 * velocity;
-  m.steady_force_time = m.permanent_contact_time;
-  m.drive_energy = 10 * energy;
+  for (const TargetRow& row : targets) {  // the others as the velocity
+    if (const auto* const figure = std::get_if<double Metrics::*>(&row.figure); figure != nullptr && std::isnan(m.*(*figure)))
+      m.*(*figure) = velocity;
+  }
   return m;
 }
 
