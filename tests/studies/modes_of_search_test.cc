@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "base/random.h"
 #include "model/constants.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/confirmation.h"
+#include "studies/search/limit.h"
 #include "studies/search/optimize.h"
 #include "tests/studies/scenes.h"
 
@@ -160,24 +162,40 @@ TEST(Confirmation, IsByTheIntegratorByRicherBeamsAndByGasLawsWhoseLimitsHold_slo
   EXPECT_EQ(names(scene("two-electrodes.toml")).front(), "tolerance 1e-9");
 }
 
-// What the first command promises, from three seeds: soft with six, eight and ten modes as with four.
+// Within a fifth of the least time in which drives with edges as gentle bring every mode to rest, 23.8 us: a landing has to suit
+// four beams, by some twenty parameters. Eleven searches ended in 25.5 to 26.8 us. Seeds hardly part them, rounding does: so
+// lengths differ here, too, by a few parts in a billion.
+constexpr double late = 1.2;
+
+double least_time_at_rest(const SceneFile& file) {
+  const std::string families(default_families(Shaped::piezo));
+  const std::vector<SearchSetting> steep = search_settings(file, Target::bounce, Actuator::pzt, families, {});
+  const PreparedScene gentle = with_gentle_edges(steep, Actuator::pzt, families).at(0).within_limits();
+  const LeastTime rest = least_time(gentle, {.actuator = Actuator::pzt, .at_rest = true});
+  EXPECT_EQ(rest.status, Status::done) << rest.message;
+  return rest.time;
+}
+
+// What a search for the drawing of the first command promises, of three seeds and lengths: soft with six, eight and ten modes as
+// with four.
 TEST(WorstOfModes, LandsThePiezoSwitchWithAnyNumberOfModes_slow) {
-  for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    const OptimizeResult r = optimize(gold_pzt(), {.actuator = Actuator::pzt,
-                                                   .family = std::string(default_families(Shaped::piezo)),
-                                                   .max_evaluations = default_budget(Target::bounce, Shaped::piezo),
-                                                   .seed = seed,
-                                                   .jobs = 2});
+  const double latest = late * least_time_at_rest(gold_pzt());
+  for (const auto& [seed, length] : {std::pair(1U, "250 um"), {2U, "250.000001 um"}, {3U, "250.000003 um"}}) {
+    const SceneFile file = gold_pzt({std::string("structure.length=") + length});
+    OptimizeOptions options = usual_options(file, Target::bounce, Actuator::pzt);
+    options.seed = seed;
+    options.jobs = 2;
+    const OptimizeResult r = optimize(file, options);
     ASSERT_TRUE(r.best);
     EXPECT_TRUE(r.confirmed);
     EXPECT_GT(r.evaluations_of_modes, 0);
-    EXPECT_LE(r.best->metrics.permanent_contact_time, 26e-6) << seed;
-    EXPECT_LE(r.best->metrics.impact_velocity, 10e-3) << seed;
+    EXPECT_LE(r.best->metrics.permanent_contact_time, latest) << length;
+    EXPECT_LE(r.best->metrics.impact_velocity, 10e-3) << length;
     for (const ConfirmingRun& run : r.checks) {
       if (run.varied == Varied::gas) continue;
-      EXPECT_EQ(run.metrics.bounce_count, 0) << seed << ", " << run.name;
-      EXPECT_LE(run.metrics.impact_velocity, 10e-3) << seed << ", " << run.name;
-      EXPECT_LE(run.metrics.permanent_contact_time, 26e-6) << seed << ", " << run.name;
+      EXPECT_EQ(run.metrics.bounce_count, 0) << length << ", " << run.name;
+      EXPECT_LE(run.metrics.impact_velocity, 10e-3) << length << ", " << run.name;
+      EXPECT_LE(run.metrics.permanent_contact_time, latest) << length << ", " << run.name;
     }
   }
 }
