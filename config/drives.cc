@@ -17,18 +17,9 @@
 namespace softland::internal {
 namespace {
 
-constexpr std::string_view piezo_drive = "piezo";
 constexpr std::string_view main_drive = "main";
 
 enum class LimitChecks { without_pull_in, all };
-
-std::vector<std::string_view> drive_names(const Device& device) {
-  std::vector<std::string_view> names;
-  for (const Electrode& electrode : device.electrodes) names.push_back(electrode.name);
-  if (device.dispersion) names.push_back(dispersion_drive);
-  if (device.piezo) names.push_back(piezo_drive);
-  return names;
-}
 
 /// Every [section.NAME] must name a drive of the device.
 void check_names(const SceneFile::Impl& file, const std::string& section, const Device& device) {
@@ -228,14 +219,14 @@ std::string_view main_electrode(const Device& device) {
   return {};
 }
 
+/// Of files that were read it is told into `notes`, unless that is null.
 Drives read_all(const SceneFile::Impl& file, const Device& device, const std::map<std::string, PullInVoltages>& pull_in,
-                LimitChecks checks) {
+                LimitChecks checks, std::vector<std::string>* notes = nullptr) {
   std::vector<Drive> drives;
-  std::vector<std::string> notes;
   std::optional<double> main_hold;
   if (!main_electrode(device).empty()) main_hold = 0;
-  for (const std::string_view drive : drive_names(device)) {  // the piezo comes last: it may refer to the main hold level
-    Drive& one = drives.emplace_back(Drive{.name = std::string(drive)});
+  for (const std::string& drive : drive_names(device)) {  // the piezo comes last: it may refer to the main hold level
+    Drive& one = drives.emplace_back(Drive{.name = drive});
     const auto found = pull_in.find(one.name);
     const PullInVoltages known = found == pull_in.end() ? PullInVoltages{} : found->second;
 
@@ -255,17 +246,17 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
     if (in.is_given(file_key)) {
       FileRows rows = read_file_rows(in, drive, driver);
       if (rows.before && !in.is_given(before_key)) one.before = offset + *rows.before;
-      if (!rows.told.empty()) notes.push_back(std::move(rows.told));
+      if (notes != nullptr && !rows.told.empty()) notes->push_back(std::move(rows.told));
       waveform = std::move(rows.table);
     } else {
       waveform = read_waveform(in, {.drive = drive,
                                     .pull_in = known,
                                     .main_hold = main_hold,
                                     .max_slew = limits ? limits->max_slew : std::numeric_limits<double>::infinity(),
-                                    .before = one.before.value_or(0)});
+                                    .before = one.value_before()});
     }
     if (offset != 0) waveform = raised(std::move(waveform), offset);
-    const double before = one.before.value_or(0);
+    const double before = one.value_before();
     const Signal compiled = compile(in, waveform, before);
     if (const double peak = compiled.peak(); drive != dispersion_drive && !any_voltage().contains(peak)) {
       file.fail_section(in.path(), fmt::format("reaches {}: {}", engineering(peak, "V"), any_voltage().rule("V")));
@@ -283,9 +274,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
     }
     one.waveform = std::move(waveform);
   }
-  Drives all(std::move(drives));
-  all.notes = std::move(notes);
-  return all;
+  return Drives(std::move(drives));
 }
 
 /// The hold levels of all drives, in order, where every pull-in voltage that a scene needs is `volt` [V]. Of files that were read
@@ -293,10 +282,9 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene, double volt, std::vector<std::string>* notes) {
   std::map<std::string, PullInVoltages> pull_in;
   for (const std::string& drive : scene.need_pull_in) pull_in[drive] = {.static_pull_in = volt, .dynamic_pull_in = volt};
-  const Drives drives = read_all(file, scene.device, pull_in, LimitChecks::without_pull_in);
-  if (notes != nullptr) notes->insert(notes->end(), drives.notes.begin(), drives.notes.end());
   std::vector<double> levels;
-  for (const Drive& drive : drives) levels.push_back(drive.hold_level());
+  for (const Drive& drive : read_all(file, scene.device, pull_in, LimitChecks::without_pull_in, notes))
+    levels.push_back(drive.hold_level());
   return levels;
 }
 
@@ -337,7 +325,7 @@ Waveform raised(Waveform waveform, double by) {
 }
 
 std::string why_no_drive(const Device& device, const std::string& name) {
-  const std::vector<std::string_view> known = drive_names(device);
+  const std::vector<std::string> known = drive_names(device);
   if (std::find(known.begin(), known.end(), name) != known.end()) return {};
   if (name == piezo_drive) return "there is no [piezo] layer to drive";
   if (name == dispersion_drive) return "there is no [dispersion] force to drive";
@@ -360,7 +348,7 @@ void check_drives(const SceneFile::Impl& file, Scene& scene) {
   const Device& device = scene.device;
   check_names(file, "waveform", device);
   check_names(file, "driver", device);
-  for (const std::string_view drive : drive_names(device)) {
+  for (const std::string& drive : drive_names(device)) {
     const SectionReader waveform(file, "waveform", drive);
     const SectionReader driver(file, "driver", drive);
     refuse_pull_in_units(waveform, device, drive);

@@ -13,9 +13,6 @@
 
 namespace softland::internal {
 
-/// The name of the force factor among the drives. Its values inside are the factor less one, so that every drive rests at 0.
-inline constexpr std::string_view dispersion_drive = "dispersion";
-
 /// Keys that a parameter's own may be replaced by.
 inline constexpr std::string_view frequency_key = "frequency";  ///< of an angular frequency
 inline constexpr std::string_view file_key = "file";            ///< of the rows of a table

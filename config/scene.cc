@@ -178,6 +178,14 @@ Scene read_scene(const SceneFile& file) {
   return scene;
 }
 
+std::vector<std::string> drive_names(const Device& device) {
+  std::vector<std::string> names;
+  for (const Electrode& electrode : device.electrodes) names.push_back(electrode.name);
+  if (device.dispersion) names.emplace_back(dispersion_drive);
+  if (device.piezo) names.emplace_back(piezo_drive);
+  return names;
+}
+
 double Drive::hold_level() const { return waveform ? signal(*waveform).hold_level() : 0; }
 
 const Drive* Drives::find(std::string_view name) const {
@@ -193,7 +201,6 @@ std::size_t Drives::place(std::string_view name) const {
 
 Drives Drives::of(const std::vector<std::string>& names) const {
   Drives some;
-  some.notes = notes;
   for (const std::string& name : names) some.drives_.push_back(at(name));
   return some;
 }
@@ -260,7 +267,7 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
   if (impl.own_contact) file.add_contact(*impl.own_contact);
   for (const auto& [name, waveform] : drives.waveforms()) file.set_waveform(name, waveform);
   for (const auto& [name, value] : drives.before()) {
-    const bool is_factor = name == internal::dispersion_drive;
+    const bool is_factor = name == dispersion_drive;
     file.assign(internal::join_path(internal::join_path("waveform", name), internal::before_key),
                 is_factor ? Quantity{.value = 1 + value, .dimension = dimension::none}
                           : Quantity{.value = value, .dimension = dimension::voltage});
@@ -278,7 +285,7 @@ SceneFile canonical(const SceneFile& file, const std::string& name) {
     const SectionReader in(impl, "waveform", drive);
     if (!in.is_given(internal::file_key)) continue;
     internal::FileRows read = internal::read_file_rows(in, drive, SectionReader(impl, "driver", drive));
-    const bool is_factor = drive == internal::dispersion_drive;
+    const bool is_factor = drive == dispersion_drive;
     Waveform rows = std::move(read.table);
     same.set_waveform(drive, is_factor ? internal::raised(std::move(rows), -1) : std::move(rows));
     if (read.before && !in.is_given(internal::before_key))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -97,25 +99,31 @@ struct PullInVoltages {
 /// Of an electrode without [driver], in a search [Vdp].
 inline constexpr double default_max_voltage = 1.5;
 
-/// One drive of a switch in volts: an electrode, the piezo, or the dispersion force, of which it is the factor less one.
+/// The names of the piezo and of the dispersion force among the drives.
+inline constexpr std::string_view piezo_drive = "piezo", dispersion_drive = "dispersion";
+
+/// One drive of a switch, in volts: an electrode or the piezo. That of the dispersion force is its factor less one, so that every
+/// drive rests at 0.
 struct Drive {
-  std::string name = {};                    ///< of the electrode, "piezo" or "dispersion"
+  std::string name = {};                    ///< of the electrode, piezo_drive or dispersion_drive
   std::optional<Waveform> waveform = {};    ///< none: it stays at 0 V
   std::optional<double> before = {};        ///< what is given of it before t = 0 [V]; none: 0 V
-  std::optional<DriverLimits> limits = {};  ///< electrodes always have some, by default [0, 1.5 Vdp]
-  DriverModel source = {};                  ///< ideal where the scene says nothing of it
+  std::optional<DriverLimits> limits = {};  ///< none: unlimited; of electrodes whose Vdp is known [0, 1.5 Vdp]
+  DriverModel source = {};                  ///< ideal where the scene says nothing of it; without load before prepare()
   SourceErrors errors = {};                 ///< gain, offset and delay of the source
 
-  [[nodiscard]] double hold_level() const;  ///< [V]
+  [[nodiscard]] double hold_level() const;                                  ///< [V]
+  [[nodiscard]] double value_before() const { return before.value_or(0); }  ///< before t = 0 [V]
 };
+
+/// The names of the drives of a device, in the order of Switch::drives().
+[[nodiscard]] std::vector<std::string> drive_names(const Device& device);
 
 /// The drives of a switch, in the order of Switch::drives().
 class Drives {
  public:
   Drives() = default;
   explicit Drives(std::vector<Drive> drives) : drives_(std::move(drives)) {}
-
-  std::vector<std::string> notes = {};  ///< what was taken from files of other programs, one line each
 
   [[nodiscard]] std::size_t size() const { return drives_.size(); }
   [[nodiscard]] auto begin() const { return drives_.begin(); }
@@ -129,15 +137,16 @@ class Drives {
   /// Throws InvalidInput where the switch has no such drive.
   [[nodiscard]] const Drive& at(std::string_view name) const { return drives_[place(name)]; }
   [[nodiscard]] Drive& at(std::string_view name) { return drives_[place(name)]; }
-  /// Those of these names, in their order.
+  /// k of Switch::drives(). Throws InvalidInput where the switch has no such drive.
+  [[nodiscard]] std::size_t place(std::string_view name) const;
+  /// Those of these names, in the order of the names. Throws InvalidInput where one is missing.
   [[nodiscard]] Drives of(const std::vector<std::string>& names) const;
-  /// What is given of them, by name: waveforms, and what they stand at before t = 0 [V].
+  /// The waveforms that are given, by name.
   [[nodiscard]] DriveWaveforms waveforms() const;
+  /// What is given of them before t = 0, by name [V].
   [[nodiscard]] std::map<std::string, double> before() const;
 
  private:
-  [[nodiscard]] std::size_t place(std::string_view name) const;
-
   std::vector<Drive> drives_;
 };
 

@@ -532,7 +532,7 @@ void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
   if (const Own* own = std::get_if<Own>(&given))
     throw InvalidInput(fmt::format("waveform.{}: {} cannot be written into a scene file", drive, described(*own)));
   static_cast<void>(signal(given));  // a waveform that breaks its family's rules would write a scene that cannot be read
-  const bool is_factor = drive == internal::dispersion_drive;
+  const bool is_factor = drive == dispersion_drive;
   const Waveform waveform = is_factor ? internal::raised(given, 1) : given;
   toml::table table{{"family", std::string(family(waveform))}};
   std::visit(

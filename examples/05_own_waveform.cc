@@ -51,7 +51,7 @@ int main(int argc, char** argv) try {
   const SceneFile scene = SceneFile::load(argv[1]);
   PreparedScene prepared = prepare_and_choose(scene, true);  // with the limits that drivers have where the scene names none
   const double hold = prepared.drives.at("main").hold_level();
-  const auto swell = std::make_shared<Swell>(hold, prepared.drives.at("main").limits->max_voltage);
+  const auto swell = std::make_shared<Swell>(hold, prepared.drives.at("main").limits.value().max_voltage);
   const auto row = [](const char* what, const Metrics& m) {
     std::printf("%-14s touches at %.4g us with %.4g mm/s, highest rebound %.4g nm\n", what, 1e6 * m.initial_contact_time,
                 1e3 * m.impact_velocity, 1e9 * m.major_bounce_height);

@@ -54,7 +54,7 @@ struct Evaluation {
   long index = 0;
   double value = 0;  ///< the objective; non-finite (NaN where it threw) when infeasible
   std::vector<double> x;
-  std::size_t problem = 0;  ///< of several that share a log: which
+  std::size_t problem = 0;  ///< the number of its problem, of several that share a log
 };
 
 struct OptimizerOptions {

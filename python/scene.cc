@@ -60,13 +60,11 @@ std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const Prepa
                                                const DriveWaveforms& waveforms) {
   if (waveforms.empty()) return prepared;
   auto own = std::make_shared<PreparedScene>(*prepared);
-  const std::vector<std::string> names = own->drive_names();
   for (const auto& [drive, waveform] : waveforms) {
-    const auto found = std::find(names.begin(), names.end(), drive);
-    require(found != names.end(), [&] { return fmt::format("waveforms: the scene has no drive '{}'", drive); });
+    require(own->drives.find(drive) != nullptr, [&] { return fmt::format("waveforms: the scene has no drive '{}'", drive); });
     Drive& driven = own->drives.at(drive);
     if (driven.limits) {
-      const Signal told = own->told(static_cast<std::size_t>(found - names.begin()), waveform);
+      const Signal told = own->told(own->drives.place(drive), waveform);
       // An own waveform is followed by cubics, which may miss it by as much.
       const double missed = std::holds_alternative<Own>(waveform) ? own_waveform_accuracy * told.peak() : 0;
       const std::string why = violation(told, {.min_voltage = driven.limits->min_voltage - missed,

@@ -16,7 +16,7 @@ namespace softland {
 /// best.toml and evaluations.csv among the unfinished results of a folder.
 class SearchLog {
  public:
-  /// `columns` of evaluations.csv. Writes the file with its header, so that a
+  /// `columns`: of evaluations.csv. Writes the file with its header, so that a
   /// folder that takes none ends the run before its first evaluation.
   SearchLog(ResultFolder& folder, FamilyColumns columns);
 

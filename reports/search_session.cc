@@ -61,9 +61,9 @@ SearchSession::SearchSession(StoredSearch& search, const std::optional<KnownSear
 void SearchSession::begin(const FamilyColumns& columns) {
   if (places_ == nullptr) places_ = &own_.emplace(output_, search_, known_, columns);
   search_.options.memory = &places_->evaluations();
-  FamilyColumns of_log = columns;  // those of the race are in the store alone
-  std::erase_if(of_log.families, [](const auto& names) { return names.front().starts_with(raced_prefix); });
-  log_.emplace(places_->folder(), of_log);
+  FamilyColumns of_log = columns;
+  of_log.families.resize(families_of(search_.options.family).size());  // those of the race are in the store alone
+  log_.emplace(places_->folder(), std::move(of_log));
 }
 
 void SearchSession::evaluated(const Evaluation& evaluation) {

@@ -54,7 +54,8 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
       PreparedScene moved = prepared;
       try {
         moved.drives = written.drives(units).of(prepared.drive_names());
-        for (std::size_t i = 0; i < moved.drives.size(); ++i) moved.drives[i].source.load = prepared.drives[i].source.load;
+        for (std::size_t i = 0; i < moved.drives.size(); ++i)  // they charge the same switch
+          moved.drives[i].source.load = prepared.drives[i].source.load;
       } catch (const InvalidInput&) {  // a drive at a limit of its driver, or no better voltage: the error is not known
         found.emplace_back();
         continue;

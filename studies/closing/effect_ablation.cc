@@ -180,7 +180,7 @@ PreparedScene without(const PreparedScene& prepared, const std::vector<Omissible
   PreparedScene p = prepare(file);
   p.scene.warnings = prepared.scene.warnings;
   p.pull_in = prepared.pull_in;
-  p.drives = prepared.drives.of(p.drive_names());
+  p.drives = prepared.drives.of(p.drive_names());  // which charge the switch with all effects
   p.duration = prepared.duration;
   p.tolerance = prepared.tolerance;
   return p;

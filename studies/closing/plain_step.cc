@@ -11,7 +11,7 @@ namespace {
 Step step_to(const PreparedScene& given, const std::string& drive, double level) {
   const Drive& own = given.drives.at(drive);
   const double slew = own.limits ? own.limits->max_slew : std::numeric_limits<double>::infinity();
-  return {.level = level, .rise_time = std::abs(level - own.before.value_or(0)) / slew};
+  return {.level = level, .rise_time = std::abs(level - own.value_before()) / slew};
 }
 
 Step step_of(const PreparedScene& given, const std::string& drive) {

@@ -13,14 +13,6 @@
 
 namespace softland {
 
-std::vector<std::string> PreparedScene::drive_names() const {
-  std::vector<std::string> names;
-  for (const Electrode& e : scene.device.electrodes) names.push_back(e.name);
-  if (scene.device.dispersion) names.emplace_back(dispersion_drive);
-  if (scene.device.piezo) names.emplace_back(piezo_drive);
-  return names;
-}
-
 std::vector<Waveform> PreparedScene::in_drive_order(const DriveWaveforms& waveforms) const {
   std::vector<Waveform> result;
   for (const std::string& name : drive_names()) {
@@ -30,9 +22,18 @@ std::vector<Waveform> PreparedScene::in_drive_order(const DriveWaveforms& wavefo
   return result;
 }
 
+std::vector<Waveform> PreparedScene::waveforms(const DriveWaveforms& instead) const {
+  std::vector<Waveform> all;
+  for (const Drive& drive : drives) {
+    const auto other = instead.find(drive.name);
+    all.push_back(other != instead.end() ? other->second : drive.waveform.value_or(Step{.level = 0}));
+  }
+  return all;
+}
+
 std::vector<double> PreparedScene::values_before() const {
   std::vector<double> values;
-  for (const Drive& drive : drives) values.push_back(drive.before.value_or(0));
+  for (const Drive& drive : drives) values.push_back(drive.value_before());
   return values;
 }
 
@@ -75,7 +76,7 @@ std::string begins_elsewhere(const DriveWaveforms& waveforms, const std::map<std
   for (const auto& [drive, waveform] : waveforms) {
     const auto found = before.find(drive);
     const Drive* const here = scene.drives.find(drive);
-    const double own = found == before.end() ? 0 : found->second, due = here != nullptr ? here->before.value_or(0) : 0;
+    const double own = found == before.end() ? 0 : found->second, due = here != nullptr ? here->value_before() : 0;
     if (own != due)
       return fmt::format(
           "the drive '{}' stands at {} before its waveform, and at {} in the scene: both have to begin at one rest", drive,

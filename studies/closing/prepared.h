@@ -23,11 +23,6 @@ struct ElectrodePullIn {
   DynamicPullIn dynamically;
 };
 
-/// The name of the piezo among the drives.
-inline constexpr std::string_view piezo_drive = "piezo";
-/// The name of the dispersion force's factor among the drives. Its signal is the factor less one.
-inline constexpr std::string_view dispersion_drive = "dispersion";
-
 /// What the other drives stand at where the pull-in voltages of this one are asked for: Scene::standing, its own at 0 V.
 [[nodiscard]] std::vector<double> bias_of(const Scene& scene, std::size_t drive);
 
@@ -40,7 +35,7 @@ struct PreparedScene {
   Scene scene;
   Switch model;
   std::map<std::string, ElectrodePullIn> pull_in;  ///< electrodes whose pull-in was needed
-  Drives drives;                                   ///< a source that has a resistance charges the open switch
+  Drives drives;                                   ///< in volts; the load of a source with a resistance is the open switch
   double duration = 0;                             ///< window [s]
   double tolerance = 0;                            ///< of the integrator
   SwitchOptions quadrature = {};
@@ -48,11 +43,11 @@ struct PreparedScene {
   std::shared_ptr<const DescribedEffects> effects = {};
 
   /// Names of the drives in the order of Switch::drives().
-  [[nodiscard]] std::vector<std::string> drive_names() const;
+  [[nodiscard]] std::vector<std::string> drive_names() const { return softland::drive_names(scene.device); }
   /// One waveform per drive in that order; what has none stays at 0 V.
   [[nodiscard]] std::vector<Waveform> in_drive_order(const DriveWaveforms& waveforms) const;
-  /// The same of the scene's own.
-  [[nodiscard]] std::vector<Waveform> waveforms() const { return in_drive_order(drives.waveforms()); }
+  /// The same of the scene's own, of some drives with others instead.
+  [[nodiscard]] std::vector<Waveform> waveforms(const DriveWaveforms& instead = {}) const;
   /// What every drive stands at before t = 0, in that order [V].
   [[nodiscard]] std::vector<double> values_before() const;
   /// Where runs start: the open switch at rest under those. None where there is no stable equilibrium.

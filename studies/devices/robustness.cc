@@ -60,16 +60,15 @@ void summarise(DriveRobustness& drive) {
 
 // In the order of Switch::drives(); what is not driven stays at 0 V.
 std::vector<Waveform> waveforms_of(const PreparedScene& nominal, const NamedDrive& drive) {
-  const std::vector<std::string> names = nominal.drive_names();
   for (const auto& [name, waveform] : drive.waveforms) {
-    require(std::find(names.begin(), names.end(), name) != names.end(),
+    const Drive* const given = nominal.drives.find(name);
+    require(given != nullptr,
             [&] { return fmt::format("{}: drives '{}', which the first scene does not have", drive.name, name); });
-    const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-    const Drive& given = nominal.drives[k];
-    if (!given.limits) continue;
-    const DriverLimits own = limits_for(waveform, *given.limits);
+    if (!given->limits) continue;
+    const DriverLimits own = limits_for(waveform, *given->limits);
     const bool may_be_samples = std::holds_alternative<Table>(waveform);
-    const std::string broken = violation(nominal.told(k, waveform), may_be_samples ? limits_of_samples(own, given.source) : own);
+    const std::string broken = violation(nominal.told(nominal.drives.place(name), waveform),
+                                         may_be_samples ? limits_of_samples(own, given->source) : own);
     require(broken.empty(), [&] { return fmt::format("{}: drive '{}': {}", drive.name, name, broken); });
   }
   return nominal.in_drive_order(drive.waveforms);

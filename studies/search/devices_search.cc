@@ -47,6 +47,7 @@ std::pair<std::vector<SearchSetting>, std::string> settings_of_race(const SceneF
     try {
       SearchSpace space(settings.front().given, options.actuator, names[k], settings.front().scale.step.initial_contact_time);
       settings.push_back(settings.front());
+      settings.back().family = settings.size() - 1;
       settings.back().space = std::move(space);
       kept += "+" + names[k];
     } catch (const InvalidInput&) {

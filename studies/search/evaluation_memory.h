@@ -18,7 +18,7 @@ namespace softland {
 
 /// A candidate, and on what it is tried.
 struct EvaluationKey {
-  std::size_t family = 0;     ///< of those that share the memory: which
+  std::size_t family = 0;     ///< its number among those that share the memory: points of different ones may be alike
   std::vector<double> x;      ///< its searched parameters
   std::uint64_t devices = 0;  ///< of a spread; 0: the nominal device alone
   std::uint64_t seed = 0;     ///< that decides which devices these are
@@ -48,7 +48,7 @@ struct FamilyColumns {
 
   /// Of all columns.
   [[nodiscard]] std::vector<std::string> names() const;
-  /// At a point of one family: NaN in the columns of the others.
+  /// At a point of one family: NaN in the columns of the others. Throws InvalidInput where x is no point of the family.
   [[nodiscard]] std::vector<double> row(std::size_t family, std::span<const double> x) const;
 };
 

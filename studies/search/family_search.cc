@@ -3,10 +3,9 @@
 #include <utility>
 
 namespace softland {
-FamilySearch::FamilySearch(const SearchSetting& setting, std::size_t number, const OptimizeOptions& options,
+FamilySearch::FamilySearch(const SearchSetting& setting, const OptimizeOptions& options,
                            std::function<void(const Evaluation&)> on_evaluation)
     : setting_(setting),
-      number_(number),
       options_(options),
       problem_{.variables = setting.space.variables(), .starts = setting.space.starts()},
       stages_([this](std::span<const double> x) { return setting_.price_at(x, options_.memory, &last_of_thread()); },
@@ -54,12 +53,12 @@ OptimizerResult FamilySearch::run(const OptimizerOptions& share, Costs costs, lo
 
 std::optional<GuidedSearch::Best> FamilySearch::best(Costs costs) const {
   std::optional<GuidedSearch::Best> found = stages_.best(costs);
-  if (found) found->evaluation.problem = number_;
+  if (found) found->evaluation.problem = setting_.family;
   return found;
 }
 
 Evaluation FamilySearch::numbered(Evaluation e) const {
-  e.problem = number_;
+  e.problem = setting_.family;
   return e;
 }
 
@@ -83,7 +82,7 @@ std::vector<Evaluation> FamilySearch::log() const {
 std::optional<Evaluation> FamilySearch::surest_below(double own, const std::vector<Evaluation>& others) const {
   std::vector<std::vector<double>> of_family;
   for (const Evaluation& other : others) {
-    if (other.problem == number_) of_family.push_back(other.x);
+    if (other.problem == setting_.family) of_family.push_back(other.x);
   }
   const std::optional<Evaluation> found = stages_.surest_below(own, of_family);
   return found ? std::optional(numbered(*found)) : std::nullopt;

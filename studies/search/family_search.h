@@ -7,7 +7,6 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,11 +18,11 @@
 
 namespace softland {
 
-/// Evaluations are told with the number of the family as that of their problem.
+/// Evaluation::problem is the number of the family.
 class FamilySearch {
  public:
   /// Keeps references to setting and options.
-  FamilySearch(const SearchSetting& setting, std::size_t number, const OptimizeOptions& options,
+  FamilySearch(const SearchSetting& setting, const OptimizeOptions& options,
                std::function<void(const Evaluation&)> on_evaluation);
 
   /// Begins with these waveforms, or with those of the family that differ least from them, before what it would begin with
@@ -58,7 +57,6 @@ class FamilySearch {
   [[nodiscard]] Evaluation numbered(Evaluation e) const;
 
   const SearchSetting& setting_;
-  std::size_t number_;
   const OptimizeOptions& options_;
   mutable std::mutex last_mutex_;
   mutable std::map<std::thread::id, LastClosing> last_;

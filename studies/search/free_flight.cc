@@ -47,9 +47,7 @@ FreeFlight::FreeFlight(const PreparedScene& prepared, Actuator actuator, double 
   start_ = VectorXd::Zero(2 * modes_);
   start_.head(modes_) = model_.rest()->cwiseQuotient(per_q_);
 
-  DriveWaveforms plain = plain_step(prepared, actuator);
-  plain.merge(prepared.drives.waveforms());
-  for (const Waveform& w : prepared.in_drive_order(plain)) {
+  for (const Waveform& w : prepared.waveforms(plain_step(prepared, actuator))) {
     hold_.push_back(signal(w).hold_level());
     held_.push_back(strength(held_.size(), hold_.back()));
   }
@@ -78,8 +76,7 @@ void FreeFlight::add_free(const PreparedScene& prepared, const std::string& name
           fmt::format("the least time is not known of a source that samples or filters: driver.{}.sample_rate, bandwidth and "
                       "source_resistance must be absent",
                       name));
-  const std::vector<std::string> names = prepared.drive_names();
-  const auto drive = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  const std::size_t drive = prepared.drives.place(name);
   const double low = limits->min_voltage, high = limits->max_voltage;
   if (free_.empty()) ramps_ = std::isfinite(limits->max_slew);
   Free f{.drive = drive, .name = name, .largest = 0, .sign = 1, .max_slew = limits->max_slew};

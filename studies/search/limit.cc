@@ -105,8 +105,7 @@ DriveWaveforms with_catch(const FreeFlight& flight, const LeastTime& found, cons
 // The drives under searched waveforms; what is not searched is that of the plain step, else of the scene.
 std::vector<Signal> driven(const PreparedScene& prepared, DriveWaveforms searched, const DriveWaveforms& plain) {
   searched.insert(plain.begin(), plain.end());
-  searched.merge(prepared.drives.waveforms());
-  return prepared.driven(prepared.in_drive_order(searched));
+  return prepared.driven(prepared.waveforms(searched));
 }
 
 struct Arrival {
@@ -313,8 +312,8 @@ std::vector<DriveWaveforms> landings_at_rest(const PreparedScene& prepared, Actu
     own.tell("landings at rest to begin with", 0);
     PreparedScene smooth = prepared;
     for (Drive& drive : smooth.drives) {
-      if (std::optional<DriverLimits>& own = drive.limits; own)
-        own->max_slew = std::min(own->max_slew, (own->max_voltage - own->min_voltage) / (ramp * period));
+      if (std::optional<DriverLimits>& limits = drive.limits; limits)
+        limits->max_slew = std::min(limits->max_slew, (limits->max_voltage - limits->min_voltage) / (ramp * period));
     }
     try {
       const LeastTimeOptions options{.actuator = actuator, .impact_velocity = impact_velocity, .watch = own};

@@ -63,15 +63,16 @@ std::vector<Evaluation> improvements_of(std::vector<Evaluation> log) {
 // One search: its families, and what is told of it while it runs.
 class Search {
  public:
-  /// `options` may change until on_start has been called; `max_seconds` [s] instead of theirs.
+  /// The family of each of the settings is its number among them; `options` may change until on_start has been called;
+  /// `max_seconds` [s] instead of theirs.
   Search(const std::vector<SearchSetting>& settings, const OptimizeOptions& options, double max_seconds)
       : settings_(settings),
         options_(options),
         max_seconds_(max_seconds),
         names_(families_of(options.family)),
         progress_{.baseline_cost = settings.front().baseline_cost} {
-    for (std::size_t k = 0; k < settings.size(); ++k)
-      families_.emplace_back(settings[k], k, options, [this](const Evaluation& e) { evaluated(e); });
+    for (const SearchSetting& setting : settings)
+      families_.emplace_back(setting, options, [this](const Evaluation& e) { evaluated(e); });
     if (options.on_start) options.on_start(searched_columns(settings, options.family));
   }
 
@@ -413,7 +414,8 @@ class SearchBeyondModes {
       const auto& [k, least, points] = all[n];
       if (!begin("searching on by the worst of more modes", options_.max_evaluations / evaluations_of_the_worst, end_of_worst))
         break;
-      const std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
+      std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
+      worst.front().family = 0;  // the only one
       own_.family = families_of(options_.family)[k];
       Search other(worst, own_, own_.max_seconds);
       for (const std::vector<double>& point : points) other.begin_at_point(point);

@@ -71,7 +71,7 @@ struct OptimizeOptions {
   /// Watch.
   std::function<void(std::string_view what, double part)> on_preparation = {};
   /// Called once, when scene and options have been found valid and before the first evaluation, with the searched
-  /// parameters of every family: an evaluation is of the one that is its problem.
+  /// parameters of every family, whose number is Evaluation::problem.
   std::function<void(const FamilyColumns&)> on_start = {};
   /// Called under a lock after every evaluation.
   std::function<void(const Evaluation&, const OptimizeProgress&)> on_evaluation = {};
@@ -116,7 +116,7 @@ struct OptimizeResult {
   std::vector<Variable> variables;                  ///< of the winner's family, and within which bounds they were searched
   double best_cost = std::numeric_limits<double>::quiet_NaN();
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
-  OptimizerResult search;
+  OptimizerResult search;  ///< points are of the family that is Evaluation::problem
   bool goal_met = false;
   bool confirmed = false;  ///< the goal is met with a tighter integrator and with more modes too
   /// Evaluations on top of the search's, each with all these numbers of modes, where its landings belonged to those of the scene.
@@ -127,7 +127,8 @@ struct OptimizeResult {
   std::vector<std::string> broken_conditions = {};  ///< by the winner
   std::vector<TriedWaveform> tried = {};            ///< see OptimizeOptions::keep_tried
 
-  /// The winner's value of one of searched_columns(); NaN where its family has no such parameter, or there is no winner.
+  /// The winner's value of one of the names of searched_columns(); NaN where its family has no such parameter, or there is no
+  /// winner.
   [[nodiscard]] double parameter(std::string_view name) const;
 };
 

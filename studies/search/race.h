@@ -63,7 +63,7 @@ struct RaceOptions {
   std::uint64_t seed = 1;
   int jobs = 1;  ///< threads; does not change the result
   const std::atomic<bool>* stop = nullptr;
-  EvaluationMemory* memory = nullptr;         ///< asked with SearchSetting::family
+  EvaluationMemory* memory = nullptr;         ///< asked with SearchSetting::family, which has to differ
   std::function<bool()> out_of_time = {};     ///< may be null
   std::function<void(double)> progress = {};  ///< told the part that is done, from any thread
 };
@@ -73,7 +73,7 @@ struct RaceResult {
   long closings = 0;
 };
 
-/// `settings` differ in their family alone; `cost` is on raced_devices of them.
+/// `settings` differ in SearchSetting::family and space alone; `cost` is on raced_devices of them.
 [[nodiscard]] RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims,
                               const RaceOptions& options);
 

@@ -115,11 +115,7 @@ PreparedScene SearchSetting::prepared(const DriveWaveforms& searched) const {
   return prepared_with(baseline_scene, searched, given);
 }
 
-std::vector<Waveform> SearchSetting::drives(const DriveWaveforms& searched) const {
-  DriveWaveforms all = searched;
-  all.merge(baseline_scene.drives.waveforms());
-  return given.in_drive_order(all);
-}
+std::vector<Waveform> SearchSetting::drives(const DriveWaveforms& searched) const { return baseline_scene.waveforms(searched); }
 
 bool SearchSetting::is_allowed(const DriveWaveforms& searched) const {
   const std::vector<std::string> names = given.drive_names();

@@ -262,7 +262,7 @@ SearchSpace::SearchSpace(const PreparedScene& prepared, Actuator actuator, const
         fmt::format("optimize needs [driver.{}] with min_voltage and max_voltage: it never searches an unlimited drive", drive));
     DriveSearch s{.drive = drive,
                   .hold = given.hold_level(),
-                  .before = given.before.value_or(0),
+                  .before = given.value_before(),
                   .brakes = brakes,
                   .first_touch = first_touch,
                   .limits = *given.limits,

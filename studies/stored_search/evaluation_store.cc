@@ -57,7 +57,7 @@ EvaluationStore::EvaluationStore(const std::filesystem::path& file, const nlohma
 
 std::optional<EvaluationValues> EvaluationStore::recall(const EvaluationKey& key) noexcept {
   try {
-    const std::vector<double> row = columns_.row(key.family, key.x);
+    std::vector<double> row = columns_.row(key.family, key.x);
     const ContentKey content = content_of(key, row);
     {
       const std::scoped_lock lock(mutex_);
@@ -69,7 +69,7 @@ std::optional<EvaluationValues> EvaluationStore::recall(const EvaluationKey& key
     const std::optional<StoredRow> earlier = store_.find(content);
     if (!earlier) return std::nullopt;
     const EvaluationValues values = values_of(*earlier);
-    add(content, key, row, values);
+    add(content, key, std::move(row), values);
     const std::scoped_lock lock(mutex_);
     ++recalled_;
     return values;

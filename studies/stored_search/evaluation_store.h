@@ -22,7 +22,7 @@ inline constexpr const char* evaluations_file = "evaluations.sqlite";
 /// another budget, is taken over when it is asked for.
 class EvaluationStore : public EvaluationMemory {
  public:
-  /// `columns` of all families, `points`: how many evaluations the plan asks for at the most; those beyond are not kept. Throws
+  /// `columns`: of all families. `points`: how many evaluations the plan asks for at the most; those beyond are not kept. Throws
   /// as StudyStore does.
   EvaluationStore(const std::filesystem::path& file, const nlohmann::json& plan, std::int64_t points, std::uint64_t seed,
                   FamilyColumns columns, const StoredOrigin& origin);

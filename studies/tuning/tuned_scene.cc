@@ -164,9 +164,7 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
   nuisances_.push_back(true);
   ensemble_ = std::make_unique<const Ensemble>(nominal_, 1);
   drives_ = std::make_unique<const DeviceDrives>(nominal_);
-  DriveWaveforms step = nominal_.drives.waveforms();
-  for (const auto& [drive, waveform] : plain_step(nominal_, options.actuator)) step[drive] = waveform;
-  const std::vector<Signal> signals = nominal_.driven(nominal_.in_drive_order(step));
+  const std::vector<Signal> signals = nominal_.driven(nominal_.waveforms(plain_step(nominal_, options.actuator)));
   const double longest = periods_to_close * 2 * std::numbers::pi / nominal_.model.basis().angular_frequencies()[0];
   const Trajectory closing = simulate_closing(
       nominal_.model, signals, {.duration = longest, .tolerance = nominal_.tolerance, .after_contact = 0, .stop = watch.stop});

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <atomic>
 #include <initializer_list>
+#include <mutex>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -22,9 +25,31 @@ SceneFile quick_gold(std::initializer_list<std::string_view> changes = {}) {
   return file;
 }
 
-ForDevicesResult searched(const SceneFile& file, long closings, std::uint64_t seed = 1, int jobs = 2) {
-  return optimize_for_devices(file, {.family = "pulse", .max_evaluations = 300, .seed = seed, .jobs = jobs},
-                              {.verdict = 200, .families = "catch+pulse", .closings = closings});
+// Remembers nothing, and sees of which families it is asked.
+class Asked final : public EvaluationMemory {
+ public:
+  std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override {
+    const std::scoped_lock lock(mutex_);
+    (key.devices > 0 ? on_devices : on_drawing).insert(key.family);
+    alike = alike && key.family < columns.families.size() && key.x.size() == columns.families[key.family].size();
+    return std::nullopt;
+  }
+  void note(const EvaluationKey&, const EvaluationValues&) noexcept override {}
+
+  FamilyColumns columns;  // that the search told
+  std::set<std::size_t> on_drawing, on_devices;
+  bool alike = true;  // all points have as many parameters as the columns of their family
+
+ private:
+  std::mutex mutex_;
+};
+
+ForDevicesResult searched(const SceneFile& file, long closings, std::uint64_t seed = 1, int jobs = 2, Asked* memory = nullptr) {
+  OptimizeOptions options{.family = "pulse", .max_evaluations = 300, .seed = seed, .jobs = jobs, .memory = memory};
+  options.on_start = [memory](const FamilyColumns& columns) {
+    if (memory != nullptr) memory->columns = columns;
+  };
+  return optimize_for_devices(file, options, {.verdict = 200, .families = "catch+pulse", .closings = closings});
 }
 
 double cost_of(const ForDevicesResult& found, std::string_view row) {
@@ -34,7 +59,8 @@ double cost_of(const ForDevicesResult& found, std::string_view row) {
 }
 
 TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
-  const ForDevicesResult found = searched(quick_gold(), race_closings / 4);
+  Asked memory;
+  const ForDevicesResult found = searched(quick_gold(), race_closings / 4, 1, 2, &memory);
   ASSERT_TRUE(found.best.best_scene);
   EXPECT_FALSE(found.plain_step_wins);
   EXPECT_LT(cost_of(found, "for the devices"), 0.7 * cost_of(found, "plain step"));
@@ -52,6 +78,12 @@ TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
   const bool by_time = found.calibrated_row == "closing time to 50 ns";
   EXPECT_EQ(found.calibrated->written(by_time ? "calibration.time.error" : "calibration.Vdp.error"), by_time ? "50 ns" : "1 %");
   EXPECT_LT(cost_of(found, "closing time to 50 ns"), cost_of(found, "for the devices"));
+  // In stores the families of the race stand behind that of the drawing.
+  EXPECT_EQ(memory.columns.families.size(), 3U);
+  EXPECT_EQ(memory.columns.families[1].front().substr(0, 14), "devices.catch.");
+  EXPECT_TRUE(memory.alike);
+  EXPECT_EQ(memory.on_drawing, std::set<std::size_t>{0});
+  EXPECT_EQ(memory.on_devices, (std::set<std::size_t>{1, 2}));
 }
 
 TEST(ForDevices, HasTheSameBitsWithAnyJobs_slow) {

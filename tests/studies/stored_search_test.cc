@@ -122,6 +122,12 @@ TEST_F(StoredSearches, KnowAPointOfAFamilyByTheValuesOfAllColumns) {
     store.note({.family = 0, .x = {2, 3}}, {.cost = 0.75, .leading = 0.25});
     EXPECT_EQ(store.recall({.family = 1, .x = {2}})->cost, 0.5);
     EXPECT_FALSE(store.recall({.family = 1, .x = {3}}));
+    EXPECT_FALSE(store.recall({.family = 0, .x = {2}}));
+    EXPECT_EQ(refusal([&] { store.check(); }), "a point of 1 parameters is none of family 0");
+    EXPECT_THROW((void)columns.row(3, std::array{2.0}), InvalidInput);
+  }
+  {
+    EvaluationStore store(file(), {{"a", 1}}, 10, 1, columns, {});
     store.close();
   }
   std::vector<StoredRow> rows;
