@@ -329,7 +329,7 @@ std::string why_no_drive(const Device& device, const std::string& name) {
   if (std::find(known.begin(), known.end(), name) != known.end()) return {};
   if (name == piezo_drive) return "there is no [piezo] layer to drive";
   if (name == dispersion_drive) return "there is no [dispersion] force to drive";
-  return "no such electrode" + hint(name, known);
+  return "no such electrode" + hint(name, {known.begin(), known.end()});
 }
 
 void check_drive_name(const SceneFile::Impl& file, const std::string& electrode) {
