@@ -30,20 +30,20 @@ class FrdReader {
 
   NodalModes read() {
     made_.format = "CalculiX .frd";
-    while (next()) {
-      if (line_.starts_with("    2C")) {
+    while (lines_.next()) {
+      if (lines_.line().starts_with("    2C")) {
         read_nodes();
-      } else if (line_.starts_with("    1PGM")) {
+      } else if (lines_.line().starts_with("    1PGM")) {
         modal_mass_ = number(last_word(), "the generalised mass (1PGM)");
-      } else if (line_.starts_with("    1PGK")) {
+      } else if (lines_.line().starts_with("    1PGK")) {
         squared_frequency_ = number(last_word(), "the generalised stiffness (1PGK)");
-      } else if (line_.starts_with("  100C")) {
+      } else if (lines_.line().starts_with("  100C")) {
         read_step();
-      } else if (line_.starts_with("    3C")) {
+      } else if (lines_.line().starts_with("    3C")) {
         pass_block();
-      } else if (line_.starts_with(" 9999")) {
+      } else if (lines_.line().starts_with(" 9999")) {
         has_end_ = true;
-      } else if (line_.starts_with(" -")) {
+      } else if (lines_.line().starts_with(" -")) {
         fail("this line belongs to a block (2C, 3C, 100C) whose first line is missing");
       }
     }
@@ -53,17 +53,12 @@ class FrdReader {
   }
 
  private:
-  bool next() {
-    if (!lines_.next()) return false;
-    line_ = lines_.line();
-    return true;
-  }
   [[noreturn]] void fail(const std::string& rule) const { refusals_.fail(lines_.number(), 0, rule); }
   [[nodiscard]] std::string_view field(std::size_t begin, std::size_t width) const {
-    return begin < line_.size() ? trimmed(line_.substr(begin, width)) : std::string_view();
+    return begin < lines_.line().size() ? trimmed(lines_.line().substr(begin, width)) : std::string_view();
   }
   [[nodiscard]] std::string_view last_word() const {
-    const std::string_view text = trimmed(line_);
+    const std::string_view text = trimmed(lines_.line());
     return text.substr(text.find_last_of(' ') + 1);
   }
   [[nodiscard]] double number(std::string_view text, const char* what) const {
@@ -89,25 +84,25 @@ class FrdReader {
   [[nodiscard]] Vector3 vector(std::size_t begin) const {
     // A line with a character more or less has its numbers in other columns.
     const std::size_t end = begin + 3 * number_width;
-    if (line_.size() < end || !trimmed(line_.substr(end)).empty())
-      fail(fmt::format("the line of a node must have {} columns, and has {}", end, line_.size()));
+    if (lines_.line().size() < end || !trimmed(lines_.line().substr(end)).empty())
+      fail(fmt::format("the line of a node must have {} columns, and has {}", end, lines_.line().size()));
     Vector3 v{};
     for (std::size_t k = 0; k < 3; ++k) v[k] = number(field(begin + k * number_width, number_width), "a number of the node");
     return v;
   }
 
   void pass_block() {
-    while (next() && !line_.starts_with(" -3")) continue;
+    while (lines_.next() && !lines_.line().starts_with(" -3")) continue;
   }
 
   void read_nodes() {
     if (!indices_.empty()) fail("a second block of nodes: one mesh is read");
     const std::size_t count = whole(field(24, number_width), "the number of nodes"), width = node_width(last_word());
     for (bool ended = false; !ended;) {
-      if (!next()) fail("the file ends among the nodes");
-      if (line_.starts_with(" -3")) {
+      if (!lines_.next()) fail("the file ends among the nodes");
+      if (lines_.line().starts_with(" -3")) {
         ended = true;
-      } else if (line_.starts_with(" -1")) {
+      } else if (lines_.line().starts_with(" -1")) {
         if (!indices_.emplace(node(width), made_.nodes.size()).second) fail("this node stands above already");
         made_.nodes.push_back(vector(key_width + width));
       } else {
@@ -126,8 +121,8 @@ class FrdReader {
     const std::size_t mode = whole(field(58, 5), "the number of the step");
     const std::string_view format = field(73, 2);
     const std::size_t width = node_width(format);
-    if (!next()) return cut(mode);
-    if (!line_.starts_with(" -4")) fail("the line of a result (-4) must stand here");
+    if (!lines_.next()) return cut(mode);
+    if (!lines_.line().starts_with(" -4")) fail("the line of a result (-4) must stand here");
     const std::string what(field(5, 8));
     if (!is_modal) static_results_ = true;
     if (is_modal && (modal_steps_.empty() || modal_steps_.back() != mode)) modal_steps_.push_back(mode);
@@ -138,11 +133,11 @@ class FrdReader {
     std::vector<Vector3> motion(is_taken ? made_.nodes.size() : 0, no_motion);
     std::size_t rows = 0;
     for (;;) {
-      if (!next()) return is_taken ? cut(mode) : void();
-      if (line_.starts_with(" -3")) break;
-      if (!is_taken || line_.starts_with(" -5")) continue;
+      if (!lines_.next()) return is_taken ? cut(mode) : void();
+      if (lines_.line().starts_with(" -3")) break;
+      if (!is_taken || lines_.line().starts_with(" -5")) continue;
       if (lines_.is_unended()) return cut(mode);
-      if (!line_.starts_with(" -1")) fail("a line of a node (-1) or the end of the block (-3) must stand here");
+      if (!lines_.line().starts_with(" -1")) fail("a line of a node (-1) or the end of the block (-3) must stand here");
       const auto found = indices_.find(node(width));
       if (found == indices_.end()) fail("there is no such node");
       if (given[found->second]) fail("this node stands above already");
@@ -188,7 +183,6 @@ class FrdReader {
   }
 
   Lines lines_;
-  std::string_view line_;
   Refusals refusals_;
   NodalModes made_;
   std::unordered_map<std::size_t, std::size_t> indices_;

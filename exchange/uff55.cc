@@ -38,11 +38,11 @@ class Uff55Reader {
 
   NodalModes read() {
     made_.format = "UFF 55";
-    while (next()) {
-      if (trimmed(line_).empty()) continue;
+    while (lines_.next()) {
+      if (trimmed(lines_.line()).empty()) continue;
       if (!is_mark()) fail("the mark -1 must stand here, before a data set");
-      if (!next()) break;
-      const std::string_view kind = trimmed(line_).substr(0, trimmed(line_).find(' '));
+      if (!lines_.next()) break;
+      const std::string_view kind = trimmed(lines_.line()).substr(0, trimmed(lines_.line()).find(' '));
       if (kind == "55") {
         read_modes();
       } else if (kind == "2411" || kind == "15") {
@@ -51,7 +51,7 @@ class Uff55Reader {
         read_units();
       } else {
         made_.left_out.push_back(fmt::format("data set {}", printable_line(shortened(kind, 10))));
-        while (next() && !is_mark()) continue;
+        while (lines_.next() && !is_mark()) continue;
       }
     }
     join();
@@ -59,21 +59,16 @@ class Uff55Reader {
   }
 
  private:
-  bool next() {
-    if (!lines_.next()) return false;
-    line_ = lines_.line();
-    return true;
-  }
-  bool is_mark() const { return trimmed(line_) == "-1"; }
+  bool is_mark() const { return trimmed(lines_.line()) == "-1"; }
   [[noreturn]] void fail(const std::string& rule) const { refusals_.fail(lines_.number(), 0, rule); }
   void due(const char* what) {
-    if (!next() || is_mark()) fail(fmt::format("the data set ends before {}", what));
+    if (!lines_.next() || is_mark()) fail(fmt::format("the data set ends before {}", what));
   }
 
   // The numbers of a line, which may touch: a sign that no exponent has begins another one. Exponents may be written with D.
   std::vector<double> numbers() const {
     std::vector<double> all;
-    std::string text(line_);
+    std::string text(lines_.line());
     std::replace(text.begin(), text.end(), 'D', 'E');
     const std::string_view whole = text;
     for (std::size_t begin = 0; begin < whole.size();) {
@@ -108,7 +103,7 @@ class Uff55Reader {
   // 15: number, two systems, colour and the position on one line; 2411: the position on a line of its own.
   void read_nodes(bool in_one_line) {
     while (true) {
-      if (!next()) fail("the file ends among the nodes");
+      if (!lines_.next()) fail("the file ends among the nodes");
       if (is_mark()) return;
       std::vector<double> all = numbers();
       if (all.empty()) fail("a node must stand here");
@@ -136,7 +131,7 @@ class Uff55Reader {
     const std::vector<double> factors = numbers();
     if (factors.empty() || !(factors[0] > 0)) fail("the factor of length must be positive");
     made_.length_unit = 1 / factors[0];
-    while (next() && !is_mark()) continue;
+    while (lines_.next() && !is_mark()) continue;
   }
 
   void read_modes() {
@@ -177,7 +172,7 @@ class Uff55Reader {
     const std::size_t count = per_node * (is_complex ? 2 : 1);
     std::vector<std::vector<std::complex<double>>> values;
     while (true) {
-      if (!next()) fail(fmt::format("the file ends in mode {}: the mark -1 is missing", set.mode));
+      if (!lines_.next()) fail(fmt::format("the file ends in mode {}: the mark -1 is missing", set.mode));
       if (is_mark()) break;
       const std::vector<long long> node = integers();
       if (node.size() != 1) fail("the number of a node must stand here");
@@ -263,7 +258,6 @@ class Uff55Reader {
   }
 
   Lines lines_;
-  std::string_view line_;
   Refusals refusals_;
   NodalModes made_;
   std::unordered_map<long long, Vector3> places_;

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "program.h"
+#include "tests/support/nickel_bridge.h"
 #include "version.h"
 
 namespace softland {
@@ -18,38 +20,15 @@ using testing::Not;
 using testing::StartsWith;
 
 // A nickel bridge that touches at its centre. From 66.1 V on the electrode, long to both sides, pulls it through there.
-const std::string bridge = R"(title = "Nickel bridge, contact at the centre"
-[structure]
-kind = "clamped-clamped"
-length = "400 um"
-width = "60 um"
-thickness = "2 um"
-youngs_modulus = "190 GPa"
-density = "8900 kg/m^3"
-residual_stress = "20 MPa"
-modes = 4
-[gap]
-electrode = "2.5 um"
-contact = "1.8 um"
-[electrode.main]
-span = ["50 um", "350 um"]
-[gas]
-model = "strip"
-[contact]
-model = "asperity-uniform"
-pad_length = "10 um"
-asperity_radius = "100 nm"
-asperity_density = "1e12 1/m^2"
-asperity_height = "100 nm"
-effective_modulus = "60 GPa"
-[waveform.main]
-family = "step"
-level = "67 V"
-[driver.main]
-max_voltage = "80 V"
-[simulate]
-accuracy = 1e-4
-)";
+const std::string bridge = [] {
+  std::string text(test::nickel_bridge);
+  for (const auto& [from, to] : {std::pair("modes = 5", "modes = 4"),
+                                 {"contact = \"1.5 um\"", "contact = \"1.8 um\""},
+                                 {"\"1.25 Vdp\"", "\"67 V\""},
+                                 {"\"1.5 Vdp\"", "\"80 V\""}})
+    text = edited(std::move(text), from, to);
+  return text;
+}();
 
 // A plate between two electrodes at one voltage, one on either side.
 const std::string between_two = R"(

@@ -14,6 +14,7 @@
 #include "base/clamped_spline.h"
 #include "base/random.h"
 #include "base/require.h"
+#include "tests/exchange/byte_changes.h"
 #include "tests/exchange/mode_samples.h"
 #include "tests/exchange/samples.h"
 
@@ -248,23 +249,6 @@ void truncate(std::size_t cuts) {
   }
 }
 
-std::string changed_by_a_byte(std::string content, std::uint64_t seed) {
-  constexpr std::string_view nasty("0159.,;:+-eE\"'#%@* \t\n\rxXwi()\0\x80\xFF", 31);
-  const std::size_t at = split_mix_64(seed, 0) % content.size();
-  const char c = nasty[split_mix_64(seed, 1) % nasty.size()];
-  switch (split_mix_64(seed, 2) % 3) {
-    case 0:
-      content[at] = c;
-      break;
-    case 1:
-      content.erase(at, 1);
-      break;
-    default:
-      content.insert(at, 1, c);
-  }
-  return content;
-}
-
 // A byte changes one number at most: of what is accepted and says nothing of it, one frequency or the shape of one mode. A
 // position that differs moves what is at it in every mode.
 void change_bytes(std::uint64_t count) {
@@ -272,7 +256,7 @@ void change_bytes(std::uint64_t count) {
     const ModeTable whole = parsed(sample);
     std::size_t taken = 0;
     for (std::uint64_t seed = 0; seed < count; ++seed) {
-      const std::string content = changed_by_a_byte(sample.content, seed);
+      const std::string content = test::changed_by_a_byte(sample.content, seed).content;
       const std::optional<ModeTable> made = accepted(content, sample.keys);
       if (!made || made->left_out != whole.left_out || made->notes != whole.notes) continue;
       ++taken;

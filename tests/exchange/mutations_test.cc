@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/random.h"
 #include "base/require.h"
 #include "exchange/recording.h"
 #include "exchange/trace.h"
+#include "tests/exchange/byte_changes.h"
 #include "tests/exchange/samples.h"
 
 namespace softland {
@@ -73,23 +73,6 @@ void truncate_everywhere(std::size_t most) {
   }
 }
 
-std::string mutated(std::string content, std::uint64_t seed, std::size_t& at) {
-  constexpr std::string_view nasty("0159.,;:+-eE\"'#* \t\n\rxVsu()%\0\x80\xFF", 31);
-  at = split_mix_64(seed, 0) % content.size();
-  const char c = nasty[split_mix_64(seed, 1) % nasty.size()];
-  switch (split_mix_64(seed, 2) % 3) {
-    case 0:
-      content[at] = c;
-      break;
-    case 1:
-      content.erase(at, 1);
-      break;
-    default:
-      content.insert(at, 1, c);
-  }
-  return content;
-}
-
 /// How many rows of either are left when the rows that they begin and end with alike are taken away.
 std::pair<std::size_t, std::size_t> different_rows(const Recording& a, const Recording& b, bool with_time) {
   std::size_t begin = 0, end = 0;
@@ -108,8 +91,7 @@ void mutate(std::uint64_t count) {
     // A header says what codes stand for, and in which order bytes are: a change of that number is what the file says.
     const bool header_counts = sample.name == "keysight_arb" || sample.name == "gw_instek" || sample.name.starts_with("uff58b");
     for (std::uint64_t seed = 0; seed < count; ++seed) {
-      std::size_t at = 0;
-      const std::string content = mutated(sample.content, seed, at);
+      const auto [content, at] = test::changed_by_a_byte(sample.content, seed);
       const std::optional<Recording> made = taken(content, sample.keys);
       if (!made || made->channels.size() != whole->channels.size() || !made->left_out.empty()) continue;  // refused, or told
       const auto line = static_cast<std::size_t>(

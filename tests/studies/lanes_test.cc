@@ -12,6 +12,7 @@
 #include "scenes.h"
 #include "studies/closing/simulate.h"
 #include "studies/devices/ensemble.h"
+#include "tests/support/nickel_bridge.h"
 #include "waveforms/driver.h"
 #include "waveforms/waveform.h"
 
@@ -117,38 +118,7 @@ constexpr double over_samples = 5;
 
 /// Of nickel, clamped at both ends.
 SceneFile bridge() {
-  return SceneFile::parse(R"(
-[structure]
-kind = "clamped-clamped"
-length = "400 um"
-width = "60 um"
-thickness = "2 um"
-youngs_modulus = "190 GPa"
-density = "8900 kg/m^3"
-residual_stress = "20 MPa"
-modes = 5
-[gap]
-electrode = "2.5 um"
-contact = "1.5 um"
-[electrode.main]
-span = ["50 um", "350 um"]
-[gas]
-model = "strip"
-[contact]
-model = "asperity-uniform"
-pad_length = "10 um"
-asperity_radius = "100 nm"
-asperity_density = "1e12 1/m^2"
-asperity_height = "100 nm"
-effective_modulus = "60 GPa"
-[waveform.main]
-family = "step"
-level = "1.25 Vdp"
-[driver.main]
-max_voltage = "1.5 Vdp"
-[simulate]
-accuracy = 1e-4
-[spread]
+  return SceneFile::parse(std::string(test::nickel_bridge) + R"([spread]
 "structure.thickness" = { distribution = "normal", cov = "3 %" }
 "structure.residual_stress" = { distribution = "normal", standard_deviation = "5 MPa" }
 gaps = { keys = ["gap.electrode", "gap.contact"], distribution = "normal", cov = "3 %" }
