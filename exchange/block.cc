@@ -39,6 +39,7 @@ class BlockReader {
   void make_columns();
   void read_lines();
   void take_headings(const std::vector<Line>& above);
+  void refuse_shifted(const CellList& cells, std::size_t line) const;
   [[nodiscard]] CellList units_in(const CellList& cells) const;
   [[nodiscard]] bool may_be_headings(const CellList& cells) const;
   void read_row(const CellList& cells, std::size_t line, bool unended);
@@ -233,6 +234,19 @@ CellList BlockReader::units_in(const CellList& cells) const {
   return has_unit ? cells : CellList{};
 }
 
+// Units beyond the last column: a name holds the separator, and all behind it stand one column too far.
+void BlockReader::refuse_shifted(const CellList& cells, std::size_t line) const {
+  for (std::size_t i = is_numeric_.size(); i < cells.size(); ++i) {
+    if (unit_of(cells[i]) || heading_of(cells[i]).unit)
+      fail(
+          line, i + 1,
+          fmt::format(
+              "\"{}\" has a unit, and the rows end before it, with {} columns: quote the name that holds the separator, or leave "
+              "the line out by skip and say unit and time_unit",
+              shown_cell(cells[i]), is_numeric_.size()));
+  }
+}
+
 // The lines above the numbers: the last one holds units where all its cells do, the one above it, or else it, names.
 void BlockReader::take_headings(const std::vector<Line>& above) {
   std::vector<CellList> cells(above.size());
@@ -240,6 +254,7 @@ void BlockReader::take_headings(const std::vector<Line>& above) {
     split_cells(above[i].text, separator_, cells[i]);
     block_.preamble.take_line(above[i].text, cells[i]);
   }
+  if (!above.empty()) refuse_shifted(cells.back(), above.back().number);
   std::size_t next = above.size();
   CellList units;
   if (next > 0 && is_setting(cells[next - 1])) next = 0;
@@ -254,6 +269,7 @@ void BlockReader::take_headings(const std::vector<Line>& above) {
     const bool has_text =
         std::any_of(line.begin(), line.end(), [](std::string_view c) { return !c.empty() && !looks_like_number(c); });
     if (has_text) names = line;
+    refuse_shifted(names, above[next - 1].number);
   }
   headings_ = names;
   block_.has_headings = !names.empty();
@@ -323,6 +339,11 @@ void BlockReader::refuse_broken_row(const std::vector<Line>& above) const {
                        cells.size(), is_numeric_.size()));
   }
   for (std::size_t i = 0; i < above.size(); ++i) {
+    const std::string_view first = trimmed(above[i].text);
+    const bool begins_as_number = first.find_first_of("0123456789") <= 2 &&
+                                  std::isalpha(static_cast<unsigned char>(first.front())) == 0 && first.front() != '#';
+    if (begins_as_number && std::ranges::count(first, '"') % 2 != 0)
+      fail(above[i].number, 0, "a quote is not closed (skip leaves out lines at the beginning)");
     split_cells(above[i].text, separator_, cells);
     if (cells.size() < is_numeric_.size()) continue;
     std::optional<std::size_t> broken;
@@ -333,9 +354,6 @@ void BlockReader::refuse_broken_row(const std::vector<Line>& above) const {
       if (!broken && !may_be_value(cells[k])) broken = k;
     }
     if (!broken || (!has_number && is_numeric_.size() > 1)) continue;
-    const std::string_view first = trimmed(above[i].text);
-    const bool begins_as_number = first.find_first_of("0123456789") <= 2 &&
-                                  std::isalpha(static_cast<unsigned char>(first.front())) == 0 && first.front() != '#';
     bool is_below_heading = false;
     if (i > 0 && i + 1 == above.size()) {
       split_cells(above[i - 1].text, separator_, before);

@@ -93,6 +93,17 @@ TEST(Recording, BrokenRowsAreNamedWithLineAndColumn) {
   refused("t (s),U\nq0.5,1\n1,2\n2,3\n", {"x.csv:2", "column 1", "q0.5"});
   refused("t,U\n0,1\n,2\n2,3\n", {"x.csv:3", "column 1", "time is missing"});
   refused("Data Points:3\nData:\n1\n2\n3\n4\n", {"speaks of 3 samples and holds 4"});
+  refused("t,U\n\"0.5,1\n1.5,2\n2.5,3\n", {"x.csv:2", "quote is not closed"});
+}
+
+// Else every unit would be that of the column before.
+TEST(Recording, ANameThatHoldsTheSeparatorIsRefusedWhereUnitsStandBehindIt) {
+  const std::string rows = "0.5,1.5\n1.5,2.5\n2.5,3.5\n";
+  refused("Time, filtered (us),CH1 (mV)\n" + rows, {"x.csv:1", "column 3", "\"CH1 (mV)\" has a unit", "2 columns", "skip"});
+  refused("Time,a,b\n(us),(V),(mV)\n" + rows, {"x.csv:2", "column 3", "\"(mV)\" has a unit"});
+  const Recording quoted = parse_recording("\"Time, filtered (us)\",CH1 (mV)\n" + rows, "x.csv");
+  EXPECT_THAT(quoted.times, testing::ElementsAre(0.5e-6, 1.5e-6, 2.5e-6));
+  EXPECT_EQ(quoted.channels.at(0).unit, "mV");
 }
 
 TEST(Recording, AFileThatEndsInARowIsReadUpToIt) {
