@@ -54,8 +54,11 @@ struct Shares {
   double lead = 0;    ///< cost of `bounce`
   double window = 0;  ///< after the first touch, for which it was followed [s]
 
-  /// A step that lands softly by itself must not turn the ratios into infinities.
-  [[nodiscard]] static double ratio(double value, double of_step) { return of_step > 0 ? value / of_step : value > 0 ? 1 : 0; }
+  /// A step that lands softly by itself must not turn the ratios into infinities. NaN where the value is not known.
+  [[nodiscard]] static double ratio(double value, double of_step) {
+    if (std::isnan(value)) return value;
+    return of_step > 0 ? value / of_step : value > 0 ? 1 : 0;
+  }
   /// A figure over that of the step, or over another one of it.
   [[nodiscard]] double of(double Metrics::*figure) const { return ratio(own.*figure, step.*figure); }
   [[nodiscard]] double of(double Metrics::*figure, double Metrics::*unit) const { return ratio(own.*figure, step.*unit); }

@@ -337,7 +337,8 @@ std::string why_not_in_lanes(const Switch& model) {
   if (model.drives() > fleet::most_drives) return fmt::format("more than {} drives", fleet::most_drives);
   if (!lane_dispersion(device.dispersion)) return "a dispersion force between gold";
   if (!lane_contact(model)) return "a contact other than linear or asperity-uniform at the contact point";
-  if (!lane_film(device.gas)) return "a compressible gas film";
+  if (!lane_film(device.gas))
+    return model.film_states() > 0 ? "a compressible gas film" : fmt::format("the gas film {}", name_of(*device.gas));
   for (const Electrode& e : device.electrodes) {
     if (!lane_fringing(e.fringing)) return fmt::format("fringing by {}", name_of(fringing_laws, e.fringing));
   }

@@ -147,6 +147,14 @@ TEST(Cost, OfWhatNeverTouchesIsTenAndThePartOfTheGapItLeft) {
   for (const Target target : every_target) EXPECT_NEAR(cost(target, open, scale(), options), 10.25, 1e-12) << to_string(target);
 }
 
+TEST(Shares, OfWhatIsNotKnownAreNotKnownWhateverTheStepIs) {
+  constexpr double unknown = Metrics::unset;
+  for (const double of_step : {0.5, 0.0, unknown}) EXPECT_TRUE(std::isnan(Shares::ratio(unknown, of_step))) << of_step;
+  EXPECT_EQ(Shares::ratio(3, 2), 1.5);
+  EXPECT_EQ(Shares::ratio(3, 0), 1);
+  EXPECT_EQ(Shares::ratio(0, 0), 0);
+}
+
 TEST(Cost, OfARunThatFailedIsInfinite) {
   for (const Status status : {Status::numerical_failure, Status::interrupted, Status::collapsed_at_rest,
                               Status::collapsed_onto_electrode, Status::not_run}) {
