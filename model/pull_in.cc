@@ -442,6 +442,29 @@ double open_tangent_eigenvalue(const Switch& model, const Eigen::VectorXd& q, st
   return symmetric_eigen(stiffness_at(model, q, volts, false)).values[0];
 }
 
+std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bias bias) {
+  constexpr int steps = 32;
+  std::vector<double> values = standing(model, drive, bias);
+  const std::optional<Eigen::VectorXd> rest = model.open_equilibrium(values);
+  if (!rest) return std::nullopt;
+  EquilibriumBranch branch(model, drive, bias);
+  const double begin = model.contact_deflection(rest->data()), end = model.device().gap.contact;
+  StablePath path{.deflections = {begin}, .values = {0.0}};
+  double direction = 0;  // in which the value moves
+  for (int k = 1; k <= steps; ++k) {
+    const double s = begin + (end - begin) * k / steps, strength = branch(s);
+    if (!std::isfinite(strength) || (model.drive_kind(drive) == DriveKind::electrode && !(strength > 0))) return std::nullopt;
+    const double value = model.value_of_strength(drive, strength);
+    if (k == 1) direction = value;
+    if (!((value - path.values.back()) * direction > 0)) return std::nullopt;  // a fold
+    values[drive] = value;
+    if (!(open_tangent_eigenvalue(model, branch.q(), values) > 0)) return std::nullopt;
+    path.deflections.push_back(s);
+    path.values.push_back(value);
+  }
+  return path;
+}
+
 bool judges_stability(const Switch& model) {
   return model.modes() > 1 || model.device().structure.kind != StructureKind::clamped_clamped;
 }

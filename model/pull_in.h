@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "base/watch.h"
 #include "model/status.h"
@@ -49,6 +50,21 @@ struct HeldEquilibrium {
 /// none where it cannot be followed so far, or the drive would have to push. Throws as static_pull_in() does.
 [[nodiscard]] std::optional<HeldEquilibrium> held_by_drive(const Switch& model, std::size_t drive, double deflection,
                                                            Bias bias = {});
+
+/// The stable open equilibria through which one drive carries the contact point from rest to the contact plane, the other drives
+/// standing at a bias. The path of an electrode on the near side ends at a fold where its contact lies beyond one.
+struct StablePath {
+  std::vector<double> deflections;  ///< of the contact point, from rest under the bias to the plane, evenly [m]
+  std::vector<double> values;       ///< of the drive there, from 0 V on, without turning back [V]
+  [[nodiscard]] double reaches() const { return values.back(); }
+  /// Of the deflection by the drive's value at the contact plane [m/V].
+  [[nodiscard]] double slope() const {
+    const std::size_t last = values.size() - 1;
+    return (deflections[last] - deflections[last - 1]) / (values[last] - values[last - 1]);
+  }
+};
+/// None where there is no such path, or it could not be followed. Throws as static_pull_in() does.
+[[nodiscard]] std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// The least voltage of the closed branch, and the deflection of the contact point there.
 struct ReleasePoint {

@@ -32,18 +32,35 @@ constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};
 constexpr std::size_t devices_by_error = 256;                                     // of the verdict
 constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2;
 constexpr double least_of_race = 0.4, end_of_race = 0.75;  // of a budget of time
+constexpr std::string_view quasi_static_short = "quasi-static:2",
+                           approaches = "+quasi-static+quasi-static:2";  // that are searched where there is a stable path
+constexpr double little_more = 1.25;         // times the least cost, for which a sooner waveform is preferred where there is none
+constexpr std::uint64_t path_devices = 512;  // of which it is told how many have a stable path
+// Paces of the quasi-static approach, over the time for which the plain step bounces: in half of it, in all of it, in twice as
+// much.
+constexpr double fast = 0.49, slow = 1.96;
+constexpr double usual_closings_at_pace = 30'000;  // of a search at one of them: waveforms that last longer take fewer
 
 bool closes(const DeviceOutcome& o) { return o.closed(); }
 
+// Whether a condition says until when devices have to close.
+bool is_about_time(const Criterion& one) {
+  const bool is_upper = one.comparison == Comparison::below || one.comparison == Comparison::at_most;
+  return is_upper && one.figure.unit == "s" && one.limit > 0;
+}
+
 // The settings of the families that the scene has room for, and their names joined by +.
 std::pair<std::vector<SearchSetting>, std::string> settings_of_race(const SceneFile& file, const OptimizeOptions& options,
-                                                                    const std::string& wanted, const Watch& watch) {
-  const bool chosen = !wanted.empty();
-  const std::vector<std::string> names = families_of(chosen ? wanted : std::string(raced_families));
+                                                                    const ForDevicesOptions& devices, const Watch& watch) {
+  const bool chosen = !devices.families.empty();
+  const std::string wanted =
+      chosen ? devices.families : std::string(raced_families) + std::string(devices.is_of_before ? "" : approaches);
+  const std::vector<std::string> names = families_of(wanted);
   if (chosen) return {search_settings(file, options.target, options.actuator, wanted, watch), wanted};
   std::vector<SearchSetting> settings{search_setting(file, options.target, options.actuator, names.front(), watch)};
   std::string kept = names.front();
   for (std::size_t k = 1; k < names.size(); ++k) {
+    if (is_quasi_static(names[k]) && options.actuator == Actuator::pzt && !devices.hold_step_is_chosen) continue;
     try {
       SearchSpace space(settings.front().given, options.actuator, names[k], settings.front().scale.step.initial_contact_time);
       settings.push_back(settings.front());
@@ -70,11 +87,12 @@ bool same_candidate(const ChosenFrom& a, const ChosenFrom& b) {
 
 }  // namespace
 
-double quantile_95(const std::vector<DeviceOutcome>& outcomes, std::string_view key) {
+double quantile(const std::vector<DeviceOutcome>& outcomes, std::string_view key, double probability) {
   std::vector<double> values;
   for (const DeviceOutcome& o : outcomes) values.push_back(o.of(figure_of(key)));
-  return sample_quantile(values, 0.95);
+  return sample_quantile(values, probability);
 }
+double quantile_95(const std::vector<DeviceOutcome>& outcomes, std::string_view key) { return quantile(outcomes, key, 0.95); }
 
 double share_of(const std::vector<DeviceOutcome>& outcomes, bool (*holds)(const DeviceOutcome&)) {
   return static_cast<double>(std::ranges::count_if(outcomes, holds)) / static_cast<double>(outcomes.size());
@@ -102,10 +120,13 @@ DevicesSearch::DevicesSearch(const SceneFile& file, const OptimizeOptions& optio
     : options_(options), devices_(devices), watch_{.stop = options.stop, .progress = std::move(tell)} {
   SceneFile varied = file;
   spread_assumed_ = assume_spread(varied);
-  auto [settings, families] = settings_of_race(varied, options, devices.families, watch_);
+  auto [settings, families] = settings_of_race(varied, options, devices, watch_);
   const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, families);
   settings_ = begins_gently(gentle, options.starts) ? gentle : std::move(settings);
   names_ = families_of(families);
+  // Those of the race first: the others are searched at paces of their own.
+  while (raced_ < names_.size() && !is_quasi_static(names_[raced_])) ++raced_;
+  if (raced_ < names_.size()) approach_ = settings_[raced_].space.quasi_static()->approach();
   known_ = known_units(first().given, std::array{first().given.scene.calibration}, options.jobs, watch_).front();
 }
 
@@ -132,23 +153,84 @@ void DevicesSearch::race_families() {
   watch_.tell("building devices", 0);
   cost_.emplace(first(), tail_aim_,
                 own_devices(first(), *known_, raced_devices, options_.seed, which_searched, options_.jobs, watch_));
+  others_.emplace(first(), tail_aim_,
+                  own_devices(first(), *known_, devices_of_choice, options_.seed, which_chosen, options_.jobs, watch_));
   const double begun = seconds();
   const std::vector<DeviceOutcome> step = closed(*cost_, {});
   reserve_for_verdict((seconds() - begun) / static_cast<double>(step.size()));
-  make_aims(step);
+  FreeTime free;
+  if (!devices_.is_of_before) {
+    std::vector<DeviceOutcome> all = cost_->close_by_step(options_.jobs);
+    const std::vector<DeviceOutcome> others = others_->close_by_step(options_.jobs);
+    all.insert(all.end(), others.begin(), others.end());
+    free = free_time(all);
+    closings_ += static_cast<long>(all.size());
+  }
+  make_aims(step, free);
   watch_.tell("searching for the devices", 0);
-  raced_ = race(settings_, *cost_, aims_, race_options());
-  closings_ += raced_.closings;
+  search_paces();
+  const std::vector<SearchSetting> raced(settings_.begin(), settings_.begin() + static_cast<std::ptrdiff_t>(raced_));
+  if (!raced.empty()) {
+    RaceResult found = race(raced, *cost_, aims_, race_options());
+    closings_ += found.closings;
+    std::ranges::move(found.racers, std::back_inserter(race_.racers));
+  }
   watch_.throw_if_stopped();
 }
 
-void DevicesSearch::make_aims(const std::vector<DeviceOutcome>& step) {
+std::vector<Pace> DevicesSearch::paces_of_search() const {
+  // Each by the shaper that suits it, where both are searched.
+  const auto of = [this](double times) {
+    constexpr double short_below = 0.75;
+    const bool is_short = times < short_below && names_.back() == quasi_static_short;
+    return Pace{.of_step = times, .family = is_short ? settings_.size() - 1 : raced_};
+  };
+  double allowed = std::numeric_limits<double>::infinity();
+  for (const Criterion& one : conditions_) {
+    if (is_about_time(one)) allowed = std::min(allowed, one.limit);
+  }
+  if (std::isfinite(allowed) && free_.until > 0) return {of(allowed / free_.until)};
+  return {of(1), of(fast), of(slow)};
+}
+
+// The quasi-static approach at three paces.
+void DevicesSearch::search_paces() {
+  if (raced_ == settings_.size()) return;
+  share_with_path_ = softland::share_with_path(first().given, *approach_, path_devices, options_.seed, options_.jobs, watch_);
+  const std::vector<Pace> paces = paces_of_search();
+  RobustAim aim = tail_aim_;
+  aim.free = free_;
+  std::vector<std::optional<Racer>> found(paces.size());
+  std::atomic<long> closings = 0;
+  RaceOptions options = race_options();
+  const double planned = static_cast<double>(paces.size()) * usual_closings_at_pace * static_cast<double>(options.closings) /
+                         static_cast<double>(race_closings);
+  options.progress = [&](double) {
+    watch_.tell("searching a quasi-static approach", std::min(1.0, static_cast<double>(closings) / planned));
+  };
+  run_tasks(
+      paces.size(), options_.jobs,
+      [&](std::size_t i) { found[i] = search_at_pace(settings_[paces[i].family], paces[i], *cost_, aim, options, closings); },
+      options_.stop);
+  closings_ += closings;
+  watch_.throw_if_stopped();
+  for (std::optional<Racer>& one : found) {
+    if (one) paced_.push_back(*std::move(one));
+  }
+}
+
+void DevicesSearch::make_aims(const std::vector<DeviceOutcome>& step, const FreeTime& free) {
   conditions_ = beside_step(devices_.conditions, step);
   no_harder_than_step_ = no_harder_than(step, first().given.scene.metrics.significant_rebound);
   const double step_time = quantile_95(step, key_of(&Metrics::initial_contact_time));
   const std::span<const Figure> figures = device_figures;
   tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
-  aims_ = {.tail = tail_aim_, .share = {.measure = parse_robust_measure("yield", figures), .conditions = conditions_}};
+  // A bound of the user's on time takes the place of the price.
+  free_ = free;
+  tail_aim_.free = free;
+  if (std::ranges::any_of(conditions_, is_about_time)) tail_aim_.free.until = std::numeric_limits<double>::infinity();
+  aims_ = {.tail = tail_aim_,
+           .share = {.measure = parse_robust_measure("yield", figures), .conditions = conditions_, .free = tail_aim_.free}};
   if (!std::isfinite(step_time) || says_when_to_close()) return;
   const auto bound = [&](double times) {
     return parse_criterion(fmt::format("initial_contact_time < {:.17g} s", times * step_time), figures);
@@ -205,14 +287,13 @@ ChosenFrom DevicesSearch::candidate_of(const Racer& racer) const {
 // What the race came to, on other devices, beside the plain step.
 void DevicesSearch::choose() {
   watch_.tell("choosing on other devices", 0);
-  others_.emplace(first(), tail_aim_,
-                  own_devices(first(), *known_, devices_of_choice, options_.seed, which_chosen, options_.jobs, watch_));
   bounds_.emplace(closed(*others_, {}));
   std::vector<ChosenFrom> pool;
+  for (const Racer& one : paced_) pool.push_back(candidate_of(one));
   for (const bool by_share : {false, true}) {
-    std::ranges::stable_sort(raced_.racers, {}, [&](const Racer& r) { return by_share ? r.share : r.tail; });
-    for (std::size_t i = 0; i < std::min(most_of_race, raced_.racers.size()); ++i) {
-      ChosenFrom one = candidate_of(raced_.racers[i]);
+    std::ranges::stable_sort(race_.racers, {}, [&](const Racer& r) { return by_share ? r.share : r.tail; });
+    for (std::size_t i = 0; i < std::min(most_of_race, race_.racers.size()); ++i) {
+      ChosenFrom one = candidate_of(race_.racers[i]);
       if (std::ranges::none_of(pool, [&](const ChosenFrom& other) { return same_candidate(one, other); }))
         pool.push_back(std::move(one));
     }
@@ -222,31 +303,47 @@ void DevicesSearch::choose() {
 
 void DevicesSearch::place(ChosenFrom one) {
   watch_.throw_if_stopped();
-  const std::vector<DeviceOutcome> outcomes = closed(*others_, one.waveforms);
+  closings_ += static_cast<long>(others_->devices());
+  const std::vector<DeviceOutcome> outcomes = others_->close_until_steady(first().drives(one.waveforms), options_.jobs);
+  RobustAim aim = aims_.tail;
+  if (approach_) aim.conditions = conditions_;  // a slow touch is no fault where it is soft
   one.bounce_free = share_of(outcomes, is_bounce_free);
-  one.tail = others_->value(outcomes, aims_.tail);
+  one.tail = others_->value(outcomes, aim);
+  one.measured = others_->measured(outcomes, aim);
   one.first_touch = quantile_95(outcomes, key_of(&Metrics::initial_contact_time));
   one.impact_speed = quantile_95(outcomes, key_of(&Metrics::largest_impact_velocity));
-  const bool lands = one.bounce_free >= lands_half;
+  one.median_touch = quantile(outcomes, key_of(&Metrics::initial_contact_time), 0.5);
+  one.waited = waited(outcomes, free_.figure);
+  const bool lands = one.bounce_free >= lands_half && !approach_;
   const double rank = lands ? -one.bounce_free : one.tail, significant = first().given.scene.metrics.significant_rebound;
-  const bool keeps = bounds_->keeps(outcomes, significant, !says_when_to_close()) && hold(conditions_, outcomes);
-  placed_.push_back({std::move(one), keeps, lands, rank});
+  const bool in_time = !approach_ && !says_when_to_close();
+  one.is_good_enough = bounds_->keeps(outcomes, significant, in_time) && hold(conditions_, outcomes);
+  placed_.push_back({std::move(one), lands, rank});
 }
 
 std::vector<ChosenFrom> DevicesSearch::placed() const {
   std::vector<Placed> sorted = placed_;
   std::ranges::stable_sort(sorted, [](const Placed& a, const Placed& b) {
-    if (a.keeps != b.keeps) return a.keeps;
+    if (a.candidate.is_good_enough != b.candidate.is_good_enough) return a.candidate.is_good_enough;
     if (a.lands_half != b.lands_half) return a.lands_half;
     return a.rank < b.rank;
   });
+  // Without a stable path the fall from the fold is the limit: waiting longer gains little there.
+  if (!approach_ && free_.until > 0 && !sorted.empty() && sorted.front().candidate.is_good_enough && !sorted.front().lands_half) {
+    auto soonest = sorted.begin();
+    for (auto one = sorted.begin(); one != sorted.end(); ++one) {
+      const bool is_near = one->candidate.is_good_enough && one->rank <= little_more * sorted.front().rank;
+      if (is_near && one->candidate.median_touch < soonest->candidate.median_touch) soonest = one;
+    }
+    std::rotate(sorted.begin(), soonest, soonest + 1);
+  }
   std::vector<ChosenFrom> all;
   for (Placed& one : sorted) all.push_back(std::move(one.candidate));
   return all;
 }
 
 std::size_t DevicesSearch::good_enough() const {
-  return static_cast<std::size_t>(std::ranges::count_if(placed_, &Placed::keeps));
+  return static_cast<std::size_t>(std::ranges::count_if(placed_, [](const Placed& one) { return one.candidate.is_good_enough; }));
 }
 
 // What rows in measured units will ask of the devices of the verdict.
@@ -307,6 +404,7 @@ std::array<DevicesSearch::Found, 2> DevicesSearch::searched_in(const ChosenFrom&
           watch_.tell("searching for devices that are measured", (parts[0] + parts[1]) / 2);
         };
         const auto searched = [&](const RaceAims& aims) {
+          if (settings_[k].space.quasi_static() != nullptr) return searched_at_pace(cost, aims, k, own, closings[i]);
           RaceResult found =
               race_alone(settings_[k], k, cost, aims, winner.bounce_free >= ranked_by_share, {winner.waveforms, drawing}, own);
           closings[i] += found.closings;
@@ -319,6 +417,23 @@ std::array<DevicesSearch::Found, 2> DevicesSearch::searched_in(const ChosenFrom&
       options_.stop);
   closings_ += closings[0] + closings[1];
   watch_.throw_if_stopped();
+  return all;
+}
+
+RaceResult DevicesSearch::searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family, RaceOptions options,
+                                           long& closings) const {
+  constexpr long shorter = 3;  // than in volts
+  RobustAim aim = tail_aim_;
+  aim.free = free_;
+  for (const Criterion& one : aims.tail.conditions) {
+    if (one.figure.member != Figure::Member(&Metrics::initial_contact_time)) aim.conditions.push_back(one);
+  }
+  options.closings /= shorter;
+  std::atomic<long> taken = 0;
+  RaceResult all;
+  if (auto found = search_at_pace(settings_[family], {.of_step = 1, .family = family}, cost, aim, options, taken))
+    all.racers.push_back(*std::move(found));
+  closings += taken;
   return all;
 }
 

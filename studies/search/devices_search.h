@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "studies/search/optimize.h"
+#include "studies/search/paced_search.h"
 #include "studies/search/race.h"
 #include "studies/search/robust_optimize.h"
 
@@ -23,10 +24,12 @@ namespace softland {
 struct ForDevicesOptions {
   std::vector<Criterion> conditions = {};  ///< on figures of device_figures, that 95 % of the devices have to fulfil
   std::uint64_t verdict = 2000;            ///< fresh devices
-  /// Families of the race; empty: raced_families, as far as the scene has room for them.
+  /// Families of the race; empty: raced_families, as far as the scene has room for them, and the quasi-static approach.
   std::string families = {};
-  long closings = race_closings;  ///< of the race
-  bool are_a_budget = false;      ///< it takes no more of them where many devices land
+  bool hold_step_is_chosen = true;  ///< with the actuator pzt the electrode's plain step may come later than t = 0
+  bool is_of_before = false;        ///< as versions did that priced the first touch and knew of no quasi-static approach
+  long closings = race_closings;    ///< of the race
+  bool are_a_budget = false;        ///< it takes no more of them where many devices land
 };
 
 /// A row of the first table: drives of one kind on the fresh devices.
@@ -52,14 +55,20 @@ struct ChosenFrom {
   std::map<std::string, double> parameters;  ///< by drive.name; empty for what the nominal search tried
   std::vector<Variable> variables;
   long closings = 0;
-  double bounce_free = 0, tail = 0;                                    ///< on the devices of the choice
-  double first_touch = Metrics::unset, impact_speed = Metrics::unset;  ///< 95 % quantiles there [s], [m/s]
+  // On the devices of the choice:
+  double bounce_free = 0, tail = 0;                                    ///< share of the devices; cost
+  double measured = 0;                                                 ///< the measure alone, without any price of time
+  double first_touch = Metrics::unset, impact_speed = Metrics::unset;  ///< 95 % quantiles [s], [m/s]
+  double median_touch = Metrics::unset;                                ///< [s]
+  double waited = Metrics::unset;                                      ///< 95 % quantile of what DevicesSearch::free() counts [s]
+  bool is_good_enough = false;                                         ///< as the choice asks
 };
 
 /// The share of devices of which most land, which decides where it is as much.
 inline constexpr double lands_half = 0.5;
 
-/// The 95 % quantile of a figure of device_figures.
+/// A quantile of a figure of device_figures, and the 95 % one.
+[[nodiscard]] double quantile(const std::vector<DeviceOutcome>& outcomes, std::string_view key, double probability);
 [[nodiscard]] double quantile_95(const std::vector<DeviceOutcome>& outcomes, std::string_view key);
 [[nodiscard]] double share_of(const std::vector<DeviceOutcome>& outcomes, bool (*holds)(const DeviceOutcome&));
 
@@ -97,7 +106,14 @@ class DevicesSearch {
   /// From any thread: run() ends soon, with nothing that is of use.
   void give_up() { gave_up_ = true; }
 
+  /// How the switch can be carried to its contact, where that is searched; none elsewhere.
+  [[nodiscard]] const std::optional<StableApproach>& approach() const { return approach_; }
+  /// The share of the devices of the spread that can be.
+  [[nodiscard]] double share_with_path() const { return share_with_path_; }
+
   // After run().
+  /// Until when waiting is free: as long as the devices of the race wait under the plain step.
+  [[nodiscard]] const FreeTime& free() const { return free_; }
   /// On the first of the raced devices.
   [[nodiscard]] const RobustCost& cost() const { return *cost_; }
   [[nodiscard]] const RaceAims& aims() const { return aims_; }
@@ -130,13 +146,15 @@ class DevicesSearch {
   };
   struct Placed {
     ChosenFrom candidate;
-    bool keeps, lands_half;
+    bool lands_half;
     double rank;
   };
   using Found = std::optional<DriveWaveforms>;
 
   void race_families();
-  void make_aims(const std::vector<DeviceOutcome>& step);
+  [[nodiscard]] std::vector<Pace> paces_of_search() const;
+  void search_paces();
+  void make_aims(const std::vector<DeviceOutcome>& step, const FreeTime& free);
   [[nodiscard]] bool says_when_to_close() const;
   void reserve_for_verdict(double closing);
   [[nodiscard]] RaceOptions race_options();
@@ -146,6 +164,8 @@ class DevicesSearch {
   [[nodiscard]] bool tells_time() const;
   [[nodiscard]] std::array<Found, 2> searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
                                                  const std::array<Calibration, 2>& calibrations);
+  [[nodiscard]] RaceResult searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family, RaceOptions options,
+                                            long& closings) const;
   [[nodiscard]] bool is_harder_than_step(const RobustCost& cost, const DriveWaveforms& waveforms) const;
   [[nodiscard]] RaceAims no_harder() const;
   [[nodiscard]] DevicesRow row_of(const char* name, const DriveWaveforms& waveforms, const Calibration& knowledge,
@@ -159,7 +179,10 @@ class DevicesSearch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   bool spread_assumed_ = false;
   std::vector<SearchSetting> settings_;
+  std::size_t raced_ = 0;           // of the settings, those of families that are raced
   std::vector<std::string> names_;  // of the families
+  std::optional<StableApproach> approach_;
+  double share_with_path_ = Metrics::unset;
   std::optional<KnownUnits> known_;
   std::atomic<bool> gave_up_ = false;
   double race_end_ = 0;                // since the beginning [s]
@@ -168,7 +191,9 @@ class DevicesSearch {
   RaceAims aims_;
   std::vector<Criterion> no_harder_than_step_;  // in volts
   std::optional<RobustCost> cost_, others_;     // of the race, and of the choice
-  RaceResult raced_;
+  FreeTime free_;
+  std::vector<Racer> paced_;
+  RaceResult race_;
   std::optional<Bounds> bounds_;
   std::vector<Placed> placed_;                                        // in the order in which they came
   std::optional<GaugedEnsemble> gauged_by_pull_in_, gauged_by_time_;  // the devices of the verdict

@@ -24,6 +24,13 @@ constexpr std::size_t most_of_front = 6;
 constexpr double end_of_drawing = 0.3;  // of a budget of time
 
 constexpr const char *plain_step_row = "plain step", *for_the_drawing = "for the drawing", *for_the_devices = "for the devices";
+constexpr const char *fast_row = "fast", *soft_row = "soft", *undelayed_row = "electrode at t = 0";
+// What devices of a choice may wait for a steady contact, over what they wait under the plain step.
+constexpr double fast_within = 0.5, usual_within = 1, soft_within = 2;
+constexpr double by_chance = 1.02;  // devices of another sample wait so much longer at the most
+constexpr double worth_choosing =
+    0.9;  // of the impact velocity of the default, or of its time: what is nearer is no other choice
+constexpr double fewer_bounce_free = 0.05;
 
 class DevicesStudy {
  public:
@@ -155,17 +162,89 @@ class DevicesStudy {
   void judge() {
     const InMeasuredUnits measured = searched_.in_measured_units(result_->candidates.front(), drawing_waveforms());
     tell("verdict on fresh devices", 0);
-    result_->verdict = robustness(
-        first().given, {{.name = for_the_drawing, .waveforms = searched_.all_drives(drawing_waveforms())}, of_candidate(0)},
-        verdict_options(), watch_);
+    result_->free = searched_.free();
+    result_->approach = searched_.approach();
+    result_->share_with_path = searched_.share_with_path();
+    make_choices();
+    result_->varied = over_whole_window(first().given);
+    std::vector<NamedDrive> drives{{.name = for_the_drawing, .waveforms = searched_.all_drives(drawing_waveforms())},
+                                   of_candidate(0)};
+    for (const DeviceChoice& one : result_->choices) {
+      if (one.name != default_choice) drives.push_back(named(one.name.c_str(), one.candidate));
+    }
+    if (undelayed_) drives.push_back(named(undelayed_row, *undelayed_));
+    result_->verdict = robustness(result_->varied, drives, verdict_options(), watch_);
     result_->interrupted = result_->verdict.interrupted;
     add_row(plain_step_row, plain_step(first().given, options_.actuator));
     add_row(for_the_drawing, drawing_waveforms());
     add_row(for_the_devices, result_->candidates.front().waveforms);
     decide();
+    decide_choices();
+    if (undelayed_) add_row(undelayed_row, undelayed_->waveforms);
     add(measured);
     front();
     result_->windows = hold_windows(first().given, verdict_options(), watch_);
+  }
+
+  // The softest candidate whose devices wait at most so long, over the plain step; null where there is none.
+  [[nodiscard]] const ChosenFrom* softest_within(double times) const {
+    const ChosenFrom* best = nullptr;
+    for (const ChosenFrom& one : result_->candidates) {
+      if (!one.is_good_enough || !(one.waited <= by_chance * times * searched_.free().until)) continue;
+      if (best == nullptr || one.measured < best->measured) best = &one;
+    }
+    return best;
+  }
+
+  [[nodiscard]] bool drive_alike(const ChosenFrom& a, const ChosenFrom& b) const {
+    const PreparedScene& given = first().given;
+    return same_drives(given.told(first().drives(a.waveforms)), given.told(first().drives(b.waveforms)));
+  }
+
+  // The default is the first candidate; beside it a sooner and a softer one, where they are others.
+  void make_choices() {
+    const ChosenFrom& usual = result_->candidates.front();
+    const double until = searched_.free().until, tau = usual.waited / until;
+    const auto add = [&](const char* name, const ChosenFrom* one) {
+      if (one == nullptr || (name != default_choice && drive_alike(*one, usual))) return;
+      result_->choices.push_back({.name = name, .candidate = *one});
+    };
+    const bool is_late = tau > by_chance * usual_within;
+    const ChosenFrom* const fast = softest_within(is_late ? usual_within : fast_within);
+    if (until > 0 && fast != nullptr && fast->waited < worth_choosing * usual.waited) add(fast_row, fast);
+    add(default_choice, &usual);
+    const ChosenFrom* const soft = softest_within(soft_within);
+    const bool is_softer = soft != nullptr && soft->impact_speed < worth_choosing * usual.impact_speed &&
+                           soft->bounce_free > usual.bounce_free - fewer_bounce_free;
+    if (until > 0 && !is_late && is_softer) add(soft_row, soft);
+    if (options_.actuator != Actuator::pzt || !searched_.approach()) return;
+    for (const ChosenFrom& one : result_->candidates) {
+      if (undelayed_ || is_quasi_static(one.family) || !one.is_good_enough) continue;
+      undelayed_ = one;
+    }
+    if (undelayed_ && drive_alike(*undelayed_, usual)) undelayed_.reset();
+  }
+
+  [[nodiscard]] NamedDrive named(const char* name, const ChosenFrom& one) const {
+    return {.name = name, .waveforms = searched_.all_drives(one.waveforms), .calibration = searched_.known().calibration()};
+  }
+
+  // A window that holds the whole of every waveform that is judged, and as long after it as the plain step bounces.
+  [[nodiscard]] PreparedScene over_whole_window(PreparedScene given) const {
+    double last = 0;
+    const auto consider = [&](const ChosenFrom& one) {
+      last = std::max(last, last_breakpoint(first().given.told(first().drives(one.waveforms))));
+    };
+    for (const DeviceChoice& one : result_->choices) consider(one.candidate);
+    const double needed = last + 2 * given.model.basis().in_contact_period() + (last > given.duration ? 0.1 * last : 0);
+    const double bounces = 1.2 * searched_.free().until;
+    if (const double window = std::max(needed, bounces); window > given.duration) {
+      const double digits = std::pow(10, std::floor(std::log10(window)) - 1);
+      given.duration = std::ceil(window / digits) * digits;
+      given.scene.simulate.duration = given.duration;
+      given.scene.file.assign("simulate.duration", Quantity{.value = given.duration, .dimension = dimension::time});
+    }
+    return given;
   }
 
   void add(const InMeasuredUnits& measured) {
@@ -176,7 +255,7 @@ class DevicesStudy {
     std::ranges::copy(measured.rows, std::back_inserter(result_->rows));
     const DevicesRow& best = measured.rows[measured.best];
     result_->calibrated_row = best.name;
-    result_->calibrated = with_waveforms(result_->drawing.baseline_scene, first().space.searched(measured.best_waveforms));
+    result_->calibrated = with_waveforms(result_->drawing.baseline_scene, measured.best_waveforms);
     result_->calibrated->set(best.knowledge.time_error ? fmt::format("calibration.{}.error=\"50 ns\"", measured_time)
                                                        : fmt::format("calibration.{}.error=\"1 %\"", measured_pull_in));
   }
@@ -187,11 +266,7 @@ class DevicesStudy {
             .jobs = options_.jobs,
             .measures_drive_energy = options_.target.measures_drive_energy()};
   }
-  [[nodiscard]] NamedDrive of_candidate(std::size_t n) const {
-    return {.name = for_the_devices,
-            .waveforms = searched_.all_drives(result_->candidates[n].waveforms),
-            .calibration = searched_.known().calibration()};
-  }
+  [[nodiscard]] NamedDrive of_candidate(std::size_t n) const { return named(for_the_devices, result_->candidates[n]); }
 
   // The row of a drive that is judged, by its name or as one that is driven alike.
   void add_row(const char* name, const DriveWaveforms& waveforms) {
@@ -223,16 +298,16 @@ class DevicesStudy {
     for (result_->worse_in = worse();
          !result_->worse_in.empty() && n + 1 < std::min(searched_.good_enough(), most_judged) && !stopped();
          result_->worse_in = worse()) {
-      Robustness next = robustness(first().given, {of_candidate(++n)}, verdict_options(), watch_);
+      Robustness next = robustness(result_->varied, {of_candidate(++n)}, verdict_options(), watch_);
       result_->interrupted = next.interrupted;
       row_of_devices().judged = next.drives.back();
-      if (drives.back().name == for_the_devices) drives.pop_back();
+      std::erase_if(drives, [](const DriveRobustness& one) { return one.name == for_the_devices; });
       drives.push_back(std::move(next.drives.back()));
     }
     result_->plain_step_wins = !result_->worse_in.empty();
     if (result_->plain_step_wins) {
       row_of_devices().judged = step;
-      win(plain_step(first().given, options_.actuator));
+      win({});
     } else {
       result_->chosen = result_->candidates[n];
       win(result_->candidates[n].waveforms);
@@ -240,6 +315,7 @@ class DevicesStudy {
       result_->best.prefix.clear();
       result_->best.parameters = result_->candidates[n].parameters;
       result_->best.variables = result_->candidates[n].variables;
+      note_delay(result_->candidates[n]);
     }
     for (const Criterion& condition : searched_.conditions()) {
       const Yield share = share_that_fulfils(row_of_devices().judged.outcomes, condition);
@@ -247,12 +323,59 @@ class DevicesStudy {
     }
   }
 
+  void note_delay(const ChosenFrom& winner) {
+    const std::optional<StableApproach>& approach = searched_.approach();
+    if (options_.actuator != Actuator::pzt || !approach || !is_quasi_static(winner.family)) return;
+    const Signal step = signal(winner.waveforms.at(approach->holder));
+    for (const double time : step.breakpoints()) {
+      if (std::isnan(result_->step_delay) && time > 0) result_->step_delay = time;
+    }
+  }
+
+  // Judges the choices on the fresh devices, and leaves out those that a sooner one equals in speed, rebound and force.
+  void decide_choices() {
+    std::vector<DeviceChoice> all = std::exchange(result_->choices, {});
+    if (result_->plain_step_wins) return;
+    const double significant = first().given.scene.metrics.significant_rebound;
+    const std::vector<DriveRobustness>& drives = result_->verdict.drives;
+    const double of_step = waited(drives.front().outcomes, result_->free.figure);
+    std::vector<DeviceChoice> kept;
+    for (DeviceChoice& one : all) {
+      const bool is_default = one.name == default_choice;
+      if (is_default) one.candidate = *result_->chosen;
+      const std::string_view row = is_default ? std::string_view(for_the_devices) : std::string_view(one.name);
+      const auto found = std::ranges::find(drives, row, &DriveRobustness::name);
+      one.judged = found != drives.end() ? *found : row_of_devices().judged;
+      one.tau = waited(one.judged.outcomes, result_->free.figure) / of_step;
+      const auto equals = [&](const DeviceChoice& sooner) {
+        return softland::worse_in(sooner.judged.outcomes, one.judged.outcomes, significant, options_.seed).empty();
+      };
+      const bool harder_than_step =
+          !is_default && !softland::worse_in(one.judged.outcomes, drives.front().outcomes, significant, options_.seed).empty();
+      if (harder_than_step || (!is_default && std::ranges::any_of(kept, equals))) continue;
+      kept.push_back(std::move(one));
+    }
+    for (DeviceChoice& one : kept) {
+      if (one.name == default_choice) continue;
+      one.scene = scene_of(one.candidate.waveforms);
+      result_->rows.push_back({.name = one.name, .knowledge = one.judged.known.calibration(), .judged = one.judged});
+    }
+    result_->choices = std::move(kept);
+  }
+
+  // In volts, over the window of the verdict.
+  [[nodiscard]] SceneFile scene_of(const DriveWaveforms& waveforms) const {
+    SceneFile file = with_waveforms(result_->drawing.baseline_scene, waveforms);
+    if (result_->varied.duration > first().given.duration)
+      file.assign("simulate.duration", Quantity{.value = result_->varied.duration, .dimension = dimension::time});
+    return file;
+  }
+
   // On the nominal device.
   void win(const DriveWaveforms& waveforms) {
     OptimizeResult& best = result_->best;
     const OptimizeResult& drawing = result_->drawing;
-    best.best_scene =
-        read_back(with_waveforms(drawing.baseline_scene, first().space.searched(waveforms)), "best.toml", drawing.scene);
+    best.best_scene = read_back(scene_of(waveforms), "best.toml", drawing.scene);
     best.best = simulate(*best.best_scene, true, watch_);
     best.checks = confirm(*best.best_scene);
     const Metrics& m = best.best->metrics;
@@ -296,6 +419,7 @@ class DevicesStudy {
   DevicesSearch searched_;
   OptimizeOptions drawing_options_;
   std::optional<ForDevicesResult> result_;  // once there is a drawing
+  std::optional<ChosenFrom> undelayed_;     // the best whose electrode steps at t = 0, where others may step later
   std::future<void> beside_;                // the last: what it uses outlives it
 };
 

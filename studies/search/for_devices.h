@@ -11,10 +11,17 @@
 //   5  verdict on 2000 fresh devices: plain step, drawing and winner over the whole window; measured units over that of a search,
 //      which moves 95 % quantiles by less than 0.4 %
 //
-// What wins: of the candidates that are not worse than the plain step, that close in at most five times its 95 % time (seven
-// where half the devices land) and leave no more devices open than it does (and half a percent), the one with most devices that
-// land without a rebound, where that is at least half of them; else that of the least tail of the cost. Where the verdict finds
-// the winner worse than the plain step the next one is judged; where all are, the plain step wins.
+// What wins where a drive can carry the switch to its contact through stable equilibria (stable_approach.h): of the candidates
+// that are not worse than the plain step and leave no more devices open than it does (and half a percent), that of the least
+// cost. Beside it there are a sooner choice, the softest of those whose devices wait at most half as long for a steady contact as
+// under the plain step, and a softer one, of those that wait at most twice as long. A choice that a sooner one equals is left
+// out.
+//
+// What wins where no drive can: of the candidates that also close in at most five times the 95 % time of the plain step (seven
+// where half the devices land), the one with most devices that land without a rebound, where that is at least half of them; else,
+// of those that cost at most a quarter more than the least, the one whose devices touch first.
+//
+// Where the verdict finds the winner worse than the plain step the next one is judged; where all are, the plain step wins.
 //
 // The stages are counted in closings, so that the result is a function of scene, options and seed.
 #pragma once
@@ -42,16 +49,33 @@ struct FrontPoint {
   std::string measure, waveform;                                       ///< how it was searched
 };
 
+inline constexpr const char* default_choice = "default";  ///< what best.toml holds
+
+/// A waveform that may be chosen: the default, one whose devices carry a steady force sooner, one that is softer and later.
+struct DeviceChoice {
+  std::string name;  ///< "fast", "default", "soft"
+  ChosenFrom candidate;
+  double tau = Metrics::unset;  ///< what its devices wait for a steady contact over what they wait under the plain step, on 95 %
+  DriveRobustness judged = {};
+  std::optional<SceneFile> scene = {};  ///< of fast and soft
+};
+
 struct ForDevicesResult {
-  PreparedScene varied;  ///< the scene with the spread that was looked at
+  PreparedScene varied;  ///< the scene with the spread that was looked at, over the window of the verdict
   OptimizeResult drawing;
   /// On the nominal device: the waveform that wins; best_scene is none where the search was interrupted before the choice.
   OptimizeResult best;
   bool plain_step_wins = false;
-  bool spread_assumed = false;              ///< the scene says nothing of how devices differ
-  std::optional<ChosenFrom> chosen;         ///< none where the plain step wins
-  std::vector<ChosenFrom> candidates = {};  ///< the best first
-  Robustness verdict;                       ///< of plain step, drawing and winner
+  bool spread_assumed = false;                  ///< the scene says nothing of how devices differ
+  std::optional<ChosenFrom> chosen;             ///< none where the plain step wins
+  std::vector<ChosenFrom> candidates = {};      ///< the best first
+  std::vector<DeviceChoice> choices = {};       ///< by time: the soonest first; none where the plain step wins
+  FreeTime free = {};                           ///< until when waiting was not priced
+  std::optional<StableApproach> approach = {};  ///< how the switch can be carried to its contact; none where it cannot be
+  double share_with_path = Metrics::unset;      ///< of the devices that can be
+  /// When the electrode's plain step comes under the winner, where its instant was searched [s].
+  double step_delay = Metrics::unset;
+  Robustness verdict;  ///< of plain step, drawing and winner
   std::vector<DevicesRow> rows = {};
   std::vector<std::string_view> worse_in = {};   ///< of the winner: see worse_in()
   std::vector<FrontPoint> front = {};            ///< by first touch

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/executor.h"
@@ -58,15 +59,32 @@ bool hold(std::span<const Criterion> conditions, std::span<const DeviceOutcome> 
                              [&](const Criterion& one) { return share_that_fulfils(outcomes, one).value >= constrained_share; });
 }
 
-namespace {
-
-bool is_about_steady_force(const SearchSetting& setting, const RobustAim& aim) {
-  const auto is_about = [](const Criterion& one) { return one.figure.member == Figure::Member(&Metrics::steady_force_time); };
-  return setting.target.is_about(Target::steady) || setting.target.has_own_objective() ||
-         (aim.measure.yield && is_about(*aim.measure.yield)) || std::ranges::any_of(aim.conditions, is_about);
+double waited(const DeviceOutcome& outcome, double Metrics::*figure) {
+  if (fails(outcome)) return std::numeric_limits<double>::infinity();
+  const double time = outcome.metrics.*figure;
+  return std::isfinite(time) ? time : outcome.metrics.end;
 }
 
-}  // namespace
+double waited(std::span<const DeviceOutcome> outcomes, double Metrics::*figure) {
+  std::vector<double> times;
+  for (const DeviceOutcome& o : outcomes) times.push_back(waited(o, figure));
+  return sample_quantile(times, constrained_share);
+}
+
+FreeTime free_time(std::span<const DeviceOutcome> of_step) {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  for (double Metrics::*const figure :
+       {&Metrics::steady_force_time, &Metrics::permanent_contact_time, &Metrics::initial_contact_time}) {
+    std::vector<double> times;
+    for (const DeviceOutcome& o : of_step) {
+      const double time = fails(o) ? never : o.metrics.*figure;
+      times.push_back(std::isnan(time) ? never : time);
+    }
+    const double until = sample_quantile(times, constrained_share);
+    if (std::isfinite(until)) return {.figure = figure, .until = until};
+  }
+  return {};
+}
 
 GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, double precision, int jobs, const Watch& watch) {
   constexpr std::size_t together = 16;
@@ -111,12 +129,7 @@ BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known,
 }
 
 RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors)
-    : setting_(setting),
-      aim_(aim),
-      ensemble_(std::move(ensemble)),
-      drives_(setting.given),
-      vectors_(vectors),
-      measures_steady_force_(is_about_steady_force(setting, aim)) {
+    : setting_(setting), aim_(aim), ensemble_(std::move(ensemble)), drives_(setting.given), vectors_(vectors) {
   const Switch& model = setting.given.model;
   const double period = 2 * pi / model.basis().angular_frequencies()[0], in_contact = model.basis().in_contact_period();
   window_ = std::max(0.6 * period, 2.5 * in_contact);
@@ -133,7 +146,7 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
                         .steady_force = setting.run.steady_force});
   const std::vector<Waveform> plain = setting.drives({});
   for (std::size_t k = 0; k < devices(); ++k)
-    kept_closed_.push_back(!ensemble_.devices[k].model || is_kept_closed(k, signals(plain, k, ensemble_.units[k])));
+    kept_.push_back(ensemble_.devices[k].model ? kept(k, signals(plain, k, ensemble_.units[k])) : Kept());
   if (step_.closed()) return;
   const Metrics& imagined = setting.scale.step;
   const double drive_energy = step_.metrics.drive_energy;
@@ -149,14 +162,19 @@ std::vector<Signal> RobustCost::signals(const std::vector<Waveform>& waveforms, 
                                : setting_.given.driven(waveforms);
 }
 
-// Where the nominal device is not, nothing is asked of the others.
-bool RobustCost::is_kept_closed(std::size_t k, const std::vector<Signal>& signals) const {
-  if (!nominal_closed_) return true;
-  return hold_of(*ensemble_.devices[k].model, signals, nominal_closed_).is_held;
+// Nothing is asked of the other devices where the nominal one is not kept closed.
+RobustCost::Kept RobustCost::kept(std::size_t k, const std::vector<Signal>& signals) const {
+  const Hold hold = hold_of(*ensemble_.devices[k].model, signals, nominal_closed_);
+  return {.is_held = !nominal_closed_ || hold.is_held, .steady_force = hold.steady_force(setting_.given.scene.metrics)};
 }
 
 std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
                                              int jobs) const {
+  return close(waveforms, first, last, window_, jobs);
+}
+
+std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
+                                             double after_contact, int jobs) const {
   constexpr std::size_t together = 64;  // devices of one task
   const std::vector<Signal> nominal = setting_.given.driven(waveforms);
   const bool same_levels = hold_levels(nominal) == levels_;
@@ -165,42 +183,66 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
     const std::size_t begin = task * together, end = std::min(outcomes.size(), begin + together);
     std::vector<std::vector<Signal>> own(end - begin);
     std::vector<DeviceClosing> closings;
+    std::vector<Kept> kept_here;
     for (std::size_t i = begin; i < end; ++i) {
-      const SampledDevice& device = ensemble_.devices[first + i];
-      const DeviceUnits& units = ensemble_.units[first + i];
+      const std::size_t k = first + i;
+      const SampledDevice& device = ensemble_.devices[k];
+      const DeviceUnits& units = ensemble_.units[k];
       std::vector<Signal>& of_device = own[i - begin];
       if (device.model && drives_.differ(units)) of_device = drives_.signals(waveforms, units, device.values);
       const std::vector<Signal>& signals = of_device.empty() ? nominal : of_device;
+      kept_here.push_back(same_levels || !device.model ? kept_[k] : kept(k, signals));
+      ClosingOptions own_run = run(signals, kept_here.back().steady_force);
+      own_run.after_contact = after_contact;
+      own_run.duration += after_contact - window_;
       closings.push_back({.device = &device,
                           .signals = &signals,
-                          .run = run(device, signals),
+                          .run = own_run,
                           .measures_drive_energy = setting_.target.measures_drive_energy()});
     }
     std::vector<DeviceOutcome> closed = close_devices(closings, setting_.given.scene.metrics, vectors_);
     for (std::size_t i = 0; i < closed.size(); ++i) {
-      const std::size_t k = first + begin + i;
-      if (closed[i].closed()) closed[i].is_held = same_levels ? kept_closed_[k] : is_kept_closed(k, *closings[i].signals);
+      if (closed[i].closed()) closed[i].is_held = kept_here[i].is_held;
     }
     std::move(closed.begin(), closed.end(), outcomes.begin() + static_cast<std::ptrdiff_t>(begin));
   });
   return outcomes;
 }
 
+std::vector<DeviceOutcome> RobustCost::close_by_step(int jobs) const {
+  constexpr int most_doublings = 3;
+  const std::vector<Waveform> plain = setting_.drives({});
+  std::vector<DeviceOutcome> outcomes;
+  double after_contact = std::max(setting_.given.duration, window_);
+  for (int n = 0; n <= most_doublings; ++n, after_contact *= 2) {
+    outcomes = close(plain, 0, devices(), after_contact, jobs);
+    const FreeTime found = free_time(outcomes);
+    const bool is_about_force = std::ranges::any_of(kept_, [](const Kept& one) { return std::isfinite(one.steady_force); });
+    if (found.until == 0 || found.figure == (is_about_force ? &Metrics::steady_force_time : &Metrics::permanent_contact_time))
+      break;
+  }
+  return outcomes;
+}
+
+std::vector<DeviceOutcome> RobustCost::close_until_steady(const std::vector<Waveform>& waveforms, int jobs) const {
+  return close(waveforms, 0, devices(), std::max(setting_.given.duration, window_), jobs);
+}
+
 DeviceOutcome RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const {
   const SampledDevice& device = ensemble_.devices[k];
   const std::vector<Signal> signals = drives_.signals(waveforms, units, device.values);
-  return close_device(device, signals, setting_.given.scene.metrics, run(device, signals));
+  const double steady_force = device.model ? kept(k, signals).steady_force : Metrics::unset;
+  return close_device(device, signals, setting_.given.scene.metrics, run(signals, steady_force));
 }
 
-ClosingOptions RobustCost::run(const SampledDevice& device, const std::vector<Signal>& signals) const {
+ClosingOptions RobustCost::run(const std::vector<Signal>& signals, double steady_force) const {
   const double end = last_breakpoint(signals);
-  const Hold hold = measures_steady_force_ && device.model ? hold_of(*device.model, signals, nominal_closed_) : Hold{};
   return {.duration = end + wait_ + window_,
           .tolerance = EnsembleRun{}.tolerance,
           .after_contact = window_,
           .no_end_before = end + tail_,
           .no_contact_before = end + wait_,
-          .steady_force = hold.steady_force(setting_.given.scene.metrics)};
+          .steady_force = steady_force};
 }
 
 double RobustCost::score(const DeviceOutcome& outcome) const {
@@ -248,16 +290,24 @@ double RobustCost::risk_of(std::span<const DeviceOutcome> outcomes, const std::v
   return own + (1 + measure.parameter) * worst_score * std::sqrt(share);
 }
 
+double RobustCost::measured(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores, const RobustAim& aim) {
+  if (!aim.measure.yield) return risk_of(outcomes, scores, aim.measure.risk);
+  return 1 - share_that_fulfils(outcomes, *aim.measure.yield).value + weight_of_scores * sample_mean(scores);
+}
+
+double RobustCost::measured(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const {
+  return measured(outcomes, scores(outcomes), aim);
+}
+
 double RobustCost::value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const {
   const std::vector<double> scores = this->scores(outcomes);
   std::vector<double> times, of_devices;
   for (const DeviceOutcome& o : outcomes)
     times.push_back(o.closed() ? Shares::ratio(o.metrics.initial_contact_time, step_.metrics.initial_contact_time) : worst_score);
-  double value = aim.measure.yield
-                     ? 1 - share_that_fulfils(outcomes, *aim.measure.yield).value + weight_of_scores * sample_mean(scores)
-                     : risk_of(outcomes, scores, aim.measure.risk);
+  double value = measured(outcomes, scores, aim);
   value += static_cast<double>(std::ranges::count_if(outcomes, fails)) / static_cast<double>(outcomes.size());
-  value += weight_of_time * sample_quantile(times, 0.5);
+  const double late = std::isfinite(aim.free.until) ? std::max(0.0, waited(outcomes, aim.free.figure) / aim.free.until - 1) : 0;
+  value += weight_of_time * std::min(sample_quantile(times, 0.5), late);
   for (const Criterion& condition : aim.conditions) {
     of_devices.clear();
     for (const DeviceOutcome& o : outcomes)

@@ -8,8 +8,13 @@
 //           of a user's own objective its value
 //         3, or more than any that closes, where the device does not close or its hold levels do not keep it closed, where its
 //         closing cannot be followed, or no such device can be described: it fails
-//   cost  R(s) + (share of devices that fail) + 0.02 (median of first contact over that of the step)
+//   cost  R(s) + (share of devices that fail) + 0.02 min(median of first contact over that of the step, max(0, tau - 1))
 //         + 10 (sum over the conditions: violation, where positive)
+//
+// tau is what a user waits: the 95 % quantile of the time from which on the contact force is steady over what is free, which is
+// that of the plain step on the same devices. The step bounces for that long, so that a slower first touch costs nobody anything.
+// Where 95 % of the devices have no steady force under the step it is their permanent contact, and where they do not settle their
+// first contact. A device that is not steady at the end of its run counts with the end.
 //
 // Of mean+sigma R is that of the devices that do not fail, plus 3 (1 + factor) times the root of the share of those that do: the
 // deviation over all of them would fall again where most fail.
@@ -42,9 +47,19 @@ namespace softland {
 /// The share of devices that has to fulfil a condition.
 inline constexpr double constrained_share = 0.95;
 
+/// Until when waiting for a contact is free.
+struct FreeTime {
+  double Metrics::*figure = &Metrics::initial_contact_time;  ///< the time that counts
+  double until = 0;  ///< 95 % of the devices [s]; 0: the median of first contact is priced alone, infinite: nothing is
+};
+/// As long as the devices wait under the plain step, whose outcomes these are. Throws nothing: where 95 % of them never touch the
+/// time is 0.
+[[nodiscard]] FreeTime free_time(std::span<const DeviceOutcome> of_step);
+
 struct RobustAim {
   RobustMeasure measure;
   std::vector<Criterion> conditions;
+  FreeTime free = {};
 };
 
 /// Devices and what they would measure without error, by these gauges and their frequency.
@@ -88,6 +103,12 @@ class RobustCost {
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes) const { return value(outcomes, aim_); }
   /// By another aim.
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
+  /// The measure alone: R(s).
+  [[nodiscard]] double measured(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
+  /// The closings of all devices under the plain step until 95 % of them carry a steady force, or as long as such runs go.
+  [[nodiscard]] std::vector<DeviceOutcome> close_by_step(int jobs) const;
+  /// The closings of all devices, until the plain step's were steady at least.
+  [[nodiscard]] std::vector<DeviceOutcome> close_until_steady(const std::vector<Waveform>& waveforms, int jobs) const;
   /// Whether the measure tells these devices from such as all fail: not where as many of them fail as it looks at, or none
   /// fulfils the condition of a yield.
   [[nodiscard]] bool is_told(std::span<const DeviceOutcome> outcomes) const;
@@ -101,30 +122,44 @@ class RobustCost {
   [[nodiscard]] double score(const DeviceOutcome& outcome) const;
 
  private:
-  [[nodiscard]] ClosingOptions run(const SampledDevice& device, const std::vector<Signal>& signals) const;
+  // How its hold levels keep a device.
+  struct Kept {
+    bool is_held = true;
+    double steady_force = Metrics::unset;  // [N]
+  };
+  [[nodiscard]] Kept kept(std::size_t k, const std::vector<Signal>& signals) const;
+  [[nodiscard]] ClosingOptions run(const std::vector<Signal>& signals, double steady_force) const;
   [[nodiscard]] std::vector<double> scores(std::span<const DeviceOutcome> outcomes) const;
+  [[nodiscard]] static double measured(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores,
+                                       const RobustAim& aim);
   [[nodiscard]] static double risk_of(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores,
                                       const Risk& measure);
 
   [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& waveforms, std::size_t k,
                                             const DeviceUnits& units) const;
-  [[nodiscard]] bool is_kept_closed(std::size_t k, const std::vector<Signal>& signals) const;
+  [[nodiscard]] std::vector<DeviceOutcome> close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
+                                                 double after_contact, int jobs) const;
 
   const SearchSetting& setting_;
   const RobustAim& aim_;
   BuiltEnsemble ensemble_;
   DeviceDrives drives_;
   Vectors vectors_;
-  bool measures_steady_force_;
   DeviceOutcome step_;                               // of the nominal device
   std::optional<ClosedEquilibrium> nominal_closed_;  // under the hold levels; none where they do not keep it closed
   std::vector<double> levels_;                       // those, of the nominal device
-  std::vector<bool> kept_closed_;                    // each device, under them
+  std::vector<Kept> kept_;                           // each device, under them
   double window_, tail_, wait_;                      // after first touch, after the last breakpoint, for a touch [s]
 };
 
 /// Whether a device does not close and stay closed, cannot be followed, or cannot be described.
 [[nodiscard]] bool fails(const DeviceOutcome& outcome);
+
+/// From when on a device carries a steady contact, as FreeTime says; the end of its run where it does not by then, infinite where
+/// it fails [s].
+[[nodiscard]] double waited(const DeviceOutcome& outcome, double Metrics::*figure);
+/// Its 95 % quantile.
+[[nodiscard]] double waited(std::span<const DeviceOutcome> outcomes, double Metrics::*figure);
 
 /// Whether a device fulfils a condition.
 [[nodiscard]] bool fulfils(const DeviceOutcome& outcome, const Criterion& condition);

@@ -17,6 +17,7 @@
 #include "config/calibration_words.h"
 #include "config/criterion.h"
 #include "config/units.h"
+#include "studies/search/searched_families.h"
 
 namespace softland {
 namespace {
@@ -110,8 +111,20 @@ OptimizeOptions options_of(const SearchRequest& request, const SceneFile& scene,
   return options;
 }
 
-ForDevicesOptions race_of(const SearchRequest& request, OptimizeOptions& options, const std::string& families) {
-  ForDevicesOptions race{.families = families};
+// Without the approach, which moves devices alone.
+std::string families_of_drawing(const std::string& text, const SceneFile& scene, Actuator actuator) {
+  std::string kept;
+  for (const std::string& family : families_of(text)) {
+    if (!is_quasi_static(family)) kept += (kept.empty() ? "" : "+") + family;
+  }
+  return kept.empty() ? std::string(default_families(shaped_drives(scene, actuator))) : kept;
+}
+
+ForDevicesOptions race_of(const SearchRequest& request, const SceneFile& scene, OptimizeOptions& options,
+                          const std::string& families) {
+  ForDevicesOptions race{
+      .families = families, .hold_step_is_chosen = request.hold_step != step_is_fixed, .is_of_before = request.hold_step.empty()};
+  options.family = families_of_drawing(options.family, scene, options.actuator);
   read_shared_conditions(request, options.conditions, race.conditions);
   race.verdict = devices_of(request, race.verdict, 100);
   if (!request.budget) return race;
@@ -134,6 +147,16 @@ RobustOptions robust_of(const SearchRequest& request) {
   require_field(request.optimizer == "auto", "optimizer", request.optimizer,
                 [] { return "a robust search has a method of its own"; });
   return robust;
+}
+
+void check_hold_step(const SearchRequest& request) {
+  if (request.hold_step.empty()) return;
+  require_field(request.hold_step == step_is_chosen || request.hold_step == step_is_fixed, "hold-step", request.hold_step,
+                [] { return fmt::format("must be {} or {}", step_is_chosen, step_is_fixed); });
+  require_request(request.robust == by_race || request.hold_step == step_is_fixed, [&] {
+    return fmt::format("{} {}: is for {} {}; else the step is at t = 0", requested("hold-step"), request.hold_step,
+                       requested("robust"), by_race);
+  });
 }
 
 std::uint64_t seed_count(const SearchRequest& request, const OptimizeOptions& options) {
@@ -174,12 +197,27 @@ SearchRequest or_else(SearchRequest request, const SearchRequest& other) {
   return request;
 }
 
+namespace {
+
+// Over devices all drives are shaped that can be.
+Actuator usual_actuator(const SceneFile& scene) {
+  const bool has_piezo = scene.written("piezo") && scene.written("driver.piezo");
+  if (!has_piezo) return Actuator::electrostatic;
+  const bool pulls = std::ranges::any_of(
+      scene.keys("electrode"), [&](const std::string& name) { return scene.written("electrode." + name + ".side") != "far"; });
+  return pulls ? Actuator::both : Actuator::pzt;
+}
+
+}  // namespace
+
 SearchRequest completed(SearchRequest request, const SceneFile& scene) {
   request = or_else(std::move(request), {.target = std::string(to_string(Target::bounce)),
-                                         .actuator = std::string(name_of(actuators, Actuator::electrostatic)),
                                          .optimizer = "auto",
                                          .robust = std::string(request.seeds ? nominal_alone : by_race)});
+  if (request.actuator.empty())
+    request.actuator = name_of(actuators, request.robust == by_race ? usual_actuator(scene) : Actuator::electrostatic);
   if (request.waveform.empty()) request.waveform = usual_families(request, scene);
+  if (request.hold_step.empty()) request.hold_step = request.robust == by_race ? step_is_chosen : step_is_fixed;
   return request;
 }
 
@@ -189,11 +227,18 @@ PlannedSearch planned(const SearchRequest& request, SceneFile scene, const std::
     return fmt::format("{} and {} are for a search over devices: they say nothing with {} none", requested("calibrate"),
                        requested("samples"), requested("robust"));
   });
+  check_hold_step(request);
   OptimizeOptions options = options_of(request, scene, own);
+  require_request(over_devices || std::ranges::none_of(families_of(options.family), is_quasi_static), [&] {
+    return fmt::format(
+        "{} {}: a quasi-static approach is searched over devices, not with {} none: the drawing alone is landed "
+        "sooner by the others",
+        requested("waveform"), options.family, requested("robust"));
+  });
   std::optional<RobustOptions> robust;
   if (request.is_by_measure()) robust = robust_of(request);
   std::optional<ForDevicesOptions> for_devices;
-  if (request.robust == by_race) for_devices = race_of(request, options, families);
+  if (request.robust == by_race) for_devices = race_of(request, scene, options, families);
   const std::uint64_t seeds = seed_count(request, options);
   if (over_devices) set_calibration(scene, request.calibrate);
   return {.scene = std::move(scene),

@@ -18,6 +18,9 @@ namespace softland {
 /// Words of SearchRequest::robust beside a measure: for the drawing and for devices, or for the drawing alone.
 inline constexpr std::string_view by_race = "auto", nominal_alone = "none";
 
+/// Words of SearchRequest::hold_step: with the actuator pzt its instant is searched, or it is t = 0.
+inline constexpr std::string_view step_is_chosen = "chosen", step_is_fixed = "fixed";
+
 /// What is empty, or none, is not given: see completed().
 struct SearchRequest {
   std::string target = {};                  ///< "bounce", "0.7 bounce + 0.3 energy"
@@ -25,6 +28,7 @@ struct SearchRequest {
   std::string waveform = {};                ///< families: "knots+dual-pulse"
   std::string optimizer = {};               ///< "auto", or a method
   std::string robust = {};                  ///< by_race, nominal_alone, or the measure of a search over devices
+  std::string hold_step = {};               ///< when a plain step of the electrode comes: step_is_chosen or step_is_fixed
   std::string calibrate = {};               ///< measured on every device: "Vdp:1 %,frequency"; empty: what the scene says
   std::vector<std::string> constrain = {};  ///< conditions: "peak_contact_force < 20 uN"
   std::optional<std::string> samples = {};  ///< devices
@@ -45,6 +49,7 @@ void visit_words(const Visit& visit, Requests&... requests) {
   visit("waveform", requests.waveform...);
   visit("optimizer", requests.optimizer...);
   visit("robust", requests.robust...);
+  visit("hold-step", requests.hold_step...);
   visit("calibrate", requests.calibrate...);
   visit("samples", requests.samples...);
   visit("budget", requests.budget...);
@@ -79,8 +84,9 @@ struct PlannedSearch {
 
 inline constexpr std::uint64_t most_seeds = 100'000;
 
-/// Reads the words of a completed() request. `families`: of a race over devices; empty: all. Throws InvalidRequest with
-/// field, value and rule.
+/// Reads the words of a completed() request. `families`: of a race over devices; empty: all. One that says nothing of hold_step
+/// is of a version before the quasi-static approach, and is searched as it was then. Throws InvalidRequest with field, value and
+/// rule.
 [[nodiscard]] PlannedSearch planned(const SearchRequest& request, SceneFile scene, const std::string& families = {},
                                     const OwnParts& own = {});
 

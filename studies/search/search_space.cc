@@ -178,26 +178,33 @@ std::optional<std::vector<double>> DriveSearch::parameters(const Waveform& wavef
   return x;
 }
 
-std::vector<double> DriveSearch::nearest(const Waveform& waveform) const {
-  if (std::optional<std::vector<double>> exact = parameters(waveform)) return *exact;
-  constexpr int instants = 250;
+namespace {
+
+constexpr int instants = 250;  // at which waveforms are compared
+
+// What drives the beam in a signal until `end`: the square of an electrode's voltage, or the piezo's voltage.
+VectorXd course_of(const DriveSearch& drive, const Signal& signal, double end) {
+  VectorXd all(instants);
+  for (int i = 0; i < instants; ++i) {
+    const double volts = signal.voltage((i + 0.5) / instants * end);
+    all[i] = drive.drive == piezo_drive ? volts : volts * std::abs(volts);
+  }
+  return all;
+}
+
+double end_of_course(const DriveSearch& drive, const Signal& given) {
   constexpr double beyond = 1.25, least = 2.5;  // of its last breakpoint; of the first touch
-  constexpr double near_enough = 0.01;          // of the squares of what the waveform does about its hold level
+  return std::max(beyond * given.breakpoints().back(), least * drive.first_touch);
+}
+
+// The point at which `course` differs least from the one that is wanted; `about_hold`: the squares of what that does about its
+// hold level.
+template <class Course>
+std::vector<double> nearest_point(const std::vector<Variable>& variables, const std::vector<std::vector<double>>& starts,
+                                  const Course& course, const VectorXd& wanted, double about_hold) {
+  constexpr double near_enough = 0.01;
   constexpr long evaluations = 3000;
-  const bool squared = drive != piezo_drive;
-  const auto driving = [&](const Signal& s, double time) {
-    const double volts = s.voltage(time);
-    return squared ? volts * std::abs(volts) : volts;
-  };
-  const Signal given = signal(waveform, before);
-  const double end = std::max(beyond * given.breakpoints().back(), least * first_touch);
-  const auto course = [&](const Signal& s) {
-    VectorXd all(instants);
-    for (int i = 0; i < instants; ++i) all[i] = driving(s, (i + 0.5) / instants * end);
-    return all;
-  };
-  const VectorXd wanted = course(given);
-  const auto apart = [&](std::span<const double> x) -> VectorXd { return course(signal(this->waveform(x), before)) - wanted; };
+  const auto apart = [&](std::span<const double> x) -> VectorXd { return course(x) - wanted; };
   const auto difference = [&](std::span<const double> x) { return apart(x).squaredNorm() / instants; };
   std::vector<double> best;
   double fewest = std::numeric_limits<double>::infinity();
@@ -207,9 +214,8 @@ std::vector<double> DriveSearch::nearest(const Waveform& waveform) const {
     if (left < fewest) fewest = left, best = std::move(fit);
   };
   for (const std::vector<double>& start : starts) fit_from(start);
-  // Of steps, whose times have no slope.
-  const double all = (wanted.array() - wanted[instants - 1]).matrix().squaredNorm() / instants;
-  if (fewest > near_enough * all) {
+  // The times of steps have no slope.
+  if (fewest > near_enough * about_hold) {
     Problem problem;
     problem.variables = variables;
     problem.objective = difference;
@@ -217,6 +223,19 @@ std::vector<double> DriveSearch::nearest(const Waveform& waveform) const {
     fit_from(minimize(problem, {.max_evaluations = evaluations}).x);
   }
   return best;
+}
+
+double about_hold(const VectorXd& course) { return (course.array() - course[instants - 1]).matrix().squaredNorm() / instants; }
+
+}  // namespace
+
+std::vector<double> DriveSearch::nearest(const Waveform& waveform) const {
+  if (std::optional<std::vector<double>> exact = parameters(waveform)) return *exact;
+  const Signal given = signal(waveform, before);
+  const double end = end_of_course(*this, given);
+  const VectorXd wanted = course_of(*this, given, end);
+  const auto course = [&](std::span<const double> x) { return course_of(*this, signal(this->waveform(x), before), end); };
+  return nearest_point(variables, starts, course, wanted, about_hold(wanted));
 }
 
 bool DriveSearch::holds(const Signal& signal) const {
@@ -254,6 +273,10 @@ void add_own(DriveSearch& s) {
 
 SearchSpace::SearchSpace(const PreparedScene& prepared, Actuator actuator, const std::string& family, double first_touch,
                          const OwnWaveforms& own) {
+  if (is_quasi_static(family)) {
+    add_quasi_static(prepared, actuator, family, first_touch);
+    return;
+  }
   FamilyOfDrives families(family);
   const auto add = [&](const std::string& drive, bool brakes) {
     const Drive& given = prepared.drives.at(drive);
@@ -295,11 +318,41 @@ SearchSpace::SearchSpace(const PreparedScene& prepared, Actuator actuator, const
   families.check_all_used(drives_);
 }
 
+void SearchSpace::add_quasi_static(const PreparedScene& prepared, Actuator actuator, const std::string& family,
+                                   double first_touch) {
+  const std::size_t impulses = number_of(family, usual_impulses);
+  const std::optional<StableApproach> approach = stable_approach(prepared, actuator);
+  require_request(approach.has_value(), [&] {
+    return fmt::format(
+        "{} {}: no drive that {} {} shapes carries the switch to its contact through stable equilibria within "
+        "the limits of its driver",
+        requested("waveform"), family, requested("actuator"), name_of(actuators, actuator));
+  });
+  joint_.emplace(prepared, actuator, *approach, impulses, first_touch);
+  for (const std::string& name : joint_->drives()) {
+    const Drive& given = prepared.drives.at(name);
+    drives_.push_back({.drive = name,
+                       .hold = given.hold_level(),
+                       .before = given.value_before(),
+                       .first_touch = first_touch,
+                       .limits = given.limits.value_or(DriverLimits{.min_voltage = 0, .max_voltage = given.hold_level()}),
+                       .variables = {},
+                       .starts = {}});
+  }
+}
+
+SearchSpace SearchSpace::paced(double steady) const {
+  SearchSpace own = *this;
+  own.joint_ = own.joint_->paced(steady);
+  return own;
+}
+
 const DriveSearch& SearchSpace::drive(const std::string& name) const {
   return *std::find_if(drives_.begin(), drives_.end(), [&](const DriveSearch& one) { return one.drive == name; });
 }
 
 std::vector<Variable> SearchSpace::variables() const {
+  if (joint_) return joint_->variables();
   std::vector<Variable> all;
   for (const DriveSearch& d : drives_) {
     for (const Variable& v : d.variables) all.push_back({d.drive + "." + v.name, v.lower, v.upper});
@@ -308,6 +361,7 @@ std::vector<Variable> SearchSpace::variables() const {
 }
 
 std::vector<std::vector<double>> SearchSpace::starts() const {
+  if (joint_) return joint_->starts();
   std::vector<std::vector<double>> all{{}};
   for (const DriveSearch& d : drives_) {
     std::vector<std::vector<double>> longer;
@@ -323,6 +377,7 @@ std::vector<std::vector<double>> SearchSpace::starts() const {
 }
 
 DriveWaveforms SearchSpace::waveforms(std::span<const double> x) const {
+  if (joint_) return joint_->waveforms(x);
   DriveWaveforms result;
   std::size_t at = 0;
   for (const DriveSearch& d : drives_) {
@@ -333,6 +388,7 @@ DriveWaveforms SearchSpace::waveforms(std::span<const double> x) const {
 }
 
 std::optional<std::vector<double>> SearchSpace::parameters(const DriveWaveforms& waveforms) const {
+  if (joint_) return std::nullopt;  // its waveforms are tables, to which it is fitted
   std::vector<double> all;
   for (const DriveSearch& d : drives_) {
     const auto found = waveforms.find(d.drive);
@@ -344,12 +400,40 @@ std::optional<std::vector<double>> SearchSpace::parameters(const DriveWaveforms&
 }
 
 std::vector<double> SearchSpace::nearest(const DriveWaveforms& waveforms) const {
+  if (joint_) return nearest_of_all(waveforms);
   std::vector<double> all;
   for (const DriveSearch& d : drives_) {
     const std::vector<double> part = d.nearest(waveforms.at(d.drive));
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;
+}
+
+// Every drive counts by the largest of what drives the beam in it.
+std::vector<double> SearchSpace::nearest_of_all(const DriveWaveforms& given) const {
+  std::vector<double> scales;
+  double end = 0, hold = 0;
+  for (const DriveSearch& d : drives_) end = std::max(end, end_of_course(d, signal(given.at(d.drive), d.before)));
+  const auto count = static_cast<Eigen::Index>(drives_.size());
+  VectorXd wanted(count * instants);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const DriveSearch& d = drives_[static_cast<std::size_t>(k)];
+    const VectorXd course = course_of(d, signal(given.at(d.drive), d.before), end);
+    scales.push_back(std::max(course.cwiseAbs().maxCoeff(), 1e-300));
+    hold += about_hold(course / scales.back());
+    wanted.segment(k * instants, instants) = course / scales.back();
+  }
+  const auto course = [&](std::span<const double> x) {
+    const DriveWaveforms all = joint_->waveforms(x);
+    VectorXd own(count * instants);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const DriveSearch& d = drives_[static_cast<std::size_t>(k)];
+      own.segment(k * instants, instants) =
+          course_of(d, signal(all.at(d.drive), d.before), end) / scales[static_cast<std::size_t>(k)];
+    }
+    return own;
+  };
+  return nearest_point(variables(), starts(), course, wanted, hold);
 }
 
 DriveWaveforms SearchSpace::searched(const DriveWaveforms& waveforms) const {

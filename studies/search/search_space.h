@@ -23,6 +23,7 @@
 //   bspline   a cubic B-spline drawn by N levels and twice the hold level, with a duration in [0.5, 10] T0
 //   sines     the hold level and N sines of 1 ... N half waves, with amplitudes up to the range of the driver, in a duration in
 //             [0.5, 4] T0; what leaves the limits is made smaller as a whole
+//   quasi-static   one family of all drives, over devices only: see quasi_static.h
 // An electrode on the far side, which brakes, waits before its pulses instead of coasting after them.
 // The hold level is the scene's own and never varied. A slew limit lengthens edges, rise times and fades, lets a sine begin when
 // its base has risen, and caps its amplitude.
@@ -39,6 +40,7 @@
 #include "optimizers/problem.h"
 #include "studies/closing/actuator.h"
 #include "studies/closing/prepared.h"
+#include "studies/search/quasi_static.h"
 #include "waveforms/waveform.h"
 
 namespace softland {
@@ -58,8 +60,10 @@ enum class Shaped { electrode, piezo, several };
 struct SearchedFamily;
 /// Waveforms from outside softland, which a search names by their own names beside the families.
 using OwnWaveforms = std::vector<std::shared_ptr<const OwnWaveform>>;
-/// "step, pulse, ..., bspline:N or sines:N"
+/// "step, pulse, ..., sines:N or quasi-static:N"
 [[nodiscard]] std::string listed_searched_families();
+/// Whether a name is that of the family which moves all drives at once: "quasi-static", "quasi-static:2".
+[[nodiscard]] bool is_quasi_static(std::string_view family);
 
 /// The waveform parameters of one drive.
 struct DriveSearch {
@@ -95,7 +99,8 @@ class SearchSpace {
  public:
   /// `family` names that of all drives ("pulse", "knots:8") or of each ("main=step,pzt=pulse"; pulse where it says nothing);
   /// `first_touch` of the plain step [s]; `own` may be named too. Throws InvalidInput when the scene lacks the drive, a piezo
-  /// limit, or the family cannot be searched; of an own waveform where it does not end on the hold level at its start.
+  /// limit, or the family cannot be searched; of an own waveform where it does not end on the hold level at its start; of
+  /// quasi-static where no drive can carry the switch to its contact.
   SearchSpace(const PreparedScene& prepared, Actuator actuator, const std::string& family, double first_touch,
               const OwnWaveforms& own = {});
 
@@ -114,9 +119,17 @@ class SearchSpace {
   [[nodiscard]] std::string misfit(const DriveWaveforms& waveforms) const;
   /// Of these waveforms those of the searched drives.
   [[nodiscard]] DriveWaveforms searched(const DriveWaveforms& waveforms) const;
+  /// The quasi-static approach, where that is what is searched; else null.
+  [[nodiscard]] const QuasiStatic* quasi_static() const { return joint_ ? &*joint_ : nullptr; }
+  /// The space of the quasi-static approach about the closed form for this time of steady force [s].
+  [[nodiscard]] SearchSpace paced(double steady) const;
 
  private:
+  void add_quasi_static(const PreparedScene& prepared, Actuator actuator, const std::string& family, double first_touch);
+  [[nodiscard]] std::vector<double> nearest_of_all(const DriveWaveforms& given) const;
+
   std::vector<DriveSearch> drives_;
+  std::optional<QuasiStatic> joint_;  // moves all of them
 };
 
 }  // namespace softland

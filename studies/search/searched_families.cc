@@ -170,38 +170,37 @@ constexpr std::size_t fewest = 2, most = 20;  // of levels, knots, pulses or sin
 
 std::span<const SearchedFamily> searched_families() { return families; }
 
+bool is_quasi_static(std::string_view family) { return family.substr(0, family.find(':')) == quasi_static_family; }
+
+std::size_t number_of(const std::string& family, std::size_t usual) {
+  const std::size_t colon = family.find(':');
+  if (colon == std::string::npos) return usual;
+  std::size_t count = 0;
+  const std::string_view name = std::string_view(family).substr(0, colon), number = std::string_view(family).substr(colon + 1);
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), count);
+  require_request(usual > 0 && error == std::errc() && end == number.data() + number.size() && count >= fewest && count <= most,
+                  [&] {
+                    return usual == 0 ? fmt::format("{} {}: {} has no number", requested("waveform"), family, name)
+                                      : fmt::format("{} {}: the number after {} must be from {} to {}", requested("waveform"),
+                                                    family, name, fewest, most);
+                  });
+  return count;
+}
+
 void choose_family(DriveSearch& s, const std::string& text) {
-  const std::size_t colon = text.find(':');
-  const std::string_view name = std::string_view(text).substr(0, colon);
+  const std::string_view name = std::string_view(text).substr(0, text.find(':'));
   const auto* found =
       std::find_if(families.begin(), families.end(), [&](const SearchedFamily& family) { return family.name == name; });
   require_request(found != families.end(),
                   [&] { return fmt::format("{} {}: must be {}", requested("waveform"), text, listed_searched_families()); });
   s.family = found;
-  s.count = found->count;
-  if (colon == std::string::npos) return;
-  const std::string_view number = std::string_view(text).substr(colon + 1);
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), s.count);
-  require_request(
-      found->count > 0 && error == std::errc() && end == number.data() + number.size() && s.count >= fewest && s.count <= most,
-      [&] {
-        return found->count == 0 ? fmt::format("{} {}: {} has no number", requested("waveform"), text, name)
-                                 : fmt::format("{} {}: the number after {} must be from {} to {}", requested("waveform"), text,
-                                               name, fewest, most);
-      });
+  s.count = number_of(text, found->count);
 }
 
 std::string listed_searched_families() {
   std::string text;
-  for (std::size_t i = 0; i < families.size(); ++i) {
-    const SearchedFamily& family = families[i];
-    text += fmt::format("{}{}{}",
-                        i == 0                     ? ""
-                        : i + 1 == families.size() ? " or "
-                                                   : ", ",
-                        family.name, family.count > 0 ? ":N" : "");
-  }
-  return text;
+  for (const SearchedFamily& family : families) text += fmt::format("{}{}, ", family.name, family.count > 0 ? ":N" : "");
+  return text.substr(0, text.size() - 2) + fmt::format(" or {}:N", quasi_static_family);
 }
 
 }  // namespace softland

@@ -27,6 +27,9 @@ struct SearchedFamily {
 
 /// All of them, in the order in which they are listed.
 [[nodiscard]] std::span<const SearchedFamily> searched_families();
+/// The number that stands behind the name of a family, or the usual one, which is 0 where the family has none: "knots:8". Throws
+/// InvalidInput where it is out of range.
+[[nodiscard]] std::size_t number_of(const std::string& family, std::size_t usual);
 /// Sets the family of a drive, and its number of levels, knots, pulses or sines: "pulse", "knots:8". Throws InvalidInput where
 /// there is none.
 void choose_family(DriveSearch& s, const std::string& text);

@@ -82,6 +82,7 @@ json plan_of(SearchRequest request, const PlannedSearch& search, const std::vect
     }
   };
   visit_words(put, request);
+  if (request.hold_step.empty() || request.robust != by_race) plan.erase("hold-step");
   if (!request.constrain.empty()) plan["constrain"] = request.constrain;
   if (search.for_devices) plan[raced_families_key] = search.for_devices->families;
   if (search.devices() > 0) return plan;
@@ -121,6 +122,7 @@ StoredSearch stored_search(const AskedSearch& asked, const json& known) {
   SearchRequest request = asked.request;
   if (known.is_object()) request = or_else(std::move(request), request_in(known));
   request = completed(std::move(request), scene);
+  if (asked.request.hold_step.empty() && known.is_object() && !known.contains("hold-step")) request.hold_step.clear();
   const std::string& waveform = asked.request.waveform;
   const std::string families = waveform.empty() && known.is_object() ? known.value(raced_families_key, "") : waveform;
   StoredSearch search{planned(request, std::move(scene), families), {}};
@@ -164,7 +166,7 @@ std::string difference(const json& there, const json& asked) {
   if (there.value("kind", "") != kind) return "it holds no search";
   if (there.at("scene_toml") != asked.at("scene_toml"))
     return scene_difference(there.at("scene_toml").get<std::string>(), asked.at("scene_toml").get<std::string>());
-  for (const char* key : {"target", "actuator", "waveform", "optimizer", "robust", "constrain", "samples", "seed"}) {
+  for (const char* key : {"target", "actuator", "waveform", "optimizer", "robust", "hold-step", "constrain", "samples", "seed"}) {
     const json before = there.value(key, json()), now = asked.value(key, json());
     const auto words = [](const json& value) {
       return value.is_null() ? std::string("none") : value.is_string() ? value.get<std::string>() : value.dump();

@@ -48,6 +48,44 @@ TEST(StaticPullIn, AtTheFoldLeavesNoEquilibriumForASlowerRamp) {
   EXPECT_TRUE(reaches(model, 1.001 * found.voltage));
 }
 
+TEST(StablePath, OfAPiezoIsItsVoltsTimesTheDeflectionPerVolt) {
+  // A beam by itself under its layer is linear: nothing else acts at 0 V on the electrode.
+  Device d = test::gold_cantilever();
+  d.piezo = Piezo{.begin = 5_um, .end = 240_um, .thickness = 1_um, .youngs_modulus = 61e9, .density = 7750, .d31 = -171e-12};
+  const Switch model(d);
+  const std::optional<StablePath> path = stable_path(model, 1);
+  ASSERT_TRUE(path);
+  const double per_volt = model.basis().piezo_deflection();
+  EXPECT_NEAR(path->reaches(), d.gap.contact / per_volt, 1e-9 * std::abs(path->reaches()));
+  EXPECT_NEAR(path->slope(), per_volt, 1e-9 * std::abs(per_volt));
+  for (std::size_t k = 0; k < path->values.size(); ++k)
+    EXPECT_NEAR(path->deflections[k], per_volt * path->values[k], 1e-9 * d.gap.contact);
+  // An electrode that stands low softens the beam: the piezo needs less.
+  EXPECT_LT(std::abs(stable_path(model, 1, std::vector<double>{5.0, 0.0})->reaches()), std::abs(path->reaches()));
+}
+
+TEST(StablePath, OfAnElectrodeEndsWhereTheContactComesBeforeTheFold) {
+  const Switch model = contact_first();
+  const std::optional<StablePath> path = stable_path(model, 0);
+  ASSERT_TRUE(path);
+  EXPECT_NEAR(path->reaches(), static_pull_in(model, 0).voltage, 1e-6 * path->reaches());
+  EXPECT_FALSE(stable_path(gold(), 0)) << "its contact lies beyond the fold";
+  // An independent path: a step damped to rest at a voltage of the path stands at its deflection.
+  Device damped = model.device();
+  damped.structure.damping_ratio = 0.7;
+  const std::size_t middle = path->values.size() / 2;
+  const std::vector<Signal> drives{Signal::constant(path->values[middle])};
+  const double rest = simulate_closing(Switch(damped), drives, {.duration = 5'000_us, .tolerance = 1e-8}).points.back().position;
+  EXPECT_NEAR(rest, path->deflections[middle], 1e-5 * path->deflections[middle]);
+}
+
+TEST(StablePath, OfAnElectrodeOnTheFarSideIsNone) {
+  Device d = contact_first().device();
+  d.electrodes[0].side = Side::far;
+  d.electrodes[0].gap = d.gap.electrode;
+  EXPECT_FALSE(stable_path(Switch(d), 0));
+}
+
 TEST(StaticPullIn, SettledBeamStandsOnTheBranch) {
   // Damped to rest at the voltage of an equilibrium beyond no fold: the fold's deflection is the limit of such rests.
   Device d = test::gold_cantilever();

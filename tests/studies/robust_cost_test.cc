@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -154,6 +156,44 @@ TEST(RobustCost, OfEveryTargetIsKnownOnEveryScene_optimized) {
     }
   }
   EXPECT_GE(scenes, 5);
+}
+
+// How long devices wait is priced beyond what is free, and never by more than the median of first touch is.
+TEST(RobustCost, PricesTheTimeFromWhichTheContactIsSteady) {
+  const SearchSetting setting = search_setting(gold({"simulate.duration=150 us", "structure.modes=2"}), Target::bounce,
+                                               Actuator::electrostatic, "pulse", {});
+  RobustAim aim{.measure = parse_robust_measure("worst", device_figures), .conditions = {}};
+  const RobustCost cost(setting, aim, {});
+  DeviceOutcome one = device();
+  one.metrics.steady_force_time = 300e-6, one.metrics.end = 400e-6;
+  const auto price = [&](double until) {
+    aim.free = {.figure = &Metrics::steady_force_time, .until = until};
+    const std::vector<DeviceOutcome> all(20, one);
+    return cost.value(all, aim) - cost.measured(all, aim);
+  };
+  constexpr double rounding = 1e-12, never = std::numeric_limits<double>::infinity();
+  EXPECT_NEAR(price(never), 0, rounding);
+  EXPECT_NEAR(price(300e-6), 0, rounding);
+  EXPECT_NEAR(price(200e-6), 0.02 * 0.5, rounding);
+  const double of_first_touch = price(0);
+  EXPECT_GT(of_first_touch, 0.02);
+  EXPECT_NEAR(price(10e-6), of_first_touch, rounding) << "29 would be more";
+  one.metrics.steady_force_time = Metrics::unset;
+  EXPECT_NEAR(price(200e-6), std::min(0.02, of_first_touch), rounding) << "not steady at the end of its run: the end counts";
+}
+
+TEST(RobustCost, LeavesTheTimeFreeThatDevicesWaitUnderThePlainStep) {
+  std::vector<DeviceOutcome> all(100, device());
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].metrics.steady_force_time = 1e-6 * static_cast<double>(k);
+  const FreeTime steady = free_time(all);
+  EXPECT_EQ(steady.figure, &Metrics::steady_force_time);
+  EXPECT_NEAR(steady.until, 94.5e-6, 1e-6);
+  for (std::size_t k = 90; k < all.size(); ++k) all[k].metrics.steady_force_time = Metrics::unset;
+  EXPECT_EQ(free_time(all).figure, &Metrics::permanent_contact_time) << "a tenth is never steady";
+  for (DeviceOutcome& one : all) one.metrics.permanent_contact_time = Metrics::unset;
+  EXPECT_EQ(free_time(all).figure, &Metrics::initial_contact_time) << "nor does any settle";
+  for (std::size_t k = 90; k < all.size(); ++k) all[k].failure = "open";
+  EXPECT_EQ(free_time(all).until, 0) << "a tenth never touches";
 }
 
 }  // namespace

@@ -35,6 +35,39 @@ TEST(SearchRequest, IsCompletedByWordsThatSuitTheSceneAndEachOther) {
   EXPECT_EQ(completed({.waveform = "catch", .robust = "yield"}, gold).waveform, "catch");
 }
 
+TEST(SearchRequest, ShapesAllDrivesOverDevicesAndOneForTheNominalDesign) {
+  const SceneFile both = gold_pzt();
+  EXPECT_EQ(completed({}, both).actuator, "both");
+  for (const char* robust : {"none", "cvar:0.9"}) EXPECT_EQ(completed({.robust = robust}, both).actuator, "electrostatic");
+  SceneFile alone = gold_pzt();
+  for (const char* gone : {"electrode", "waveform.main", "driver.main"}) alone.erase(gone);
+  EXPECT_EQ(completed({}, alone).actuator, "pzt");
+}
+
+TEST(SearchRequest, LetsTheStepComeLaterOverDevicesUnlessItIsFixed) {
+  const SceneFile file = gold_pzt();
+  EXPECT_TRUE(planned_of({.actuator = "pzt"}, file).for_devices->hold_step_is_chosen);
+  EXPECT_FALSE(planned_of({.actuator = "pzt", .hold_step = "fixed"}, file).for_devices->hold_step_is_chosen);
+  EXPECT_FALSE(planned_of({.actuator = "pzt"}, file).for_devices->is_of_before);
+  // A plan of a version that knew of neither says nothing.
+  SearchRequest old = completed({.actuator = "pzt"}, file);
+  old.hold_step.clear();
+  EXPECT_TRUE(planned(old, file).for_devices->is_of_before);
+  EXPECT_THROW((void)planned_of({.actuator = "pzt", .hold_step = "late"}, file), InvalidRequest);
+  EXPECT_THROW((void)planned_of({.actuator = "pzt", .robust = "none", .hold_step = "chosen"}, file), InvalidRequest);
+}
+
+TEST(SearchRequest, SearchesTheQuasiStaticApproachOverDevicesAlone) {
+  const SceneFile file = gold_pzt();
+  const PlannedSearch alone = planned_of({.actuator = "pzt", .waveform = "quasi-static"}, file);
+  EXPECT_EQ(alone.options.family, default_families(Shaped::piezo)) << "of the nominal design";
+  EXPECT_EQ(alone.for_devices->families, "quasi-static");
+  EXPECT_EQ(planned_of({.actuator = "pzt", .waveform = "catch+quasi-static:2"}, file).options.family, "catch");
+  EXPECT_EQ(planned_of({.actuator = "pzt", .waveform = "quasi-static", .robust = "cvar:0.9"}, file).options.family,
+            "quasi-static");
+  EXPECT_THROW((void)planned_of({.actuator = "pzt", .waveform = "quasi-static", .robust = "none"}, file), InvalidRequest);
+}
+
 TEST(SearchRequest, TakesFromAnotherOnlyWhatItDoesNotSay) {
   const SearchRequest known{.target = "energy", .waveform = "catch", .constrain = {"bounce_count == 0"}, .budget = "100"};
   const SearchRequest both = or_else({.target = "impact", .seed = "7"}, known);

@@ -419,8 +419,7 @@ TEST(SearchSpace, RefusesFamiliesWithoutParameters) {
     EXPECT_EQ(refusal([&] { SearchSpace(plain(), Actuator::electrostatic, family, first_touch); }),
               "waveform " + family + ": must be " + listed_searched_families());
   EXPECT_THAT(listed_searched_families(), testing::StartsWith("step, pulse, harmonic, catch, ramp, staircase:N, knots:N, "));
-  const std::string_view last = searched_families().back().name;
-  EXPECT_THAT(listed_searched_families(), testing::ContainsRegex(" or " + std::string(last) + "(:N)?$"));
+  EXPECT_THAT(listed_searched_families(), testing::ContainsRegex(", sines:N or quasi-static:N$"));
   for (const std::string family : {"knots:1", "knots:21", "knots:", "knots:3x", "staircase:-2"})
     EXPECT_EQ(refusal([&] { SearchSpace(plain(), Actuator::electrostatic, family, first_touch); }),
               "waveform " + family + ": the number after " + family.substr(0, family.find(':')) + " must be from 2 to 20");

@@ -1,0 +1,154 @@
+#include "studies/devices/stable_approach.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/executor.h"
+#include "model/pull_in.h"
+#include "studies/devices/ensemble.h"
+
+namespace softland {
+namespace {
+
+// At which an electrode may stand before contact, over its hold level: from the lowest on.
+constexpr std::array low_levels{0.0, 0.12, 0.24, 0.36};
+// Standard deviations of the touching voltage that the limit of a driver has to leave.
+constexpr double enough_deviations = 2.5;
+// Coordinates of the unit cube one standard deviation of a normal to either side of the middle.
+constexpr double one_below = 0.15865525393145707, one_above = 1 - one_below;
+
+// Commanded voltage at which the contact point of a device touches.
+std::optional<double> touching_voltage(const PreparedScene& nominal, const SampledDevice& device,
+                                       const StableApproach& approach) {
+  if (!device.model) return std::nullopt;
+  std::vector<double> bias = hold_levels(nominal.signals());
+  if (!approach.holder.empty()) bias[nominal.drives.place(approach.holder)] = approach.low;
+  const std::optional<StablePath> path = stable_path(*device.model, nominal.drives.place(approach.drive), bias);
+  if (!path) return std::nullopt;
+  SourceErrors errors = nominal.drives.at(approach.drive).errors;
+  for (std::size_t i = 0; i < device.values.size(); ++i) {
+    const SpreadVariable& variable = nominal.scene.spread.variables[i];
+    for (const VariedKey& key : variable.keys) {
+      if (!key.drive || key.drive->name != approach.drive) continue;
+      if (key.drive->error == DriveError::gain) errors.gain = DeviceSpread::value(variable, key, device.values[i]);
+      if (key.drive->error == DriveError::offset) errors.offset = DeviceSpread::value(variable, key, device.values[i]);
+    }
+  }
+  return (path->reaches() - errors.offset) / errors.gain;
+}
+
+bool is_within(double voltage, double limit) { return limit < 0 ? voltage >= limit : voltage <= limit; }
+
+class Finder {
+ public:
+  explicit Finder(const PreparedScene& nominal) : nominal_(nominal) {
+    if (!nominal.scene.spread.empty()) ensemble_.emplace(nominal, 1);
+  }
+
+  // None where the nominal design has no path within the limits.
+  [[nodiscard]] std::optional<StableApproach> along(const std::string& drive, const std::string& holder, double low) const {
+    const Drive& carries = nominal_.drives.at(drive);
+    if (!carries.limits) return std::nullopt;
+    StableApproach found{.drive = drive, .holder = holder, .low = low};
+    std::vector<double> bias = hold_levels(nominal_.signals());
+    if (!holder.empty()) bias[nominal_.drives.place(holder)] = low;
+    const std::optional<StablePath> path = stable_path(nominal_.model, nominal_.drives.place(drive), bias);
+    if (!path) return std::nullopt;
+    found.reaches = (path->reaches() - carries.errors.offset) / carries.errors.gain;
+    found.slope = path->slope() * carries.errors.gain;
+    found.limit = found.reaches < 0 ? carries.limits->min_voltage : carries.limits->max_voltage;
+    if (!is_within(found.reaches, found.limit)) return std::nullopt;
+    found.deviation = deviation(found);
+    return found;
+  }
+
+ private:
+  // Takes central differences by one standard deviation of each varying quantity.
+  [[nodiscard]] double deviation(const StableApproach& found) const {
+    if (!ensemble_) return 0;
+    const DeviceSpread& spread = nominal_.scene.spread;
+    DeviceBuilder builder(*ensemble_);
+    double sum = 0;
+    for (std::size_t i = 0; i < spread.variables.size(); ++i) {
+      const auto at = [&](double coordinate) {
+        std::vector<double> u(spread.variables.size(), 0.5);
+        u[i] = coordinate;
+        spread.to_values(u);
+        return touching_voltage(nominal_, builder.device(std::move(u)), found);
+      };
+      const std::optional<double> above = at(one_above), below = at(one_below);
+      // One that has no path so near the nominal design tells that the other side is as far.
+      const double slope = above && below ? (*above - *below) / 2
+                           : above        ? *above - found.reaches
+                           : below        ? found.reaches - *below
+                                          : found.limit - found.reaches;
+      sum += slope * slope;
+    }
+    return std::sqrt(sum);
+  }
+
+  const PreparedScene& nominal_;
+  std::optional<Ensemble> ensemble_;
+};
+
+// The limit beyond the touching voltage, in standard deviations.
+double room(const StableApproach& found) { return std::abs(found.limit - found.reaches) / std::max(found.deviation, 1e-300); }
+
+}  // namespace
+
+std::optional<StableApproach> stable_approach(const PreparedScene& nominal, Actuator actuator) {
+  if (!nominal.model.has_contact() || !nominal.rest()) return std::nullopt;
+  const Device& device = nominal.scene.device;
+  const Finder finder(nominal);
+  const std::string electrode = has_pulling_electrode(device) ? searched_electrode(device) : std::string();
+  const double hold = electrode.empty() ? 0 : nominal.drives.at(electrode).hold_level();
+  std::optional<StableApproach> best;
+  const auto consider = [&](std::optional<StableApproach> found) {
+    if (found && (!best || room(*found) > room(*best))) best = std::move(found);
+    return best && room(*best) >= enough_deviations;
+  };
+  if (actuator != Actuator::electrostatic && nominal.model.has_piezo()) {
+    const std::string piezo(piezo_drive);
+    if (hold == 0) {
+      (void)consider(finder.along(piezo, {}, 0));
+    } else {
+      for (const double share : low_levels) {
+        if (consider(finder.along(piezo, electrode, share * hold)) || actuator == Actuator::pzt) break;
+      }
+    }
+  }
+  const bool is_enough = best && room(*best) >= enough_deviations;
+  if (actuator != Actuator::pzt && !is_enough && hold != 0) (void)consider(finder.along(electrode, {}, 0));
+  return best;
+}
+
+double touching_voltage(const PreparedScene& nominal, const StableApproach& approach, double low) {
+  StableApproach at = approach;
+  at.low = low;
+  const std::optional<double> voltage = touching_voltage(nominal, {.values = {}, .model = nominal.model, .refusal = {}}, at);
+  return voltage.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+double share_with_path(const PreparedScene& nominal, const StableApproach& approach, std::uint64_t devices, std::uint64_t seed,
+                       int jobs, const Watch& watch) {
+  constexpr std::size_t together = 16;  // devices of one task
+  const Ensemble ensemble(nominal, devices, seed);
+  std::vector<char> has(devices, 0);
+  run_tasks((devices + together - 1) / together, jobs,
+            [&](std::size_t task) {
+              DeviceBuilder builder(ensemble);
+              for (std::size_t k = task * together; k < std::min<std::size_t>(devices, (task + 1) * together); ++k) {
+                if (watch.stopped()) return;
+                const std::optional<double> voltage = touching_voltage(nominal, builder.device(k), approach);
+                has[k] = voltage && is_within(*voltage, approach.limit) ? 1 : 0;
+              }
+            },
+            watch.stop);
+  watch.throw_if_stopped();
+  return static_cast<double>(std::ranges::count(has, 1)) / static_cast<double>(devices);
+}
+
+}  // namespace softland

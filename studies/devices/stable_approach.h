@@ -1,0 +1,41 @@
+// The stable approach names the drive that can carry a switch to its contact through stable equilibria, and counts the devices on
+// which it can.
+//
+// A drive can where the static equilibria from rest to the contact plane are stable all the way and within the limits of its
+// driver. A piezo is one, and so is an electrode whose contact lies before the fold of its branch. The other drives stand still;
+// an electrode that holds the closed switch stands low meanwhile. A slow waveform along such a path closes every device at a
+// speed that is the spread of the touching voltages over the time that is left.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "base/watch.h"
+#include "studies/closing/actuator.h"
+#include "studies/closing/prepared.h"
+
+namespace softland {
+
+struct StableApproach {
+  std::string drive;     ///< the drive that carries the contact point
+  std::string holder;    ///< the electrode that holds the closed switch; empty where `drive` does
+  double low = 0;        ///< level of the holder before contact [V]
+  double reaches = 0;    ///< commanded voltage of `drive` at which the nominal design touches [V]
+  double deviation = 0;  ///< its standard deviation over the devices of the spread, to first order [V]
+  double slope = 0;      ///< derivative of the contact point's deflection by that voltage, nominal design [m/V]
+  double limit = 0;      ///< limit of the driver on that side [V]
+};
+
+/// Finds the approach by a drive that a search with this actuator may shape; none where no drive has such a path on the nominal
+/// design. Drives without limits carry nothing. The deviation is 0 for a scene without [spread].
+[[nodiscard]] std::optional<StableApproach> stable_approach(const PreparedScene& nominal, Actuator actuator);
+
+/// The commanded voltage at which the nominal design touches while the holder stands at `low`; NaN where it has no path [V].
+[[nodiscard]] double touching_voltage(const PreparedScene& nominal, const StableApproach& approach, double low);
+
+/// The share of devices of the spread that have such a path within the limits of the driver.
+[[nodiscard]] double share_with_path(const PreparedScene& nominal, const StableApproach& approach, std::uint64_t devices,
+                                     std::uint64_t seed, int jobs, const Watch& watch = {});
+
+}  // namespace softland
