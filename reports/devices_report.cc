@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -29,17 +30,18 @@ using namespace internal;
 
 constexpr double half = 0.5;
 
-// What the table shows of 95 % of the devices.
+// A column of the table: a figure's 95th percentile over the devices, beside it the 99th.
 struct Column {
   std::string_view key, heading, short_heading;
+  bool with_99 = false;
 };
-constexpr std::array columns{Column{key_of(&Metrics::largest_impact_velocity), "impact speed", "impact"},
-                             Column{key_of(&Metrics::major_bounce_height), "highest rebound", "rebound"},
-                             Column{key_of(&Metrics::initial_contact_time), "first contact", "contact"},
+constexpr std::array columns{Column{key_of(&Metrics::largest_impact_velocity), "impact velocity", "impact", true},
+                             Column{key_of(&Metrics::major_bounce_height), "highest rebound", "rebound", true},
                              Column{key_of(&Metrics::peak_contact_force), "peak force", "force"},
-                             Column{key_of(&Metrics::steady_force_time), "steady force from", "steady"}};
+                             Column{key_of(&Metrics::steady_force_time), "steady force from", "steady"},
+                             Column{key_of(&Metrics::initial_contact_time), "first contact", "first contact"}};
 
-constexpr std::string_view steady_key = columns.back().key;
+constexpr std::string_view steady_key = key_of(&Metrics::steady_force_time);
 
 ResultDevices::Row row_of(const DevicesRow& row) {
   const DriveRobustness& drive = row.judged;
@@ -51,12 +53,28 @@ ResultDevices::Row row_of(const DevicesRow& row) {
                        .searched_for_it = row.searched_for_it,
                        .bounce_free = drive.bounce_free.value,
                        .open = std::max(0.0, 1 - drive.closing.value - drive.collapsed.value),
-                       .collapsed = drive.collapsed.value,
-                       .at_95 = {}};
+                       .collapsed = drive.collapsed.value};
   for (const Figure& f : device_figures) {
-    if (f.key != steady_key || row.judged_whole) r.at_95[std::string(f.key)] = drive.figures[f].quantiles[2].value;
+    if (f.key == steady_key && !row.judged_whole) continue;
+    const std::string key(f.key);
+    r.at_50[key] = drive.figures[f].quantiles[1].value;
+    r.at_95[key] = drive.figures[f].quantiles[2].value;
+    r.at_99[key] = drive.figures[f].quantiles[3].value;
+  }
+  for (const auto& [height, key] : ResultDevices::yield_heights) {
+    const auto rebounds_less = [most = height](const DeviceOutcome& o) {
+      return o.closed() && o.is_held && o.metrics.major_bounce_height <= most;
+    };
+    if (drive.outcomes.empty()) continue;
+    r.yield[key] =
+        static_cast<double>(std::ranges::count_if(drive.outcomes, rebounds_less)) / static_cast<double>(drive.outcomes.size());
   }
   return r;
+}
+
+double value_in(const std::map<std::string, double>& values, std::string_view key) {
+  const auto found = values.find(std::string(key));
+  return found == values.end() ? Metrics::unset : found->second;
 }
 
 std::string speed_of(const ResultDevices::Row& row) {
@@ -70,20 +88,39 @@ std::string figure_name(std::string_view key) {
   return name;
 }
 
-// "impact speed 95 %"
-std::vector<std::string> cells(const ResultDevices::Row& row) {
-  std::vector<std::string> all{percent(row.bounce_free)};
-  for (const Column& c : columns) {
-    const auto found = row.at_95.find(std::string(c.key));
-    const double value = found == row.at_95.end() ? Metrics::unset : found->second;
-    all.push_back(std::isinf(value)                                              ? "∞"
-                  : std::isnan(value)                                            ? "—"
-                  : c.key == key_of(&Metrics::major_bounce_height) && value == 0 ? "none"
-                                                                                 : quantity(value, figure_of(c.key).unit));
+std::string cell_of(std::string_view key, double value) {
+  if (std::isinf(value)) return "∞";
+  if (std::isnan(value)) return "—";
+  if (key == key_of(&Metrics::major_bounce_height) && value == 0) return "none";
+  return quantity(value, figure_of(key).unit);
+}
+
+// "2.0 / 98.4 / 100 %": the shares of devices that rebound by no more than each height.
+std::string yields_cell(const ResultDevices::Row& row) {
+  if (row.yield.empty()) return "—";
+  std::string cell;
+  for (const auto& [height, key] : ResultDevices::yield_heights) {
+    std::string share = percent(value_in(row.yield, key));
+    share.resize(share.rfind(' '));
+    cell += (cell.empty() ? "" : " / ") + share;
   }
-  all.push_back(percent(std::max(0.0, row.open)));
-  all.push_back(percent(row.collapsed));
-  return all;
+  return cell + " %";
+}
+
+// A table calls a row by its choice and the file that holds it.
+std::string shown_name(const ResultDevices& d, const ResultDevices::Row& row) {
+  if (row.name == "for the drawing") return "nominal design: drawing.toml";
+  for (const ResultDevices::Choice& one : d.choices) {
+    if (one.row() == row.name) return fmt::format("{}: {}", one.name, one.file);
+  }
+  return row.name == "for the devices" ? "best.toml" : row.name;
+}
+
+constexpr double least_share = 0.0005;  // smaller shares of devices are left out
+
+// Whether the table of these rows says how many devices stay open, and how many are pulled in.
+bool any_of(const std::vector<ResultDevices::Row>& rows, double ResultDevices::Row::*share) {
+  return std::ranges::any_of(rows, [&](const ResultDevices::Row& row) { return row.*share > least_share; });
 }
 
 std::string front_words(const ResultDevices::FrontPoint& p) {
@@ -102,6 +139,45 @@ TableCell headed(std::string_view on_terminal, std::string_view on_page) {
   TableCell cell(on_terminal);
   cell.html = escaped(capitalised(std::string(on_page)));
   return cell;
+}
+
+// The choices beside the plain step: impact velocity over the time from which the force is steady.
+std::string choices_picture(const ResultDevices& d) {
+  if (d.choices.size() < 2) return {};
+  CurveTables tables;
+  CurveTable& table = tables["choices"];
+  Chart chart{
+      .id = "choices",
+      .title = "Time against softness",
+      .caption = "The 95th percentile of the impact velocity over that of the time from which the contact force is steady.",
+      .x_column = "steady",
+      .x_label = "Steady force from",
+      .x_unit = "s",
+      .y_label = "Impact velocity",
+      .y_unit = "m/s",
+      .scale = Scale::logarithmic,
+      .height = 260,
+      .series = {{.table = "choices", .column = "speed", .label = "", .role = Role::best}}};
+  double last = 0, softest = std::numeric_limits<double>::infinity(), hardest = 0;
+  const auto point = [&](const std::string& name, Role role, bool is_choice) {
+    const ResultDevices::Row* row = d.row(name);
+    if (row == nullptr) return;
+    const double time = value_in(row->at_95, steady_key), speed = value_in(row->at_95, columns[0].key);
+    if (!std::isfinite(time) || !(speed > 0) || !std::isfinite(speed)) return;
+    if (is_choice) table["steady"].push_back(time), table["speed"].push_back(speed);
+    const std::string shown = shown_name(d, *row);
+    chart.marks.push_back({.x = time, .y = speed, .role = role, .text = shown.substr(0, shown.find(':'))});
+    last = std::max(last, time);
+    softest = std::min(softest, speed), hardest = std::max(hardest, speed);
+  };
+  for (const ResultDevices::Choice& one : d.choices) point(one.row(), Role::best, true);
+  if (table["steady"].size() < 2) return {};
+  point("plain step", Role::baseline, false);
+  point("electrode at t = 0", Role::baseline, false);
+  chart.x_home = chart.x_whole = {0.0, 1.15 * last};
+  chart.y_home = {softest / 2, 2 * hardest};
+  return "<div class=\"multiples\" style=\"max-width: 560px; grid-template-columns: 1fr\">\n" + small_picture(tables, chart) +
+         "</div>\n";
 }
 
 // Share without a rebound and impact speed over the error of Vdp.
@@ -164,6 +240,24 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
   d.windows = found.windows;
   for (const std::string_view key : found.worse_in) d.worse_in.emplace_back(key);
   for (const DevicesRow& row : found.rows) d.rows.push_back(row_of(row));
+  for (const DeviceChoice& one : found.choices)
+    d.choices.push_back({.name = one.name,
+                         .file = one.name == default_choice ? "best.toml" : one.name + ".toml",
+                         .waveform = one.candidate.family,
+                         .tau = one.tau});
+  if (found.approach) {
+    std::vector<std::string> drives{found.approach->drive};
+    if (!found.approach->holder.empty()) drives.push_back(found.approach->holder);
+    d.stable_path = {
+        .drives = drives, .share = found.share_with_path, .reaches = found.approach->reaches, .limit = found.approach->limit};
+  }
+  if (const ResultDevices::Row* own = d.row("for the devices")) {
+    const double height = value_in(own->at_95, key_of(&Metrics::major_bounce_height));
+    const double significant = found.varied.scene.metrics.significant_rebound;
+    d.goal_met = height <= significant;
+    d.missed_by = std::max(0.0, height - significant);
+  }
+  d.step_delay = found.step_delay;
   for (const FrontPoint& p : found.front)
     d.front.push_back({.first_touch = p.first_touch,
                        .impact_speed = p.impact_speed,
@@ -189,72 +283,151 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
 std::string internal::drawing_words(const ResultDevices& d) {
   const double closed = d.drawing[&Metrics::permanent_contact_time], height = d.drawing[&Metrics::major_bounce_height];
   if (d.drawing_goal_met && std::isfinite(closed))
-    return fmt::format("The waveform for the drawing closes it without a rebound at {}: drawing.toml. ", quantity(closed, "s"));
-  if (!std::isfinite(height)) return "No waveform was found that closes the drawing for good: drawing.toml. ";
-  return fmt::format("The waveform for the drawing leaves rebounds of up to {}: drawing.toml. ", quantity(height, "m"));
+    return fmt::format("The nominal design alone is closed without a rebound at {}: drawing.toml.", quantity(closed, "s"));
+  if (!std::isfinite(height)) return "No waveform was found that closes the nominal design for good: drawing.toml.";
+  return fmt::format("The nominal design alone rebounds by up to {}: drawing.toml.", quantity(height, "m"));
 }
 
 std::string internal::devices_headline(const Result& result) {
   const ResultDevices& d = *result.devices;
-  const ResultDevices::Row *step = d.row("plain step"), *own = d.row("for the devices"), *measured = d.row(d.measured);
+  const ResultDevices::Row *step = d.row("plain step"), *own = d.row("for the devices");
   if (step == nullptr || own == nullptr) return {};
   const std::string assumed = d.spread_assumed ? " (assumed, the scene has no [spread]: " + d.spread + ")" : "";
   if (!d.better_than_plain_step) {
     std::string figures;
     for (const std::string& key : d.worse_in) figures += (figures.empty() ? "" : " and ") + figure_name(key);
     return fmt::format(
-        "On devices that differ{}, no waveform that was found is as good as the plain step: the best is worse in its {}. "
+        "Over the process variation{}, no waveform that was found is as good as the plain step: the best is worse in its {}. "
         "best.toml is the plain step.",
         assumed, figures);
   }
-  const std::string lands = own->bounce_free >= half ? fmt::format("{} land without a rebound (plain step {}), and 95 % touch",
+  const std::string lands = own->bounce_free >= half ? fmt::format("{} close without a rebound (plain step {}), and 95 % touch",
                                                                    percent(own->bounce_free), percent(step->bounce_free))
                                                      : std::string("95 % touch");
-  std::string words = fmt::format("Of {:.0f} devices that differ{}, {} at no more than {} instead of {}: best.toml.", d.count,
-                                  assumed, lands, speed_of(*own), speed_of(*step));
-  if (measured != nullptr && !d.next_command.empty()) {
-    const char* const what = std::isfinite(measured->time_error) ? "one closing time measured to 50 ns" : "Vdp measured to 1 %";
-    words +=
-        measured->bounce_free >= half
-            ? fmt::format(" With {} on each, {} land without a rebound: calibrated.toml.", what, percent(measured->bounce_free))
-            : fmt::format(" With {} on each, 95 % touch at no more than {}: calibrated.toml.", what, speed_of(*measured));
-  }
-  return words;
+  std::string words = fmt::format("Of {:.0f} simulated devices{}, {} at no more than {} instead of {}", d.count, assumed, lands,
+                                  speed_of(*own), speed_of(*step));
+  const double steady = value_in(own->at_95, steady_key), of_step = value_in(step->at_95, steady_key);
+  if (std::isfinite(steady) && std::isfinite(of_step))
+    words += fmt::format(", and carry a steady force from {} on instead of {}", quantity(steady, "s"), quantity(of_step, "s"));
+  return words + ": best.toml.";
 }
 
 std::vector<KeyNumber> internal::devices_keys(const ResultDevices& d) {
   const ResultDevices::Row *step = d.row("plain step"), *own = d.row("for the devices");
   if (step == nullptr || own == nullptr) return {};
-  const std::vector<std::string> before = cells(*step), after = cells(*own);
-  std::vector<KeyNumber> keys{{.name = "Devices without a rebound", .value = after[0], .before = before[0]}};
-  for (std::size_t i = 1; i <= 3; ++i)
-    keys.push_back(
-        {.name = capitalised(std::string(columns[i - 1].heading)) + ", of 95 %", .value = after[i], .before = before[i]});
+  std::vector<KeyNumber> keys;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::string_view key = columns[i].key;
+    keys.push_back({.name = capitalised(std::string(columns[i].heading)) + ", 95th percentile",
+                    .value = cell_of(key, value_in(own->at_95, key)),
+                    .before = cell_of(key, value_in(step->at_95, key))});
+  }
   return keys;
 }
 
 namespace {
 
-ReportTable devices_table(const ResultDevices& d) {
-  ReportTable table{.head = {fmt::format("{:.0f} devices, 95 % below", d.count), headed("no rebound", "without a rebound")},
-                    .rows = {}};
+// These rows, by their names in the first column.
+ReportTable devices_table(const ResultDevices& d, const std::vector<std::pair<std::string, const ResultDevices::Row*>>& rows) {
+  ReportTable table{.head = {"95th percentile (99th)"}, .rows = {}};
   for (const Column& c : columns) table.head.push_back(headed(c.short_heading, c.heading));
-  table.head.push_back(headed("stay open", "stay open"));
-  table.head.push_back(headed("pulled in", "pulled onto the electrode"));
-  for (const ResultDevices::Row& row : d.rows) {
-    TableRow& line = table.rows.emplace_back(TableRow{row.name});
-    for (const std::string& one : cells(row)) line.emplace_back(one, row.name == "for the devices" ? "own" : "");
+  table.head.push_back(headed("≤ 1 / 10 / 100 nm", "rebound up to 1 / 10 / 100 nm"));
+  const bool stay_open = any_of(d.rows, &ResultDevices::Row::open), pulled_in = any_of(d.rows, &ResultDevices::Row::collapsed);
+  if (stay_open) table.head.emplace_back("stay open");
+  if (pulled_in) table.head.push_back(headed("pulled in", "collapse onto the electrode"));
+  for (const auto& [name, row] : rows) {
+    TableRow& line = table.rows.emplace_back(TableRow{name});
+    const char* const style = row->name == "for the devices" ? "own" : "";
+    for (const Column& c : columns) {
+      std::string cell = cell_of(c.key, value_in(row->at_95, c.key));
+      if (c.with_99 && !row->at_99.empty()) cell += fmt::format(" ({})", cell_of(c.key, value_in(row->at_99, c.key)));
+      line.emplace_back(std::move(cell), style);
+    }
+    line.emplace_back(yields_cell(*row), style);
+    if (stay_open) line.emplace_back(percent(std::max(0.0, row->open)), style);
+    if (pulled_in) line.emplace_back(percent(row->collapsed), style);
   }
   return table;
 }
 
+// The choices beside the plain step, and what the best measurement reaches.
+ReportTable choices_table(const ResultDevices& d) {
+  std::vector<std::pair<std::string, const ResultDevices::Row*>> rows;
+  const auto add = [&](const std::string& row) {
+    if (const ResultDevices::Row* found = d.row(row)) rows.emplace_back(shown_name(d, *found), found);
+  };
+  add("plain step");
+  for (const ResultDevices::Choice& one : d.choices) add(one.row());
+  if (d.choices.empty() && d.better_than_plain_step) add("for the devices");
+  add("electrode at t = 0");
+  if (!d.measured.empty()) add(d.measured);
+  return devices_table(d, rows);
+}
+
+ReportTable all_rows(const ResultDevices& d) {
+  std::vector<std::pair<std::string, const ResultDevices::Row*>> rows;
+  for (const ResultDevices::Row& row : d.rows) rows.emplace_back(shown_name(d, row), &row);
+  return devices_table(d, rows);
+}
+
+// Says which drive carries the switch to its contact: "The piezo carries 96.3 % of the devices to their contact ..."
+std::string path_words(const ResultDevices& d) {
+  if (!d.stable_path) return {};
+  const ResultDevices::StablePath& path = *d.stable_path;
+  const std::string drive = path.drives.front() == piezo_drive ? "piezo" : "electrode " + path.drives.front();
+  std::string words = fmt::format(
+      "The {} carries {} of the devices to their contact through stable equilibria within {} (the nominal design "
+      "touches at {}).",
+      drive, percent(path.share), quantity(path.limit, "V"), quantity(path.reaches, "V"));
+  if (path.share < 1) words += " The others are closed by the electrode, at the speed of the 99th percentile.";
+  if (drive == "piezo") words += " Creep and hysteresis of the piezo are not in the model.";
+  return words;
+}
+
+std::string delay_words(const ResultDevices& d) {
+  if (!std::isfinite(d.step_delay)) return {};
+  return fmt::format(
+      "The plain step of the electrode comes at {}, when the piezo has made the contact; --hold-step fixed leaves "
+      "it at t = 0.",
+      quantity(d.step_delay, "s"));
+}
+
+// Says how much measuring every device would win.
+std::string measuring_words(const ResultDevices& d) {
+  const ResultDevices::Row *own = d.row("for the devices"), *measured = d.row(d.measured);
+  if (own == nullptr || measured == nullptr || d.next_command.empty()) return {};
+  const char* const what = std::isfinite(measured->time_error) ? "one closing time measured to 50 ns" : "Vdp measured to 1 %";
+  const double before = value_in(own->at_95, columns[0].key), after = value_in(measured->at_95, columns[0].key);
+  constexpr double worth = 0.9;  // a gain in impact velocity that is worth telling
+  const bool lands_more = measured->bounce_free >= half && measured->bounce_free > own->bounce_free;
+  if (!lands_more && !(after < worth * before)) return fmt::format("With {} on each device nothing is won.", what);
+  return lands_more
+             ? fmt::format("With {} on each, {} close without a rebound: calibrated.toml.", what, percent(measured->bounce_free))
+             : fmt::format("With {} on each, 95 % touch at no more than {}: calibrated.toml.", what, speed_of(*measured));
+}
+
 }  // namespace
 
+ReportSection internal::choices_section(const ResultDevices& d) {
+  ReportSection section{.id = "choices", .heading = "Choices", .parts = {}, .shown = ShownIn::terminal};
+  if (d.rows.empty()) return section;
+  section.parts.emplace_back(choices_table(d));
+  std::string words = measuring_words(d);
+  for (const std::string& more : {drawing_words(d), delay_words(d)}) words += (words.empty() || more.empty() ? "" : " ") + more;
+  section.parts.emplace_back(Paragraph{std::move(words)});
+  if (!d.next_command.empty()) section.parts.emplace_back(ReportList{{d.next_command}});
+  return section;
+}
+
 ReportSection internal::devices_section(const ResultDevices& d) {
-  ReportSection section{.id = "devices", .heading = "On devices that differ", .parts = {}};
+  ReportSection section{.id = "devices", .heading = "Process variation", .parts = {}, .shown = ShownIn::page};
   if (d.rows.empty()) return section;
   const auto note = [&](std::string text) { section.parts.emplace_back(Paragraph{.text = std::move(text), .is_note = true}); };
-  section.parts.emplace_back(devices_table(d));
+  section.parts.emplace_back(all_rows(d));
+  section.parts.emplace_back(Drawing{[&d](const Picture&) { return choices_picture(d); }});
+  for (const std::string& words : {path_words(d), delay_words(d), measuring_words(d)}) {
+    if (!words.empty()) note(words);
+  }
   if (!d.measure.empty())
     note(fmt::format("best.toml is a {} waveform, searched by {}; {:.0f} closings in all. Devices: {}.{}", d.waveform,
                      d.measure == "drawing" ? "the nominal search" : d.measure, d.closings, d.spread,

@@ -16,13 +16,15 @@ namespace softland {
 
 namespace internal {
 
-/// What the waveform for the drawing does there, with a blank at the end.
+/// Says how the waveform for the nominal design closes it.
 [[nodiscard]] std::string drawing_words(const ResultDevices& devices);
-/// What the waveforms for devices do there, in one or two sentences.
+/// Says in a sentence how the waveform of best.toml closes the devices.
 [[nodiscard]] std::string devices_headline(const Result& result);
 /// What stands above all else on a page: shares and 95 % quantiles of the devices, from plain step to winner.
 [[nodiscard]] std::vector<KeyNumber> devices_keys(const ResultDevices& devices);
-/// The table, the front, what knowing a device is worth.
+/// A terminal shows the choices beside the plain step, what measuring wins, and the nominal design.
+[[nodiscard]] ReportSection choices_section(const ResultDevices& devices);
+/// A page shows all rows, the front, what knowing a device is worth.
 [[nodiscard]] ReportSection devices_section(const ResultDevices& devices);
 
 }  // namespace internal

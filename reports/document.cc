@@ -260,7 +260,7 @@ std::string terminal_text(const Document& document, std::size_t screen) {
   shown.words(document.headline + document.headline_rest);
   shown.words(document.doubt);
   for (const ReportSection& section : document.sections) {
-    if (section.is_page_only) continue;
+    if (section.shown == ShownIn::page) continue;
     for (const auto& part : section.parts) std::visit(shown, part);
   }
   for (const std::string& warning : document.warnings) shown.words("warning: " + warning);
@@ -272,6 +272,7 @@ std::string page_html(const Document& document) {
   std::string keys, body;
   for (const KeyNumber& key : document.keys) keys += key_html(key);
   for (const ReportSection& section : document.sections) {
+    if (section.shown == ShownIn::terminal) continue;
     std::string parts;
     for (const auto& part : section.parts) parts += std::visit(OnPage{drawn}, part);
     if (!parts.empty()) body += section_html(section.id, escaped(section.heading), parts);

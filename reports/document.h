@@ -54,11 +54,14 @@ struct Drawing {
 };
 [[nodiscard]] Drawing drawing_of(std::string html);
 
+/// Where a section is shown.
+enum class ShownIn { everywhere, page, terminal };
+
 /// A part of a page under a heading, which a terminal does without.
 struct ReportSection {
   std::string id, heading;
   std::vector<std::variant<Paragraph, SubHeading, ReportTable, ReportList, Drawing>> parts;
-  bool is_page_only = false;
+  ShownIn shown = ShownIn::everywhere;
 };
 
 /// A number that stands above everything else of a page, with its name.

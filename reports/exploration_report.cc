@@ -279,7 +279,8 @@ Document exploration_document(const ExplorationReport& report) {
                     .scripts = script_of(data)};
   std::tie(document.headline, document.headline_rest) = headline_of(report);
   const auto add = [&](const char* id, const char* heading, const std::string& words, const std::string& still = {}) {
-    document.sections.push_back({.id = id, .heading = heading, .parts = {Paragraph{words}, drawn(still)}, .is_page_only = true});
+    document.sections.push_back(
+        {.id = id, .heading = heading, .parts = {Paragraph{words}, drawn(still)}, .shown = ShownIn::page});
   };
   if (grid)
     add("map", "Map",
@@ -299,7 +300,7 @@ Document exploration_document(const ExplorationReport& report) {
       "of "
       "the points.");
   document.sections.push_back(outcome_section(report));
-  ReportSection plan{.id = "plan", .heading = "The plan", .parts = {}, .is_page_only = true};
+  ReportSection plan{.id = "plan", .heading = "The plan", .parts = {}, .shown = ShownIn::page};
   if (!report.plan.empty())
     plan.parts.emplace_back(drawing_of("<details><summary>As a file</summary>\n<pre><code>" +
                                        internal::escaped(internal::shortened(report.plan)) + "</code></pre></details>\n"));

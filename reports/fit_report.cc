@@ -279,7 +279,8 @@ ReportSection data_section(const Fit& fit) {
                           {quantity(r.after, unit, 5), "own"},
                           internal::with_true_minus(fmt::format("{:.2f}", r.normalized()))});
   }
-  ReportSection section{.id = "data", .heading = "Measured, before and after", .parts = {std::move(table)}, .is_page_only = true};
+  ReportSection section{
+      .id = "data", .heading = "Measured, before and after", .parts = {std::move(table)}, .shown = ShownIn::page};
   if (fit.residuals.size() > most)
     section.parts.emplace_back(
         Paragraph{.text = fmt::format("The first {} of {}; fit.json has all.", most, fit.residuals.size()), .is_note = true});
@@ -399,7 +400,7 @@ Document fit_document(const Fit& fit, const Provenance& provenance) {
     document.sections.push_back({.id = "correlation",
                                  .heading = "Correlations of their errors",
                                  .parts = {correlation_table(fit)},
-                                 .is_page_only = true});
+                                 .shown = ShownIn::page});
   if (!fit.next.empty())
     document.sections.push_back(
         {.id = "next",
@@ -407,12 +408,13 @@ Document fit_document(const Fit& fit, const Provenance& provenance) {
          .parts = {next_table(fit), Paragraph{.text = "The root of the mean square of all standard errors, each over what was "
                                                       "known before, where this is measured as well, on every device.",
                                               .is_note = true}},
-         .is_page_only = true});
+         .shown = ShownIn::page});
   if (fit.found) {
     document.keys = keys_of(fit);
     document.draw = [&fit] { return picture_of(fit); };
   }
-  document.sections.push_back({.id = "courses", .heading = "Residuals", .parts = {internal::all_charts()}, .is_page_only = true});
+  document.sections.push_back(
+      {.id = "courses", .heading = "Residuals", .parts = {internal::all_charts()}, .shown = ShownIn::page});
   document.sections.push_back(data_section(fit));
   return document;
 }

@@ -13,6 +13,7 @@
 #include "reports/quantity.h"
 #include "studies/closing/closed_state.h"
 #include "studies/closing/static_excess.h"
+#include "studies/devices/stable_approach.h"
 
 namespace softland {
 
@@ -107,6 +108,25 @@ std::string dynamic_words(const PreparedScene& p, std::size_t k, const json& pul
   return volts(dynamically) + (leaves_at_rest(p.model, bias_of(p.scene, k), levels)
                                    ? " (the static one: no step moves it, from there on its rest is unstable)"
                                    : " (overdamped: equals the static one)");
+}
+
+StablePathFound stable_path_of(const PreparedScene& p, const Watch& watch) {
+  constexpr std::uint64_t devices = 256, seed = 1;
+  if (!p.model.has_contact()) return {};
+  std::optional<StableApproach> found;
+  if (p.model.has_piezo()) found = stable_approach(p, Actuator::pzt);
+  if (!found && has_pulling_electrode(p.scene.device)) found = stable_approach(p, Actuator::electrostatic);
+  if (!found) return {.words = "no drive alone reaches the contact through stable equilibria within its limits"};
+  const std::string drive = found->drive == piezo_drive ? "piezo" : "electrode " + found->drive;
+  StablePathFound all{.data = {{"drives", {found->drive}}, {"reaches_V", found->reaches}, {"limit_V", found->limit}},
+                      .words = fmt::format("the {} alone reaches the contact at {} through stable equilibria", drive,
+                                           internal::quantity(found->reaches, "V", 4))};
+  all.data["share_of_devices"] = nullptr;
+  if (p.scene.spread.empty()) return all;
+  const double share = share_with_path(p, *found, devices, seed, 1, watch);
+  all.data["share_of_devices"] = share;
+  all.words += fmt::format("; {} of devices do within {}", internal::percent(share), internal::given_quantity(found->limit, "V"));
+  return all;
 }
 
 }  // namespace softland

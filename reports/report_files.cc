@@ -27,6 +27,11 @@ PreparedScene calibrated(const SearchReport& report) {
   return read_back(*raced(report).calibrated, "calibrated.toml", raced(report).drawing.scene);
 }
 
+PreparedScene choice(const SearchReport& report, std::size_t k) {
+  const DeviceChoice& one = raced(report).choices[k];
+  return read_back(*one.scene, one.name + ".toml", raced(report).drawing.scene);
+}
+
 std::string scene_text(const PreparedScene& scene) { return scene.scene.file.text(); }
 
 }  // namespace
@@ -60,6 +65,14 @@ std::vector<ReportFile<SearchReport>> files_of(const SearchReport& report) {
   if (devices != nullptr && devices->calibrated) {
     files.push_back({for_devices_files[2], [](const SearchReport& r) { return scene_text(calibrated(r)); }});
     files.push_back({for_devices_files[3], [](const SearchReport& r) { return told_csv(calibrated(r)); }});
+  }
+  if (devices != nullptr) {
+    for (std::size_t k = 0; k < devices->choices.size(); ++k) {
+      const std::string& name = devices->choices[k].name;
+      if (!devices->choices[k].scene) continue;
+      files.push_back({name + ".toml", [k](const SearchReport& r) { return scene_text(choice(r, k)); }});
+      files.push_back({name + ".csv", [k](const SearchReport& r) { return told_csv(choice(r, k)); }});
+    }
   }
   if (report.devices)
     add<RobustnessReport>(files, *report.devices, [](const SearchReport& r) -> const RobustnessReport& { return *r.devices; });

@@ -132,6 +132,13 @@ struct ResultRobust {
 
 /// Of a search for devices, what its waveforms do on fresh ones.
 struct ResultDevices {
+  /// Rebounds below which a device counts for a yield, and as JSON names them.
+  struct YieldHeight {
+    double height;  ///< [m]
+    const char* key;
+  };
+  static constexpr std::array yield_heights{YieldHeight{1e-9, "1e-9"}, YieldHeight{1e-8, "1e-8"}, YieldHeight{1e-7, "1e-7"}};
+
   struct Row {
     std::string name;                                                         ///< "plain step", "for the drawing", "Vdp to 1 %"
     double pull_in_error = Metrics::unset, frequency_error = Metrics::unset;  ///< of what is measured, relative; NaN: it is not
@@ -139,7 +146,22 @@ struct ResultDevices {
     double time_error = Metrics::unset;                                       ///< of a closing time [s]
     bool searched_for_it = true;
     double bounce_free = Metrics::unset, open = Metrics::unset, collapsed = Metrics::unset;  ///< shares of the devices
-    std::map<std::string, double> at_95;  ///< 95 % quantiles, by key of device_figures; infinite where more do not close
+    /// Quantiles at 50, 95 and 99 %, by key of device_figures; infinite where more do not close.
+    std::map<std::string, double> at_50, at_95, at_99;
+    std::map<std::string, double> yield;  ///< shares of devices by how far they rebound at most: yield_heights
+  };
+  /// A waveform that may be chosen: its row is that of its name, or for the default "for the devices".
+  struct Choice {
+    std::string name, file, waveform;
+    double tau = Metrics::unset;  ///< what its devices wait for a steady contact, over the plain step
+    [[nodiscard]] std::string row() const { return name == "default" ? "for the devices" : name; }
+  };
+  /// How the switch can be carried to its contact through stable equilibria.
+  struct StablePath {
+    std::vector<std::string> drives;  ///< the one that carries it first
+    double share = Metrics::unset;    ///< of the devices that have such a path within the limits
+    double reaches = Metrics::unset;  ///< at which the nominal design touches [V]
+    double limit = Metrics::unset;    ///< of the driver, on that side [V]
   };
   struct FrontPoint {
     double first_touch = Metrics::unset, impact_speed = Metrics::unset, bounce_free = Metrics::unset;
@@ -160,6 +182,11 @@ struct ResultDevices {
   bool better_than_plain_step = false;
   std::vector<std::string> worse_in;  ///< figures of the best candidate, where the plain step wins
   std::vector<Row> rows;
+  std::vector<Choice> choices;  ///< the soonest first; empty where the plain step wins
+  std::optional<StablePath> stable_path;
+  std::optional<bool> goal_met;        ///< 95 % of the devices of best.toml rebound by no more than counts
+  double missed_by = Metrics::unset;   ///< by which their rebound is more; 0 where the goal is met [m]
+  double step_delay = Metrics::unset;  ///< of the electrode's plain step, where its instant was searched [s]
   std::vector<FrontPoint> front;
   std::vector<ByError> by_error;
   HoldWindows windows;  ///< of hold levels

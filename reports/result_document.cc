@@ -132,8 +132,8 @@ ReportTable figures_table(const Result& result) {
 ReportSection figures_section(const Result& result) {
   ReportSection section{.id = "figures", .heading = "Figures", .parts = {}};
   if (result.devices)
-    section.parts.emplace_back(
-        SubHeading{result.devices->better_than_plain_step ? "best.toml on the drawing" : "The plain step on the drawing"});
+    section.parts.emplace_back(SubHeading{result.devices->better_than_plain_step ? "best.toml on the nominal design"
+                                                                                 : "The plain step on the nominal design"});
   if (result.best.figures || result.baseline.figures) section.parts.emplace_back(figures_table(result));
   if (result.goal_met)
     section.parts.emplace_back(Paragraph{fmt::format("The goal is {}.", *result.goal_met ? "met" : "not met")});
@@ -183,7 +183,7 @@ std::string drawn_switch(const Result& result) {
 ReportSection checks_section(const Result& result) {
   ReportSection section{.id = "checks", .heading = "Confirmations", .parts = {}};
   // Of a winner that bounces there is nothing to confirm.
-  section.is_page_only = figure_of_run(result.best, &Metrics::bounce_count) != 0;
+  if (figure_of_run(result.best, &Metrics::bounce_count) != 0) section.shown = ShownIn::page;
   if (result.checks.empty()) return section;
   ReportTable table{.head = {"Simulated with"}, .rows = {}};
   for (const Figure& one : leading_figures) table.head.emplace_back(one.name);
@@ -246,7 +246,7 @@ TableCell searched_cell(const Result& result, const std::string& parameter, std:
 
 /// The parameters in the order in which they act.
 ReportSection parameters_section(const Result& result) {
-  ReportSection section{.id = "parameters", .heading = "The waveform found", .parts = {}, .is_page_only = true};
+  ReportSection section{.id = "parameters", .heading = "The waveform found", .parts = {}, .shown = ShownIn::page};
   if (result.parameters.empty()) return section;
   struct Row {
     std::string key, drive, name;
@@ -337,13 +337,18 @@ Document result_document(const Result& result) {
   for (const std::string& word : {result.target, result.actuator}) {
     if (!word.empty()) document.origin += " · " + word;
   }
-  if (result.devices) document.sections.push_back(devices_section(*result.devices));
+  if (result.devices) {
+    document.sections.push_back(choices_section(*result.devices));
+    document.sections.push_back(devices_section(*result.devices));
+  }
   document.sections.push_back({.id = "sketch", .heading = "The switch at rest", .parts = {Drawing{[&result](const Picture&) {
                                                                                   return drawn_switch(result);
                                                                                 }}}});
   document.sections.push_back({.id = "charts", .heading = "The closing", .parts = {Drawing{closing_charts}}});
-  for (ReportSection& section : std::array{figures_section(result), checks_section(result), search_section(result)})
+  for (ReportSection& section : std::array{figures_section(result), checks_section(result), search_section(result)}) {
+    if (result.devices) section.shown = ShownIn::page;
     document.sections.push_back(std::move(section));
+  }
   if (result.seeds) document.sections.push_back(seeds_section(*result.seeds));
   document.sections.push_back(parameters_section(result));
   document.sections.push_back(facts(result));

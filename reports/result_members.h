@@ -183,7 +183,26 @@ void members(A& a, ResultDevices::Row& row) {
   a("bounce_free", row.bounce_free);
   a("does_not_close", row.open);
   a("collapsed_onto_electrode", row.collapsed);
+  a("quantile_50", internal::OrInfinite{row.at_50});
   a("quantile_95", internal::OrInfinite{row.at_95});
+  a("quantile_99", internal::OrInfinite{row.at_99});
+  a("yield", row.yield);
+}
+
+template <class A>
+void members(A& a, ResultDevices::Choice& choice) {
+  a("name", choice.name);
+  a("file", choice.file);
+  a("waveform", choice.waveform);
+  a("tau", choice.tau);
+}
+
+template <class A>
+void members(A& a, ResultDevices::StablePath& path) {
+  a("drives", path.drives);
+  a("share_of_devices", path.share);
+  a("reaches_V", path.reaches);
+  a("limit_V", path.limit);
 }
 
 template <class A>
@@ -224,6 +243,11 @@ void members(A& a, ResultDevices& devices) {
   a("better_than_plain_step", devices.better_than_plain_step);
   a("worse_in", devices.worse_in);
   a("rows", devices.rows);
+  a("choices", devices.choices);
+  a("stable_path", internal::OrNull{devices.stable_path});
+  a("goal_met", devices.goal_met);
+  a("missed_by_m", devices.missed_by);
+  a("step_delay_s", devices.step_delay);
   a("front", devices.front);
   a("by_error_of_Vdp", devices.by_error);
   a.custom("hold_window_V", devices.windows, internal::windows_json, internal::read_windows);

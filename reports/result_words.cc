@@ -127,10 +127,7 @@ std::string best_label(const Result& result) { return result.is_search ? own_sub
 std::string baseline_label() { return "plain step"; }
 
 Headline headline(const Result& result) {
-  if (result.devices) {
-    const ResultDevices& d = *result.devices;
-    return {drawing_words(d), devices_headline(result)};
-  }
+  if (result.devices) return {devices_headline(result), ""};
   const double window = window_end(result);
   const bool leaves = result.closed_state && result.closed_state->stable == false && result.best.figures &&
                       touches(*result.best.figures) && result.best.status != "collapsed_onto_electrode";

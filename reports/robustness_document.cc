@@ -319,7 +319,7 @@ ReportSection sensitivity_section(const Sensitivity& sensitivity) {
 }
 
 ReportSection worst_section(const RobustnessReport& report) {
-  ReportSection section{.id = "worst", .heading = "The worst devices", .parts = {}, .is_page_only = true};
+  ReportSection section{.id = "worst", .heading = "The worst devices", .parts = {}, .shown = ShownIn::page};
   if (report.found.devices == 0) return section;
   const DriveRobustness& last = report.found.drives.back();
   const Ensemble ensemble(report.nominal, report.options.samples, report.options.seed, report.options.points);

@@ -215,7 +215,7 @@ ReportSection belief_section(const BeliefSummary& belief) {
                               "side, before (grey) and now. What a landing depends on may be known far better than any of "
                               "these alone: their errors go together.",
                           .is_note = true}},
-      .is_page_only = true};
+      .shown = ShownIn::page};
   for (const std::string& sentence : belief.correlated) section.parts.emplace_back(Paragraph{.text = sentence, .is_note = true});
   return section;
 }
@@ -450,7 +450,7 @@ Document tuning_document(const TuningReport& report, const Provenance& provenanc
   if (report.end == TuningEnd::interrupted)
     document.headline = "Interrupted: what follows is what there is. " + document.headline;
   document.sections.push_back(
-      {.id = "waveforms", .heading = "What the source is told", .parts = {internal::all_charts()}, .is_page_only = true});
+      {.id = "waveforms", .heading = "What the source is told", .parts = {internal::all_charts()}, .shown = ShownIn::page});
   document.made.seed = report.seed;
   document.made.tolerance = report.scene.tolerance;
   return document;

@@ -225,6 +225,8 @@ int check_verb(const Common& c) {
   }
   if (!p.model.has_contact()) add("contact", "none: a run ends at first touch");
   add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
+  const StablePathFound path = stable_path_of(p, work->watch());
+  if (!path.words.empty()) add("stable path", path.words);
   nlohmann::json closed;
   if (p.model.has_contact()) {
     const ClosedState state = closed_state(p, p.signals());
@@ -238,6 +240,7 @@ int check_verb(const Common& c) {
   work.reset();
   nlohmann::json data = check_json(p, pull_in, warnings, c.command);
   data["closed_state"] = std::move(closed);
+  data["stable_path"] = path.data;
   print_json_or(c, data, text);
   return exit_done;
 }

@@ -279,7 +279,8 @@ void add_optimize(Verb& verb) {
               first_is_default(listed(targets)) +
                   ", or a weighted sum such as \"0.7 bounce + 0.3 energy\"; the goal of each asks for no significant rebound");
   verb.option("--actuator", request->actuator, "NAME",
-              "drives that the search may shape: " + first_is_default(listed(actuators)));
+              "drives that the search may shape: " + listed(actuators) +
+                  "; default: all that the scene has, and with --robust none or a measure electrostatic");
   verb.option(
       "--waveform", request->waveform, "NAME",
       "family to search: " + listed_searched_families() +
@@ -288,7 +289,7 @@ void add_optimize(Verb& verb) {
           "begun where those before it ended, of which the best goes on: " +
           fmt::format(
               "{} (default), {} (for both, and electrodes on both sides), {} (for pzt); with a measure of --robust knots, "
-              "with --calibrate catch",
+              "with --calibrate catch; quasi-static moves all drives and is searched over devices",
               default_families(Shaped::electrode), default_families(Shaped::several), default_families(Shaped::piezo)));
   verb.option("--robust", request->robust, "MEASURE",
               "devices that differ as [spread] says: auto (default, but for --seeds; where the scene has no [spread] one is "
@@ -299,6 +300,9 @@ void add_optimize(Verb& verb) {
       "--constrain", request->constrain, "CONDITION",
       "condition that the winner on the drawing, and 95 % of the devices, have to fulfil: \"permanent_contact_time < 60 us\"; "
       "may be repeated");
+  verb.option("--hold-step", request->hold_step, "chosen|fixed",
+              "with --actuator pzt, when the plain step of the electrode comes: at an instant that is searched, after a slow "
+              "approach by the piezo (chosen, default), or at t = 0 (fixed)");
   verb.option("--calibrate", request->calibrate, "LIST",
               "measured on every device before it is driven, whose waveform is then in its own units: \"Vdp,frequency\" or, with "
               "errors, \"Vdp:1 %,frequency:0.5 %\"; piezo, the deflection per volt on it over the contact gap, as well; "

@@ -338,6 +338,7 @@ class Scene(MutableMapping[str, Any]):
         constrain: Sequence[str] = (),
         start: Sequence[Mapping[str, Waveform]] = (),
         optimizer: str = "",
+        hold_step: str = "",
         calibrate: str = "",
         budget: int | str | None = None,
         samples: int | None = None,
@@ -358,6 +359,7 @@ class Scene(MutableMapping[str, Any]):
             candidate: the figures of `closing` are arrays (devices,) of those that close, and it returns an array; of the drawing they are floats.
         constrain: conditions, "peak_contact_force < 20 uN".
         start: waveforms by drive [V] to begin with.
+        hold_step: with actuator "pzt", "chosen" (the instant of the electrode's plain step is searched) or "fixed" (t = 0).
         optimizer: a method, where it is not to be "auto"; calibrate: what is measured on every device, "Vdp:1 %,frequency".
         budget: evaluations, or closings of devices; or time, "90 s". samples: devices.
         out: folder in which all evaluations are kept while the search runs, and its files when it ends. resume: goes on with the search in that
@@ -369,7 +371,7 @@ class Scene(MutableMapping[str, Any]):
             "target": target, "actuator": actuator, "robust": robust, "waveform": waveform,
             "objective": None if objective is None else _softland.PythonObjective(getattr(objective, "__name__", "own"), objective, lands_first),
             "own_waveforms": [one._function for one in own_waveforms], "constrain": list(constrain), "starts": [_natives(one) for one in start],
-            "optimizer": optimizer, "calibrate": calibrate, "budget": budget, "samples": samples, "seed": seed, "jobs": _jobs(jobs), "callback": callback, "command": _command(),
+            "optimizer": optimizer, "hold-step": hold_step, "calibrate": calibrate, "budget": budget, "samples": samples, "seed": seed, "jobs": _jobs(jobs), "callback": callback, "command": _command(),
             "out": "" if out is None else os.fspath(out), "resume": resume,
         }  # fmt: skip
         with shown(progress) as tell:

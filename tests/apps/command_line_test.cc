@@ -253,7 +253,7 @@ TEST(PullIn, PrintsTheAgreedJson) {
   ASSERT_EQ(o.status, 0);
   EXPECT_EQ(o.err, "");
   const json j = json::parse(o.out);
-  EXPECT_EQ(keys(j), (std::set<std::string>{"status", "pull_in", "electrodes"}));
+  EXPECT_EQ(keys(j), (std::set<std::string>{"status", "pull_in", "electrodes", "stable_path"}));
   EXPECT_EQ(j["electrodes"], (json{{"main", {{"status", j["status"]}, {"pull_in", j["pull_in"]}}}}));
   EXPECT_EQ(keys(j["pull_in"]),
             (std::set<std::string>{"static_V", "static_kind", "deflection_m", "dynamic_V", "release_V", "pulled_through_V"}));
@@ -272,7 +272,7 @@ TEST(PullIn, TellsSeveralElectrodesByName) {
     return json::parse(here.run(all).out);
   };
   const json j = run("pull-in");
-  EXPECT_EQ(keys(j), (std::set<std::string>{"status", "pull_in", "electrodes"}));
+  EXPECT_EQ(keys(j), (std::set<std::string>{"status", "pull_in", "electrodes", "stable_path"}));
   EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"main", "upper"}));
   EXPECT_EQ(j["status"], "done") << "the far electrode need not pull in";
   EXPECT_EQ(j["electrodes"]["upper"]["status"], "no_contact");

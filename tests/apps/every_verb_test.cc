@@ -130,7 +130,8 @@ TEST_P(EveryVerb, Describes_optimized) {
   const json checked = data(scene().quickly({"check", name, "--quiet", "--json", "-"}));
   EXPECT_EQ(keys(checked), (std::set<std::string>{"kind", "status", "title", "natural_frequencies_rad_s", "pull_in",
                                                   "dynamic_precision", "hold_window_V", "closed_state", "duration_s", "tolerance",
-                                                  "warnings", "scene", "version", "made_with", "command"}));
+                                                  "stable_path", "warnings", "scene", "version", "made_with", "command"}));
+  EXPECT_EQ(checked["stable_path"].is_null() && check.find("through stable equilibria;") != std::string::npos, false) << check;
   EXPECT_EQ(checked["natural_frequencies_rad_s"], modes["natural_frequencies_rad_s"]);
   EXPECT_EQ(checked["closed_state"].is_object(), contact);
   EXPECT_EQ(checked["scene"]["structure"]["kind"].is_string(), true);

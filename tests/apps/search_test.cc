@@ -418,8 +418,9 @@ TEST(SearchForDevices, LeavesTheDrawingAndWhatDevicesGet_optimized) {
   write(here.path() / "gold.toml", shipped("mem-gold.toml"));
   const Outcome o = here.run(words("optimize", for_devices("out")));
   ASSERT_EQ(o.status, 0) << o.err;
-  EXPECT_EQ(o.out.find("The waveform for the drawing"), 0U) << o.out;
-  EXPECT_THAT(o.out, testing::HasSubstr("100 devices, 95 % below"));
+  EXPECT_EQ(o.out.find("Of 100 simulated devices"), 0U) << o.out;
+  EXPECT_THAT(o.out, testing::ContainsRegex("\ndefault: best.toml .*"));
+  EXPECT_LE(std::ranges::count(o.out, '\n'), 20) << o.out;
   for (const char* name : {"best.toml", "best.csv", "drawing.toml", "drawing.csv", "report.html", "robustness.html",
                            "robustness.json", "devices.csv", "result.json"})
     EXPECT_TRUE(fs::exists(here.path() / "out" / name)) << name;
@@ -435,7 +436,43 @@ TEST(SearchForDevices, LeavesTheDrawingAndWhatDevicesGet_optimized) {
       EXPECT_EQ(own[key], told[key]) << scene;
   }
   EXPECT_EQ(here.run({"report", "out", "--out", "again"}).status, 0);
-  EXPECT_THAT(read(here.path() / "again/report.html"), testing::HasSubstr("On devices that differ"));
+  EXPECT_THAT(read(here.path() / "again/report.html"), testing::HasSubstr("Process variation"));
+}
+
+// A piezo carries the switch to its contact, and the plain step of the electrode comes then: on all devices softly.
+TEST(SearchForDevices, ApproachesTheContactThroughStableEquilibria_optimized) {
+  const Workplace here;
+  write(here.path() / "pzt.toml", shipped("mem-gold-pzt.toml"));
+  const std::vector<std::string> asked{"optimize",  "pzt.toml", "--actuator", "pzt",  "--waveform", "quasi-static+quasi-static:2",
+                                       "--samples", "200",      "--budget",   "8000", "--quiet",    "--out",
+                                       "out"};
+  const Outcome o = here.run(asked);
+  ASSERT_EQ(o.status, 0) << o.err;
+  const json devices = result(here, "out")["devices"];
+  EXPECT_EQ(devices["stable_path"]["drives"], json({"piezo", "main"}));
+  EXPECT_GT(devices["stable_path"]["share_of_devices"], 0.9);
+  const auto figure = [&](const char* row, const char* key) -> double {
+    for (const json& one : devices["rows"]) {
+      if (one["name"] == row) return one["quantile_95"][key];
+    }
+    ADD_FAILURE() << row;
+    return 0;
+  };
+  constexpr const char *speed = "largest_impact_velocity_m_s", *steady = "steady_force_time_s";
+  EXPECT_LT(figure("for the devices", speed), 6e-3);
+  EXPECT_GT(figure("plain step", speed), 0.15);
+  EXPECT_LE(figure("for the devices", steady), 1.02 * figure("plain step", steady)) << "as soon as the plain step";
+  EXPECT_LE(figure("fast", steady), 0.53 * figure("plain step", steady));
+  EXPECT_GT(devices["step_delay_s"], 300e-6);
+  ASSERT_EQ(devices["choices"].size(), 3U);
+  for (const json& choice : devices["choices"]) {
+    const std::string file = "out/" + choice["file"].get<std::string>();
+    EXPECT_TRUE(fs::exists(here.path() / file)) << file;
+    const Outcome again = here.run({"simulate", file, "--json", "-", "--quiet"});
+    ASSERT_EQ(again.status, 0) << file;
+    EXPECT_LT(json::parse(again.out)["metrics"]["impact_velocity_m_s"], 0.012) << file;
+  }
+  EXPECT_THAT(o.out, testing::HasSubstr("--hold-step fixed"));
 }
 
 TEST(SearchForDevices, GoesOnToTheSameBits_slow) {

@@ -80,7 +80,7 @@ Document sample_document() {
                         .parts = {SubHeading{"Of devices"}, sample_table(), Paragraph{.text = "A note.", .is_note = true},
                                   ReportList{{"a  command"}}, drawing_of("<svg></svg>"), Paragraph{}}},
                        {.id = "none", .heading = "Nothing", .parts = {Paragraph{}, drawing_of("")}},
-                       {.id = "more", .heading = "More", .parts = {Paragraph{"Of a page."}}, .is_page_only = true}},
+                       {.id = "more", .heading = "More", .parts = {Paragraph{"Of a page."}}, .shown = ShownIn::page}},
           .warnings = {"so & so"}};
 }
 
