@@ -369,6 +369,13 @@ echo '100% tests passed, 0 tests failed out of 1'
 BODY
 run "$project/softland" test
 check 'nothing is told where all tests ran' err_is ''
+check 'without arguments those run that continuous integration runs' grep -q '^ctest .* -LE ^(slow|slurm|pandas|python)\$$' "$work/calls"
+: >"$work/calls"
+run "$project/softland" test all --verbose
+check 'or all of them' grep -q '^ctest .*-j [0-9]* --verbose$' "$work/calls"
+: >"$work/calls"
+run "$project/softland" test -R model
+check 'or those that ctest is told' grep -q '^ctest .*-j [0-9]* -R model$' "$work/calls"
 tool id <<'BODY'
 echo 0
 BODY
