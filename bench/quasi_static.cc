@@ -28,7 +28,7 @@ double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_P
 
 void print_row(const std::string& name, const RobustCost& fresh, const RobustAim& aim, const SearchSetting& setting,
                const DriveWaveforms& waveforms, double of_step, long closings, double seconds) {
-  const std::vector<DeviceOutcome> all = fresh.close_until_steady(setting.drives(waveforms), 2);
+  const std::vector<DeviceOutcome> all = fresh.close_until(setting.drives(waveforms), aim.free.until, 2);
   const auto at = [&](Figure::Member member, double probability, double unit) {
     return quantile(all, key_of(member), probability) / unit;
   };

@@ -329,7 +329,7 @@ class Scene(MutableMapping[str, Any]):
         self,
         *,
         target: str = "bounce",
-        actuator: Actuator = "electrostatic",
+        actuator: Actuator | None = None,
         robust: str = "auto",
         waveform: str = "",
         objective: Callable[[dict[str, Any], dict[str, float]], Any] | None = None,
@@ -352,6 +352,7 @@ class Scene(MutableMapping[str, Any]):
         """The search for a waveform, as `softland optimize`; its result has the same keys as result.json, and `files` such as best.toml.
 
         target: "bounce", "settling", "rebound", "count", "impact", "energy", "force", "drive", "steady", or a sum "0.7 bounce + 0.3 energy".
+        actuator: without one all drives that the scene has, and with another `robust` than "auto" the electrode.
         robust: "auto", for the drawing and for devices; "none", for the drawing alone; a measure such as "cvar:0.9", for devices by it alone.
         waveform: a family, or several "pulse+knots"; names of `own_waveforms` too.
         objective: (closing, step) -> F in the place of a target: both are dicts of figures [SI], of a candidate and of the plain step; F >= 0, about 1

@@ -304,7 +304,7 @@ void DevicesSearch::choose() {
 void DevicesSearch::place(ChosenFrom one) {
   watch_.throw_if_stopped();
   closings_ += static_cast<long>(others_->devices());
-  const std::vector<DeviceOutcome> outcomes = others_->close_until_steady(first().drives(one.waveforms), options_.jobs);
+  const std::vector<DeviceOutcome> outcomes = others_->close_until(first().drives(one.waveforms), free_.until, options_.jobs);
   RobustAim aim = aims_.tail;
   if (approach_) aim.conditions = conditions_;  // a slow touch is no fault where it is soft
   one.bounce_free = share_of(outcomes, is_bounce_free);

@@ -217,7 +217,7 @@ class DevicesStudy {
     const bool is_softer = soft != nullptr && soft->impact_speed < worth_choosing * usual.impact_speed &&
                            soft->bounce_free > usual.bounce_free - fewer_bounce_free;
     if (until > 0 && !is_late && is_softer) add(soft_row, soft);
-    if (options_.actuator != Actuator::pzt || !searched_.approach()) return;
+    if (options_.actuator != Actuator::pzt || !searched_.approach() || searched_.approach()->holder.empty()) return;
     for (const ChosenFrom& one : result_->candidates) {
       if (undelayed_ || is_quasi_static(one.family) || !one.is_good_enough) continue;
       undelayed_ = one;
@@ -325,7 +325,7 @@ class DevicesStudy {
 
   void note_delay(const ChosenFrom& winner) {
     const std::optional<StableApproach>& approach = searched_.approach();
-    if (options_.actuator != Actuator::pzt || !approach || !is_quasi_static(winner.family)) return;
+    if (options_.actuator != Actuator::pzt || !is_quasi_static(winner.family) || approach->holder.empty()) return;
     const Signal step = signal(winner.waveforms.at(approach->holder));
     for (const double time : step.breakpoints()) {
       if (std::isnan(result_->step_delay) && time > 0) result_->step_delay = time;

@@ -135,8 +135,7 @@ QuasiStatic::QuasiStatic(const PreparedScene& prepared, Actuator actuator, Stabl
   if (holding_ == Holding::shaped) reaches_ = touching_by_level(prepared, approach_, most_low * holder_hold_);
   approach_.deviation = std::max(approach_.deviation, least_deviation * std::abs(approach_.reaches));
   constexpr double usual = 20;  // first touches of the plain step, until its contact is steady
-  for (const double times : {usual, usual / 2, 2 * usual})
-    starts_.push_back(closed_form(times * first_touch, approach_.low / holder_hold_));
+  for (const double times : {usual, usual / 2, 2 * usual}) starts_.push_back(closed_form(times * first_touch, approach_.low));
   bound(starts_.front(), false);
   clamp_starts();
 }
@@ -169,7 +168,7 @@ double QuasiStatic::share(double deviations) const {
 }
 
 // What a waveform begins with whose devices carry a steady force from `steady` on.
-std::vector<double> QuasiStatic::closed_form(double steady, double level) const {
+std::vector<double> QuasiStatic::closed_form(double steady, double low) const {
   const double rise = share(impulses_ > 2 ? -slow_before : -fast_before), end = share(beyond);
   const double risen = static_cast<double>(impulses_ + 1) / 2 - (impulses_ > 2 ? 0.5 : 0);  // periods
   const double after = holding_ == Holding::by_step  ? step_after_line
@@ -180,7 +179,7 @@ std::vector<double> QuasiStatic::closed_form(double steady, double level) const 
     case Holding::by_step:
       return {rise, line, end, step_after_line * period_, back_after * period_, back_of_step * period_};
     case Holding::shaped: {
-      const double low = level * holder_hold_, at_contact = std::max(low, least_contact_level * holder_hold_);
+      const double at_contact = std::max(low, least_contact_level * holder_hold_);
       return {rise, line, end, low, at_contact, holder_after_line * period_};
     }
     case Holding::by_itself:
@@ -220,10 +219,10 @@ void QuasiStatic::bound(const std::vector<double>& start, bool is_paced) {
 QuasiStatic QuasiStatic::paced(double steady) const {
   QuasiStatic own = *this;
   own.variables_.clear();
-  own.starts_ = {closed_form(steady, approach_.low / holder_hold_)};
+  own.starts_ = {closed_form(steady, approach_.low)};
   own.bound(own.starts_.front(), true);
   if (holding_ == Holding::shaped) {
-    for (const double level : lower_levels) own.starts_.push_back(closed_form(steady, level));
+    for (const double level : lower_levels) own.starts_.push_back(closed_form(steady, level * holder_hold_));
   }
   own.clamp_starts();
   return own;

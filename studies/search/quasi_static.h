@@ -62,8 +62,8 @@ class QuasiStatic {
   };
   using Points = std::vector<std::pair<double, double>>;  // [s, V]
 
-  // `level` at which the holder stands low, over its hold level.
-  [[nodiscard]] std::vector<double> closed_form(double steady, double level) const;
+  // The holder stands at `low` before contact [V].
+  [[nodiscard]] std::vector<double> closed_form(double steady, double low) const;
   void clamp_starts();
   void bound(const std::vector<double>& start, bool is_paced);
   [[nodiscard]] Waveform carrying(Points points) const;

@@ -224,8 +224,8 @@ std::vector<DeviceOutcome> RobustCost::close_by_step(int jobs) const {
   return outcomes;
 }
 
-std::vector<DeviceOutcome> RobustCost::close_until_steady(const std::vector<Waveform>& waveforms, int jobs) const {
-  return close(waveforms, 0, devices(), std::max(setting_.given.duration, window_), jobs);
+std::vector<DeviceOutcome> RobustCost::close_until(const std::vector<Waveform>& waveforms, double free, int jobs) const {
+  return close(waveforms, 0, devices(), std::max({setting_.given.duration, window_, free}), jobs);
 }
 
 DeviceOutcome RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const {

@@ -107,8 +107,8 @@ class RobustCost {
   [[nodiscard]] double measured(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
   /// The closings of all devices under the plain step until 95 % of them carry a steady force, or as long as such runs go.
   [[nodiscard]] std::vector<DeviceOutcome> close_by_step(int jobs) const;
-  /// The closings of all devices, until the plain step's were steady at least.
-  [[nodiscard]] std::vector<DeviceOutcome> close_until_steady(const std::vector<Waveform>& waveforms, int jobs) const;
+  /// The closings of all devices, followed after first touch for the window of the scene or until `free` [s], what is longer.
+  [[nodiscard]] std::vector<DeviceOutcome> close_until(const std::vector<Waveform>& waveforms, double free, int jobs) const;
   /// Whether the measure tells these devices from such as all fail: not where as many of them fail as it looks at, or none
   /// fulfils the condition of a yield.
   [[nodiscard]] bool is_told(std::span<const DeviceOutcome> outcomes) const;

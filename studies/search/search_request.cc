@@ -153,9 +153,15 @@ void check_hold_step(const SearchRequest& request) {
   if (request.hold_step.empty()) return;
   require_field(request.hold_step == step_is_chosen || request.hold_step == step_is_fixed, "hold-step", request.hold_step,
                 [] { return fmt::format("must be {} or {}", step_is_chosen, step_is_fixed); });
-  require_request(request.robust == by_race || request.hold_step == step_is_fixed, [&] {
-    return fmt::format("{} {}: is for {} {}; else the step is at t = 0", requested("hold-step"), request.hold_step,
-                       requested("robust"), by_race);
+  require_request(request.robust != nominal_alone || request.hold_step == step_is_fixed, [&] {
+    return fmt::format("{} {}: is for a search over devices; with {} {} the step is at t = 0", requested("hold-step"),
+                       request.hold_step, requested("robust"), nominal_alone);
+  });
+  const bool delays = request.actuator == name_of(actuators, Actuator::pzt) &&
+                      std::ranges::any_of(families_of(request.waveform), is_quasi_static);
+  require_request(!delays || request.hold_step == step_is_chosen, [&] {
+    return fmt::format("{} {}: a quasi-static approach of the piezo chooses the instant of the step", requested("hold-step"),
+                       request.hold_step);
   });
 }
 
@@ -217,7 +223,7 @@ SearchRequest completed(SearchRequest request, const SceneFile& scene) {
   if (request.actuator.empty())
     request.actuator = name_of(actuators, request.robust == by_race ? usual_actuator(scene) : Actuator::electrostatic);
   if (request.waveform.empty()) request.waveform = usual_families(request, scene);
-  if (request.hold_step.empty()) request.hold_step = request.robust == by_race ? step_is_chosen : step_is_fixed;
+  if (request.hold_step.empty()) request.hold_step = request.robust == nominal_alone ? step_is_fixed : step_is_chosen;
   return request;
 }
 
@@ -227,14 +233,14 @@ PlannedSearch planned(const SearchRequest& request, SceneFile scene, const std::
     return fmt::format("{} and {} are for a search over devices: they say nothing with {} none", requested("calibrate"),
                        requested("samples"), requested("robust"));
   });
-  check_hold_step(request);
   OptimizeOptions options = options_of(request, scene, own);
   require_request(over_devices || std::ranges::none_of(families_of(options.family), is_quasi_static), [&] {
     return fmt::format(
-        "{} {}: a quasi-static approach is searched over devices, not with {} none: the drawing alone is landed "
-        "sooner by the others",
+        "{} {}: a quasi-static approach is searched over devices, not with {} none: other families close the nominal design "
+        "sooner",
         requested("waveform"), options.family, requested("robust"));
   });
+  check_hold_step(request);
   std::optional<RobustOptions> robust;
   if (request.is_by_measure()) robust = robust_of(request);
   std::optional<ForDevicesOptions> for_devices;

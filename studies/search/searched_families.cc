@@ -189,6 +189,10 @@ std::size_t number_of(const std::string& family, std::size_t usual) {
 
 void choose_family(DriveSearch& s, const std::string& text) {
   const std::string_view name = std::string_view(text).substr(0, text.find(':'));
+  require_request(!is_quasi_static(text), [&] {
+    return fmt::format("{} {}: moves all drives at once: it is named alone, or beside others with +", requested("waveform"),
+                       text);
+  });
   const auto* found =
       std::find_if(families.begin(), families.end(), [&](const SearchedFamily& family) { return family.name == name; });
   require_request(found != families.end(),

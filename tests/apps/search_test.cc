@@ -475,6 +475,27 @@ TEST(SearchForDevices, ApproachesTheContactThroughStableEquilibria_optimized) {
   EXPECT_THAT(o.out, testing::HasSubstr("--hold-step fixed"));
 }
 
+// A piezo that closes the switch by itself holds it, too: there is no step to delay.
+TEST(SearchForDevices, ApproachesTheContactByAPiezoAlone_optimized) {
+  const Workplace here;
+  std::string scene = shipped("mem-gold-pzt.toml");
+  for (const char* section : {"[electrode.main]", "[waveform.main]", "[driver.main]"}) {
+    const std::size_t begin = scene.find(section);
+    scene.erase(begin, scene.find("\n\n", begin) - begin);
+  }
+  scene = edited(scene, "min_voltage = \"-1 V\"", "min_voltage = \"-1.3 V\"");
+  write(here.path() / "alone.toml",
+        edited(scene, "[simulate]", "[waveform.piezo]\nfamily = \"step\"\nlevel = \"-1.2 V\"\n\n[simulate]"));
+  const Outcome o = here.run({"optimize", "alone.toml", "--waveform", "quasi-static", "--samples", "100", "--budget", "2500",
+                              "--quiet", "--out", "out"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  const json devices = result(here, "out")["devices"];
+  EXPECT_EQ(devices["stable_path"]["drives"], json::array({"piezo"}));
+  EXPECT_TRUE(devices["step_delay_s"].is_null());
+  EXPECT_THAT(o.out, testing::Not(testing::HasSubstr("lectrode")));
+  EXPECT_LT(devices["rows"][2]["quantile_95"]["largest_impact_velocity_m_s"], 0.01);
+}
+
 TEST(SearchForDevices, GoesOnToTheSameBits_slow) {
   const Workplace here;
   write(here.path() / "gold.toml", shipped("mem-gold.toml"));

@@ -55,6 +55,11 @@ TEST(SearchRequest, LetsTheStepComeLaterOverDevicesUnlessItIsFixed) {
   EXPECT_TRUE(planned(old, file).for_devices->is_of_before);
   EXPECT_THROW((void)planned_of({.actuator = "pzt", .hold_step = "late"}, file), InvalidRequest);
   EXPECT_THROW((void)planned_of({.actuator = "pzt", .robust = "none", .hold_step = "chosen"}, file), InvalidRequest);
+  for (const char* robust : {"auto", "cvar:0.9"})
+    EXPECT_THROW((void)planned_of({.actuator = "pzt", .waveform = "quasi-static", .robust = robust, .hold_step = "fixed"}, file),
+                 InvalidRequest);
+  EXPECT_EQ(planned_of({.actuator = "both", .waveform = "quasi-static", .hold_step = "fixed"}, file).for_devices->families,
+            "quasi-static");
 }
 
 TEST(SearchRequest, SearchesTheQuasiStaticApproachOverDevicesAlone) {
