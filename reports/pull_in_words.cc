@@ -69,7 +69,9 @@ json pull_in_json(const PreparedScene& p, const Watch& watch) {
     if (pulls_in(p.scene.device, k) && status == to_string(Status::done)) status = one["status"].get<std::string>();
     by_name[electrodes[k].name] = std::move(one);
   }
-  return pull_in_json(by_name, status);
+  json all = pull_in_json(by_name, status);
+  all["stable_path"] = stable_path_of(p, watch).data;
+  return all;
 }
 
 std::string bias_words(const PreparedScene& p, std::size_t k) {
