@@ -47,6 +47,7 @@ void Bar::print(const State& state) const {
 WatchedWork::WatchedWork(bool quiet, const std::atomic<bool>* stop) : bar_(quiet) {
   watch_.stop = stop;
   watch_.progress = [this](std::string_view what, double part) {
+    const std::scoped_lock lock(mutex_);
     pace_.note(what, part, bar_.elapsed());
     if (!bar_.due()) return;
     bar_.show([&](double elapsed) { return std::pair(part, pace_.words(elapsed)); });

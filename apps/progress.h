@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -45,6 +46,7 @@ class WatchedWork {
   [[nodiscard]] const Watch& watch() const { return watch_; }
 
  private:
+  std::mutex mutex_;  // of what follows: it may be told from several threads
   Bar bar_;
   bool shown_ = false;
   WorkPace pace_;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -12,6 +13,8 @@
 #include "apps/values.h"
 #include "base/read_file.h"
 #include "base/require.h"
+#include "reports/quantity.h"
+#include "reports/text.h"
 #include "studies/search/search_space.h"
 
 namespace softland::apps {
@@ -90,6 +93,35 @@ SearchRun::SearchRun(const Common& c, StoredSearch& search, const std::optional<
   };
   options.on_progress = [this](const OptimizeProgress& p) { progress_.show(p); };
   options.on_improvement = [this](const Evaluation&, const SceneFile& best) { session_.improved(best); };
+  if (search.for_devices) {
+    search.for_devices->on_leading = [this](const Leading& leading) {
+      session_.improved(leading.scene);
+      if (!common_.quiet) tell(leading);
+    };
+  }
+}
+
+// The first table, of which every better waveform becomes a row.
+void SearchRun::tell(const Leading& leading) {
+  const auto row = [&](const std::string& name, const std::vector<DeviceOutcome>& outcomes, const std::string& after) {
+    const auto figure = [](double value, std::string_view unit) {
+      return std::isfinite(value) ? internal::quantity(value, unit) : "∞";
+    };
+    std::string text = "  " + internal::left_aligned(name, 16);
+    for (const std::string_view key : {key_of(&Metrics::largest_impact_velocity), key_of(&Metrics::major_bounce_height)}) {
+      const std::string_view unit = figure_of(key).unit;
+      text += internal::right_aligned(
+          figure(quantile(outcomes, key, 0.95), unit) + " (" + figure(quantile(outcomes, key, 0.99), unit) + ")", 24);
+    }
+    say(text + internal::right_aligned(figure(waited(outcomes, leading.waited_for), "s"), 12) + after);
+  };
+  if (!std::exchange(has_table_, true)) {
+    say(fmt::format("On {} simulated devices so far; the search goes on, and this gets better.", leading.own.size()));
+    say(fmt::format("  {:16}{:>24}{:>24}{:>12}", "95 % (99 %)", "impact", "rebound", "steady"));
+    row("plain step", leading.of_step, "");
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
+  row(leading.family, leading.own, fmt::format("   after {:.0f} s", elapsed.count()));
 }
 
 void SearchRun::close() {
@@ -101,7 +133,7 @@ void SearchRun::close() {
 std::string search_words(const Common& c, const StoredSearch& search) {
   const OptimizeOptions& o = search.options;
   const std::string devices = search.robust ? fmt::format(", over devices of the spread ({})", search.robust->aim.measure.text)
-                              : search.for_devices ? std::string(", then one for devices that differ")
+                              : search.for_devices ? std::string(", and one for devices that differ")
                                                    : std::string();
   return fmt::format("{}: searching a {} waveform, actuator {}, target {}{}", c.scene.empty() ? c.out : c.scene,
                      families_in_words(o.family), name_of(actuators, o.actuator), o.target.text(), devices);

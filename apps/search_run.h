@@ -1,6 +1,7 @@
 // One search on the command line: it goes on with what its folder holds, and shows how far it is.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,9 +41,13 @@ class SearchRun {
   [[nodiscard]] SearchSession& session() { return session_; }
 
  private:
+  void tell(const Leading& leading);
+
   const Common& common_;
   std::optional<WatchedWork> preparation_;
   SearchProgress progress_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  bool has_table_ = false;
   SearchSession session_;
 };
 

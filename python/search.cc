@@ -70,7 +70,8 @@ StoredSearch kept_search(const Request& request, const PyScene& scene, std::opti
 
 // The callbacks: what Python is told, and how it ends a search. Once candidates are tried they throw nothing, which a search
 // would take for a bad candidate: run.stop() ends it.
-void listen(OptimizeOptions& options, const Request& request, Run& run, SearchSession* session = nullptr) {
+void listen(PlannedSearch& search, const Request& request, Run& run, SearchSession* session = nullptr) {
+  OptimizeOptions& options = search.options;
   options.on_preparation = [&run](std::string_view what, double part) {
     run.throw_if_given_up();
     run.watch().tell(what, part);
@@ -78,6 +79,7 @@ void listen(OptimizeOptions& options, const Request& request, Run& run, SearchSe
   if (session != nullptr) {
     options.on_start = [session](const FamilyColumns& columns) { session->begin(columns); };
     options.on_improvement = [session](const Evaluation&, const SceneFile& best) { session->improved(best); };
+    if (search.for_devices) search.for_devices->on_leading = [session](const Leading& one) { session->improved(one.scene); };
   }
   options.on_evaluation = [&request, &run, session, budget = options.max_evaluations](const Evaluation& evaluation,
                                                                                       const OptimizeProgress& progress) {
@@ -151,7 +153,7 @@ bool is_own(const OptimizeResult& found) {
 Outcome search(PyScene& scene, const Request& request) {
   Run running(request.progress);
   PlannedSearch search = planned_search(request, scene.file, running);
-  listen(search.options, request, running);
+  listen(search, request, running);
   return searched(request, running, [&](const Watch& watch) {
     const auto report = std::make_shared<SearchReport>(run(search));
     running.throw_if_given_up();
@@ -173,7 +175,7 @@ Outcome search_in_folder(PyScene& scene, const Request& request) {
                               return ResultFolder(request.out, "out " + request.out, request.command, files, kept);
                             }};
   SearchSession session(search, known, output);
-  listen(search.options, request, running, &session);
+  listen(search, request, running, &session);
   return running([&](const Watch& watch) {
     const auto report = std::make_shared<SearchReport>(run(search));
     if (!running.given_up()) add_devices(*report, search, request.command, watch);

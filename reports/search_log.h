@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@
 
 namespace softland {
 
-/// best.toml and evaluations.csv among the unfinished results of a folder.
+/// best.toml and evaluations.csv among the unfinished results of a folder. May be told from several threads.
 class SearchLog {
  public:
   /// `columns`: of evaluations.csv. Writes the file with its header, so that a
@@ -27,11 +28,15 @@ class SearchLog {
   /// Writes what is still only noted.
   void flush();
 
+  /// When nothing more is told.
   [[nodiscard]] const std::map<long, Evaluation>& evaluations() const { return evaluations_; }
 
  private:
+  void write();
+
   ResultFolder& folder_;
   FamilyColumns columns_;
+  std::mutex mutex_;                        // of what follows
   std::map<long, Evaluation> evaluations_;  // by index: the order that does not depend on the number of jobs
   std::string best_;
   bool pending_ = false;

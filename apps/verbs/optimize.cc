@@ -291,11 +291,12 @@ void add_optimize(Verb& verb) {
               "{} (default), {} (for both, and electrodes on both sides), {} (for pzt); with a measure of --robust knots, "
               "with --calibrate catch; quasi-static moves all drives and is searched over devices",
               default_families(Shaped::electrode), default_families(Shaped::several), default_families(Shaped::piezo)));
-  verb.option("--robust", request->robust, "MEASURE",
-              "devices that differ as [spread] says: auto (default, but for --seeds; where the scene has no [spread] one is "
-              "assumed) searches for the drawing, then races measures and families over devices; none searches for the drawing "
-              "alone; one measure alone: yield (as many devices as possible without a rebound), yield:\"bounce_count == 0\", "
-              "cvar:0.9 (the mean of the worst tenth), quantile:0.95, mean+2sigma, worst");
+  verb.option(
+      "--robust", request->robust, "MEASURE",
+      "devices that differ as [spread] says: auto (default, but for --seeds; where the scene has no [spread] one is "
+      "assumed) races measures and families over devices and searches for the drawing beside it; none searches for the drawing "
+      "alone; one measure alone: yield (as many devices as possible without a rebound), yield:\"bounce_count == 0\", "
+      "cvar:0.9 (the mean of the worst tenth), quantile:0.95, mean+2sigma, worst");
   verb.repeated(
       "--constrain", request->constrain, "CONDITION",
       "condition that the winner on the drawing, and 95 % of the devices, have to fulfil: \"permanent_contact_time < 60 us\"; "

@@ -142,14 +142,15 @@ FamilyColumns DevicesSearch::columns() const {
 
 double DevicesSearch::seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
 
-void DevicesSearch::run(std::size_t before) {
+void DevicesSearch::run(std::size_t before, std::function<void()> looked, double reserved) {
   for (std::size_t k = 0; k < settings_.size(); ++k) settings_[k].family = before + k;
-  race_families();
+  looked_ = std::move(looked);
+  race_families(reserved);
   choose();
   if (!gave_up_ && known_->calibration().is_empty()) measure_ahead();
 }
 
-void DevicesSearch::race_families() {
+void DevicesSearch::race_families(double reserved) {
   watch_.tell("building devices", 0);
   cost_.emplace(first(), tail_aim_,
                 own_devices(first(), *known_, raced_devices, options_.seed, which_searched, options_.jobs, watch_));
@@ -157,21 +158,24 @@ void DevicesSearch::race_families() {
                   own_devices(first(), *known_, devices_of_choice, options_.seed, which_chosen, options_.jobs, watch_));
   const double begun = seconds();
   const std::vector<DeviceOutcome> step = closed(*cost_, {});
-  reserve_for_verdict((seconds() - begun) / static_cast<double>(step.size()));
+  reserve_for_verdict((seconds() - begun) / static_cast<double>(step.size()), reserved);
   FreeTime free;
   if (!devices_.is_of_before) {
     std::vector<DeviceOutcome> all = cost_->close_by_step(options_.jobs);
-    const std::vector<DeviceOutcome> others = others_->close_by_step(options_.jobs);
-    all.insert(all.end(), others.begin(), others.end());
+    step_on_others_ = others_->close_by_step(options_.jobs);
+    all.insert(all.end(), step_on_others_.begin(), step_on_others_.end());
     free = free_time(all);
     closings_ += static_cast<long>(all.size());
   }
   make_aims(step, free);
+  bounds_.emplace(closed(*others_, {}));
   watch_.tell("searching for the devices", 0);
   search_paces();
   const std::vector<SearchSetting> raced(settings_.begin(), settings_.begin() + static_cast<std::ptrdiff_t>(raced_));
   if (!raced.empty()) {
-    RaceResult found = race(raced, *cost_, aims_, race_options());
+    RaceOptions own = race_options();
+    if (!approach_) own.on_stage = [this](const Racer& leader) { look(leader); };
+    RaceResult found = race(raced, *cost_, aims_, own);
     closings_ += found.closings;
     std::ranges::move(found.racers, std::back_inserter(race_.racers));
   }
@@ -210,7 +214,11 @@ void DevicesSearch::search_paces() {
   };
   run_tasks(
       paces.size(), options_.jobs,
-      [&](std::size_t i) { found[i] = search_at_pace(settings_[paces[i].family], paces[i], *cost_, aim, options, closings); },
+      [&](std::size_t i) {
+        RaceOptions own = options;
+        if (i == 0) own.on_stage = [this](const Racer& leader) { look(leader); };
+        found[i] = search_at_pace(settings_[paces[i].family], paces[i], *cost_, aim, own, closings);
+      },
       options_.stop);
   closings_ += closings;
   watch_.throw_if_stopped();
@@ -246,10 +254,10 @@ bool DevicesSearch::says_when_to_close() const {
 }
 
 // Of a budget of time the searches leave what the verdict takes, where they keep a part; `closing`: of one device [s].
-void DevicesSearch::reserve_for_verdict(double closing) {
+void DevicesSearch::reserve_for_verdict(double closing, double reserved) {
   constexpr double rows = 20;  // over a search's window: three over the whole one, three in measured units, and the front
   const double verdict = rows * static_cast<double>(devices_.verdict) * closing, all = options_.max_seconds;
-  race_end_ = std::clamp(all - verdict, least_of_race * all, end_of_race * all);
+  race_end_ = std::clamp(all - verdict, least_of_race * all, end_of_race * all) - reserved;
 }
 
 RaceOptions DevicesSearch::race_options() {
@@ -287,7 +295,6 @@ ChosenFrom DevicesSearch::candidate_of(const Racer& racer) const {
 // What the race came to, on other devices, beside the plain step.
 void DevicesSearch::choose() {
   watch_.tell("choosing on other devices", 0);
-  bounds_.emplace(closed(*others_, {}));
   std::vector<ChosenFrom> pool;
   for (const Racer& one : paced_) pool.push_back(candidate_of(one));
   for (const bool by_share : {false, true}) {
@@ -301,10 +308,49 @@ void DevicesSearch::choose() {
   for (ChosenFrom& one : pool) place(std::move(one));
 }
 
+// What the search has come to so far. Tells of it where it leads, and is no harder than the plain step.
+void DevicesSearch::look(const Racer& racer) {
+  if (gave_up_ || devices_.is_of_before || watch_.stopped()) return;
+  std::vector<DeviceOutcome> outcomes = on_others(racer.waveforms);
+  Placed placed = judged(candidate_of(racer), outcomes);
+  looked_at_.push_back(placed);
+  if (!leader_ || placed.is_before(*leader_)) {
+    leader_ = std::move(placed);
+    if (leader() != nullptr && devices_.on_leading) {
+      devices_.on_leading({.family = leader_->candidate.family,
+                           .of_step = step_on_others_,
+                           .own = std::move(outcomes),
+                           .waited_for = free_.figure,
+                           .scene = with_waveforms(first().baseline_scene, racer.waveforms)});
+    }
+  }
+  if (looked_) std::exchange(looked_, {})();
+}
+
+const ChosenFrom* DevicesSearch::leader() const {
+  return leader_ && leader_->candidate.is_good_enough ? &leader_->candidate : nullptr;
+}
+
 void DevicesSearch::place(ChosenFrom one) {
   watch_.throw_if_stopped();
+  const auto known = std::ranges::find_if(looked_at_, [&](const Placed& other) { return same_candidate(one, other.candidate); });
+  if (known == looked_at_.end()) {
+    placed_.push_back(judged(one, on_others(one.waveforms)));
+    return;
+  }
+  Placed again = *known;
+  again.candidate.measure = one.measure;
+  again.candidate.closings = one.closings;
+  placed_.push_back(std::move(again));
+}
+
+std::vector<DeviceOutcome> DevicesSearch::on_others(const DriveWaveforms& waveforms) {
   closings_ += static_cast<long>(others_->devices());
-  const std::vector<DeviceOutcome> outcomes = others_->close_until(first().drives(one.waveforms), free_.until, options_.jobs);
+  return others_->close_until(first().drives(waveforms), free_.until, options_.jobs);
+}
+
+// By its outcomes on the devices of the choice.
+DevicesSearch::Placed DevicesSearch::judged(ChosenFrom one, const std::vector<DeviceOutcome>& outcomes) const {
   RobustAim aim = aims_.tail;
   if (approach_) aim.conditions = conditions_;  // a slow touch is no fault where it is soft
   one.bounce_free = share_of(outcomes, is_bounce_free);
@@ -318,16 +364,18 @@ void DevicesSearch::place(ChosenFrom one) {
   const double rank = lands ? -one.bounce_free : one.tail, significant = first().given.scene.metrics.significant_rebound;
   const bool in_time = !approach_ && !says_when_to_close();
   one.is_good_enough = bounds_->keeps(outcomes, significant, in_time) && hold(conditions_, outcomes);
-  placed_.push_back({std::move(one), lands, rank});
+  return {std::move(one), lands, rank};
+}
+
+bool DevicesSearch::Placed::is_before(const Placed& other) const {
+  if (candidate.is_good_enough != other.candidate.is_good_enough) return candidate.is_good_enough;
+  if (lands_half != other.lands_half) return lands_half;
+  return rank < other.rank;
 }
 
 std::vector<ChosenFrom> DevicesSearch::placed() const {
   std::vector<Placed> sorted = placed_;
-  std::ranges::stable_sort(sorted, [](const Placed& a, const Placed& b) {
-    if (a.candidate.is_good_enough != b.candidate.is_good_enough) return a.candidate.is_good_enough;
-    if (a.lands_half != b.lands_half) return a.lands_half;
-    return a.rank < b.rank;
-  });
+  std::ranges::stable_sort(sorted, [](const Placed& a, const Placed& b) { return a.is_before(b); });
   // Without a stable path the fall from the fold is the limit: waiting longer gains little there.
   if (!approach_ && free_.until > 0 && !sorted.empty() && sorted.front().candidate.is_good_enough && !sorted.front().lands_half) {
     auto soonest = sorted.begin();

@@ -21,6 +21,14 @@
 
 namespace softland {
 
+/// What leads a search over devices that goes on, on the devices of the choice.
+struct Leading {
+  std::string family;
+  std::vector<DeviceOutcome> of_step, own;  ///< the same devices under the plain step, and under what leads
+  double Metrics::*waited_for = nullptr;    ///< what FreeTime counts
+  SceneFile scene;                          ///< under its waveform
+};
+
 struct ForDevicesOptions {
   std::vector<Criterion> conditions = {};  ///< on figures of device_figures, that 95 % of the devices have to fulfil
   std::uint64_t verdict = 2000;            ///< fresh devices
@@ -30,6 +38,8 @@ struct ForDevicesOptions {
   bool is_of_before = false;        ///< as versions did that priced the first touch and knew of no quasi-static approach
   long closings = race_closings;    ///< of the race
   bool are_a_budget = false;        ///< it takes no more of them where many devices land
+  /// Told of what leads, whenever that is better than what was told before; from any thread, one call at a time.
+  std::function<void(const Leading&)> on_leading = {};
 };
 
 /// A row of the first table: drives of one kind on the fresh devices.
@@ -101,8 +111,10 @@ class DevicesSearch {
   [[nodiscard]] double seconds() const;
 
   /// Races, places what the race came to, and measures the devices of the verdict. `before`: families in front of those of the
-  /// race, among those that share the memory. Throws Interrupted where it is told to stop.
-  void run(std::size_t before);
+  /// race, among those that share the memory. `looked` is called once a first candidate was looked at on the devices of the
+  /// choice; where none is, never. `reserved`: of a budget of time, for what follows beside the verdict [s]. Throws Interrupted
+  /// where it is told to stop.
+  void run(std::size_t before, std::function<void()> looked, double reserved);
   /// From any thread: run() ends soon, with nothing that is of use.
   void give_up() { gave_up_ = true; }
 
@@ -120,6 +132,9 @@ class DevicesSearch {
   [[nodiscard]] const std::vector<Criterion>& conditions() const { return conditions_; }
   /// Judges a candidate on the devices of the choice.
   void place(ChosenFrom candidate);
+  /// What led when a search that was stopped had looked last; null where it is worse than the plain step.
+  [[nodiscard]] const ChosenFrom* leader() const;
+  [[nodiscard]] const std::vector<DeviceOutcome>& step_on_others() const { return step_on_others_; }
   /// Those that were placed: first, the best first, those that are good enough.
   [[nodiscard]] std::vector<ChosenFrom> placed() const;
   [[nodiscard]] std::size_t good_enough() const;
@@ -148,17 +163,22 @@ class DevicesSearch {
     ChosenFrom candidate;
     bool lands_half;
     double rank;
+
+    [[nodiscard]] bool is_before(const Placed& other) const;
   };
   using Found = std::optional<DriveWaveforms>;
 
-  void race_families();
+  void race_families(double reserved);
   [[nodiscard]] std::vector<Pace> paces_of_search() const;
   void search_paces();
   void make_aims(const std::vector<DeviceOutcome>& step, const FreeTime& free);
   [[nodiscard]] bool says_when_to_close() const;
-  void reserve_for_verdict(double closing);
+  void reserve_for_verdict(double closing, double reserved);
   [[nodiscard]] RaceOptions race_options();
   void choose();
+  void look(const Racer& racer);
+  [[nodiscard]] std::vector<DeviceOutcome> on_others(const DriveWaveforms& waveforms);
+  [[nodiscard]] Placed judged(ChosenFrom one, const std::vector<DeviceOutcome>& outcomes) const;
   [[nodiscard]] ChosenFrom candidate_of(const Racer& racer) const;
   void measure_ahead();
   [[nodiscard]] bool tells_time() const;
@@ -195,6 +215,10 @@ class DevicesSearch {
   std::vector<Racer> paced_;
   RaceResult race_;
   std::optional<Bounds> bounds_;
+  std::vector<DeviceOutcome> step_on_others_;  // closings under the plain step, until they are steady
+  std::function<void()> looked_;
+  std::vector<Placed> looked_at_;                                     // in the order in which they came
+  std::optional<Placed> leader_;                                      // of these
   std::vector<Placed> placed_;                                        // in the order in which they came
   std::optional<GaugedEnsemble> gauged_by_pull_in_, gauged_by_time_;  // the devices of the verdict
   std::optional<DeviceMeter> meter_;                                  // none where there is nothing to measure

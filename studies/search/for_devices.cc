@@ -42,7 +42,6 @@ class DevicesStudy {
         searched_(file, options, devices, watch_.progress) {}
 
   ForDevicesResult run() {
-    drawing_options_ = options_of_drawing();
     OptimizeResult drawing = searched_for_drawing();
     result_.emplace(ForDevicesResult{
         .varied = first().given, .drawing = drawing, .best = std::move(drawing), .spread_assumed = searched_.spread_assumed()});
@@ -54,6 +53,7 @@ class DevicesStudy {
     } catch (const Interrupted&) {  // what there is stands
     }
     searched_.give_up();
+    if (stopped() && result_->rows.empty()) take_leader();
     result_->closings += searched_.closings();
     result_->interrupted = stopped();
     return *std::move(result_);
@@ -68,6 +68,7 @@ class DevicesStudy {
   }
 
   OptimizeResult searched_for_drawing() {
+    drawing_options_ = options_of_drawing();
     try {
       OptimizeResult drawing = optimize(file_, drawing_options_);
       searches_drawing_ = false;
@@ -84,6 +85,7 @@ class DevicesStudy {
     own.keep_tried = true;
     if (std::isfinite(own.max_seconds)) own.max_seconds = end_of_drawing * own.max_seconds - searched_.seconds();
     own.max_seconds = std::max(own.max_seconds, 1e-3);
+    own.on_improvement = {};  // best.toml is for devices
     own.on_start = [this](const FamilyColumns& of_drawing) {
       FamilyColumns all = of_drawing;
       std::ranges::copy(searched_.columns().families, std::back_inserter(all.families));
@@ -94,11 +96,46 @@ class DevicesStudy {
     return own;
   }
 
-  // The search for the drawing leaves a core idle at times.
+  // Devices come first: the search for the drawing begins when a first waveform was looked at on them. It leaves a core idle at
+  // times.
   void search_beside(std::size_t before) {
+    const bool is_beside = options_.jobs > 1, is_timed = std::isfinite(options_.max_seconds);
+    const double of_drawing = is_timed ? end_of_drawing * options_.max_seconds : 0;
+    std::promise<void> looked;
+    const std::future<void> look = looked.get_future();
+    beside_ = std::async(is_beside ? std::launch::async : std::launch::deferred,
+                         [this, before, reserved = is_beside ? 0 : of_drawing, given = std::move(looked)]() mutable {
+                           std::promise<void> own = std::move(given);  // nobody waits longer than for the end of this
+                           searched_.run(
+                               before, [&own] { own.set_value(); }, reserved);
+                         });
+    if (!is_beside) {
+      beside_.wait();
+    } else if (is_timed) {
+      static_cast<void>(look.wait_for(std::chrono::duration<double>(of_drawing)));
+    } else {
+      look.wait();
+    }
     searches_drawing_ = true;
-    beside_ =
-        std::async(options_.jobs > 1 ? std::launch::async : std::launch::deferred, [this, before] { searched_.run(before); });
+  }
+
+  // The search was stopped before the verdict: what led by then.
+  void take_leader() {
+    const ChosenFrom* leader = searched_.leader();
+    if (leader == nullptr) return;
+    OptimizeResult& best = result_->best;
+    best.best_scene = read_back(scene_of(leader->waveforms), "best.toml", best.scene);
+    best.best = simulate(*best.best_scene, true);
+    best.checks.clear();
+    best.goal_met = goal_met(options_.target, best.best->metrics, best.baseline.metrics);
+    best.confirmed = false;
+    best.better_than_baseline = true;
+    best.best_cost = leader->tail;
+    best.baseline_cost = searched_.cost().value(searched_.step_on_others(), searched_.aims().tail);
+    best.family = leader->family;
+    best.prefix.clear();
+    best.parameters = leader->parameters;
+    best.variables = leader->variables;
   }
 
   void choose_of_all() {

@@ -1,9 +1,10 @@
-// The search for a waveform that devices can use: that for the drawing first, then a race over devices, and a verdict on devices
-// that no stage has seen.
+// The search for a waveform that devices can use: a race over devices, the waveform for the nominal design beside it, and a
+// verdict on devices that no stage has seen.
 //
-//   1  the search on the nominal device (optimize.h): the drawing's waveform
-//   2  beside it, as neither needs what the other finds, a race over families and measures (race.h) and a choice among what it
-//      came to on 512 other devices, beside the plain step
+//   1  a race over families and measures (race.h), and a choice among what it came to on 512 other devices, beside the plain
+//      step; what leads on the way is told
+//   2  from the first look at these devices on, as neither needs what the other finds, the search on the nominal device
+//      (optimize.h): the drawing's waveform
 //   3  what the nominal search tried ranked again on 16 devices, the best of it on 64, and these on the devices of the choice
 //   4  searches in units that are measured on every device: Vdp to 1 %, and the closing time of one slow step to 50 ns (of
 //      switches for which that is no time, Vdp and period to 0.2 %); again, under conditions, where one finds what is harder

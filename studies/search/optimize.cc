@@ -74,6 +74,7 @@ class Search {
     for (const SearchSetting& setting : settings)
       families_.emplace_back(setting, options, [this](const Evaluation& e) { evaluated(e); });
     if (options.on_start) options.on_start(searched_columns(settings, options.family));
+    begin_ = std::chrono::steady_clock::now();
   }
 
   // A scene that holds a landing already is refined, and so are landings that other searches have found: they are the first
@@ -470,8 +471,8 @@ double OptimizeResult::parameter(std::string_view name) const {
 
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
-  const auto begin = std::chrono::steady_clock::now();
-  const auto seconds = [begin] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+  auto begin = std::chrono::steady_clock::now();
+  const auto seconds = [&begin] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   const std::vector<SearchSetting> settings =
       search_settings(file, options.target, options.actuator, options.family,
                       {.stop = options.stop, .progress = options.on_preparation}, options.conditions, options.own_waveforms);
@@ -482,7 +483,9 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   const bool may_go_on = !with_more_modes(setting.given.scene.device).empty();
   const double max_seconds =
       std::max((may_go_on ? end_of_search : end_of_worst) * options.max_seconds - seconds(), options.max_seconds / 4);
+  const auto started = std::chrono::steady_clock::now();
   Search search(is_gentle ? gentle : settings, options, max_seconds);
+  begin += std::chrono::steady_clock::now() - started;  // what on_start takes is not of the budget
   search.begin();
   OptimizeResult result{.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
   result.baseline_cost = setting.baseline_cost;

@@ -71,7 +71,7 @@ struct OptimizeOptions {
   /// Watch.
   std::function<void(std::string_view what, double part)> on_preparation = {};
   /// Called once, when scene and options have been found valid and before the first evaluation, with the searched
-  /// parameters of every family, whose number is Evaluation::problem.
+  /// parameters of every family, whose number is Evaluation::problem. A budget of time does not count what it takes.
   std::function<void(const FamilyColumns&)> on_start = {};
   /// Called under a lock after every evaluation.
   std::function<void(const Evaluation&, const OptimizeProgress&)> on_evaluation = {};

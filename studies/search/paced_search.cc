@@ -85,6 +85,9 @@ std::optional<Racer> search_at_pace(const SearchSetting& given, const Pace& pace
                                       });
     found.closings += before.closings + end.closings;
     if (end.cost < before.cost) found.x = end.x;
+    if (!options.on_stage || k + 1 == stages_at_pace.size() || over()) continue;
+    found.waveforms = setting.space.waveforms(found.x);
+    options.on_stage(found);
   }
   found.waveforms = setting.space.waveforms(found.x);
   return found;

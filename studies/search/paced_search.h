@@ -17,8 +17,8 @@ struct Pace {
 
 /// `setting` searches a quasi-static family; `aim` is the aim of the whole search, whose free time is that of the plain step.
 /// None where no such waveform is within the limits, or the search was stopped before it had tried one. Closings count as those
-/// of RaceOptions, of which memory, seed, jobs, stop, out_of_time and progress are used, and `closings` over that of a usual
-/// race.
+/// of RaceOptions, of which memory, seed, jobs, stop, out_of_time, progress and on_stage are used, and `closings` over that of a
+/// usual race.
 [[nodiscard]] std::optional<Racer> search_at_pace(const SearchSetting& setting, const Pace& pace, const RobustCost& cost,
                                                   const RobustAim& aim, const RaceOptions& options, std::atomic<long>& closings);
 

@@ -69,6 +69,7 @@ class Race {
         planned_ = static_cast<double>(closings_) + longer / length * (planned_ - static_cast<double>(closings_));
       if (all_rungs) continue;
       runners = k == 0 ? survivors(std::move(runners), many) : best(std::move(runners), many);
+      if (options_.on_stage && k + 1 < rungs.size() && !over()) options_.on_stage(racer(leading(runners, many)));
       if (many) continue;
       for (Runner& r : runners) r.by_share = false;
     }
@@ -213,17 +214,23 @@ class Race {
     std::ranges::stable_sort(runners, {}, [by_share](const Runner& r) { return by_share ? r.share : r.tail; });
   }
 
+  [[nodiscard]] Racer racer(const Runner& r) const {
+    return {.family = first_family_ + r.family,
+            .measure = aim(r).measure.text,
+            .x = r.x,
+            .waveforms = setting(r).space.waveforms(r.x),
+            .closings = r.closings,
+            .bounce_free = r.bounce_free,
+            .tail = r.tail,
+            .share = r.share};
+  }
+
+  static const Runner& leading(const std::vector<Runner>& runners, bool by_share) {
+    return *std::ranges::min_element(runners, {}, [by_share](const Runner& r) { return by_share ? r.share : r.tail; });
+  }
+
   void add(RaceResult& result, const std::vector<Runner>& runners) const {
-    for (const Runner& r : runners) {
-      result.racers.push_back({.family = first_family_ + r.family,
-                               .measure = aim(r).measure.text,
-                               .x = r.x,
-                               .waveforms = setting(r).space.waveforms(r.x),
-                               .closings = r.closings,
-                               .bounce_free = r.bounce_free,
-                               .tail = r.tail,
-                               .share = r.share});
-    }
+    for (const Runner& r : runners) result.racers.push_back(racer(r));
   }
 
   RaceResult finished(RaceResult result) {

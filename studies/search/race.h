@@ -66,6 +66,8 @@ struct RaceOptions {
   EvaluationMemory* memory = nullptr;         ///< asked with SearchSetting::family, which has to differ
   std::function<bool()> out_of_time = {};     ///< may be null
   std::function<void(double)> progress = {};  ///< told the part that is done, from any thread
+  /// Told of the best search at the end of every stage but the last; may be null.
+  std::function<void(const Racer&)> on_stage = {};
 };
 
 struct RaceResult {

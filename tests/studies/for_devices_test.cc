@@ -11,8 +11,10 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "studies/closing/auto_settings.h"
+#include "studies/closing/plain_step.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {
@@ -119,15 +121,57 @@ TEST(ForDevices, AreNeverGivenWhatIsWorseThanThePlainStep_optimized) {
   EXPECT_EQ(found.plain_step_wins, !found.worse_in.empty());
 }
 
-TEST(ForDevices, KeepsTheDrawingWhenItIsAskedToStop_optimized) {
+TEST(ForDevices, LooksAtDevicesBeforeTheDrawingIsSearchedFor_optimized) {
+  for (const int jobs : {1, 2}) {
+    std::atomic<long> evaluations = 0, before_first = -1;
+    std::vector<double> costs;
+    const ForDevicesResult found = optimize_for_devices(
+        quick_gold(),
+        {.family = "pulse",
+         .max_evaluations = 100,
+         .jobs = jobs,
+         .on_evaluation = [&](const Evaluation&, const OptimizeProgress&) { ++evaluations; }},
+        {.verdict = 100, .families = "catch+pulse", .closings = race_closings / 4, .on_leading = [&](const Leading& one) {
+           if (before_first < 0) before_first = evaluations.load();
+           EXPECT_EQ(one.own.size(), one.of_step.size());
+           const std::string_view speed = key_of(&Metrics::largest_impact_velocity);
+           EXPECT_LT(quantile_95(one.own, speed), quantile_95(one.of_step, speed));
+           EXPECT_TRUE(one.scene.written("waveform.main.family"));
+           costs.push_back(quantile_95(one.own, speed));
+         }});
+    EXPECT_EQ(before_first, 0) << jobs;
+    ASSERT_FALSE(costs.empty());
+    EXPECT_LE(costs.back(), 1.02 * costs.front());
+  }
+}
+
+TEST(ForDevices, KeepsWhatLedWhenItIsAskedToStop_optimized) {
+  std::atomic<bool> stop = false;
+  std::string leading;
+  const ForDevicesResult found =
+      optimize_for_devices(quick_gold(), {.family = "pulse", .max_evaluations = 100'000, .jobs = 2, .stop = &stop},
+                           {.families = "catch+pulse", .closings = race_closings / 4, .on_leading = [&](const Leading& one) {
+                              leading = one.scene.text();
+                              stop = true;
+                            }});
+  EXPECT_TRUE(found.interrupted);
+  EXPECT_TRUE(found.rows.empty());
+  ASSERT_TRUE(found.best.best_scene);
+  const PreparedScene told = prepare(SceneFile::parse(leading, "leading"), true);
+  EXPECT_TRUE(same_drives(found.best.best_scene->signals(), told.signals()));
+  EXPECT_LT(found.best.best_cost, found.best.baseline_cost);
+}
+
+TEST(ForDevices, KeepsTheDrawingWhenItIsAskedToStopBeforeAnyDeviceWasLookedAt_optimized) {
   std::atomic<bool> stop = false;
   const ForDevicesResult found =
       optimize_for_devices(quick_gold(),
                            {.family = "pulse",
                             .max_evaluations = 100'000,
+                            .jobs = 2,
                             .stop = &stop,
                             .on_evaluation = [&](const Evaluation& e, const OptimizeProgress&) { stop = e.index > 50; }},
-                           {});
+                           {.families = "catch+pulse", .closings = 100});
   EXPECT_TRUE(found.interrupted);
   EXPECT_TRUE(found.rows.empty());
   EXPECT_TRUE(found.best.best_scene);
