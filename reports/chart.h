@@ -18,13 +18,20 @@ using CurveTables = std::map<std::string, CurveTable>;
 
 /// Whose data a curve shows, which gives it its pen; `third`, `fourth`, `fifth` and `measured` (dots) are for pictures of
 /// other than results, `limit` is what a source can do.
-enum class Role { best, baseline, evaluations, third, fourth, fifth, measured, limit };
+/// `device` and `device_before` are thin: one of many devices under the winner, and under the plain step.
+enum class Role { best, baseline, evaluations, third, fourth, fifth, measured, limit, device, device_before };
 enum class Scale { linear, logarithmic };
 
 struct Series {
   std::string table;
   std::string column;
   std::string label;  ///< empty: not in the legend
+  Role role = Role::best;
+};
+
+/// What lies between two columns.
+struct Band {
+  std::string table, low, high;
   Role role = Role::best;
 };
 
@@ -57,6 +64,7 @@ struct Chart {
   int height = 300;              ///< [px]
   std::vector<Series> series;
   std::vector<Mark> marks;
+  std::vector<Band> bands = {};  ///< below the curves, on static pictures alone
 };
 
 struct Picture {

@@ -30,6 +30,8 @@ const char* role_name(Role role) {
       return "limit";
     case Role::evaluations:
     case Role::measured:
+    case Role::device:
+    case Role::device_before:
       break;
   }
   return "evaluations";

@@ -43,11 +43,17 @@ Stroke stroke(Role role) {
       return {ink, 5, ""};
     case Role::limit:
       return {muted, 1.3, "2 3"};
+    case Role::device:
+      return {"#7fb8dc", 0.4, ""};
+    case Role::device_before:
+      return {"#e9a87c", 0.4, ""};
     case Role::evaluations:
       break;
   }
   return {"#8a949e", 3, ""};
 }
+
+bool is_one_of_many(Role role) { return role == Role::device || role == Role::device_before; }
 
 /// Whether a role's points are not joined.
 bool dots(Role role) { return role == Role::evaluations || role == Role::measured; }
@@ -213,6 +219,20 @@ std::string zero_line(const Chart& chart, const Axes& axes) {
   return out;
 }
 
+// In few bytes: whole tenths of a pixel from point to point.
+std::string thin_curve(const std::vector<std::array<double, 2>>& points, const Stroke& pen) {
+  std::string path;
+  std::array<long, 2> last{};
+  for (const auto& [px, py] : points) {
+    const std::array<long, 2> now{std::lround(10 * px), std::lround(10 * py)};
+    const long dx = now[0] - last[0], dy = now[1] - last[1];
+    path += fmt::format("{}{}{}{}", path.empty() ? "M" : "l", dx, dy < 0 ? "" : " ", dy);
+    last = now;
+  }
+  return fmt::format("<path transform=\"scale(.1)\" d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:g}\"/>\n", path,
+                     pen.colour, 10 * pen.width);
+}
+
 std::string chart_curve(const CurveTable& table, const Chart& chart, const Series& one, const Axes& axes) {
   const Stroke pen = stroke(one.role);
   const auto points = visible(axes.x, axes.y, table.at(chart.x_column), table.at(one.column));
@@ -224,11 +244,23 @@ std::string chart_curve(const CurveTable& table, const Chart& chart, const Serie
         "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" stroke-opacity=\"{}\"/>\n", path,
         pen.colour, pen.width, one.role == Role::measured ? 1 : 0.55);
   }
+  if (is_one_of_many(one.role)) return thin_curve(points, pen);
   for (const auto& [px, py] : points)
     path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : path.size() < 14 ? "L" : " ", px, py);
   return fmt::format(
       "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" stroke-dasharray=\"{}\"/>\n",
       path, pen.colour, pen.width, *pen.dash ? pen.dash : "none");
+}
+
+std::string chart_band(const CurveTables& tables, const Chart& chart, const Band& band, const Axes& axes) {
+  const CurveTable& table = tables.at(band.table);
+  const std::vector<double>& xs = table.at(chart.x_column);
+  auto edge = visible(axes.x, axes.y, xs, table.at(band.high));
+  auto back = visible(axes.x, axes.y, xs, table.at(band.low));
+  edge.insert(edge.end(), back.rbegin(), back.rend());
+  std::string path;
+  for (const auto& [px, py] : edge) path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " ", px, py);
+  return fmt::format("<path d=\"{}Z\" fill=\"{}\" fill-opacity=\"0.35\"/>\n", path, stroke(band.role).colour);
 }
 
 std::string chart_mark(const Mark& mark, const Axes& axes) {
@@ -254,6 +286,7 @@ std::string chart_svg(const CurveTables& tables, const Chart& chart, double widt
   out += fmt::format("<clipPath id=\"clip-{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\"/></clipPath>\n",
                      chart.id, left, axes.y.pixel_high, axes.x.pixel_high - axes.x.pixel_low, chart.height);
   out += fmt::format("<g clip-path=\"url(#clip-{})\">\n", chart.id);
+  for (const Band& band : chart.bands) out += chart_band(tables, chart, band, axes);
   for (const Series& one : chart.series) out += chart_curve(tables.at(one.table), chart, one, axes);
   for (const Mark& mark : chart.marks) out += chart_mark(mark, axes);
   return out + "</g>\n";

@@ -16,6 +16,8 @@
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/robustness_words.h"
+#include "reports/svg.h"
+#include "sampling/statistics.h"
 
 namespace softland {
 
@@ -141,6 +143,23 @@ TableCell headed(std::string_view on_terminal, std::string_view on_page) {
   return cell;
 }
 
+// The gaps in a table of columns "time", "low", "high", "median" and one for each device.
+CurveTable courses_table(const ResultDevices::Courses& courses, const std::vector<std::vector<int>>& gaps) {
+  CurveTable table;
+  const std::size_t instants = gaps.front().size();
+  for (std::size_t i = 0; i < instants; ++i) {
+    table["time"].push_back(courses.end * static_cast<double>(i) / static_cast<double>(instants - 1));
+    std::vector<double> all;
+    for (std::size_t k = 0; k < gaps.size(); ++k) {
+      all.push_back(courses.unit * gaps[k].at(i));
+      table[std::to_string(k)].push_back(all.back());
+    }
+    table["low"].push_back(sample_quantile(all, 0.05));
+    table["high"].push_back(sample_quantile(all, 0.95));
+  }
+  return table;
+}
+
 // The choices beside the plain step: impact velocity over the time from which the force is steady.
 std::string choices_picture(const ResultDevices& d) {
   if (d.choices.size() < 2) return {};
@@ -258,6 +277,19 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
     d.missed_by = std::max(0.0, height - significant);
   }
   d.step_delay = found.step_delay;
+  if (!found.courses.gaps.empty()) {
+    constexpr double units = 5000;  // in the gap of the contact
+    const double unit = found.varied.model.device().gap.contact / units;
+    const auto whole = [unit](const GapCourses& courses) {
+      std::vector<std::vector<int>> all;
+      for (const std::vector<double>& gap : courses.gaps) {
+        std::vector<int>& own = all.emplace_back();
+        for (const double g : gap) own.push_back(static_cast<int>(std::lround(g / unit)));
+      }
+      return all;
+    };
+    d.courses = {.end = found.courses.end, .unit = unit, .step = whole(found.courses_of_step), .own = whole(found.courses)};
+  }
   for (const FrontPoint& p : found.front)
     d.front.push_back({.first_touch = p.first_touch,
                        .impact_speed = p.impact_speed,
@@ -310,6 +342,51 @@ std::string internal::devices_headline(const Result& result) {
   if (std::isfinite(steady) && std::isfinite(of_step))
     words += fmt::format(", and carry a steady force from {} on instead of {}", quantity(steady, "s"), quantity(of_step, "s"));
   return words + ": best.toml.";
+}
+
+Picture internal::course_picture(const ResultDevices& d) {
+  Picture drawn;
+  if (!d.courses || d.courses->step.empty() || d.courses->own.empty()) return drawn;
+  const ResultDevices::Courses& courses = *d.courses;
+  const auto add = [&](const char* id, const char* title, const std::vector<std::vector<int>>& gaps, Role thin, Role band) {
+    drawn.tables[id] = courses_table(courses, gaps);
+    Chart chart{.id = id,
+                .title = title,
+                .caption = fmt::format("Gap of the contact on {} devices; the band holds 5 to 95 % of them.", gaps.size()),
+                .x_column = "time",
+                .x_label = "Time",
+                .x_unit = "s",
+                .y_label = "Gap",
+                .y_unit = "m",
+                .x_home = {0, courses.end},
+                .x_whole = {0, courses.end},
+                .zero_line = true,
+                .zero_label = "contact",
+                .height = 220,
+                .bands = {{.table = id, .low = "low", .high = "high", .role = band}}};
+    for (std::size_t k = 0; k < gaps.size(); ++k)
+      chart.series.push_back({.table = id, .column = std::to_string(k), .label = "", .role = thin});
+    drawn.charts.push_back(std::move(chart));
+  };
+  add("devices-step", "Plain step", courses.step, Role::device_before, Role::baseline);
+  add("devices-best", "best.toml", courses.own, Role::device, Role::best);
+  std::array<double, 2> home{0, 0};
+  for (const auto& [id, table] : drawn.tables) {
+    for (const auto& [name, column] : table) {
+      if (name == "time") continue;
+      const auto [low, high] = std::ranges::minmax(column);
+      home = {std::min(home[0], low), std::max(home[1], high)};
+    }
+  }
+  const double margin = 0.06 * (home[1] - home[0]);
+  for (Chart& chart : drawn.charts) chart.y_home = {home[0] - 2 * margin, home[1] + margin};
+  return drawn;
+}
+
+std::string svg_devices(const Result& result) {
+  const Picture drawn = course_picture(*result.devices);
+  return svg_page(devices_headline(result),
+                  drawn.charts.empty() ? result.title : result.title + ". " + drawn.charts.front().caption, drawn, 2);
 }
 
 std::vector<KeyNumber> internal::devices_keys(const ResultDevices& d) {
@@ -406,6 +483,15 @@ std::string measuring_words(const ResultDevices& d) {
              : fmt::format("With {} on each, 95 % touch at no more than {}: calibrated.toml.", what, speed_of(*measured));
 }
 
+std::string courses_html(const ResultDevices& d) {
+  const Picture drawn = course_picture(d);
+  if (drawn.charts.empty()) return {};
+  std::string pictures;
+  for (const Chart& chart : drawn.charts) pictures += small_picture(drawn.tables, chart);
+  return fmt::format("<div class=\"multiples\">\n{}</div>\n<p class=\"below\">{}</p>\n", pictures,
+                     escaped(drawn.charts.front().caption));
+}
+
 }  // namespace
 
 ReportSection internal::choices_section(const ResultDevices& d) {
@@ -423,6 +509,7 @@ ReportSection internal::devices_section(const ResultDevices& d) {
   ReportSection section{.id = "devices", .heading = "Process variation", .parts = {}, .shown = ShownIn::page};
   if (d.rows.empty()) return section;
   const auto note = [&](std::string text) { section.parts.emplace_back(Paragraph{.text = std::move(text), .is_note = true}); };
+  section.parts.emplace_back(Drawing{[&d](const Picture&) { return courses_html(d); }});
   section.parts.emplace_back(all_rows(d));
   section.parts.emplace_back(Drawing{[&d](const Picture&) { return choices_picture(d); }});
   for (const std::string& words : {path_words(d), delay_words(d), measuring_words(d)}) {

@@ -40,6 +40,7 @@ std::vector<ReportFile<Result>> files_of(const Result& result) {
   std::vector<ReportFile<Result>> files{{"report.html", [](const Result& r) { return page_html(result_document(r)); }},
                                         {"gap.svg", svg_gap_chart},
                                         {"result.json", [](const Result& r) { return json_text(result_json(r)); }}};
+  if (result.devices && result.devices->courses) files.push_back({"devices.svg", svg_devices});
   if (result.best.figures) files.push_back({"trajectory.csv", [](const Result& r) { return trajectory_csv(r.best.curve); }});
   return files;
 }

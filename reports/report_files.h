@@ -26,8 +26,8 @@ inline constexpr std::array robustness_files{"robustness.html", "robustness.json
 [[nodiscard]] std::vector<ReportFile<RobustnessReport>> files_of(const RobustnessReport& report);
 
 /// What a search for devices leaves besides.
-inline constexpr std::array for_devices_files{"drawing.toml", "drawing.csv", "calibrated.toml", "calibrated.csv",
-                                              "fast.toml",    "fast.csv",    "soft.toml",       "soft.csv"};
+inline constexpr std::array for_devices_files{"drawing.toml", "drawing.csv", "calibrated.toml", "calibrated.csv", "fast.toml",
+                                              "fast.csv",     "soft.toml",   "soft.csv",        "devices.svg"};
 /// Those of the result, the waveforms that were found as scenes and as what sources are told, and those of the devices.
 [[nodiscard]] std::vector<ReportFile<SearchReport>> files_of(const SearchReport& report);
 

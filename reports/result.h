@@ -163,6 +163,12 @@ struct ResultDevices {
     double reaches = Metrics::unset;  ///< at which the nominal design touches [V]
     double limit = Metrics::unset;    ///< of the driver, on that side [V]
   };
+  /// Gaps of devices under the plain step and under best.toml, at instants that divide the time evenly.
+  struct Courses {
+    double end = Metrics::unset;              ///< the last instant [s]
+    double unit = Metrics::unset;             ///< of the gaps [m]
+    std::vector<std::vector<int>> step, own;  ///< by device, then by instant
+  };
   struct FrontPoint {
     double first_touch = Metrics::unset, impact_speed = Metrics::unset, bounce_free = Metrics::unset;
     std::string candidate;  ///< "bspline:6 by cvar:0.9"
@@ -187,6 +193,7 @@ struct ResultDevices {
   std::optional<bool> goal_met;        ///< 95 % of the devices of best.toml rebound by no more than counts
   double missed_by = Metrics::unset;   ///< by which their rebound is more; 0 where the goal is met [m]
   double step_delay = Metrics::unset;  ///< of the electrode's plain step, where its instant was searched [s]
+  std::optional<Courses> courses;      ///< none where the plain step wins
   std::vector<FrontPoint> front;
   std::vector<ByError> by_error;
   HoldWindows windows;  ///< of hold levels

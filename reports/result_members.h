@@ -206,6 +206,14 @@ void members(A& a, ResultDevices::StablePath& path) {
 }
 
 template <class A>
+void members(A& a, ResultDevices::Courses& courses) {
+  a("end_s", courses.end);
+  a("unit_m", courses.unit);
+  a("plain_step", courses.step);
+  a("best", courses.own);
+}
+
+template <class A>
 void members(A& a, ResultDevices::FrontPoint& point) {
   a(key_of(&Metrics::initial_contact_time), point.first_touch);
   a(key_of(&Metrics::largest_impact_velocity), point.impact_speed);
@@ -248,6 +256,7 @@ void members(A& a, ResultDevices& devices) {
   a("goal_met", devices.goal_met);
   a("missed_by_m", devices.missed_by);
   a("step_delay_s", devices.step_delay);
+  a("gaps", devices.courses);
   a("front", devices.front);
   a("by_error_of_Vdp", devices.by_error);
   a.custom("hold_window_V", devices.windows, internal::windows_json, internal::read_windows);

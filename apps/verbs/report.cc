@@ -16,9 +16,9 @@
 #include "base/require.h"
 #include "reports/exploration_report.h"
 #include "reports/explored.h"
+#include "reports/report_files.h"
 #include "reports/result_document.h"
 #include "reports/result_reader.h"
-#include "reports/svg.h"
 #include "reports/text.h"
 #include "store/study_store.h"
 
@@ -98,11 +98,13 @@ int report_verb(const Common& given, const ReportRequest& request) {
   require_reportable(j, path.string());
   Common c = given;
   if (c.out.empty()) c.out = path.has_parent_path() ? path.parent_path().string() : ".";
-  const std::vector<std::string> files{"report.html", "gap.svg"};
-  ResultFolder folder = *claim_places(c, files);
   const Result r = read_result(j);
-  folder.write(files[0], page_html(result_document(r)));
-  folder.write(files[1], svg_gap_chart(r));
+  std::vector<ReportFile<Result>> pictures = files_of(r);
+  std::erase_if(pictures, [](const auto& file) { return !file.name.ends_with(".html") && !file.name.ends_with(".svg"); });
+  std::vector<std::string> files;
+  for (const auto& file : pictures) files.push_back(file.name);
+  ResultFolder folder = *claim_places(c, files);
+  for (const auto& file : pictures) folder.write(file.name, file.text(r));
   folder.publish(false);
   print(terminal_text(result_document(r)) + left_in(c.out, files));
   return exit_done;

@@ -12,7 +12,9 @@
 #include <utility>
 
 #include "base/choice.h"
+#include "base/executor.h"
 #include "base/require.h"
+#include "integrators/quintic.h"
 #include "sampling/confidence.h"
 #include "sampling/statistics.h"
 #include "studies/closing/actuator.h"
@@ -56,6 +58,26 @@ void summarise(DriveRobustness& drive) {
   std::partial_sort(drive.worst.begin(), drive.worst.begin() + kept, drive.worst.end(),
                     [&](std::size_t a, std::size_t b) { return height(a) != height(b) ? height(a) > height(b) : a < b; });
   drive.worst.resize(static_cast<std::size_t>(kept));
+}
+
+// The gap of the contact at so many instants from 0 to `end`; where the closing ended before, its last.
+std::vector<double> sampled_gap(const Trajectory& closing, std::size_t instants, double end) {
+  const std::vector<TrajectoryPoint>& knots = closing.points;
+  if (knots.empty()) return {};
+  std::vector<double> gap;
+  std::size_t next = 0;  // knot
+  for (std::size_t i = 0; i < instants; ++i) {
+    const double t = end * static_cast<double>(i) / static_cast<double>(instants - 1);
+    while (next < knots.size() && knots[next].time <= t) ++next;
+    const TrajectoryPoint& to = knots[std::min(next, knots.size() - 1)];
+    const TrajectoryPoint& from = next > 0 ? knots[next - 1] : to;
+    const double position = from.time < to.time ? Quintic(from.time, from.position, from.velocity, from.acceleration, to.time,
+                                                          to.position, to.velocity, to.acceleration)
+                                                      .position(t)
+                                                : to.position;
+    gap.push_back(closing.contact_gap - position);
+  }
+  return gap;
 }
 
 // In the order of Switch::drives(); what is not driven stays at 0 V.
@@ -247,6 +269,28 @@ std::vector<DeviceCourse> device_courses(const PreparedScene& nominal, const Dri
       continue;  // a device that cannot be described has no course
     }
   }
+  return courses;
+}
+
+GapCourses gap_courses(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t devices, std::size_t instants,
+                       double end, const RobustnessOptions& options, const Watch& watch) {
+  GapCourses courses{.end = end};
+  std::vector<std::vector<double>> all(std::min(devices, drive.outcomes.size()));
+  run_tasks(
+      all.size(), options.jobs,
+      [&](std::size_t k) {
+        try {
+          const PreparedScene own = prepare(scene_of_device(nominal, drive, k, options).again("device.toml"));
+          const Trajectory closing = simulate_closing(
+              own.model, own.signals(), {.duration = end, .tolerance = std::max(own.tolerance, EnsembleRun{}.tolerance)});
+          all[k] = sampled_gap(closing, instants, end);
+        } catch (const InvalidInput&) {  // a device that cannot be described has no course
+        }
+      },
+      watch.stop);
+  watch.throw_if_stopped();
+  std::erase_if(all, [](const std::vector<double>& gap) { return gap.empty(); });
+  courses.gaps = std::move(all);
   return courses;
 }
 

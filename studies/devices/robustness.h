@@ -98,6 +98,12 @@ struct DeviceCourse {
   Trajectory trajectory;
 };
 
+/// The gaps of the contacts of several devices at the same instants, which divide the time from 0 to `end` evenly.
+struct GapCourses {
+  double end = 0;                              ///< [s]
+  std::vector<std::vector<double>> gaps = {};  ///< by device, then by instant; below 0 in the contact [m]
+};
+
 /// A drive to be judged.
 struct NamedDrive {
   std::string name;
@@ -118,6 +124,11 @@ struct NamedDrive {
 /// The devices whose highest rebound is the 5, 50 and 95 % quantile of all, and how they close.
 [[nodiscard]] std::vector<DeviceCourse> device_courses(const PreparedScene& nominal, const DriveRobustness& drive,
                                                        const Robustness& found, const RobustnessOptions& options);
+
+/// How the first `devices` devices close until `end` [s], at `instants` instants; without those that cannot be described. Throws
+/// Interrupted where `watch` asks to stop.
+[[nodiscard]] GapCourses gap_courses(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t devices,
+                                     std::size_t instants, double end, const RobustnessOptions& options, const Watch& watch = {});
 
 /// The scene of a device of that ensemble under one of its drives, with the errors of its sources written out: what `simulate`
 /// runs to the same closing, as Ensemble::scene(), but for a sine whose times or volts are off (DeviceDrives::waveforms).

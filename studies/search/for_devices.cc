@@ -31,6 +31,8 @@ constexpr double by_chance = 1.02;  // devices of another sample wait so much lo
 constexpr double worth_choosing =
     0.9;  // of the impact velocity of the default, or of its time: what is nearer is no other choice
 constexpr double fewer_bounce_free = 0.05;
+constexpr std::size_t drawn_devices = 50, instants_of_course = 240;
+constexpr double after_steady = 1.1;  // times that until which courses are drawn
 
 class DevicesStudy {
  public:
@@ -220,6 +222,7 @@ class DevicesStudy {
     if (undelayed_) add_row(undelayed_row, undelayed_->waveforms);
     add(measured);
     front();
+    draw_courses();
     result_->windows = hold_windows(first().given, verdict_options(), watch_);
   }
 
@@ -423,6 +426,21 @@ class DevicesStudy {
     best.better_than_baseline = !result_->plain_step_wins;
     best.best_cost = searched_.cost().value(row_of_devices().judged.outcomes, searched_.aims().tail);
     best.baseline_cost = searched_.cost().value(result_->verdict.drives.front().outcomes, searched_.aims().tail);
+  }
+
+  // Until both carry a steady force, where they do.
+  void draw_courses() {
+    if (result_->plain_step_wins) return;
+    const DriveRobustness &step = result_->verdict.drives.front(), &own = row_of_devices().judged;
+    double end = 0;
+    for (const DriveRobustness* one : {&step, &own})
+      end = std::fmax(end, after_steady * waited(one->outcomes, &Metrics::steady_force_time));
+    end = std::fmin(end, result_->varied.duration);
+    const auto courses = [&](const DriveRobustness& drive) {
+      return gap_courses(result_->varied, drive, drawn_devices, instants_of_course, end, verdict_options(), watch_);
+    };
+    result_->courses_of_step = courses(step);
+    result_->courses = courses(own);
   }
 
   // The candidates of which none closes sooner and more softly, on the devices of the verdict.

@@ -77,6 +77,8 @@ struct ForDevicesResult {
   /// When the electrode's plain step comes under the winner, where its instant was searched [s].
   double step_delay = Metrics::unset;
   Robustness verdict;  ///< of plain step, drawing and winner
+  /// How the first devices close under the plain step and under the winner; none where the plain step wins.
+  GapCourses courses_of_step = {}, courses = {};
   std::vector<DevicesRow> rows = {};
   std::vector<std::string_view> worse_in = {};   ///< of the winner: see worse_in()
   std::vector<FrontPoint> front = {};            ///< by first touch

@@ -464,6 +464,8 @@ TEST(SearchForDevices, ApproachesTheContactThroughStableEquilibria_optimized) {
   EXPECT_LE(figure("for the devices", steady), 1.02 * figure("plain step", steady)) << "as soon as the plain step";
   EXPECT_LE(figure("fast", steady), 0.53 * figure("plain step", steady));
   EXPECT_GT(devices["step_delay_s"], 300e-6);
+  EXPECT_EQ(devices["gaps"]["best"].size(), 50U);
+  EXPECT_TRUE(fs::exists(here.path() / "out/devices.svg"));
   ASSERT_EQ(devices["choices"].size(), 3U);
   for (const json& choice : devices["choices"]) {
     const std::string file = "out/" + choice["file"].get<std::string>();

@@ -70,6 +70,7 @@ Result devices_result() {
   d.rows.push_back(row("fast", 0, 0.05, 120e-9));
   d.stable_path = {.drives = {"piezo", "main"}, .share = 0.965, .reaches = -0.948, .limit = -1};
   d.step_delay = 463e-6;
+  d.courses = {.end = 500e-6, .unit = 1e-9, .step = {{2000, 0, 800, 0}, {2010, 0, 700, 0}}, .own = {{2000, 400, 9, 0}}};
   d.goal_met = false;
   d.missed_by = 89e-9;
   d.next_command = "softland export out/calibrated.toml --device-vdp \"14.2 V\"";
@@ -109,6 +110,26 @@ TEST(DevicesReport, SaysThatTheStepIsDelayedAndWhatMeasuringWins) {
   EXPECT_THAT(text(), HasSubstr("With Vdp measured to 1 % on each, 95 % touch at no more than 16.6\u00a0mm/s: calibrated.toml."));
   r.devices->rows[3].at_95["largest_impact_velocity_m_s"] = 0.032;
   EXPECT_THAT(text(), HasSubstr("With Vdp measured to 1 % on each device nothing is won."));
+}
+
+TEST(DevicesReport, DrawsDevicesUnderTheStepAndTheWaveformSideBySide) {
+  Result r = devices_result();
+  const internal::Picture drawn = internal::course_picture(*r.devices);
+  ASSERT_EQ(drawn.charts.size(), 2U);
+  EXPECT_EQ(drawn.charts[0].series.size(), 2U) << "a curve for each device";
+  EXPECT_EQ(drawn.charts[0].y_home, drawn.charts[1].y_home) << "they are compared";
+  const internal::CurveTable& step = drawn.tables.at("devices-step");
+  EXPECT_DOUBLE_EQ(step.at("time").back(), 500e-6);
+  EXPECT_DOUBLE_EQ(step.at("0")[2], 800e-9);
+  EXPECT_GE(step.at("low")[2], 700e-9);
+  EXPECT_LE(step.at("high")[2], 800e-9);
+  for (const std::string& text : {page_html(result_document(r)), svg_devices(r)}) {
+    EXPECT_THAT(text, HasSubstr("the band holds 5 to 95 % of them"));
+    EXPECT_THAT(text, HasSubstr("clip-devices-best"));
+  }
+  r.devices->courses.reset();
+  EXPECT_TRUE(internal::course_picture(*r.devices).charts.empty());
+  EXPECT_THAT(page_html(result_document(r)), Not(HasSubstr("clip-devices-best")));
 }
 
 TEST(DevicesReport, SaysHowManyLandWhereHalfOfThemDo) {

@@ -456,6 +456,29 @@ TEST(Robustness, GivesTheSceneOfEveryDevice) {
   }
 }
 
+TEST(Robustness, FollowsTheGapsOfTheFirstDevices) {
+  const PreparedScene nominal = prepare(gold_at_17_volts());
+  const RobustnessOptions options{.samples = 16, .jobs = 2, .vectors = Vectors::none};
+  const Robustness found = robustness(nominal, {}, options);
+  const DriveRobustness& step = found.drives[0];
+  constexpr double end = 100e-6, interval = 0.1e-6;
+  const GapCourses courses = gap_courses(nominal, step, 3, 1001, end, options);
+  ASSERT_EQ(courses.gaps.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::vector<double>& gap = courses.gaps[k];
+    const SampledDevice device = DeviceBuilder(Ensemble(nominal, 16)).device(k);
+    EXPECT_NEAR(gap.front(), device.model->device().gap.contact, 1e-12);
+    const auto touch = static_cast<double>(std::ranges::find_if(gap, [](double g) { return g <= 0; }) - gap.begin());
+    const Metrics& m = step.outcomes[k].metrics;
+    EXPECT_NEAR(touch * interval, m.initial_contact_time, 1.01 * interval);
+    // Between two instants a quadratic through three is as near as the largest acceleration allows.
+    const auto at = static_cast<std::size_t>(touch) - 3;
+    EXPECT_NEAR(gap[at], (gap[at - 1] + gap[at + 1]) / 2, 1e-3 * gap[at]);
+    const double speed = (gap[at] - gap[at + 1]) / interval;
+    EXPECT_NEAR(speed, m.impact_velocity, 0.05 * m.impact_velocity);
+  }
+}
+
 TEST(Robustness, RefusesDrivesThatTheSceneDoesNotAllow) {
   const PreparedScene nominal = prepare(gold_at_17_volts());
   const auto refused = [&](const std::string& drive, const Waveform& waveform) {

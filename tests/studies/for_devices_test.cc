@@ -170,7 +170,7 @@ TEST(ForDevices, KeepsTheDrawingWhenItIsAskedToStopBeforeAnyDeviceWasLookedAt_op
                             .max_evaluations = 100'000,
                             .jobs = 2,
                             .stop = &stop,
-                            .on_evaluation = [&](const Evaluation& e, const OptimizeProgress&) { stop = e.index > 50; }},
+                            .on_evaluation = [&](const Evaluation& e, const OptimizeProgress&) { stop = stop || e.index > 50; }},
                            {.families = "catch+pulse", .closings = 100});
   EXPECT_TRUE(found.interrupted);
   EXPECT_TRUE(found.rows.empty());
