@@ -191,6 +191,18 @@ std::string choices_picture(const ResultDevices& d) {
   };
   for (const ResultDevices::Choice& one : d.choices) point(one.row(), Role::best, true);
   if (table["steady"].size() < 2) return {};
+  if (d.stable_path && d.stable_path->touch_places > 0) {
+    const ResultDevices::StablePath& path = *d.stable_path;
+    CurveTable& bound = tables["bound"];
+    constexpr int points = 60;
+    for (int i = 0; i <= points; ++i) {
+      const double time = path.rise + (1.15 * last - path.rise) * (i + 1) / (points + 1.0);
+      bound["steady"].push_back(time), bound["speed"].push_back(path.touch_places / (time - path.rise));
+    }
+    chart.series.push_back(
+        {.table = "bound", .column = "speed", .label = "touch places over the time left", .role = Role::limit});
+    softest = std::min(softest, bound["speed"].back());
+  }
   point("plain step", Role::baseline, false);
   point("electrode at t = 0", Role::baseline, false);
   chart.x_home = chart.x_whole = {0.0, 1.15 * last};
@@ -267,8 +279,12 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
   if (found.approach) {
     std::vector<std::string> drives{found.approach->drive};
     if (!found.approach->holder.empty()) drives.push_back(found.approach->holder);
-    d.stable_path = {
-        .drives = drives, .share = found.share_with_path, .reaches = found.approach->reaches, .limit = found.approach->limit};
+    d.stable_path = {.drives = drives,
+                     .share = found.share_with_path,
+                     .reaches = found.approach->reaches,
+                     .limit = found.approach->limit,
+                     .touch_places = found.approach->touch_places(),
+                     .rise = shortest_rise(found.varied)};
   }
   if (const ResultDevices::Row* own = d.row("for the devices")) {
     const double height = value_in(own->at_95, key_of(&Metrics::major_bounce_height));

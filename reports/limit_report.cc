@@ -166,6 +166,28 @@ internal::Chart curve(const std::string& table, const std::string& title, const 
   return chart;
 }
 
+json quasi_static_json(const Limit& limit) {
+  if (!limit.approach) return nullptr;
+  return {{"drive", limit.approach->drive},
+          {"touch_places_m", json_number(limit.approach->touch_places())},
+          {"steady_s", json_number(limit.step.steady_force_time)},
+          {"speed_m_s", json_number(limit.quasi_static)}};
+}
+
+// Says how softly one slow waveform can land all devices.
+std::string quasi_static_words(const Limit& limit) {
+  if (!limit.approach || !std::isfinite(limit.quasi_static)) return {};
+  const std::string drive = limit.approach->drive == piezo_drive ? "piezo" : "electrode " + limit.approach->drive;
+  return fmt::format(
+      "The {} can carry the devices of [spread] to their contact slowly, through stable equilibria. The places where 90 % of "
+      "them "
+      "touch lie {} apart on its way. A waveform that passes them evenly, and is steady as soon as the plain step, at {}, "
+      "touches "
+      "at {} or more.",
+      drive, quantity(limit.approach->touch_places(), "m"), quantity(limit.step.steady_force_time, "s"),
+      quantity(limit.quasi_static, "m/s"));
+}
+
 }  // namespace
 
 json limit_json(const Limit& limit, const Provenance& provenance) {
@@ -177,6 +199,7 @@ json limit_json(const Limit& limit, const Provenance& provenance) {
                       {"plain_step", metrics_json(limit.step)},
                       {"touch", least_json(limit.touch)},
                       {"at_rest", least_json(limit.rest)},
+                      {"quasi_static", quasi_static_json(limit)},
                       {"closed_state", closed_state_json(limit.closed_state)},
                       {"warnings", all_warnings(limit)},
                       {"landing", limit.landing ? landing_json(*limit.landing) : json()},
@@ -204,6 +227,7 @@ std::string limit_text(const Limit& limit) {
         std::string(limit.options.start.empty() ? "" : " or from the waveform of --start") +
         (model.empty() ? "." : ". A beam has more modes, by which a waveform can gain.") +
         " A beam whose modes still ring may bounce after a soft touch: the landing was simulated."});
+  if (const std::string words = quasi_static_words(limit); !words.empty()) section.parts.emplace_back(Paragraph{words});
   return terminal_text({.headline = fmt::format("How quickly {} can close the switch{}", drives_of(limit.options.actuator), peak),
                         .doubt = limit.interrupted ? "Interrupted: what follows is not all." : "",
                         .sections = {std::move(section)}});

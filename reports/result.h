@@ -158,10 +158,12 @@ struct ResultDevices {
   };
   /// How the switch can be carried to its contact through stable equilibria.
   struct StablePath {
-    std::vector<std::string> drives;  ///< the one that carries it first
-    double share = Metrics::unset;    ///< of the devices that have such a path within the limits
-    double reaches = Metrics::unset;  ///< at which the nominal design touches [V]
-    double limit = Metrics::unset;    ///< of the driver, on that side [V]
+    std::vector<std::string> drives;       ///< the one that carries it first
+    double share = Metrics::unset;         ///< of the devices that have such a path within the limits
+    double reaches = Metrics::unset;       ///< at which the nominal design touches [V]
+    double limit = Metrics::unset;         ///< of the driver, on that side [V]
+    double touch_places = Metrics::unset;  ///< within which 90 % of the devices touch: StableApproach::touch_places() [m]
+    double rise = Metrics::unset;          ///< the least time that passes before the first of them [s]
   };
   /// Gaps of devices under the plain step and under best.toml, at instants that divide the time evenly.
   struct Courses {

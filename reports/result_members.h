@@ -203,6 +203,8 @@ void members(A& a, ResultDevices::StablePath& path) {
   a("share_of_devices", path.share);
   a("reaches_V", path.reaches);
   a("limit_V", path.limit);
+  a("touch_places_m", path.touch_places);
+  a("rise_s", path.rise);
 }
 
 template <class A>

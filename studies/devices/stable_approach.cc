@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/executor.h"
+#include "model/constants.h"
 #include "model/pull_in.h"
 #include "studies/devices/ensemble.h"
 
@@ -98,6 +99,21 @@ class Finder {
 double room(const StableApproach& found) { return std::abs(found.limit - found.reaches) / std::max(found.deviation, 1e-300); }
 
 }  // namespace
+
+double StableApproach::touch_places() const {
+  constexpr double of_a_normal = 2 * 1.6448536269514722;  // deviations from its 5 % quantile to its 95 % one
+  return of_a_normal * deviation * std::abs(slope);
+}
+
+double shortest_rise(const PreparedScene& nominal) {
+  constexpr double periods = 1.5;  // a line of one, and half a one between the impulses
+  return periods * 2 * pi / nominal.model.basis().angular_frequencies()[0];
+}
+
+double quasi_static_speed(const StableApproach& approach, const PreparedScene& nominal, double steady) {
+  const double left = steady - shortest_rise(nominal);
+  return left > 0 ? approach.touch_places() / left : std::numeric_limits<double>::infinity();
+}
 
 std::optional<StableApproach> stable_approach(const PreparedScene& nominal, Actuator actuator) {
   if (!nominal.model.has_contact() || !nominal.rest()) return std::nullopt;

@@ -25,7 +25,18 @@ struct StableApproach {
   double deviation = 0;  ///< its standard deviation over the devices of the spread, to first order [V]
   double slope = 0;      ///< derivative of the contact point's deflection by that voltage, nominal design [m/V]
   double limit = 0;      ///< limit of the driver on that side [V]
+
+  /// How far the places are apart, on the way of the nominal design, at which 90 % of the devices touch: from the 5 % quantile to
+  /// the 95 % one, to first order [m].
+  [[nodiscard]] double touch_places() const;
 };
+
+/// The time that a shaper of two impulses takes to bring the switch near its contact without vibration [s].
+[[nodiscard]] double shortest_rise(const PreparedScene& nominal);
+/// A yardstick for slow approaches that land every device with one waveform: the speed at which the contact point of the nominal
+/// design passes the places where 90 % of the devices touch, evenly, in the time up to `steady` [s] that the shortest
+/// rise leaves. Infinite where it leaves none [m/s].
+[[nodiscard]] double quasi_static_speed(const StableApproach& approach, const PreparedScene& nominal, double steady);
 
 /// Finds the approach by a drive that a search with this actuator may shape; none where no drive has such a path on the nominal
 /// design. Drives without limits carry nothing. The deviation is 0 for a scene without [spread].

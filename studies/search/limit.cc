@@ -510,6 +510,8 @@ Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& wat
       simulate(read_back(with_waveforms(prepared, plain_step(prepared, options.actuator)), "step.toml", prepared), false, watch)
           .metrics;
   watch.throw_if_stopped();
+  if (!prepared.scene.spread.empty()) result.approach = stable_approach(prepared, options.actuator);
+  if (result.approach) result.quasi_static = quasi_static_speed(*result.approach, prepared, result.step.steady_force_time);
   constexpr double soft = 0.01;  // of the plain step's impact velocity
   require_request(options.impact_velocity || std::isfinite(result.step.impact_velocity),
                   [] { return "the plain step does not touch: give " + requested("impact-velocity"); });

@@ -22,6 +22,7 @@
 #include "studies/closing/closed_state.h"
 #include "studies/closing/prepared.h"
 #include "studies/closing/simulate.h"
+#include "studies/devices/stable_approach.h"
 #include "studies/search/optimize.h"
 #include "studies/search/search_space.h"
 
@@ -93,8 +94,12 @@ struct Limit {
   ClosedState closed_state = {};                                      ///< under the hold levels
   std::string hold_warning = {};                                      ///< where they do not keep the switch closed
   Metrics step;                                                       ///< of the plain step
-  LeastTime touch;                                                    ///< at the permitted speed
-  LeastTime rest;                                                     ///< with every mode at rest
+  /// How the switch can be carried to its contact through stable equilibria on the devices of [spread]; none where it cannot be,
+  /// or there is no [spread]. And the speed of that, in the time until the plain step's force is steady: quasi_static_speed().
+  std::optional<StableApproach> approach = {};
+  double quasi_static = std::numeric_limits<double>::quiet_NaN();  ///< [m/s]
+  LeastTime touch;                                                 ///< at the permitted speed
+  LeastTime rest;                                                  ///< with every mode at rest
   std::optional<LimitLanding> landing;  ///< the quickest without a rebound, else the one that rebounds least
   std::vector<LeastTime> over_peak, over_velocity;
   bool interrupted = false;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -52,6 +53,21 @@ TEST(LimitPicture, WhereNothingWasFoundSaysWhy) {
   nothing.landing.reset();
   nothing.touch = {.status = Status::no_contact, .message = "full pull does not bring the switch to its contact"};
   EXPECT_THAT(limit_svg(nothing), HasSubstr("full pull does not bring the switch to its contact"));
+}
+
+TEST(LimitReport, SaysHowSoftlyASlowWaveformCanLandAllDevices) {
+  Limit found = of_a_plate();
+  EXPECT_TRUE(limit_json(found, {}).at("quasi_static").is_null());
+  found.approach = {.drive = "piezo", .deviation = 0.03, .slope = -2e-6};
+  found.quasi_static = 813e-6;
+  found.step.steady_force_time = 391e-6;
+  const nlohmann::json told = limit_json(found, {}).at("quasi_static");
+  EXPECT_NEAR(told.at("touch_places_m"), 2 * 1.645 * 0.03 * 2e-6, 1e-10);
+  EXPECT_EQ(told.at("speed_m_s"), 813e-6);
+  std::string text = limit_text(found);
+  std::ranges::replace(text, '\n', ' ');
+  EXPECT_THAT(text, HasSubstr("lie 197\u00a0nm apart on its way"));
+  EXPECT_THAT(text, HasSubstr("at 391\u00a0µs, touches at 813\u00a0µm/s or more"));
 }
 
 TEST(LimitReport, SaysForWhichModelALeastTimeIsABound) {

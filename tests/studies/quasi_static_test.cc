@@ -49,6 +49,26 @@ TEST(StableApproach, SpreadsToFirstOrderAsItsDevicesDo) {
   EXPECT_LT(share, 1.0);
 }
 
+TEST(StableApproach, TellsHowFarThePlacesAreApartWhereDevicesTouch) {
+  const PreparedScene p = with_piezo();
+  const StableApproach found = *stable_approach(p, Actuator::pzt);
+  // The voltage within which this share of the devices touches, by bisection on the limit.
+  const auto voltage_of = [&](double share) {
+    double low = 0.7, high = 1.2;
+    for (int i = 0; i < 12; ++i) {
+      StableApproach limited = found;
+      limited.limit = -(low + high) / 2;
+      (share_with_path(p, limited, 512, 5, 2) < share ? low : high) = (low + high) / 2;
+    }
+    return low;
+  };
+  const double apart = (voltage_of(0.95) - voltage_of(0.05)) * std::abs(found.slope);
+  EXPECT_NEAR(found.touch_places(), apart, 0.08 * apart);
+  const double period = 2 * pi / p.model.basis().angular_frequencies()[0];
+  EXPECT_NEAR(quasi_static_speed(found, p, 3.5 * period), found.touch_places() / (2 * period), 1e-9);
+  EXPECT_TRUE(std::isinf(quasi_static_speed(found, p, 1.4 * period)));
+}
+
 TEST(StableApproach, CountsTheGainOfItsSource) {
   const StableApproach plain = *stable_approach(with_piezo(), Actuator::pzt),
                        weaker = *stable_approach(with_piezo({"driver.piezo.gain=0.98"}), Actuator::pzt);
