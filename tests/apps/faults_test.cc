@@ -57,7 +57,7 @@ std::map<std::string, Call> calls() {
        {gold + in_volts, gold + in_volts + many + long_window +
                              std::vector<std::string>{"--set", "simulate.effects=auto", "--set", "simulate.accuracy=1e-8"}}},
       {"effects", {gold + in_volts + short_window, gold + in_volts + many + long_window}},
-      {"accuracy", {gold + std::vector<std::string>{"--set", "waveform.main.level=3 V"}, gold + in_volts}},
+      {"accuracy", {gold + std::vector<std::string>{"--set", "waveform.main.level=3 V"}, {"slow.toml"}}},
       {"optimize",
        {gold + in_volts + std::vector<std::string>{"--robust", "none", "--budget", "6", "--set", "simulate.duration=150 us"},
         gold + in_volts + std::vector<std::string>{"--robust", "none", "--budget", "1000000"}}},
