@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The choices that `softland optimize` leaves on switches with a stable path and without: the tables of results/quasi-static.md.
 
-    bench/run_choices.py PROGRAM FOLDER [--seeds 1,2,3] [--only NAME ...]
+    bench/run_choices.py PROGRAM FOLDER [--seeds 1,2,3] [--only NAME ...] [--scene FILE ...]
 
 A search that FOLDER already has the result of is not run again. One search at a time, on all cores.
 """
@@ -39,7 +39,7 @@ def searched(program, folder, switch, seed):
     if not kept.exists():
         before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
         sets = [word for key in keys for word in ("--set", key)]
-        run = subprocess.run([program, "optimize", SCENES / f"{scene}.toml", "--actuator", actuator, "--seed", str(seed), "--quiet",
+        run = subprocess.run([program, "optimize", scene if scene.endswith(".toml") else SCENES / f"{scene}.toml", "--actuator", actuator, "--seed", str(seed), "--quiet",
                               "--out", place, *sets], capture_output=True, text=True, check=False)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         if run.returncode not in (0, 4):
@@ -62,10 +62,11 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--seeds", default="1,2,3")
     parser.add_argument("--only", action="append", default=[], help="switches of these names alone")
+    parser.add_argument("--scene", action="append", default=[], help="one more, of electrostatic drives")
     asked = parser.parse_args()
     asked.folder.mkdir(parents=True, exist_ok=True)
     lines, paths = [], []
-    for switch in SWITCHES:
+    for switch in SWITCHES + [(pathlib.Path(scene).stem, scene, "electrostatic", []) for scene in asked.scene]:
         if asked.only and switch[0] not in asked.only:
             continue
         for seed in asked.seeds.split(","):

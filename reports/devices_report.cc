@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -36,14 +37,17 @@ constexpr double half = 0.5;
 struct Column {
   std::string_view key, heading, short_heading;
   bool with_99 = false;
+  ShownIn shown = ShownIn::everywhere;
 };
 constexpr std::array columns{Column{key_of(&Metrics::largest_impact_velocity), "impact velocity", "impact", true},
                              Column{key_of(&Metrics::major_bounce_height), "highest rebound", "rebound", true},
                              Column{key_of(&Metrics::peak_contact_force), "peak force", "force"},
                              Column{key_of(&Metrics::steady_force_time), "steady force from", "steady"},
+                             Column{key_of(&Metrics::permanent_contact_time), "permanent contact", "", false, ShownIn::page},
                              Column{key_of(&Metrics::initial_contact_time), "first contact", "first contact"}};
 
-constexpr std::string_view steady_key = key_of(&Metrics::steady_force_time);
+constexpr std::string_view steady_key = key_of(&Metrics::steady_force_time),
+                           permanent_key = key_of(&Metrics::permanent_contact_time);
 
 ResultDevices::Row row_of(const DevicesRow& row) {
   const DriveRobustness& drive = row.judged;
@@ -57,7 +61,8 @@ ResultDevices::Row row_of(const DevicesRow& row) {
                        .open = std::max(0.0, 1 - drive.closing.value - drive.collapsed.value),
                        .collapsed = drive.collapsed.value};
   for (const Figure& f : device_figures) {
-    if (f.key == steady_key && !row.judged_whole) continue;
+    // What a run tells that goes to the end of the window.
+    if ((f.key == steady_key || f.key == permanent_key) && !row.judged_whole) continue;
     const std::string key(f.key);
     r.at_50[key] = drive.figures[f].quantiles[1].value;
     r.at_95[key] = drive.figures[f].quantiles[2].value;
@@ -276,6 +281,9 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
                          .file = one.name == default_choice ? "best.toml" : one.name + ".toml",
                          .waveform = one.candidate.family,
                          .tau = one.tau});
+  for (ResultDevices::Choice& one : d.choices) {
+    if (const ResultDevices::Row* row = d.row(one.row())) one.at_95 = row->at_95, one.at_99 = row->at_99;
+  }
   if (found.approach) {
     std::vector<std::string> drives{found.approach->drive};
     if (!found.approach->holder.empty()) drives.push_back(found.approach->holder);
@@ -409,7 +417,7 @@ std::vector<KeyNumber> internal::devices_keys(const ResultDevices& d) {
   const ResultDevices::Row *step = d.row("plain step"), *own = d.row("for the devices");
   if (step == nullptr || own == nullptr) return {};
   std::vector<KeyNumber> keys;
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < 4; ++i) {  // up to the steady force
     const std::string_view key = columns[i].key;
     keys.push_back({.name = capitalised(std::string(columns[i].heading)) + ", 95th percentile",
                     .value = cell_of(key, value_in(own->at_95, key)),
@@ -421,9 +429,13 @@ std::vector<KeyNumber> internal::devices_keys(const ResultDevices& d) {
 namespace {
 
 // These rows, by their names in the first column.
-ReportTable devices_table(const ResultDevices& d, const std::vector<std::pair<std::string, const ResultDevices::Row*>>& rows) {
+ReportTable devices_table(const ResultDevices& d, const std::vector<std::pair<std::string, const ResultDevices::Row*>>& rows,
+                          ShownIn where) {
   ReportTable table{.head = {"95th percentile (99th)"}, .rows = {}};
-  for (const Column& c : columns) table.head.push_back(headed(c.short_heading, c.heading));
+  std::vector<Column> shown;
+  std::ranges::copy_if(columns, std::back_inserter(shown),
+                       [&](const Column& c) { return c.shown == ShownIn::everywhere || c.shown == where; });
+  for (const Column& c : shown) table.head.push_back(headed(c.short_heading, c.heading));
   table.head.push_back(headed("≤ 1 / 10 / 100 nm", "rebound up to 1 / 10 / 100 nm"));
   const bool stay_open = any_of(d.rows, &ResultDevices::Row::open), pulled_in = any_of(d.rows, &ResultDevices::Row::collapsed);
   if (stay_open) table.head.emplace_back("stay open");
@@ -431,7 +443,7 @@ ReportTable devices_table(const ResultDevices& d, const std::vector<std::pair<st
   for (const auto& [name, row] : rows) {
     TableRow& line = table.rows.emplace_back(TableRow{name});
     const char* const style = row->name == "for the devices" ? "own" : "";
-    for (const Column& c : columns) {
+    for (const Column& c : shown) {
       std::string cell = cell_of(c.key, value_in(row->at_95, c.key));
       if (c.with_99 && !row->at_99.empty()) cell += fmt::format(" ({})", cell_of(c.key, value_in(row->at_99, c.key)));
       line.emplace_back(std::move(cell), style);
@@ -454,13 +466,13 @@ ReportTable choices_table(const ResultDevices& d) {
   if (d.choices.empty() && d.better_than_plain_step) add("for the devices");
   add("electrode at t = 0");
   if (!d.measured.empty()) add(d.measured);
-  return devices_table(d, rows);
+  return devices_table(d, rows, ShownIn::terminal);
 }
 
 ReportTable all_rows(const ResultDevices& d) {
   std::vector<std::pair<std::string, const ResultDevices::Row*>> rows;
   for (const ResultDevices::Row& row : d.rows) rows.emplace_back(shown_name(d, row), &row);
-  return devices_table(d, rows);
+  return devices_table(d, rows, ShownIn::page);
 }
 
 // Says which drive carries the switch to its contact: "The piezo carries 96.3 % of the devices to their contact ..."

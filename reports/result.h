@@ -154,6 +154,8 @@ struct ResultDevices {
   struct Choice {
     std::string name, file, waveform;
     double tau = Metrics::unset;  ///< what its devices wait for a steady contact, over the plain step
+    /// Quantiles, as those of its row.
+    std::map<std::string, double> at_95 = {}, at_99 = {};
     [[nodiscard]] std::string row() const { return name == "default" ? "for the devices" : name; }
   };
   /// How the switch can be carried to its contact through stable equilibria.

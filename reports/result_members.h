@@ -195,6 +195,8 @@ void members(A& a, ResultDevices::Choice& choice) {
   a("file", choice.file);
   a("waveform", choice.waveform);
   a("tau", choice.tau);
+  a("quantile_95", internal::OrInfinite{choice.at_95});
+  a("quantile_99", internal::OrInfinite{choice.at_99});
 }
 
 template <class A>

@@ -140,6 +140,16 @@ std::string words_on_devices(const Asked& asked, const SearchReport& report, con
   return on_devices(asked.c, *found.best().best_scene, asked.search.options.jobs, place);
 }
 
+// Of the many files of a search over devices the pages and the waveforms, and how many more there are.
+std::vector<std::string> foremost(std::vector<std::string> files) {
+  const auto others = std::ranges::stable_partition(
+      files, [](const std::string& name) { return name.ends_with(".html") || name.ends_with(".toml"); });
+  const std::size_t more = others.size();
+  files.erase(others.begin(), others.end());
+  if (more > 0) files.push_back(fmt::format("and {} more", more));
+  return files;
+}
+
 int run_search(const Asked& asked) {
   const Common& c = asked.c;
   StoredSearch& search = asked.search;
@@ -158,7 +168,11 @@ int run_search(const Asked& asked) {
   result.seeds = asked.seeds;
   session.add_log(result, report);
   std::vector<std::string> left = session.leave(report);
-  for (std::string& name : left) name += name == "best.toml" ? " (run it with `softland simulate`)" : "";
+  if (search.for_devices && !report.found.interrupted()) {
+    left = foremost(std::move(left));
+  } else {
+    for (std::string& name : left) name += name == "best.toml" ? " (run it with `softland simulate`)" : "";
+  }
   if (search.devices() == 0 && !c.quiet) {
     for (const std::string& broken : best.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
   }
