@@ -59,8 +59,12 @@ WatchedWork::~WatchedWork() {
   if (shown_ && bar_.terminal_) show_bar("");
 }
 
-SearchProgress::SearchProgress(bool quiet, const OptimizeOptions& options, std::string counted)
-    : bar_(quiet), budget_(options.max_evaluations), seconds_(options.max_seconds), counted_(std::move(counted)) {}
+SearchProgress::SearchProgress(bool quiet, const OptimizeOptions& options, std::string counted, std::string of)
+    : bar_(quiet),
+      budget_(options.max_evaluations),
+      seconds_(options.max_seconds),
+      counted_(std::move(counted)),
+      of_(std::move(of)) {}
 
 void SearchProgress::show(const OptimizeProgress& progress) {
   progress_ = progress;
@@ -73,8 +77,9 @@ void SearchProgress::close() {
 
 std::pair<double, std::string> SearchProgress::state(double elapsed) const {
   const bool timed = std::isfinite(seconds_);
-  std::string state = timed ? fmt::format("{:.0f} of {:g} s, {} {}", elapsed, seconds_, progress_.evaluations, counted_)
-                            : fmt::format("{} of {} {}, {:.0f} s", progress_.evaluations, budget_, counted_, elapsed);
+  std::string state = of_;
+  state += timed ? fmt::format("{:.0f} of {:g} s, {} {}", elapsed, seconds_, progress_.evaluations, counted_)
+                 : fmt::format("{} of {} {}, {:.0f} s", progress_.evaluations, budget_, counted_, elapsed);
   constexpr long telling = 100;  // of the budget so small a part tells nothing of the rest
   if (!timed && progress_.evaluations > budget_ / telling && progress_.evaluations < budget_) {
     const auto done = static_cast<double>(progress_.evaluations);

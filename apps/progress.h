@@ -56,8 +56,8 @@ class WatchedWork {
 /// How far a search is.
 class SearchProgress {
  public:
-  /// `counted`: what the budget counts, "evaluations".
-  SearchProgress(bool quiet, const OptimizeOptions& options, std::string counted);
+  /// `counted`: what the budget counts, "evaluations"; `of`: words before that.
+  SearchProgress(bool quiet, const OptimizeOptions& options, std::string counted, std::string of = {});
 
   void show(const OptimizeProgress& progress);
   void close();
@@ -68,7 +68,7 @@ class SearchProgress {
   Bar bar_;
   long budget_;
   double seconds_;
-  std::string counted_;
+  std::string counted_, of_;
   OptimizeProgress progress_;
 };
 

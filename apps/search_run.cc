@@ -74,7 +74,8 @@ SearchRun::SearchRun(const Common& c, StoredSearch& search, const std::optional<
                      SearchPlaces* places)
     : common_(c),
       preparation_(std::in_place, c.quiet, c.stop),
-      progress_(c.quiet, search.options, search.robust ? "closings" : "evaluations"),
+      progress_(c.quiet, search.options, search.robust ? "closings" : "evaluations",
+                search.for_devices ? "nominal design: " : ""),
       session_(search, known, output, places) {
   OptimizeOptions& options = search.options;
   options.on_preparation = [this](std::string_view what, double part) {
@@ -113,15 +114,15 @@ void SearchRun::tell(const Leading& leading) {
       text += internal::right_aligned(
           figure(quantile(outcomes, key, 0.95), unit) + " (" + figure(quantile(outcomes, key, 0.99), unit) + ")", 24);
     }
-    say(text + internal::right_aligned(figure(waited(outcomes, leading.waited_for), "s"), 12) + after);
+    say(text + internal::right_aligned(figure(waited(outcomes, leading.waited_for), "s"), 14) + after);
   };
   if (!std::exchange(has_table_, true)) {
     say(fmt::format("On {} simulated devices so far; the search goes on, and this gets better.", leading.own.size()));
-    say(fmt::format("  {:16}{:>24}{:>24}{:>12}", "95 % (99 %)", "impact", "rebound", "steady"));
+    say(fmt::format("  {:16}{:>24}{:>24}{:>14}   {}", "95 % (99 %)", "impact", "rebound", "steady from", "found after"));
     row("plain step", leading.of_step, "");
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
-  row(leading.family, leading.own, fmt::format("   after {:.0f} s", elapsed.count()));
+  row(leading.family, leading.own, fmt::format("   {:.0f} s", elapsed.count()));
 }
 
 void SearchRun::close() {
@@ -132,11 +133,13 @@ void SearchRun::close() {
 
 std::string search_words(const Common& c, const StoredSearch& search) {
   const OptimizeOptions& o = search.options;
-  const std::string devices = search.robust ? fmt::format(", over devices of the spread ({})", search.robust->aim.measure.text)
-                              : search.for_devices ? std::string(", and one for devices that differ")
-                                                   : std::string();
-  return fmt::format("{}: searching a {} waveform, actuator {}, target {}{}", c.scene.empty() ? c.out : c.scene,
-                     families_in_words(o.family), name_of(actuators, o.actuator), o.target.text(), devices);
+  const std::string scene = c.scene.empty() ? c.out : c.scene;
+  const std::string aim = fmt::format("actuator {}, target {}", name_of(actuators, o.actuator), o.target.text());
+  if (search.for_devices)
+    return fmt::format("{}: searching waveforms for devices that differ, and one for the nominal design, {}", scene, aim);
+  const std::string devices =
+      search.robust ? fmt::format(", over devices of the spread ({})", search.robust->aim.measure.text) : std::string();
+  return fmt::format("{}: searching a {} waveform, {}{}", scene, families_in_words(o.family), aim, devices);
 }
 
 }  // namespace softland::apps

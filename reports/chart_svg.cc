@@ -44,9 +44,9 @@ Stroke stroke(Role role) {
     case Role::limit:
       return {muted, 1.3, "2 3"};
     case Role::device:
-      return {"#7fb8dc", 0.4, ""};
+      return {"#a8cfe8", 0.4, ""};
     case Role::device_before:
-      return {"#e9a87c", 0.4, ""};
+      return {"#f0c4a5", 0.4, ""};
     case Role::evaluations:
       break;
   }
@@ -260,7 +260,7 @@ std::string chart_band(const CurveTables& tables, const Chart& chart, const Band
   edge.insert(edge.end(), back.rbegin(), back.rend());
   std::string path;
   for (const auto& [px, py] : edge) path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " ", px, py);
-  return fmt::format("<path d=\"{}Z\" fill=\"{}\" fill-opacity=\"0.35\"/>\n", path, stroke(band.role).colour);
+  return fmt::format("<path d=\"{}Z\" fill=\"{}\" fill-opacity=\"0.25\"/>\n", path, stroke(band.role).colour);
 }
 
 std::string chart_mark(const Mark& mark, const Axes& axes) {

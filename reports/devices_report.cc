@@ -41,8 +41,8 @@ struct Column {
 };
 constexpr std::array columns{Column{key_of(&Metrics::largest_impact_velocity), "impact velocity", "impact", true},
                              Column{key_of(&Metrics::major_bounce_height), "highest rebound", "rebound", true},
-                             Column{key_of(&Metrics::peak_contact_force), "peak force", "force"},
-                             Column{key_of(&Metrics::steady_force_time), "steady force from", "steady"},
+                             Column{key_of(&Metrics::peak_contact_force), "peak force", "peak force"},
+                             Column{key_of(&Metrics::steady_force_time), "steady force from", "steady from"},
                              Column{key_of(&Metrics::permanent_contact_time), "permanent contact", "", false, ShownIn::page},
                              Column{key_of(&Metrics::initial_contact_time), "first contact", "first contact"}};
 
@@ -102,14 +102,24 @@ std::string cell_of(std::string_view key, double value) {
   return quantity(value, figure_of(key).unit);
 }
 
-// "2.0 / 98.4 / 100 %": the shares of devices that rebound by no more than each height.
+// "2.45 (33.8) mm/s", and with two units "723 µm/s (34.0 mm/s)".
+std::string with_bracket(const std::string& value, const std::string& other) {
+  constexpr std::string_view blank = "\u00a0";
+  const std::size_t unit = value.find(blank), other_unit = other.find(blank);
+  const bool is_same =
+      unit != std::string::npos && other_unit != std::string::npos && value.substr(unit) == other.substr(other_unit);
+  return is_same ? fmt::format("{} ({}){}", value.substr(0, unit), other.substr(0, other_unit), value.substr(unit))
+                 : fmt::format("{} ({})", value, other);
+}
+
+// "2.0 / 98 / 100 %": the shares of devices that rebound by no more than each height. They are cut, so that 100 % are all.
 std::string yields_cell(const ResultDevices::Row& row) {
   if (row.yield.empty()) return "—";
   std::string cell;
   for (const auto& [height, key] : ResultDevices::yield_heights) {
-    std::string share = percent(value_in(row.yield, key));
-    share.resize(share.rfind(' '));
-    cell += (cell.empty() ? "" : " / ") + share;
+    constexpr double few = 10;
+    const double share = 100 * value_in(row.yield, key) + 1e-9;
+    cell += (cell.empty() ? "" : " / ") + (share < few ? fmt::format("{:.1f}", share) : fmt::format("{:.0f}", std::floor(share)));
   }
   return cell + " %";
 }
@@ -130,17 +140,6 @@ bool any_of(const std::vector<ResultDevices::Row>& rows, double ResultDevices::R
   return std::ranges::any_of(rows, [&](const ResultDevices::Row& row) { return row.*share > least_share; });
 }
 
-std::string front_words(const ResultDevices::FrontPoint& p) {
-  return fmt::format("{}: touch within {} at up to {}, {} without a rebound", p.candidate, quantity(p.first_touch, "s"),
-                     quantity(p.impact_speed, "m/s"), percent(p.bounce_free));
-}
-
-std::string known_words(const ResultDevices::ByError& known) {
-  const std::string speed = std::isfinite(known.impact_speed) ? quantity(known.impact_speed, "m/s") : std::string("∞");
-  return fmt::format("Vdp to {:g} %: {} land without a rebound, or 95 % touch at no more than {}", 100 * known.error,
-                     percent(known.bounce_free), speed);
-}
-
 // On a page there is room for more words.
 TableCell headed(std::string_view on_terminal, std::string_view on_page) {
   TableCell cell(on_terminal);
@@ -159,6 +158,7 @@ CurveTable courses_table(const ResultDevices::Courses& courses, const std::vecto
       all.push_back(courses.unit * gaps[k].at(i));
       table[std::to_string(k)].push_back(all.back());
     }
+    table["median"].push_back(sample_quantile(all, 0.5));
     table["low"].push_back(sample_quantile(all, 0.05));
     table["high"].push_back(sample_quantile(all, 0.95));
   }
@@ -175,9 +175,9 @@ std::string choices_picture(const ResultDevices& d) {
       .title = "Time against softness",
       .caption = "The 95th percentile of the impact velocity over that of the time from which the contact force is steady.",
       .x_column = "steady",
-      .x_label = "Steady force from",
+      .x_label = "Steady force from, 95 % of devices",
       .x_unit = "s",
-      .y_label = "Impact velocity",
+      .y_label = "Impact velocity, 95 %",
       .y_unit = "m/s",
       .scale = Scale::logarithmic,
       .height = 260,
@@ -338,8 +338,12 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
 
 std::string internal::drawing_words(const ResultDevices& d) {
   const double closed = d.drawing[&Metrics::permanent_contact_time], height = d.drawing[&Metrics::major_bounce_height];
-  if (d.drawing_goal_met && std::isfinite(closed))
-    return fmt::format("The nominal design alone is closed without a rebound at {}: drawing.toml.", quantity(closed, "s"));
+  if (d.drawing_goal_met && std::isfinite(closed)) {
+    const ResultDevices::Row* row = d.row("for the drawing");
+    const std::string on_devices = row == nullptr ? "" : fmt::format(" (95 % of the devices: {})", speed_of(*row));
+    return fmt::format("drawing.toml closes the nominal design alone without a rebound, at {}{}.", quantity(closed, "s"),
+                       on_devices);
+  }
   if (!std::isfinite(height)) return "No waveform was found that closes the nominal design for good: drawing.toml.";
   return fmt::format("The nominal design alone rebounds by up to {}: drawing.toml.", quantity(height, "m"));
 }
@@ -376,7 +380,7 @@ Picture internal::course_picture(const ResultDevices& d) {
     drawn.tables[id] = courses_table(courses, gaps);
     Chart chart{.id = id,
                 .title = title,
-                .caption = fmt::format("Gap of the contact on {} devices; the band holds 5 to 95 % of them.", gaps.size()),
+                .caption = fmt::format("Gap of the contact on {} devices: median, and band of 5 to 95 %.", gaps.size()),
                 .x_column = "time",
                 .x_label = "Time",
                 .x_unit = "s",
@@ -390,10 +394,11 @@ Picture internal::course_picture(const ResultDevices& d) {
                 .bands = {{.table = id, .low = "low", .high = "high", .role = band}}};
     for (std::size_t k = 0; k < gaps.size(); ++k)
       chart.series.push_back({.table = id, .column = std::to_string(k), .label = "", .role = thin});
+    chart.series.push_back({.table = id, .column = "median", .label = "", .role = band});
     drawn.charts.push_back(std::move(chart));
   };
   add("devices-step", "Plain step", courses.step, Role::device_before, Role::baseline);
-  add("devices-best", "best.toml", courses.own, Role::device, Role::best);
+  add("devices-best", d.choices.empty() ? "best.toml" : "default: best.toml", courses.own, Role::device, Role::best);
   std::array<double, 2> home{0, 0};
   for (const auto& [id, table] : drawn.tables) {
     for (const auto& [name, column] : table) {
@@ -408,9 +413,20 @@ Picture internal::course_picture(const ResultDevices& d) {
 }
 
 std::string svg_devices(const Result& result) {
-  const Picture drawn = course_picture(*result.devices);
-  return svg_page(devices_headline(result),
-                  drawn.charts.empty() ? result.title : result.title + ". " + drawn.charts.front().caption, drawn, 2);
+  Picture drawn = course_picture(*result.devices);
+  const std::string words = drawn.charts.empty() ? result.title : result.title + ". " + drawn.charts.front().caption;
+  // Below them what each drive does.
+  Picture others = gap_and_drives(result);
+  for (Chart& chart : others.charts) {
+    if (!chart.id.starts_with("drive")) continue;
+    if (result.devices->courses) chart.x_home = {0, result.devices->courses->end};
+    for (Series& one : chart.series) {
+      if (one.role == Role::limit) one.label.clear();  // half a page is too narrow for it
+    }
+    drawn.charts.push_back(std::move(chart));
+  }
+  drawn.tables.merge(others.tables);
+  return svg_page(devices_headline(result), words, drawn, 2);
 }
 
 std::vector<KeyNumber> internal::devices_keys(const ResultDevices& d) {
@@ -436,7 +452,7 @@ ReportTable devices_table(const ResultDevices& d, const std::vector<std::pair<st
   std::ranges::copy_if(columns, std::back_inserter(shown),
                        [&](const Column& c) { return c.shown == ShownIn::everywhere || c.shown == where; });
   for (const Column& c : shown) table.head.push_back(headed(c.short_heading, c.heading));
-  table.head.push_back(headed("≤ 1 / 10 / 100 nm", "rebound up to 1 / 10 / 100 nm"));
+  table.head.push_back(headed("≤ 1 / 10 / 100 nm", "devices ≤ 1 / 10 / 100 nm"));
   const bool stay_open = any_of(d.rows, &ResultDevices::Row::open), pulled_in = any_of(d.rows, &ResultDevices::Row::collapsed);
   if (stay_open) table.head.emplace_back("stay open");
   if (pulled_in) table.head.push_back(headed("pulled in", "collapse onto the electrode"));
@@ -445,7 +461,7 @@ ReportTable devices_table(const ResultDevices& d, const std::vector<std::pair<st
     const char* const style = row->name == "for the devices" ? "own" : "";
     for (const Column& c : shown) {
       std::string cell = cell_of(c.key, value_in(row->at_95, c.key));
-      if (c.with_99 && !row->at_99.empty()) cell += fmt::format(" ({})", cell_of(c.key, value_in(row->at_99, c.key)));
+      if (c.with_99 && !row->at_99.empty()) cell = with_bracket(cell, cell_of(c.key, value_in(row->at_99, c.key)));
       line.emplace_back(std::move(cell), style);
     }
     line.emplace_back(yields_cell(*row), style);
@@ -469,9 +485,16 @@ ReportTable choices_table(const ResultDevices& d) {
   return devices_table(d, rows, ShownIn::terminal);
 }
 
+// In the order of the choices, and then the others.
 ReportTable all_rows(const ResultDevices& d) {
   std::vector<std::pair<std::string, const ResultDevices::Row*>> rows;
-  for (const ResultDevices::Row& row : d.rows) rows.emplace_back(shown_name(d, row), &row);
+  const auto add = [&](const ResultDevices::Row* row) {
+    if (row != nullptr && std::ranges::none_of(rows, [&](const auto& there) { return there.second == row; }))
+      rows.emplace_back(shown_name(d, *row), row);
+  };
+  add(d.row("plain step"));
+  for (const ResultDevices::Choice& one : d.choices) add(d.row(one.row()));
+  for (const ResultDevices::Row& row : d.rows) add(&row);
   return devices_table(d, rows, ShownIn::page);
 }
 
@@ -484,7 +507,7 @@ std::string path_words(const ResultDevices& d) {
       "The {} carries {} of the devices to their contact through stable equilibria within {} (the nominal design "
       "touches at {}).",
       drive, percent(path.share), quantity(path.limit, "V"), quantity(path.reaches, "V"));
-  if (path.share < 1) words += " The others are closed by the electrode, at the speed of the 99th percentile.";
+  if (path.share < 1) words += " The electrode closes the others, as fast as the 99th percentile says.";
   if (drive == "piezo") words += " Creep and hysteresis of the piezo are not in the model.";
   return words;
 }
@@ -500,12 +523,12 @@ std::string delay_words(const ResultDevices& d) {
 // Says how much measuring every device would win.
 std::string measuring_words(const ResultDevices& d) {
   const ResultDevices::Row *own = d.row("for the devices"), *measured = d.row(d.measured);
+  const bool were_judged =
+      std::ranges::any_of(d.rows, [](const ResultDevices::Row& row) { return std::isfinite(row.pull_in_error); });
+  if (measured == nullptr && were_judged) return "Measuring Vdp or a closing time on each device wins nothing.";
   if (own == nullptr || measured == nullptr || d.next_command.empty()) return {};
   const char* const what = std::isfinite(measured->time_error) ? "one closing time measured to 50 ns" : "Vdp measured to 1 %";
-  const double before = value_in(own->at_95, columns[0].key), after = value_in(measured->at_95, columns[0].key);
-  constexpr double worth = 0.9;  // a gain in impact velocity that is worth telling
   const bool lands_more = measured->bounce_free >= half && measured->bounce_free > own->bounce_free;
-  if (!lands_more && !(after < worth * before)) return fmt::format("With {} on each device nothing is won.", what);
   return lands_more
              ? fmt::format("With {} on each, {} close without a rebound: calibrated.toml.", what, percent(measured->bounce_free))
              : fmt::format("With {} on each, 95 % touch at no more than {}: calibrated.toml.", what, speed_of(*measured));
@@ -526,8 +549,9 @@ ReportSection internal::choices_section(const ResultDevices& d) {
   ReportSection section{.id = "choices", .heading = "Choices", .parts = {}, .shown = ShownIn::terminal};
   if (d.rows.empty()) return section;
   section.parts.emplace_back(choices_table(d));
-  std::string words = measuring_words(d);
-  for (const std::string& more : {drawing_words(d), delay_words(d)}) words += (words.empty() || more.empty() ? "" : " ") + more;
+  std::string words = fmt::format("Process variation: {}.", d.spread);
+  for (const std::string& more : {path_words(d), delay_words(d), measuring_words(d), drawing_words(d)})
+    words += (more.empty() ? "" : " ") + more;
   section.parts.emplace_back(Paragraph{std::move(words)});
   if (!d.next_command.empty()) section.parts.emplace_back(ReportList{{d.next_command}});
   return section;
@@ -547,15 +571,10 @@ ReportSection internal::devices_section(const ResultDevices& d) {
     note(fmt::format("best.toml is a {} waveform, searched by {}; {:.0f} closings in all. Devices: {}.{}", d.waveform,
                      d.measure == "drawing" ? "the nominal search" : d.measure, d.closings, d.spread,
                      d.spread_assumed ? " The scene has no [spread]: this one is assumed." : ""));
-  const auto list = [&](const char* head, const auto& all, const auto& words) {
-    section.parts.emplace_back(SubHeading{head});
-    ReportList lines;
-    for (const auto& one : all) lines.lines.push_back(words(one));
-    section.parts.emplace_back(std::move(lines));
-  };
-  if (d.front.size() > 1) list("Sooner or softer, of 95 % of the devices", d.front, front_words);
-  if (!d.by_error.empty())
-    list("What a measured Vdp is worth, by its error, with one waveform or another", d.by_error, known_words);
+  if (d.missed_by > 0)
+    note(fmt::format("95 % of the devices rebound by up to {}, {} more than counts as a rebound.",
+                     cell_of(columns[1].key, value_in(d.row("for the devices")->at_95, columns[1].key)),
+                     quantity(d.missed_by, "m")));
   section.parts.emplace_back(Drawing{[&d](const Picture&) { return error_curve(d); }});
   note(window_words(d.windows));
   for (const ResultRobust::Condition& c : d.conditions)

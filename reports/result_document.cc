@@ -135,7 +135,7 @@ ReportSection figures_section(const Result& result) {
     section.parts.emplace_back(SubHeading{result.devices->better_than_plain_step ? "best.toml on the nominal design"
                                                                                  : "The plain step on the nominal design"});
   if (result.best.figures || result.baseline.figures) section.parts.emplace_back(figures_table(result));
-  if (result.goal_met)
+  if (result.goal_met && !result.devices)
     section.parts.emplace_back(Paragraph{fmt::format("The goal is {}.", *result.goal_met ? "met" : "not met")});
   for (const std::string& words : {limit_words(result), certificate_caption(result), robust_caption(result)})
     section.parts.emplace_back(Paragraph{words});

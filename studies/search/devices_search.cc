@@ -74,13 +74,6 @@ std::pair<std::vector<SearchSetting>, std::string> settings_of_race(const SceneF
   return {std::move(settings), kept};
 }
 
-// More devices that land, where half of them do in either; else the softer impacts.
-bool lands_better(const DevicesRow& a, const DevicesRow& b) {
-  const double lands = std::max(a.judged.bounce_free.value, b.judged.bounce_free.value);
-  if (lands >= lands_half) return a.judged.bounce_free.value > b.judged.bounce_free.value;
-  return quantile_95(a.judged.outcomes, judged_figures[0]) < quantile_95(b.judged.outcomes, judged_figures[0]);
-}
-
 bool same_candidate(const ChosenFrom& a, const ChosenFrom& b) {
   return a.family == b.family && a.parameters == b.parameters && !a.parameters.empty();
 }
@@ -93,6 +86,12 @@ double quantile(const std::vector<DeviceOutcome>& outcomes, std::string_view key
   return sample_quantile(values, probability);
 }
 double quantile_95(const std::vector<DeviceOutcome>& outcomes, std::string_view key) { return quantile(outcomes, key, 0.95); }
+
+bool lands_better(const DevicesRow& a, const DevicesRow& b) {
+  const double lands = std::max(a.judged.bounce_free.value, b.judged.bounce_free.value);
+  if (lands >= lands_half) return a.judged.bounce_free.value > b.judged.bounce_free.value;
+  return quantile_95(a.judged.outcomes, judged_figures[0]) < quantile_95(b.judged.outcomes, judged_figures[0]);
+}
 
 double share_of(const std::vector<DeviceOutcome>& outcomes, bool (*holds)(const DeviceOutcome&)) {
   return static_cast<double>(std::ranges::count_if(outcomes, holds)) / static_cast<double>(outcomes.size());
@@ -423,7 +422,7 @@ InMeasuredUnits DevicesSearch::in_measured_units(const ChosenFrom& winner, const
   if (found[1] && times) all.rows.push_back(row_of("closing time to 50 ns", *found[1], by_time, true));
   std::vector waveforms{*found[0]};
   if (found[1]) waveforms.push_back(*found[1]);
-  all.by_error = judged_by_error(waveforms);
+  all.by_error = judged_by_error(waveforms, winner.waveforms);
   const bool time_wins = found[1] && times && lands_better(all.rows.back(), all.rows.front());
   all.best = time_wins ? all.rows.size() - 1 : 0;
   all.best_waveforms = time_wins ? *found[1] : *found[0];
@@ -511,17 +510,21 @@ DevicesRow DevicesSearch::row_of(const char* name, const DriveWaveforms& wavefor
                                          std::move(outcomes))};
 }
 
-// What the better of these waveforms reaches where Vdp is known with ever larger errors.
-std::vector<KnownVdp> DevicesSearch::judged_by_error(const std::vector<DriveWaveforms>& waveforms) {
+// What the best of these waveforms reaches where Vdp is known with ever larger errors; the one in volts needs no Vdp.
+std::vector<KnownVdp> DevicesSearch::judged_by_error(const std::vector<DriveWaveforms>& waveforms,
+                                                     const DriveWaveforms& in_volts) {
   std::vector<KnownVdp> judged;
   const GaugedEnsemble& all = gauged({.pull_in_error = coarse_error});
   const auto end = static_cast<std::ptrdiff_t>(std::min(devices_by_error, all.devices.size()));
   const GaugedEnsemble few{.devices = {all.devices.begin(), all.devices.begin() + end},
                            .exact = {all.exact.begin(), all.exact.begin() + end}};
+  const RobustCost unmeasured(first(), aims_.tail, known_as(few, KnownUnits(), options_.seed));
+  const std::vector<DeviceOutcome> least = closed(unmeasured, in_volts);
   for (const double error : errors_of_pull_in) {
     const Calibration knowledge{.pull_in_error = error};
     const RobustCost fresh(first(), aims_.tail, known_as(few, KnownUnits(knowledge), options_.seed));
-    KnownVdp best{.error = error};
+    KnownVdp best{
+        .error = error, .bounce_free = share_of(least, is_bounce_free), .impact_speed = quantile_95(least, judged_figures[0])};
     for (const auto& waveform : waveforms) {
       const std::vector<DeviceOutcome> outcomes = closed(fresh, waveform);
       best.bounce_free = std::fmax(best.bounce_free, share_of(outcomes, is_bounce_free));

@@ -51,8 +51,11 @@ struct DevicesRow {
   DriveRobustness judged = {};
 };
 
-/// What is reached in units of a Vdp that is measured with an error, on the first of the fresh devices, each figure by the better
-/// of the waveforms that were searched in measured units.
+/// More devices that land, where half of them do in either; else the softer impacts.
+[[nodiscard]] bool lands_better(const DevicesRow& a, const DevicesRow& b);
+
+/// What is reached in units of a Vdp that is measured with an error, on the first of the fresh devices, each figure by the best
+/// of the waveforms that were searched in measured units, and of the winner in volts.
 struct KnownVdp {
   double error = 0;                                                    ///< of Vdp, standard deviation, relative
   double bounce_free = Metrics::unset, impact_speed = Metrics::unset;  ///< share of the devices; 95 % quantile [m/s]
@@ -190,7 +193,8 @@ class DevicesSearch {
   [[nodiscard]] RaceAims no_harder() const;
   [[nodiscard]] DevicesRow row_of(const char* name, const DriveWaveforms& waveforms, const Calibration& knowledge,
                                   bool searched_for_it);
-  [[nodiscard]] std::vector<KnownVdp> judged_by_error(const std::vector<DriveWaveforms>& waveforms);
+  [[nodiscard]] std::vector<KnownVdp> judged_by_error(const std::vector<DriveWaveforms>& waveforms,
+                                                      const DriveWaveforms& in_volts);
   [[nodiscard]] const GaugedEnsemble& gauged(const Calibration& knowledge);
 
   const OptimizeOptions& options_;

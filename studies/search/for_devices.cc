@@ -206,12 +206,12 @@ class DevicesStudy {
     result_->share_with_path = searched_.share_with_path();
     make_choices();
     result_->varied = over_whole_window(first().given);
-    std::vector<NamedDrive> drives{{.name = for_the_drawing, .waveforms = searched_.all_drives(drawing_waveforms())},
-                                   of_candidate(0)};
+    std::vector<NamedDrive> drives{{.name = for_the_drawing, .waveforms = searched_.all_drives(drawing_waveforms())}};
     for (const DeviceChoice& one : result_->choices) {
       if (one.name != default_choice) drives.push_back(named(one.name.c_str(), one.candidate));
     }
     if (undelayed_) drives.push_back(named(undelayed_row, *undelayed_));
+    drives.push_back(of_candidate(0));  // the last one is what their report is about
     result_->verdict = robustness(result_->varied, drives, verdict_options(), watch_);
     result_->interrupted = result_->verdict.interrupted;
     add_row(plain_step_row, plain_step(first().given, options_.actuator));
@@ -287,13 +287,45 @@ class DevicesStudy {
     return given;
   }
 
+  // Who knows more of a device may drive it as one who knows less, and does where that lands better.
+  static void inherit(DevicesRow& row, const DevicesRow& other) {
+    const auto includes = [](const std::optional<double>& more, const std::optional<double>& less) {
+      return !less || (more && *more <= *less);
+    };
+    const Calibration &own = row.knowledge, &known = other.knowledge;
+    const bool knows_more = includes(own.pull_in_error, known.pull_in_error) &&
+                            includes(own.frequency_error, known.frequency_error) &&
+                            includes(own.piezo_error, known.piezo_error) && includes(own.time_error, known.time_error);
+    if (!knows_more || !lands_better(other, row)) return;
+    row.judged = other.judged;
+    row.judged_whole = other.judged_whole;
+    row.searched_for_it = false;
+  }
+
+  static bool is_worth_measuring(const DevicesRow& measured, const DevicesRow& own) {
+    const double lands = measured.judged.bounce_free.value;
+    if (std::max(lands, own.judged.bounce_free.value) >= lands_half) return lands > own.judged.bounce_free.value;
+    const auto speed = [](const DevicesRow& row) {
+      return quantile_95(row.judged.outcomes, key_of(&Metrics::largest_impact_velocity));
+    };
+    return speed(measured) < worth_choosing * speed(own);
+  }
+
   void add(const InMeasuredUnits& measured) {
     result_->pull_in = measured.pull_in;
     result_->closing_time = measured.closing_time;
     result_->by_error = measured.by_error;
     if (measured.rows.empty()) return;
-    std::ranges::copy(measured.rows, std::back_inserter(result_->rows));
-    const DevicesRow& best = measured.rows[measured.best];
+    const DevicesRow own = row_of_devices();
+    std::vector<DevicesRow> rows;
+    for (DevicesRow row : measured.rows) {
+      inherit(row, own);
+      for (const DevicesRow& other : rows) inherit(row, other);
+      rows.push_back(std::move(row));
+    }
+    std::ranges::copy(rows, std::back_inserter(result_->rows));
+    const DevicesRow& best = rows[measured.best];
+    if (!is_worth_measuring(best, own)) return;
     result_->calibrated_row = best.name;
     result_->calibrated = with_waveforms(result_->drawing.baseline_scene, measured.best_waveforms);
     result_->calibrated->set(best.knowledge.time_error ? fmt::format("calibration.{}.error=\"50 ns\"", measured_time)

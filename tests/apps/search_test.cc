@@ -466,6 +466,8 @@ TEST(SearchForDevices, ApproachesTheContactThroughStableEquilibria_optimized) {
   EXPECT_GT(devices["step_delay_s"], 300e-6);
   EXPECT_EQ(devices["gaps"]["best"].size(), 50U);
   EXPECT_TRUE(fs::exists(here.path() / "out/devices.svg"));
+  const json judged = json::parse(read(here.path() / "out/robustness.json"));
+  EXPECT_EQ(judged["drives"].back()["name"], "for the devices") << "which the page is about";
   ASSERT_EQ(devices["choices"].size(), 3U);
   for (const json& choice : devices["choices"]) {
     const std::string file = "out/" + choice["file"].get<std::string>();
@@ -494,7 +496,7 @@ TEST(SearchForDevices, ApproachesTheContactByAPiezoAlone_optimized) {
   const json devices = result(here, "out")["devices"];
   EXPECT_EQ(devices["stable_path"]["drives"], json::array({"piezo"}));
   EXPECT_TRUE(devices["step_delay_s"].is_null());
-  EXPECT_THAT(o.out, testing::Not(testing::HasSubstr("lectrode")));
+  EXPECT_THAT(o.out, testing::Not(testing::HasSubstr("of the electrode")));
   EXPECT_LT(devices["rows"][2]["quantile_95"]["largest_impact_velocity_m_s"], 0.01);
 }
 

@@ -80,12 +80,35 @@ TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
   const bool by_time = found.calibrated_row == "closing time to 50 ns";
   EXPECT_EQ(found.calibrated->written(by_time ? "calibration.time.error" : "calibration.Vdp.error"), by_time ? "50 ns" : "1 %");
   EXPECT_LT(cost_of(found, "closing time to 50 ns"), cost_of(found, "for the devices"));
+  // Who knows more of the devices drives them no worse.
+  const auto speed = [&](std::string_view row) { return cost_of(found, row); };
+  for (const char* measured : {"Vdp to 1 %", "Vdp and period to 1 %", "Vdp and period to 0.2 %", "closing time to 50 ns"})
+    EXPECT_LE(speed(measured), speed("for the devices")) << measured;
+  EXPECT_LE(speed("Vdp and period to 1 %"), speed("Vdp to 1 %"));
+  EXPECT_LE(speed("Vdp and period to 0.2 %"), speed("Vdp and period to 1 %"));
+  for (const KnownVdp& known : found.by_error) EXPECT_LE(known.impact_speed, 1.15 * speed("for the devices"));
   // In stores the families of the race stand behind that of the drawing.
   EXPECT_EQ(memory.columns.families.size(), 3U);
   EXPECT_EQ(memory.columns.families[1].front().substr(0, 14), "devices.catch.");
   EXPECT_TRUE(memory.alike);
   EXPECT_EQ(memory.on_drawing, std::set<std::size_t>{0});
   EXPECT_EQ(memory.on_devices, (std::set<std::size_t>{1, 2}));
+}
+
+// A piezo that carries the switch slowly lands all devices, and a pull-in voltage says nothing of it.
+TEST(ForDevices, AreNotToBeMeasuredWhereThatWinsNothing_optimized) {
+  const SceneFile file = gold_pzt({"structure.modes=2", "simulate.accuracy=1e-3"});
+  const ForDevicesResult found =
+      optimize_for_devices(file, {.actuator = Actuator::pzt, .family = "bspline:16", .max_evaluations = 100, .jobs = 2},
+                           {.verdict = 200, .families = "quasi-static", .closings = race_closings / 10});
+  ASSERT_TRUE(found.chosen);
+  EXPECT_EQ(found.chosen->family, "quasi-static");
+  for (const char* measured : {"Vdp to 1 %", "Vdp and period to 1 %"})
+    EXPECT_LE(cost_of(found, measured), cost_of(found, "for the devices")) << measured;
+  EXPECT_EQ(found.calibrated.has_value(), !found.calibrated_row.empty());
+  if (found.calibrated) {
+    EXPECT_LT(cost_of(found, found.calibrated_row), 0.9 * cost_of(found, "for the devices"));
+  }
 }
 
 TEST(ForDevices, HasTheSameBitsWithAnyJobs_slow) {
