@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -98,10 +100,10 @@ class Maker {
 
  private:
   void find_drives() {
-    const std::vector<std::string> names = p_.drive_names();
+    const std::vector<std::string> pins = circuit_pins(p_.drive_names());
     const std::vector<Signal> told = p_.told(p_.waveforms());
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      const std::string pin = spice_name(names[k]);
+    for (std::size_t k = 0; k < pins.size(); ++k) {
+      const std::string& pin = pins[k];
       const DriveKind kind = model_.drive_kind(k);
       const bool connected = kind != DriveKind::dispersion || !told[k].is_zero();
       if (connected) c_.drives.push_back(pin);
@@ -238,6 +240,47 @@ std::string title(const PreparedScene& p) {
   return fmt::format("{}: {} modes, {} quadrature points", p.scene.file.name(), p.model.modes(), p.model.quadrature().points());
 }
 
+// In lines that begin with `comment`.
+std::string renamed_in(const PreparedScene& p, std::string_view comment) {
+  std::string text;
+  for (const std::string& line : renamed_pins(p.drive_names())) text += fmt::format("{} {}\n", comment, line);
+  return text;
+}
+
+// What a pin cannot be called: pins and numbers of the model itself, the ground of SPICE, and words of Verilog-AMS 2.4 (annex B).
+constexpr std::array reserved_names{
+    // of the model
+    "g", "s", "d", "y", "vel", "force", "at", "rate", "line", "push", "rc", "roff", "softland_switch",
+    // SPICE
+    "0", "gnd", "time", "temper", "hertz",
+    // Verilog-AMS
+    "above", "abs", "absdelay", "absdelta", "abstol", "access", "acos", "acosh", "ac_stim", "aliasparam", "always", "analog",
+    "analysis", "and", "asin", "asinh", "assert", "assign", "atan", "atan2", "atanh", "automatic", "begin", "branch", "buf",
+    "bufif0", "bufif1", "case", "casex", "casez", "ceil", "cell", "cmos", "config", "connect", "connectmodule", "connectrules",
+    "continuous", "cos", "cosh", "cross", "ddt", "ddt_nature", "ddx", "deassign", "default", "defparam", "design", "disable",
+    "discipline", "discrete", "domain", "driver_update", "edge", "else", "end", "endcase", "endconfig", "endconnectrules",
+    "enddiscipline", "endfunction", "endgenerate", "endmodule", "endnature", "endparamset", "endprimitive", "endspecify",
+    "endtable", "endtask", "event", "exclude", "exp", "final_step", "flicker_noise", "floor", "flow", "for", "forever", "fork",
+    "from", "function", "generate", "genvar", "ground", "highz0", "highz1", "hypot", "idt", "idtmod", "idt_nature", "if",
+    "ifnone", "incdir", "include", "inf", "initial", "initial_step", "inout", "input", "instance", "integer", "join",
+    "laplace_nd", "laplace_np", "laplace_zd", "laplace_zp", "large", "last_crossing", "liblist", "library", "limexp", "ln",
+    "localparam", "log", "macromodule", "max", "medium", "merged", "min", "module", "nand", "nature", "negedge", "net_resolution",
+    "nmos", "noise_table", "noise_table_log", "nor", "noshowcancelled", "not", "notif0", "notif1", "or", "output", "parameter",
+    "paramset", "pmos", "posedge", "potential", "pow", "primitive", "pull0", "pull1", "pulldown", "pullup", "pulsestyle_onevent",
+    "pulsestyle_ondetect", "rcmos", "real", "realtime", "reg", "release", "repeat", "resolveto", "rnmos", "rpmos", "rtran",
+    "rtranif0", "rtranif1", "scalared", "showcancelled", "signed", "sin", "sinh", "slew", "small", "specify", "specparam",
+    "split", "sqrt", "string", "strong0", "strong1", "supply0", "supply1", "table", "tan", "tanh", "task", "timer", "tran",
+    "tranif0", "tranif1", "transition", "tri", "tri0", "tri1", "triand", "trior", "trireg", "units", "unsigned", "use", "uwire",
+    "vectored", "wait", "wand", "weak0", "weak1", "while", "white_noise", "wire", "wor", "wreal", "xnor", "xor", "zi_nd", "zi_np",
+    "zi_zd", "zi_zp"};
+
+// Modes and points of the model: y0, u0, h0, w0, f0 and so on.
+bool is_numbered(const std::string& name) {
+  constexpr std::string_view letters = "yuhwf";
+  return name.size() > 1 && letters.find(name.front()) != std::string_view::npos &&
+         name.find_first_not_of("0123456789", 1) == std::string::npos;
+}
+
 // Appends lines.
 struct Lines {
   std::string& text;
@@ -285,6 +328,29 @@ const Dialect verilog{.voltage = "V", .has_variables = true};
 
 }  // namespace
 
+std::vector<std::string> circuit_pins(const std::vector<std::string>& drives) {
+  std::vector<std::string> pins;
+  for (const std::string& drive : drives) {
+    std::string name = spice_name(drive);
+    const bool begins_badly = name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0;
+    if (begins_badly || is_numbered(name) || std::ranges::find(reserved_names, name) != reserved_names.end())
+      name.insert(0, "drive_");
+    std::string free = name;
+    for (int n = 2; std::ranges::find(pins, free) != pins.end(); ++n) free = fmt::format("{}_{}", name, n);
+    pins.push_back(std::move(free));
+  }
+  return pins;
+}
+
+std::vector<std::string> renamed_pins(const std::vector<std::string>& drives) {
+  const std::vector<std::string> pins = circuit_pins(drives);
+  std::vector<std::string> told;
+  for (std::size_t k = 0; k < drives.size(); ++k) {
+    if (pins[k] != spice_name(drives[k])) told.push_back(fmt::format("drive {} is the pin {}", drives[k], pins[k]));
+  }
+  return told;
+}
+
 std::string why_no_circuit(const Switch& model) {
   const Device& device = model.device();
   if (device.gas && is_compressible(*device.gas)) return "a compressible gas film, which has states of its own";
@@ -301,27 +367,27 @@ std::string why_no_circuit(const Switch& model) {
 }
 
 std::string spice_model(const PreparedScene& p) {
-  return fmt::format("* {}\n* pins: drives, their ground g, contact s and d, y [um], vel [m/s], force [uN]\n{}", title(p),
-                     subcircuit(Maker(p, spice).make()));
+  return fmt::format("* {}\n* pins: drives, their ground g, contact s and d, y [um], vel [m/s], force [uN]\n{}{}", title(p),
+                     renamed_in(p, "*"), subcircuit(Maker(p, spice).make()));
 }
 
 std::string spice_bench(const PreparedScene& p) {
   const Circuit c = Maker(p, spice).make();
   std::map<std::string, Signal> driven;  // as their sources give them
-  const std::vector<std::string> names = p.drive_names();
+  const std::vector<std::string> names = circuit_pins(p.drive_names());
   const std::vector<Signal> signals = p.signals();
   std::string sources, pins;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    const std::string pin = spice_name(names[k]);
+    const std::string& pin = names[k];
     if (std::ranges::find(c.drives, pin) == c.drives.end()) continue;
-    driven.emplace(names[k], signals[k]);
+    driven.emplace(pin, signals[k]);
     sources += fmt::format("Xdrive_{0} {0} 0 softland_{0}\n", pin);
     pins += " " + pin;
   }
   // Of trapezoids: the first mode to 1e-6, the fastest one as it takes part; one mode alone is quick enough for ten times that.
   const Eigen::VectorXd& omega = p.model.basis().angular_frequencies();
   const double step = 2 * pi / std::max(40 * omega.maxCoeff(), (omega.size() == 1 ? 8000 : 1500) * omega[0]);
-  std::string text = title(p) + "\n" + subcircuit(c) + spice_pwl(driven, p.duration) + sources;
+  std::string text = title(p) + "\n" + renamed_in(p, "*") + subcircuit(c) + spice_pwl(driven, p.duration) + sources;
   text += fmt::format("Xswitch{} 0 s d y vel force softland_switch\nVs s 0 1\nRload d 0 50\n", pins);
   text += ".options reltol=1e-6 abstol=1e-15 vntol=1e-9 chgtol=1e-21 method=trap itl4=100\n";
   text += fmt::format(".tran {} {} 0 {} uic\n", step, p.duration, step);
@@ -336,7 +402,8 @@ std::string spice_bench(const PreparedScene& p) {
 std::string verilog_a(const PreparedScene& p) {
   const Circuit c = Maker(p, verilog).make();
   const std::size_t modes = c.stiffness.size(), points = c.points.size();
-  std::string text = fmt::format("// {}\n// y [um], vel [m/s], force [uN] as volts\n`include \"disciplines.vams\"\n\n", title(p));
+  std::string text = fmt::format("// {}\n// y [um], vel [m/s], force [uN] as volts\n{}`include \"disciplines.vams\"\n\n",
+                                 title(p), renamed_in(p, "//"));
   const Lines line{text};
   const std::string pins = fmt::format("{}, g, s, d, y, vel, force", fmt::join(c.drives, ", "));
   line("module softland_switch({0});\n  inout {0};\n  electrical {0};", pins);

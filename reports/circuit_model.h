@@ -15,6 +15,13 @@
 
 namespace softland {
 
+/// What the pins of these drives are called: letters become lower case, what is neither letter nor digit an underscore. A name
+/// that the model uses itself, that SPICE or Verilog-A reserve, or that cannot begin a name, begins with "drive_"; one that
+/// another drive has ends with a number. In the order of the drives.
+[[nodiscard]] std::vector<std::string> circuit_pins(const std::vector<std::string>& drives);
+/// Says of each drive whose pin has another name what that is: "drive g is the pin drive_g".
+[[nodiscard]] std::vector<std::string> renamed_pins(const std::vector<std::string>& drives);
+
 /// Why this switch cannot be written so: a law that has a memory, states or tables of its own, or that pulls; empty where it can.
 [[nodiscard]] std::string why_no_circuit(const Switch& model);
 

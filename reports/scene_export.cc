@@ -271,6 +271,7 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
   if (std::optional<std::string> model = circuit(request.format, p)) {
     require_field(measured.are_none(), "format", request.format,
                   [] { return "is of the drawing, and of no device that was measured"; });
+    for (const std::string& line : renamed_pins(p.drive_names())) say(line);
     return *std::move(model);
   }
   SentSignals sent =

@@ -729,6 +729,48 @@ TEST(Export, WritesTheSwitchForACircuit) {
   EXPECT_THAT(refused("nem-casimir.toml"), HasSubstr("Casimir force between gold"));
 }
 
+// Of every name that the model, SPICE or Verilog-A has for something else the pin is another, and that is told.
+TEST(Export, NamesPinsOfCircuitsThatAreNoOthers) {
+  const Workplace here;
+  const std::string gold = shipped("mem-gold.toml");
+  const auto exported = [&](const std::string& drive, const char* format) {
+    std::string scene = gold;
+    for (const char* section : {"electrode", "waveform", "driver"})
+      scene = edited(scene, std::string("[") + section + ".main]", std::string("[") + section + "." + drive + "]");
+    write(here.path() / "named.toml", scene);
+    const Outcome o = here.run({"export", "named.toml", "--format", format});
+    EXPECT_EQ(o.status, 0) << o.err;
+    return std::pair(o.out, o.err);
+  };
+  for (const char* format : {"spice-model", "spice-bench", "verilog-a"}) {
+    const std::string usual = exported("main", format).first;
+    for (const std::string drive : {"g", "S", "d", "y", "vel", "force", "at", "rate", "push", "y0", "u3", "w12", "gnd", "time",
+                                    "end", "0-g", "9", "Module"}) {
+      const auto [text, said] = exported(drive, format);
+      std::string pin = "drive_";
+      for (const char c : drive)
+        pin += std::isalnum(static_cast<unsigned char>(c)) != 0 ? static_cast<char>(std::tolower(c)) : '_';
+      EXPECT_THAT(said, HasSubstr("drive " + drive + " is the pin " + pin)) << format;
+      std::string again = text.substr(text.find('\n', text.find("is the pin")) + 1);
+      for (const auto& [name, by] : {std::pair("drive_" + pin, "drive_main"), std::pair(pin, "main")}) {
+        for (std::size_t at = 0; (at = again.find(name, at)) != std::string::npos;) again.replace(at, name.size(), by);
+      }
+      EXPECT_TRUE(usual.ends_with(again)) << format << " " << drive;
+    }
+  }
+  std::string scene = shipped("two-electrodes.toml");
+  for (const char* section : {"electrode", "waveform", "driver"}) {
+    scene = edited(scene, std::string("[") + section + ".main]", std::string("[") + section + ".a-b]");
+    scene = edited(scene, std::string("[") + section + ".upper]", std::string("[") + section + ".a_b]");
+  }
+  write(here.path() / "alike.toml", scene);
+  const Outcome alike = here.run({"export", "alike.toml", "--format", "spice-bench"});
+  EXPECT_EQ(alike.status, 0) << alike.err;
+  EXPECT_THAT(alike.out, HasSubstr(".subckt softland_switch a_b a_b_2 g s d"));
+  EXPECT_THAT(alike.out, HasSubstr("Xdrive_a_b_2 a_b_2 0 softland_a_b_2"));
+  EXPECT_THAT(alike.err, HasSubstr("drive a_b is the pin a_b_2"));
+}
+
 // By ngspice where there is one, whose steps are by trapezoids.
 TEST(Export, OfTheSwitchForACircuitClosesAsItDoes_slow) {
   if (std::system("command -v ngspice >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no circuit simulator; needs: ngspice";
