@@ -52,7 +52,10 @@ class MeasurementReader {
     if (has("value") == has("file")) fail(fmt::format("must have one of 'value' and 'file' with the {}", noun(kind.dimension)));
     if (has("value")) {
       refuse_where(kind.is_over_time, "value", fmt::format("a {} is given by rows of time: name a file", kind.name));
-      for (const Quantity& one : quantities("value", kind.dimension)) m.values.push_back(one.value);
+      for (const Quantity& one : quantities("value", kind.dimension)) {
+        refuse_where(kind.is_positive && !(one.value > 0), "value", fmt::format("a {} must be above 0", kind.name));
+        m.values.push_back(one.value);
+      }
     } else {
       read_rows(kind, m);
     }
@@ -197,6 +200,7 @@ class MeasurementReader {
     if (own.beside) columns.push_back(own.beside->name);
     read_csv(content, path, columns, expected_columns(kind), [&](std::span<const double> row, const CsvPlace& at) {
       require(m.values.size() < most_rows, [&] { return fmt::format("{}: more than {} rows", at(), most_rows); });
+      require(!kind.is_positive || row[0] > 0, [&] { return fmt::format("{}: a {} must be above 0", at(), kind.name); });
       m.values.push_back(row[0] * own.value.unit);
       if (!own.beside) return;
       std::vector<double>& other = kind.is_over_time ? m.times : m.levels;
@@ -424,9 +428,24 @@ const std::vector<BenchQuantity>& bench_quantities() {
       {.name = "frequency", .dimension = dimension::frequency, .has_level = true},
       {.name = "capacitance", .dimension = dimension::capacitance, .has_level = true},
       {.name = "closing_time", .dimension = dimension::time, .has_level = true, .has_waveform = true},
-      {.name = of_contact, .dimension = dimension::time, .has_level = true, .has_waveform = true, .is_over_time = true},
-      {.name = "position", .dimension = dimension::length, .has_level = true, .has_waveform = true, .is_over_time = true},
-      {.name = "velocity", .dimension = dimension::velocity, .has_level = true, .has_waveform = true, .is_over_time = true},
+      {.name = of_contact,
+       .dimension = dimension::time,
+       .has_level = true,
+       .has_waveform = true,
+       .is_over_time = true,
+       .is_positive = false},
+      {.name = "position",
+       .dimension = dimension::length,
+       .has_level = true,
+       .has_waveform = true,
+       .is_over_time = true,
+       .is_positive = false},
+      {.name = "velocity",
+       .dimension = dimension::velocity,
+       .has_level = true,
+       .has_waveform = true,
+       .is_over_time = true,
+       .is_positive = false},
   };
   return all;
 }

@@ -49,6 +49,7 @@ struct BenchQuantity {
   bool has_level = false;     ///< may have one
   bool has_waveform = false;  ///< may have one instead
   bool is_over_time = false;  ///< rows of time
+  bool is_positive = true;    ///< can only be above 0
 };
 
 struct BenchMeasurement {

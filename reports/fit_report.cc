@@ -54,6 +54,7 @@ std::string fitted_error_text(const FittedUnknown& u) {
 }
 
 std::string fitted_interval_text(const FittedUnknown& u) {
+  if (!std::isfinite(u.low)) return "—";
   return fmt::format("{} to {}", fitted_value_text(u, u.low, u.standard_error), fitted_value_text(u, u.high, u.standard_error));
 }
 
@@ -103,6 +104,11 @@ std::size_t freedom(const Fit& fit) {
 std::string fit_headline(const Fit& fit) {
   if (!fit.found) return "No device like the scene could be read as it was measured.";
   const auto n = static_cast<double>(fit.residuals.size());
+  if (!fit.doubts.empty())
+    return fmt::format(
+        "This fit is not to be believed: {}. Is every measurement under the right quantity and unit, and the scene "
+        "that of the device?",
+        fmt::join(fit.doubts, "; "));
   return fmt::format(
       "The fitted scene is off the data by {} of their errors, the scene as it was by {} (root of the mean square).",
       plain_number(std::sqrt(fit.chi_squared() / n), 3), plain_number(std::sqrt(fit.chi_squared_before() / n), 3));
@@ -193,7 +199,10 @@ json fit_json(const Fit& fit, const Provenance& provenance) {
   json data = with_origin(
       {
           {"kind", "fit"},
-          {"status", fit.found ? "done" : "numerical_failure"},
+          {"status", !fit.found           ? "numerical_failure"
+                     : fit.doubts.empty() ? "done"
+                                          : "not_believed"},
+          {"doubts", fit.doubts},
           {"title", fit.scene.scene.title},
           {"unknowns", unknowns},
           {"correlation", correlation},

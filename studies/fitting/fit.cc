@@ -669,6 +669,33 @@ void set_spread(SceneFile& file, const Fit& fit) {
 
 namespace {
 
+// Why a fit is not to be believed.
+std::vector<std::string> doubts_of(const Fit& fit, const ManyEnds& all, const LeastSquaresEnd& best) {
+  constexpr double far = 4;              // standard deviations of what was known
+  constexpr double largest_rms = 3;      // errors
+  constexpr double as_good = 2;          // of the cost, half a sum of squares: two standard deviations
+  constexpr double standard_errors = 4;  // by which another minimum differs
+  std::vector<std::string> doubts;
+  for (const FittedUnknown& u : fit.unknowns) {
+    const double off = std::abs(u.value - u.prior_mean) / u.prior_deviation;
+    const std::string device = u.device.empty() ? "" : " of " + u.device;
+    if (off > far)
+      doubts.push_back(fmt::format("{}{} is {:.3g} standard deviations away from what was known of it", u.name, device, off));
+  }
+  const double rms = std::sqrt(fit.chi_squared() / static_cast<double>(std::max<std::size_t>(1, fit.residuals.size())));
+  if (rms > largest_rms) doubts.push_back(fmt::format("it is off the data by {:.3g} of their errors", rms));
+  const auto differs = [&](const LeastSquaresEnd& end) {
+    if (!end.converged || end.x.size() != best.x.size() || !(end.cost <= best.cost + as_good)) return false;
+    for (std::size_t i = 0; i < std::min(fit.unknowns.size(), end.x.size()); ++i) {
+      const FittedUnknown& u = fit.unknowns[i];
+      if (std::abs(end.x[i] - best.x[i]) * u.scale > standard_errors * u.standard_error) return true;
+    }
+    return false;
+  };
+  if (std::ranges::any_of(all.ends, differs)) doubts.emplace_back("another minimum describes the data as well");
+  return doubts;
+}
+
 // With the middle of the population in the place of each device's own values.
 Fit of_population(Fit fit) {
   if (!fit.population) return fit;
@@ -728,6 +755,9 @@ Fit fit(const SceneFile& given, const Bench& bench, const FitOptions& options, c
   end.add(all.ends[all.best]);
   end.add_population();
   if (options.suggest) end.add_next(watch);
+  found.doubts = doubts_of(found, all, all.ends[all.best]);
+  if (found.doubts.empty()) return found;
+  for (FittedUnknown& u : found.unknowns) u.standard_error = u.low = u.high = unset;
   return found;
 }
 

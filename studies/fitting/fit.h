@@ -40,12 +40,12 @@ struct FitOptions {
 inline constexpr std::size_t most_starts = 10'000;
 
 struct FittedUnknown {
-  std::string name;    ///< of the entry in [spread], or the key
-  std::string device;  ///< empty: of all, or of the only one
-  std::string unit;    ///< SI; empty: a factor of the scene's values
-  double nominal = 0;  ///< of the scene [unit]
-  double value = 0, standard_error = 0;
-  double low = 0, high = 0;                                              ///< 95 % interval
+  std::string name;                                                      ///< of the entry in [spread], or the key
+  std::string device;                                                    ///< empty: of all, or of the only one
+  std::string unit;                                                      ///< SI; empty: a factor of the scene's values
+  double nominal = 0;                                                    ///< of the scene [unit]
+  double value = 0, standard_error = 0;                                  ///< unset where the fit is doubted
+  double low = 0, high = 0;                                              ///< 95 % interval; likewise
   double prior_mean = Metrics::unset, prior_deviation = Metrics::unset;  ///< NaN: nothing was known
   double scale = 0;                                                      ///< of z
 };
@@ -91,6 +91,9 @@ struct Fit {
   Loss loss = Loss::huber;
   std::uint64_t seed = 1;
   bool found = false;
+  /// Why what was found is not to be believed, in words: an unknown that lies far from what was known of it, data that it does
+  /// not describe, another minimum that describes them as well. Then there are no standard errors.
+  std::vector<std::string> doubts = {};
 
   /// Sum of the squared normalized residuals, as they are.
   [[nodiscard]] double chi_squared() const;

@@ -115,6 +115,55 @@ TEST_F(FitVerb, OfSeveralDevicesLeavesASpreadThatOtherVerbsRead) {
   EXPECT_EQ(here.run({"robustness", "out/fitted.toml", "--samples", "10", "--quiet"}).status, 0);
   EXPECT_EQ(json::parse(read(here.path() / "out/fit.json"))["population"]["variables"].size(), 2U);
 }
+// Data that no device of the spread has, and data that contradict each other.
+TEST_F(FitVerb, DoesNotBelieveWhatCannotBe) {
+  const auto doubted = [&](const std::string& data) {
+    write(here.path() / "bench.toml", data);
+    const Outcome o = fit({"--quiet"});
+    EXPECT_EQ(o.status, 4) << data << o.err;
+    EXPECT_EQ(o.out.find("This fit is not to be believed: "), 0U) << o.out;
+    const json told = json::parse(read(here.path() / "out/fit.json"));
+    EXPECT_EQ(told["status"], "not_believed");
+    EXPECT_FALSE(told["doubts"].empty());
+    for (const json& unknown : told["unknowns"]) {
+      EXPECT_TRUE(unknown["standard_error"].is_null());
+      EXPECT_TRUE(unknown["interval95"][0].is_null());
+    }
+    return told["doubts"].dump();
+  };
+  // A volt that was a millivolt, 9 kHz instead of 21.
+  EXPECT_THAT(doubted(edited(bench, "90.3 V", "90.3 mV")), HasSubstr("standard deviations away from what was known"));
+  EXPECT_THAT(doubted("[[measurement]]\nquantity = \"frequency\"\nvalue = \"9 kHz\"\nerror = \"0.01 %\"\n"),
+              HasSubstr("structure.stiffness is "));
+  // Twice the same, measured to be two things.
+  EXPECT_THAT(
+      doubted(bench + std::string("[[measurement]]\nquantity = \"frequency\"\nvalue = \"20.9 kHz\"\nerror = \"0.01 %\"\n")),
+      HasSubstr("off the data by"));
+}
+
+TEST_F(FitVerb, RefusesDataThatNothingHas) {
+  for (const auto& [quantity, value] : std::vector<std::pair<std::string, std::string>>{{"pull_in", "-14 V"},
+                                                                                        {"pull_in", "0 V"},
+                                                                                        {"release", "-1 V"},
+                                                                                        {"frequency", "0 Hz"},
+                                                                                        {"frequency", "-2 kHz"},
+                                                                                        {"capacitance", "-1 fF"},
+                                                                                        {"closing_time", "-40 us"}}) {
+    write(here.path() / "bench.toml", "[[measurement]]\nquantity = \"" + quantity + "\"\nvalue = \"" + value +
+                                          "\"\nerror = \"1 %\"\n" +
+                                          (quantity == "closing_time" || quantity == "capacitance" ? "level = \"100 V\"\n" : ""));
+    const Outcome o = fit({});
+    EXPECT_EQ(o.status, 2) << quantity << value;
+    EXPECT_THAT(o.err, HasSubstr("bench.toml:3: measurement.value"));
+    EXPECT_THAT(o.err, HasSubstr("a " + quantity + " must be above 0"));
+  }
+  write(here.path() / "times.csv", "voltage_V,closing_time_us\n100,12\n110,-3\n");
+  write(here.path() / "bench.toml", "[[measurement]]\nquantity = \"closing_time\"\nfile = \"times.csv\"\nerror = \"50 ns\"\n");
+  const Outcome o = fit({});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, HasSubstr("times.csv:3: a closing_time must be above 0"));
+}
+
 TEST_F(FitVerb, RefusesWhatItCannotFit) {
   const auto expect_refused = [&](const std::vector<std::string>& more, const std::string& words) {
     std::vector<std::string> all{"fit", "plate.toml", "--out", "out"};
