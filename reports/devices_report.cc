@@ -454,8 +454,9 @@ ReportTable devices_table(const ResultDevices& d, const std::vector<std::pair<st
   for (const Column& c : shown) table.head.push_back(headed(c.short_heading, c.heading));
   table.head.push_back(headed("≤ 1 / 10 / 100 nm", "devices ≤ 1 / 10 / 100 nm"));
   const bool stay_open = any_of(d.rows, &ResultDevices::Row::open), pulled_in = any_of(d.rows, &ResultDevices::Row::collapsed);
-  if (stay_open) table.head.emplace_back("stay open");
-  if (pulled_in) table.head.push_back(headed("pulled in", "collapse onto the electrode"));
+  if (stay_open && pulled_in) table.head.push_back(headed("open / pulled in", "stay open / collapse onto the electrode"));
+  if (stay_open && !pulled_in) table.head.emplace_back("stay open");
+  if (pulled_in && !stay_open) table.head.push_back(headed("pulled in", "collapse onto the electrode"));
   for (const auto& [name, row] : rows) {
     TableRow& line = table.rows.emplace_back(TableRow{name});
     const char* const style = row->name == "for the devices" ? "own" : "";
@@ -465,8 +466,9 @@ ReportTable devices_table(const ResultDevices& d, const std::vector<std::pair<st
       line.emplace_back(std::move(cell), style);
     }
     line.emplace_back(yields_cell(*row), style);
-    if (stay_open) line.emplace_back(percent(std::max(0.0, row->open)), style);
-    if (pulled_in) line.emplace_back(percent(row->collapsed), style);
+    const std::string open = percent(std::max(0.0, row->open)), pulled = percent(row->collapsed);
+    if (stay_open && pulled_in) line.emplace_back(open.substr(0, open.rfind(' ')) + " / " + pulled, style);
+    if (stay_open != pulled_in) line.emplace_back(stay_open ? open : pulled, style);
   }
   return table;
 }

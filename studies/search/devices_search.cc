@@ -330,6 +330,12 @@ const ChosenFrom* DevicesSearch::leader() const {
   return leader_ && leader_->candidate.is_good_enough ? &leader_->candidate : nullptr;
 }
 
+std::vector<ChosenFrom> DevicesSearch::looked_at() const {
+  std::vector<ChosenFrom> all;
+  for (const Placed& one : looked_at_) all.push_back(one.candidate);
+  return all;
+}
+
 void DevicesSearch::place(ChosenFrom one) {
   watch_.throw_if_stopped();
   const auto known = std::ranges::find_if(looked_at_, [&](const Placed& other) { return same_candidate(one, other.candidate); });

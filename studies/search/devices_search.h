@@ -137,6 +137,8 @@ class DevicesSearch {
   void place(ChosenFrom candidate);
   /// What led when a search that was stopped had looked last; null where it is worse than the plain step.
   [[nodiscard]] const ChosenFrom* leader() const;
+  /// What was looked at on the way, on the devices of the choice.
+  [[nodiscard]] std::vector<ChosenFrom> looked_at() const;
   [[nodiscard]] const std::vector<DeviceOutcome>& step_on_others() const { return step_on_others_; }
   /// Those that were placed: first, the best first, those that are good enough.
   [[nodiscard]] std::vector<ChosenFrom> placed() const;

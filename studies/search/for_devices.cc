@@ -226,10 +226,10 @@ class DevicesStudy {
     result_->windows = hold_windows(first().given, verdict_options(), watch_);
   }
 
-  // The softest candidate whose devices wait at most so long, over the plain step; null where there is none.
-  [[nodiscard]] const ChosenFrom* softest_within(double times) const {
+  // The softest of them whose devices wait at most so long, over the plain step; null where there is none.
+  [[nodiscard]] const ChosenFrom* softest_within(double times, const std::vector<ChosenFrom>& candidates) const {
     const ChosenFrom* best = nullptr;
-    for (const ChosenFrom& one : result_->candidates) {
+    for (const ChosenFrom& one : candidates) {
       if (!one.is_good_enough || !(one.waited <= by_chance * times * searched_.free().until)) continue;
       if (best == nullptr || one.measured < best->measured) best = &one;
     }
@@ -250,10 +250,12 @@ class DevicesStudy {
       result_->choices.push_back({.name = name, .candidate = *one});
     };
     const bool is_late = tau > by_chance * usual_within;
-    const ChosenFrom* const fast = softest_within(is_late ? usual_within : fast_within);
+    const ChosenFrom* fast = softest_within(is_late ? usual_within : fast_within, result_->candidates);
+    const std::vector<ChosenFrom> on_the_way = searched_.looked_at();
+    if (is_late && fast == nullptr) fast = softest_within(usual_within, on_the_way);
     if (until > 0 && fast != nullptr && fast->waited < worth_choosing * usual.waited) add(fast_row, fast);
     add(default_choice, &usual);
-    const ChosenFrom* const soft = softest_within(soft_within);
+    const ChosenFrom* const soft = softest_within(soft_within, result_->candidates);
     const bool is_softer = soft != nullptr && soft->impact_speed < worth_choosing * usual.impact_speed &&
                            soft->bounce_free > usual.bounce_free - fewer_bounce_free;
     if (until > 0 && !is_late && is_softer) add(soft_row, soft);
@@ -382,17 +384,41 @@ class DevicesStudy {
       win({});
     } else {
       result_->chosen = result_->candidates[n];
-      win(result_->candidates[n].waveforms);
-      result_->best.family = result_->candidates[n].family;
+      prefer_sooner(step);
+      const ChosenFrom& winner = *result_->chosen;
+      win(winner.waveforms);
+      result_->best.family = winner.family;
       result_->best.prefix.clear();
-      result_->best.parameters = result_->candidates[n].parameters;
-      result_->best.variables = result_->candidates[n].variables;
-      note_delay(result_->candidates[n]);
+      result_->best.parameters = winner.parameters;
+      result_->best.variables = winner.variables;
+      note_delay(winner);
     }
     for (const Criterion& condition : searched_.conditions()) {
       const Yield share = share_that_fulfils(row_of_devices().judged.outcomes, condition);
       result_->conditions.push_back({.condition = condition, .share = share, .holds = share.value >= constrained_share});
     }
+  }
+
+  // A sooner choice that is no worse than the winner, and than the plain step, takes its place.
+  void prefer_sooner(const DriveRobustness& step) {
+    const double significant = first().given.scene.metrics.significant_rebound;
+    const auto fast = std::ranges::find(result_->choices, std::string_view(fast_row), &DeviceChoice::name);
+    std::vector<DriveRobustness>& drives = result_->verdict.drives;
+    const auto judged = std::ranges::find(drives, std::string_view(fast_row), &DriveRobustness::name);
+    if (fast == result_->choices.end() || judged == drives.end()) return;
+    const auto is_worse_than = [&](const std::vector<DeviceOutcome>& other) {
+      return !softland::worse_in(judged->outcomes, other, significant, options_.seed).empty();
+    };
+    if (is_worse_than(row_of_devices().judged.outcomes) || is_worse_than(step.outcomes)) return;
+    result_->chosen = fast->candidate;
+    result_->choices.erase(fast);
+    judged->name = for_the_devices;
+    row_of_devices().judged = *judged;
+    result_->worse_in.clear();
+    DriveRobustness winner = std::move(*judged);
+    drives.erase(judged);
+    std::erase_if(drives, [](const DriveRobustness& one) { return one.name == for_the_devices; });
+    drives.push_back(std::move(winner));
   }
 
   void note_delay(const ChosenFrom& winner) {
