@@ -43,7 +43,7 @@ class CommandLab final : public TuningLab {
     if (line.end == LineReader::End::closed) throw ended_before(shot.number);
     if (line.end == LineReader::End::late) throw late(fmt::format("did not answer shot {}", shot.number));
     try {
-      return read_record(read_line(line.text), shot.number);
+      return read_record(read_line(line.text), shot.number, shot.duration());
     } catch (const InvalidInput& error) {
       throw InvalidInput(fmt::format("{}: its answer to shot {}: {}", name_, shot.number, error.what()));
     }
@@ -126,7 +126,7 @@ class HandLab final : public TuningLab {
       return contact_ ? read_contact_trace(file, *contact_) : read_edges_file(file);
     }
     const Quantity time = parse_quantity(text);
-    if (time.dimension != dimension::time || !(time.value >= 0))
+    if (time.dimension != dimension::time || !(time.value > 0))
       throw InvalidInput(fmt::format("{} is no time; write it with its unit, such as \"36.1 us\"", visible(text)));
     if (time.value > duration)
       throw InvalidInput(

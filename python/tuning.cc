@@ -89,7 +89,7 @@ py::tuple shot_of(const PyTuning& tuning) {
 }
 
 void learn(PyTuning& tuning, const std::string& answer, const py::object& progress) {
-  const ContactRecord record = read_record(read_line(answer), tuning.session.told().number);
+  const ContactRecord record = read_record(read_line(answer), tuning.session.told().number, tuning.session.told().duration());
   Run run(progress);
   run([&](const Watch& watch) {
     tuning.session.learn(record, watch);

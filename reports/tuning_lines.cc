@@ -157,7 +157,7 @@ ToldShot read_shot(const json& line) {
   return shot;
 }
 
-ContactRecord read_record(const json& line, int shot) {
+ContactRecord read_record(const json& line, int shot, double duration) {
   require_known(line, "", {"shot", "edges_s", "closing_time_s", "bounce_count", "loudness", "error"});
   const int number = shot_number(line);
   require(number == shot, [&] { return fmt::format("shot = {}: must be {}, the shot that was asked for", number, shot); });
@@ -177,7 +177,7 @@ ContactRecord read_record(const json& line, int shot) {
   read_count(line, record);
   if (const auto loudness = line.find("loudness"); loudness != line.end())
     record.loudness = finite_number(*loudness, "loudness", "must be a number");
-  const std::string fault = record_fault(record);
+  const std::string fault = record_fault(record, duration);
   require(fault.empty(), fault);
   return record;
 }

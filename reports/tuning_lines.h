@@ -11,6 +11,7 @@
 // tell a loudness, any number that rises with the impact.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -54,8 +55,9 @@ inline constexpr std::size_t longest_line = std::size_t{16} << 20;
 [[nodiscard]] int shot_number(const nlohmann::json& line);
 /// Messages begin with the key at fault: "drives.main.V: must be a list of numbers".
 [[nodiscard]] ToldShot read_shot(const nlohmann::json& line);
-/// What came of shot number `shot`.
-[[nodiscard]] ContactRecord read_record(const nlohmann::json& line, int shot);
+/// What came of shot number `shot`, whose record lasts `duration` [s].
+[[nodiscard]] ContactRecord read_record(const nlohmann::json& line, int shot,
+                                        double duration = std::numeric_limits<double>::infinity());
 
 [[nodiscard]] nlohmann::json shot_json(const ToldShot& shot);
 [[nodiscard]] nlohmann::json record_json(int shot, const ContactRecord& record);

@@ -79,8 +79,9 @@ std::size_t TuningLog::read(const json& origin) {
         continue;
       }
       require(line.contains("shot") && line.contains("record"), "must have shot and record");
+      const ToldShot shot = read_shot(line["shot"]);
       closings_.push_back(
-          {.shot = line["shot"], .record = read_record(line["record"], read_shot(line["shot"]).number), .line = number});
+          {.shot = line["shot"], .record = read_record(line["record"], shot.number, shot.duration()), .line = number});
     } catch (const InvalidInput& error) {
       if (std::string_view(error.what()).starts_with(place)) throw;
       throw InvalidInput(fmt::format("{}: {}", place, error.what()));

@@ -130,7 +130,7 @@ ToldShot TuningSession::told() const {
 }
 
 void TuningSession::learn(const ContactRecord& record, const Watch& watch) {
-  const std::string fault = record_fault(record);
+  const std::string fault = record_fault(record, told().duration());
   require(fault.empty(), fault);
   if (state_->log && !state_->is_on_record) state_->log->append(told(), record);
   state_->is_on_record = true;

@@ -1,5 +1,7 @@
 #include "studies/tuning/contact_record.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,18 +21,25 @@ LaboratoryErrors usual_errors(const SceneFile& file) {
   return usual;
 }
 
-std::string record_fault(const ContactRecord& record) {
+std::string record_fault(const ContactRecord& record, double duration) {
   if (!record.error.empty()) return {};
   if (!record.edges.empty() && record.closing_time) return "edges_s: must not stand beside closing_time_s";
+  const auto late = [&](const char* key) {
+    return fmt::format("{}: must be within the record, which ends at {:g} s", key, duration);
+  };
   double before = 0;
   bool closed = false;
   for (const ContactEdge& edge : record.edges) {
-    if (!std::isfinite(edge.time) || edge.time < before) return "edges_s: times must be finite, at least 0 and in order";
+    const bool is_first = &edge == &record.edges.front();
+    if (!std::isfinite(edge.time) || edge.time < before || (is_first && edge.time == 0))
+      return "edges_s: times must be finite, above 0 and in order";
+    if (edge.time > duration) return late("edges_s");
     if (edge.closed == closed) return "edges_s: states must alternate, and the first edge closes the contact";
     before = edge.time, closed = edge.closed;
   }
-  if (record.closing_time && !(std::isfinite(*record.closing_time) && *record.closing_time >= 0))
-    return "closing_time_s: must be finite and at least 0";
+  if (record.closing_time && !(std::isfinite(*record.closing_time) && *record.closing_time > 0))
+    return "closing_time_s: must be finite and above 0";
+  if (record.closing_time && *record.closing_time > duration) return late("closing_time_s");
   if (record.bounce_count && *record.bounce_count < 0) return "bounce_count: must be at least 0";
   if (record.bounce_count && *record.bounce_count > 0 && !first_touch(record))
     return "bounce_count: nothing bounces that never closed";

@@ -1,6 +1,7 @@
 // What a laboratory sees of one closing: when the contact was open and when it was closed.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,9 +44,10 @@ struct ContactOpening {
   double begin = 0, end = 0;  ///< [s]; the end is infinite where the record ends open
 };
 
-/// Why a record cannot be one, as a rule about the key at fault; empty where it can. Times must be finite, at least 0 and in
-/// order, edges alternate from closed on, and a record has edges or a closing time, not both.
-[[nodiscard]] std::string record_fault(const ContactRecord& record);
+/// Why a record cannot be one of a shot that lasts `duration` [s], as a rule about the key at fault; empty where it can. Times
+/// must be above 0, not after the end, and in order, edges alternate from closed on, and a record has edges or a closing time,
+/// not both.
+[[nodiscard]] std::string record_fault(const ContactRecord& record, double duration = std::numeric_limits<double>::infinity());
 
 /// Of the first touch [s]; none where the contact stayed open.
 [[nodiscard]] std::optional<double> first_touch(const ContactRecord& record);

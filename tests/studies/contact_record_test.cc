@@ -44,7 +44,10 @@ TEST(ContactRecords, WhatIsNoRecordIsRefusedWithItsKey) {
   EXPECT_THAT(record_fault(with_edges({{1, false}})), HasSubstr("edges_s"));
   EXPECT_THAT(record_fault(with_edges({{1, true}, {2, true}})), HasSubstr("alternate"));
   EXPECT_THAT(record_fault(with_edges({{2, true}, {1, false}})), HasSubstr("in order"));
-  EXPECT_THAT(record_fault(with_edges({{-1, true}})), HasSubstr("at least 0"));
+  EXPECT_THAT(record_fault(with_edges({{-1, true}})), HasSubstr("above 0"));
+  EXPECT_THAT(record_fault(with_edges({{0, true}})), HasSubstr("above 0")) << "the drives begin there";
+  EXPECT_EQ(record_fault(with_edges({{1e-5, true}, {2e-5, false}, {3e-5, true}}), 3e-5), "");
+  EXPECT_THAT(record_fault(with_edges({{1e-5, true}, {2e-5, false}, {3e-5, true}}), 2.9e-5), HasSubstr("ends at 2.9e-05 s"));
   EXPECT_THAT(record_fault(with_edges({{std::nan(""), true}})), HasSubstr("finite"));
   EXPECT_THAT(record_fault({.edges = {{1, true}}, .closing_time = 1}), HasSubstr("beside"));
   EXPECT_THAT(record_fault({.closing_time = -1}), HasSubstr("closing_time_s"));
