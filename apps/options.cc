@@ -36,8 +36,9 @@ void Verb::flag(const char* name, bool& value, const std::string& about) { optio
 
 void Verb::footer(const std::string& text) { options_.footer(text); }
 
-void Verb::with_scene(bool required) {
-  positional("SCENE", common_.scene, "scene file (TOML)", required);
+void Verb::with_scene(bool required, bool or_result) {
+  positional("SCENE", common_.scene,
+             or_result ? "scene file (TOML), folder that --out named, or result.json" : "scene file (TOML)", required);
   with_set("change one key: --set gap.contact=\"1.8 um\"");
   with_quiet();
 }

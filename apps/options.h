@@ -47,7 +47,7 @@ class Verb {
   void footer(const std::string& text);
 
   /// SCENE, --set and --quiet.
-  void with_scene(bool required = true);
+  void with_scene(bool required = true, bool or_result = false);
   /// SCENE, which may be a result that holds one: scene_of_result() in apps/scenes.h.
   void with_scene_or_result();
   void with_set(const std::string& about);

@@ -19,7 +19,7 @@ namespace softland::apps {
 namespace {
 
 int accuracy_verb(const Common& c) {
-  const SceneFile file = load_scene(c);
+  const SceneFile file = load_scene_or_result(c);
   const PreparedScene p = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
   std::optional<ResultFolder> folder = claim_places(c, {"report.html", "accuracy.svg", "accuracy.json"});
   Bar bar(c.quiet);
@@ -55,7 +55,7 @@ int accuracy_verb(const Common& c) {
 }  // namespace
 
 void add_accuracy(Verb& verb) {
-  verb.with_scene();
+  verb.with_scene(true, true);
   verb.with_json();
   verb.with_out("folder for report.html, accuracy.svg and accuracy.json");
   verb.footer(

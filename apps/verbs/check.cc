@@ -139,7 +139,7 @@ nlohmann::json check_json(const PreparedScene& p, const std::map<std::string, nl
 }
 
 int check_verb(const Common& c) {
-  const SceneFile file = load_scene(c);
+  const SceneFile file = load_scene_or_result(c);
   static_cast<void>(claim_places(c, {}));
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const PreparedScene p = choose(prepare(file, false, work->watch(), quick_pull_in), false, work->watch());
@@ -248,7 +248,7 @@ int check_verb(const Common& c) {
 }  // namespace
 
 void add_check(Verb& verb) {
-  verb.with_scene();
+  verb.with_scene(true, true);
   verb.with_json();
   verb.footer("Examples:\n  softland check my-switch.toml\n  softland check my-switch.toml --json -");
   verb.runs(check_verb);

@@ -82,7 +82,7 @@ json answer(const PracticeDevice& device, const json& line) {
 }
 
 int device_verb(const Common& c, const DeviceRequest& request) {
-  const SceneFile file = load_scene(c);
+  const SceneFile file = load_scene_or_result(c);
   PracticeOptions options{.laboratory = laboratory_errors(request.laboratory, file),
                           .drift = drift_of(request.drift),
                           .model = model_of(request.model)};
@@ -106,7 +106,7 @@ int device_verb(const Common& c, const DeviceRequest& request) {
 
 void add_device(Verb& verb) {
   const auto request = std::make_shared<DeviceRequest>();
-  verb.with_scene();
+  verb.with_scene(true, true);
   verb.with_seed(request->seed, "same device and same errors; the device differs from the scene as [spread] says");
   with_laboratory(verb, request->laboratory);
   verb.option("--drift", request->drift, "SHARE/N", "change of all volts in N shots, such as \"1 %/1000\" (default: none)");

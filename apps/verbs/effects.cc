@@ -15,7 +15,7 @@ namespace softland::apps {
 namespace {
 
 int effects_verb(const Common& c) {
-  const SceneFile file = load_scene(c);
+  const SceneFile file = load_scene_or_result(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const PreparedScene p = prepare_and_choose(file, false, work->watch());
   static_cast<void>(claim_places(c, {}));
@@ -28,7 +28,7 @@ int effects_verb(const Common& c) {
 }  // namespace
 
 void add_effects(Verb& verb) {
-  verb.with_scene();
+  verb.with_scene(true, true);
   verb.with_json();
   verb.footer("Example:\n  softland effects scenes/mem-gold.toml --set gas.pressure=\"1 kPa\"");
   verb.runs(effects_verb);

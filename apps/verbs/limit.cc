@@ -50,7 +50,7 @@ int limit_verb(const Common& c, const LimitRequest& request) {
   require(actuator != nullptr, [&] { return fmt::format("--actuator {}: must be {}", request.actuator, listed(actuators)); });
   LimitOptions options{.actuator = actuator->value, .curves = !request.no_curves};
   if (request.impact_velocity) options.impact_velocity = speed_of(*request.impact_velocity);
-  const SceneFile file = load_scene(c);
+  const SceneFile file = load_scene_or_result(c);
   if (request.start) {
     require(!request.start->empty(), "--start: must not be empty");
     const Drives drives = prepare(scene_of_result(*request.start), false, {.stop = c.stop}).drives;
@@ -85,7 +85,7 @@ int limit_verb(const Common& c, const LimitRequest& request) {
 
 void add_limit(Verb& verb) {
   const auto request = std::make_shared<LimitRequest>();
-  verb.with_scene();
+  verb.with_scene(true, true);
   verb.with_json();
   verb.option("--actuator", request->actuator, "NAME", "drives that may be shaped: " + first_is_default(listed(actuators)));
   verb.optional("--impact-velocity", request->impact_velocity, "SPEED",

@@ -38,7 +38,7 @@ struct ModesRequest {
 };
 
 int frequencies_of_scene(const Common& c) {
-  const SceneFile file = load_scene(c);
+  const SceneFile file = load_scene_or_result(c);
   const PreparedScene prepared = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
   static_cast<void>(claim_places(c, {}));
   nlohmann::json list = nlohmann::json::array();
@@ -142,7 +142,7 @@ int modes_verb(const Common& c, const ModesRequest& r) {
 
 void add_modes(Verb& verb) {
   const auto r = std::make_shared<ModesRequest>();
-  verb.with_scene(false);
+  verb.with_scene(false, true);
   verb.option("--from", r->from, "FILE",
               "instead of a scene: modes of a table of softland, CalculiX .frd, an export of COMSOL, UFF 55 or ANSYS .rom "
               "(docs/modes.md)");

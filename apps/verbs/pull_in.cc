@@ -140,7 +140,7 @@ void write_sweep(ResultFolder& folder, const PreparedScene& p, const SweepRange&
 int pull_in_verb(const Common& c, const PullInRequest& request) {
   const std::optional<SweepRange> range = request.sweep ? std::optional(sweep_range(*request.sweep)) : std::nullopt;
   require(range.has_value() == !c.out.empty(), "--sweep and --out belong together: the sweep is written into that folder");
-  const SceneFile file = load_scene(c);
+  const SceneFile file = load_scene_or_result(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   PreparedScene prepared = prepare_and_choose(file, false, work->watch());
   for (const std::string& assignment : request.bias) set_bias(prepared, assignment);
@@ -181,7 +181,7 @@ int pull_in_verb(const Common& c, const PullInRequest& request) {
 
 void add_pull_in(Verb& verb) {
   const auto request = std::make_shared<PullInRequest>();
-  verb.with_scene();
+  verb.with_scene(true, true);
   verb.with_json();
   verb.repeated("--bias", request->bias, "NAME=VOLTAGE",
                 "what another drive stands at for ever, instead of its hold level where that is in volts");

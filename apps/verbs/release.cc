@@ -56,7 +56,7 @@ OpeningOptions options_of(const ReleaseRequest& request) {
 
 int release_verb(const Common& c, const ReleaseRequest& request) {
   const OpeningOptions options = options_of(request);
-  const SceneFile file = load_scene(c);
+  const SceneFile file = load_scene_or_result(c);
   const std::vector<std::string> files{"release.json", "release.svg", "release.csv", "release.toml"};
   std::optional<ResultFolder> folder = claim_places(c, files);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
@@ -85,7 +85,7 @@ int release_verb(const Common& c, const ReleaseRequest& request) {
 
 void add_release(Verb& verb) {
   const auto request = std::make_shared<ReleaseRequest>();
-  verb.with_scene();
+  verb.with_scene(true, true);
   verb.with_json();
   verb.option("--actuator", request->actuator, "NAME", "drives that may brake: " + first_is_default(listed(actuators)));
   verb.option("--band", request->band, "SHARE",

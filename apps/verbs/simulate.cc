@@ -47,7 +47,7 @@ struct SimulateRequest {
 
 int simulate_verb(const Common& c, const SimulateRequest& request) {
   const int jobs = job_count(request.jobs);
-  const SceneFile file = load_scene(c);
+  const SceneFile file = load_scene_or_result(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const PreparedScene prepared = prepare_and_choose(file, false, work->watch());
   const std::vector<std::string> files{"report.html", "gap.svg", "result.json", "trajectory.csv"};
@@ -74,7 +74,7 @@ int simulate_verb(const Common& c, const SimulateRequest& request) {
 
 void add_simulate(Verb& verb) {
   const auto request = std::make_shared<SimulateRequest>();
-  verb.with_scene();
+  verb.with_scene(true, true);
   verb.with_json();
   verb.with_out("folder for report.html, gap.svg, result.json and trajectory.csv");
   verb.flag("--certify", request->certified, "errors that cover the true ones, and clouds of runs for ill-conditioned figures");

@@ -141,7 +141,7 @@ int tune_verb(const Common& given, const TuneRequest& request) {
   std::optional<ContactTraceKeys> contact;
   if (!request.contact.empty()) contact = contact_trace_keys(request.contact);
   const int closings = request.closings ? whole_number("--closings", *request.closings, 1) : usual_closings;
-  const SceneFile file = load_scene(c);
+  const SceneFile file = load_scene_or_result(c);
   Tuning tuning(c, file, tuner_options(request, file), request);
   if (tuning.report(TuningEnd::under_way).spread_assumed && !c.quiet) say(std::string(assumed_words));
 
@@ -173,7 +173,7 @@ int tune_verb(const Common& given, const TuneRequest& request) {
 
 void add_tune(Verb& verb) {
   const auto request = std::make_shared<TuneRequest>();
-  verb.with_scene();
+  verb.with_scene(true, true);
   verb.with_json();
   verb.option("--device", request->device, "COMMAND",
               "what fires the shots: the shell runs it, it reads one JSON object a line and answers each by one");

@@ -729,6 +729,33 @@ TEST(Export, WritesTheSwitchForACircuit) {
   EXPECT_THAT(refused("nem-casimir.toml"), HasSubstr("Casimir force between gold"));
 }
 
+// A verb that works on a scene works on the folder of a result as well, and on its result.json.
+TEST(Scenes, AreTakenFromResults_optimized) {
+  const Workplace here;
+  ASSERT_EQ(here.run({"simulate", "gold.toml", "--out", "run", "--quiet", "--set", "structure.modes=2", "--set",
+                      "simulate.duration=60 us"})
+                .status,
+            0);
+  for (const char* verb : {"simulate", "check", "pull-in", "modes"}) {
+    const auto text = [&](const std::string& scene) {
+      const Outcome o = here.run({verb, scene, "--quiet"});
+      EXPECT_EQ(o.status, 0) << verb << " " << scene << o.err;
+      return std::regex_replace(o.out, std::regex("run\\S*"), "run");
+    };
+    EXPECT_EQ(text("run"), text("run/result.json")) << verb;
+  }
+  for (const char* verb :
+       {"simulate", "check", "pull-in", "modes", "effects", "accuracy", "limit", "release", "tune", "device"}) {
+    std::string help = here.run({verb, "--help"}).out;
+    std::ranges::replace(help, '\n', ' ');
+    EXPECT_THAT(std::regex_replace(help, std::regex(" +"), " "), HasSubstr("folder that --out named, or result.json")) << verb;
+  }
+  fs::create_directory(here.path() / "empty");
+  const Outcome empty = here.run({"simulate", "empty"});
+  EXPECT_EQ(empty.status, 2);
+  EXPECT_THAT(empty.err, HasSubstr("empty: holds neither best.toml nor result.json"));
+}
+
 // Of every name that the model, SPICE or Verilog-A has for something else the pin is another, and that is told.
 TEST(Export, NamesPinsOfCircuitsThatAreNoOthers) {
   const Workplace here;
