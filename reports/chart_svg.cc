@@ -219,7 +219,7 @@ std::string zero_line(const Chart& chart, const Axes& axes) {
   return out;
 }
 
-// In few bytes: whole tenths of a pixel from point to point.
+// Writes a curve in few bytes: whole tenths of a pixel from point to point.
 std::string thin_curve(const std::vector<std::array<double, 2>>& points, const Stroke& pen) {
   std::string path;
   std::array<long, 2> last{};

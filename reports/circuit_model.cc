@@ -240,7 +240,7 @@ std::string title(const PreparedScene& p) {
   return fmt::format("{}: {} modes, {} quadrature points", p.scene.file.name(), p.model.modes(), p.model.quadrature().points());
 }
 
-// In lines that begin with `comment`.
+// Tells of renamed pins in lines that begin with `comment`.
 std::string renamed_in(const PreparedScene& p, std::string_view comment) {
   std::string text;
   for (const std::string& line : renamed_pins(p.drive_names())) text += fmt::format("{} {}\n", comment, line);

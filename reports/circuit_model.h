@@ -17,7 +17,7 @@ namespace softland {
 
 /// What the pins of these drives are called: letters become lower case, what is neither letter nor digit an underscore. A name
 /// that the model uses itself, that SPICE or Verilog-A reserve, or that cannot begin a name, begins with "drive_"; one that
-/// another drive has ends with a number. In the order of the drives.
+/// another drive has ends with a number. They are in the order of the drives.
 [[nodiscard]] std::vector<std::string> circuit_pins(const std::vector<std::string>& drives);
 /// Says of each drive whose pin has another name what that is: "drive g is the pin drive_g".
 [[nodiscard]] std::vector<std::string> renamed_pins(const std::vector<std::string>& drives);

@@ -415,7 +415,7 @@ Picture internal::course_picture(const ResultDevices& d) {
 std::string svg_devices(const Result& result) {
   Picture drawn = course_picture(*result.devices);
   const std::string words = drawn.charts.empty() ? result.title : result.title + ". " + drawn.charts.front().caption;
-  // Below them what each drive does.
+  // The drives stand below the gaps.
   Picture others = gap_and_drives(result);
   for (Chart& chart : others.charts) {
     if (!chart.id.starts_with("drive")) continue;
@@ -487,7 +487,7 @@ ReportTable choices_table(const ResultDevices& d) {
   return devices_table(d, rows, ShownIn::terminal);
 }
 
-// In the order of the choices, and then the others.
+// The choices come first, in their order, and the others after them.
 ReportTable all_rows(const ResultDevices& d) {
   std::vector<std::pair<std::string, const ResultDevices::Row*>> rows;
   const auto add = [&](const ResultDevices::Row* row) {

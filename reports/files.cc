@@ -5,9 +5,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cmath>
+#include <fstream>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -86,6 +88,14 @@ void require_place(bool done, const std::filesystem::path& path, const char* wha
   throw InvalidInput(failure(path, what));
 }
 
+// Knows it by what every file of SQLite begins with.
+bool is_database(const std::filesystem::path& path) {
+  constexpr std::string_view heading("SQLite format 3\0", 16);
+  std::array<char, heading.size()> begin{};
+  std::ifstream file(path, std::ios::binary);
+  return file.read(begin.data(), begin.size()) && std::string_view(begin.data(), begin.size()) == heading;
+}
+
 }  // namespace
 
 void check_writable(const std::filesystem::path& path) {
@@ -99,6 +109,7 @@ void check_writable(const std::filesystem::path& path) {
   require_place(!std::filesystem::is_directory(old), path, "replace it");
   require(std::filesystem::is_regular_file(old), path.string() + ": is no regular file, so it is not replaced");
   require(!was_read(target), path.string() + ": is read by this run, so its output does not replace it");
+  require(!is_database(target), path.string() + ": is the store of a study, so it is not replaced");
 }
 
 std::string name_to_be(const std::string& name) {

@@ -11,7 +11,7 @@
 namespace softland {
 
 /// Throws InvalidInput with path and reason unless write_whole() may write there: the folder exists and is writable, and `path`
-/// is neither a folder nor a device or pipe nor the companion of a database nor, under whatever name, a file that this run has
+/// is neither a folder nor a device or pipe nor a database or its companion nor, under whatever name, a file that this run has
 /// read. For what takes long to compute, to be asked before.
 void check_writable(const std::filesystem::path& path);
 

@@ -140,7 +140,7 @@ std::string words_on_devices(const Asked& asked, const SearchReport& report, con
   return on_devices(asked.c, *found.best().best_scene, asked.search.options.jobs, place);
 }
 
-// Of the many files of a search over devices the pages and the waveforms, and how many more there are.
+// Lists the pages and the waveforms of a search over devices, and says how many files there are besides.
 std::vector<std::string> foremost(std::vector<std::string> files) {
   const auto others = std::ranges::stable_partition(
       files, [](const std::string& name) { return name.ends_with(".html") || name.ends_with(".toml"); });

@@ -354,7 +354,7 @@ std::vector<DeviceOutcome> DevicesSearch::on_others(const DriveWaveforms& wavefo
   return others_->close_until(first().drives(waveforms), free_.until, options_.jobs);
 }
 
-// By its outcomes on the devices of the choice.
+// Judges a candidate by its outcomes on the devices of the choice.
 DevicesSearch::Placed DevicesSearch::judged(ChosenFrom one, const std::vector<DeviceOutcome>& outcomes) const {
   RobustAim aim = aims_.tail;
   if (approach_) aim.conditions = conditions_;  // a slow touch is no fault where it is soft

@@ -139,6 +139,18 @@ TEST(WriteWhole, ReplacesNoDeviceAndNothingThatWasRead) {
   EXPECT_EQ(entries(folder.path()), 3u);
 }
 
+TEST(WriteWhole, ReplacesNoStore) {
+  const TemporaryFolder folder;
+  const std::string store = std::string("SQLite format 3\0", 16) + "rows";
+  std::ofstream(folder.path() / "map.sqlite", std::ios::binary) << store;
+  std::ofstream(folder.path() / "short", std::ios::binary) << "SQLite format 3";
+  EXPECT_THAT(refusal(folder.path() / "map.sqlite", "{}"),
+              HasSubstr("map.sqlite: is the store of a study, so it is not replaced"));
+  EXPECT_EQ(content(folder.path() / "map.sqlite"), store);
+  write_whole(folder.path() / "short", "{}");
+  EXPECT_EQ(content(folder.path() / "short"), "{}");
+}
+
 TEST(WriteWhole, IsAskedBeforeWhetherItMay) {
   const TemporaryFolder folder;
   check_writable(folder.path() / "new");
