@@ -34,6 +34,7 @@ constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2
 constexpr double least_of_race = 0.4, end_of_race = 0.75;  // of a budget of time
 constexpr std::string_view quasi_static_short = "quasi-static:2",
                            approaches = "+quasi-static+quasi-static:2";  // that are searched where there is a stable path
+constexpr double alike = 1.05;               // times the least cost, which the devices of the choice do not tell from it
 constexpr double little_more = 1.25;         // times the least cost, for which a sooner waveform is preferred where there is none
 constexpr std::uint64_t path_devices = 512;  // of which it is told how many have a stable path
 // Paces of the quasi-static approach, over the time for which the plain step bounces: in half of it, in all of it, in twice as
@@ -389,6 +390,15 @@ std::vector<ChosenFrom> DevicesSearch::placed() const {
       if (is_near && one->candidate.median_touch < soonest->candidate.median_touch) soonest = one;
     }
     std::rotate(sorted.begin(), soonest, soonest + 1);
+  }
+  // A few devices without a path make costs alike: of what they do not tell apart the softest for 95 % is preferred.
+  if (approach_ && !sorted.empty() && sorted.front().candidate.is_good_enough) {
+    auto softest = sorted.begin();
+    for (auto one = sorted.begin(); one != sorted.end(); ++one) {
+      const bool is_alike = one->candidate.is_good_enough && one->rank <= alike * sorted.front().rank;
+      if (is_alike && one->candidate.impact_speed < softest->candidate.impact_speed) softest = one;
+    }
+    std::rotate(sorted.begin(), softest, softest + 1);
   }
   std::vector<ChosenFrom> all;
   for (Placed& one : sorted) all.push_back(std::move(one.candidate));
