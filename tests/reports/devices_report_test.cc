@@ -86,8 +86,8 @@ TEST(DevicesReport, SaysFirstWhatDevicesDo) {
   const Result result = devices_result();
   const std::string text = terminal_text(result_document(result)), page = page_html(result_document(result));
   EXPECT_EQ(text.find("Of 2000 simulated devices"), 0U);
-  for (const char* part : {"plain step", "fast: fast.toml", "default: best.toml", "Vdp to 1 %", "107 (118)\u00a0mm/s",
-                           "732 (", "∞", "0.0 / 25 / 100 %", "500\u00a0µs"})
+  for (const char* part : {"plain step", "fast: fast.toml", "default: best.toml", "Vdp to 1 %", "107 (118)\u00a0mm/s", "732 (",
+                           "∞", "0.0 / 25 / 100 %", "500\u00a0µs"})
     EXPECT_THAT(text, HasSubstr(part));
   EXPECT_THAT(text, Not(HasSubstr("drawing.toml  "))) << "on the page";
   for (const char* part : {"nominal design: drawing.toml", "default: best.toml", "Vdp and piezo to 1 %",
