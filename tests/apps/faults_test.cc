@@ -421,7 +421,8 @@ TEST_F(Faults, NoOutputTakesThePlaceOfAnInput) {
       const Outcome o = here->run(words(verb, calls()[verb].quick + std::vector<std::string>{"--json", place}));
       EXPECT_EQ(o.status, bad_input) << verb << " " << place;
       EXPECT_EQ(o.err.substr(0, o.err.find('\n')).substr(std::max<std::size_t>(o.err.find(place), 0)),
-                place + ": is read by this run, so its output does not replace it")
+                place + (place.ends_with(".sqlite") ? ": is the store of a study, so it is not replaced"
+                                                    : ": is read by this run, so its output does not replace it"))
           << verb;
     }
   }
