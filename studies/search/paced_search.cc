@@ -80,6 +80,7 @@ std::optional<Racer> search_at_pace(const SearchSetting& given, const Pace& pace
                                        .jobs = options.jobs},
                                       [&](const std::vector<double>&, double, long taken) {
                                         closings += taken;
+                                        if (over()) return true;  // whoever is told may throw from here on
                                         if (options.progress) options.progress(0);
                                         return over();
                                       });

@@ -168,6 +168,7 @@ class Race {
                                              .seed = seed_of(number, r),
                                              .jobs = options_.jobs},
                                             [&](const Point&, double, long closings) {
+                                              if (over()) return true;  // whoever is told may throw from here on
                                               took(closings);
                                               return over();
                                             });
