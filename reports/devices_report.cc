@@ -12,13 +12,12 @@
 #include <vector>
 
 #include "reports/closing_words.h"
+#include "reports/device_gaps.h"
 #include "reports/escape.h"
 #include "reports/figure_text.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/robustness_words.h"
-#include "reports/svg.h"
-#include "sampling/statistics.h"
 
 namespace softland {
 
@@ -145,24 +144,6 @@ TableCell headed(std::string_view on_terminal, std::string_view on_page) {
   TableCell cell(on_terminal);
   cell.html = escaped(capitalised(std::string(on_page)));
   return cell;
-}
-
-// The gaps in a table of columns "time", "low", "high", "median" and one for each device.
-CurveTable courses_table(const ResultDevices::Courses& courses, const std::vector<std::vector<int>>& gaps) {
-  CurveTable table;
-  const std::size_t instants = gaps.front().size();
-  for (std::size_t i = 0; i < instants; ++i) {
-    table["time"].push_back(courses.end * static_cast<double>(i) / static_cast<double>(instants - 1));
-    std::vector<double> all;
-    for (std::size_t k = 0; k < gaps.size(); ++k) {
-      all.push_back(courses.unit * gaps[k].at(i));
-      table[std::to_string(k)].push_back(all.back());
-    }
-    table["median"].push_back(sample_quantile(all, 0.5));
-    table["low"].push_back(sample_quantile(all, 0.05));
-    table["high"].push_back(sample_quantile(all, 0.95));
-  }
-  return table;
 }
 
 // The choices beside the plain step: impact velocity over the time from which the force is steady.
@@ -372,63 +353,6 @@ std::string internal::devices_headline(const Result& result) {
   return words + ": best.toml.";
 }
 
-Picture internal::course_picture(const ResultDevices& d) {
-  Picture drawn;
-  if (!d.courses || d.courses->step.empty() || d.courses->own.empty()) return drawn;
-  const ResultDevices::Courses& courses = *d.courses;
-  const auto add = [&](const char* id, const char* title, const std::vector<std::vector<int>>& gaps, Role thin, Role band) {
-    drawn.tables[id] = courses_table(courses, gaps);
-    Chart chart{.id = id,
-                .title = title,
-                .caption = fmt::format("Gap of the contact on {} devices: median, and band of 5 to 95 %.", gaps.size()),
-                .x_column = "time",
-                .x_label = "Time",
-                .x_unit = "s",
-                .y_label = "Gap",
-                .y_unit = "m",
-                .x_home = {0, courses.end},
-                .x_whole = {0, courses.end},
-                .zero_line = true,
-                .zero_label = "contact",
-                .height = 220,
-                .bands = {{.table = id, .low = "low", .high = "high", .role = band}}};
-    for (std::size_t k = 0; k < gaps.size(); ++k)
-      chart.series.push_back({.table = id, .column = std::to_string(k), .label = "", .role = thin});
-    chart.series.push_back({.table = id, .column = "median", .label = "", .role = band});
-    drawn.charts.push_back(std::move(chart));
-  };
-  add("devices-step", "Plain step", courses.step, Role::device_before, Role::baseline);
-  add("devices-best", d.choices.empty() ? "best.toml" : "default: best.toml", courses.own, Role::device, Role::best);
-  std::array<double, 2> home{0, 0};
-  for (const auto& [id, table] : drawn.tables) {
-    for (const auto& [name, column] : table) {
-      if (name == "time") continue;
-      const auto [low, high] = std::ranges::minmax(column);
-      home = {std::min(home[0], low), std::max(home[1], high)};
-    }
-  }
-  const double margin = 0.06 * (home[1] - home[0]);
-  for (Chart& chart : drawn.charts) chart.y_home = {home[0] - 2 * margin, home[1] + margin};
-  return drawn;
-}
-
-std::string svg_devices(const Result& result) {
-  Picture drawn = course_picture(*result.devices);
-  const std::string words = drawn.charts.empty() ? result.title : result.title + ". " + drawn.charts.front().caption;
-  // The drives stand below the gaps.
-  Picture others = gap_and_drives(result);
-  for (Chart& chart : others.charts) {
-    if (!chart.id.starts_with("drive")) continue;
-    if (result.devices->courses) chart.x_home = {0, result.devices->courses->end};
-    for (Series& one : chart.series) {
-      if (one.role == Role::limit) one.label.clear();  // half a page is too narrow for it
-    }
-    drawn.charts.push_back(std::move(chart));
-  }
-  drawn.tables.merge(others.tables);
-  return svg_page(devices_headline(result), words, drawn, 2);
-}
-
 std::vector<KeyNumber> internal::devices_keys(const ResultDevices& d) {
   const ResultDevices::Row *step = d.row("plain step"), *own = d.row("for the devices");
   if (step == nullptr || own == nullptr) return {};
@@ -536,15 +460,6 @@ std::string measuring_words(const ResultDevices& d) {
              : fmt::format("With {} on each, 95 % touch at no more than {}: calibrated.toml.", what, speed_of(*measured));
 }
 
-std::string courses_html(const ResultDevices& d) {
-  const Picture drawn = course_picture(d);
-  if (drawn.charts.empty()) return {};
-  std::string pictures;
-  for (const Chart& chart : drawn.charts) pictures += small_picture(drawn.tables, chart);
-  return fmt::format("<div class=\"multiples\">\n{}</div>\n<p class=\"below\">{}</p>\n", pictures,
-                     escaped(drawn.charts.front().caption));
-}
-
 }  // namespace
 
 ReportSection internal::choices_section(const ResultDevices& d) {
@@ -563,7 +478,7 @@ ReportSection internal::devices_section(const ResultDevices& d) {
   ReportSection section{.id = "devices", .heading = "Process variation", .parts = {}, .shown = ShownIn::page};
   if (d.rows.empty()) return section;
   const auto note = [&](std::string text) { section.parts.emplace_back(Paragraph{.text = std::move(text), .is_note = true}); };
-  section.parts.emplace_back(Drawing{[&d](const Picture&) { return courses_html(d); }});
+  section.parts.emplace_back(Drawing{[&d](const Picture&) { return gaps_html(d); }});
   section.parts.emplace_back(all_rows(d));
   section.parts.emplace_back(Drawing{[&d](const Picture&) { return choices_picture(d); }});
   for (const std::string& words : {path_words(d), delay_words(d), measuring_words(d)}) {
@@ -583,7 +498,7 @@ ReportSection internal::devices_section(const ResultDevices& d) {
     note(fmt::format("The condition {} {}: {} of the devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
                      percent(c.share)));
   if (!d.next_command.empty()) {
-    section.parts.emplace_back(SubHeading{"For a device that was measured"});
+    section.parts.emplace_back(SubHeading{d.measured.empty() ? "For a source" : "For a device that was measured"});
     section.parts.emplace_back(ReportList{{d.next_command}});
   }
   section.parts.emplace_back(

@@ -11,10 +11,6 @@
 
 namespace softland {
 
-/// A static SVG document: the first words of a search over devices, and how devices close under the plain step and under
-/// best.toml.
-[[nodiscard]] std::string svg_devices(const Result& result);
-
 /// `next_command`: how a measured device gets its waveform; empty where it cannot.
 [[nodiscard]] ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command);
 
@@ -24,8 +20,6 @@ namespace internal {
 [[nodiscard]] std::string drawing_words(const ResultDevices& devices);
 /// Says in a sentence how the waveform of best.toml closes the devices.
 [[nodiscard]] std::string devices_headline(const Result& result);
-/// How devices close under the plain step and under best.toml, side by side; without charts where that was not drawn.
-[[nodiscard]] Picture course_picture(const ResultDevices& devices);
 /// What stands above all else on a page: shares and 95 % quantiles of the devices, from plain step to winner.
 [[nodiscard]] std::vector<KeyNumber> devices_keys(const ResultDevices& devices);
 /// A terminal shows the choices beside the plain step, what measuring wins, and the nominal design.

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "reports/device_gaps.h"
 #include "reports/files.h"
 #include "reports/result_document.h"
 #include "reports/result_json.h"

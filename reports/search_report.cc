@@ -10,9 +10,11 @@
 namespace softland {
 namespace {
 
-// How a device that was measured gets its waveform; empty where there is none for it.
+// Writes the waveform of a device that was measured, or where measuring wins nothing that of every device; empty where neither
+// was found.
 std::string next_command(const ForDevicesResult& found, const std::filesystem::path& folder) {
-  if (!found.calibrated) return {};
+  if (!found.calibrated && !found.chosen) return {};
+  if (!found.calibrated) return fmt::format("softland export {} --format spice-pwl", shell_word(folder.string()));
   const bool by_time = found.calibrated->written("calibration.time").has_value();
   return fmt::format("softland export {} --measured \"{}\"", shell_word((folder / "calibrated.toml").string()),
                      by_time ? fmt::format("{}={:.4g} us", measured_time, 1e6 * found.closing_time)

@@ -88,9 +88,9 @@ void add_fit(Verb& verb) {
       "fitted.toml is the scene with the values found; comments, sources and units stay. Values have standard errors, 95 %\n"
       "intervals and correlations. What the data cannot tell apart is said in words, and which further measurement would tell "
       "most.\n"
-      "Status 3: at no start do the devices have what was measured. Status 4: the fit is not to be believed, because an unknown\n"
-      "is 4 standard deviations away from what was known of it, the data are off by more than 3 of their errors, or another\n"
-      "minimum describes them as well. Then no interval is given.\n"
+      "Status 3: at no start do the devices have what was measured.\n"
+      "Status 4: the fit is not to be believed, and no interval is given. An unknown is 4 standard deviations away from what\n"
+      "was known of it, the data are off by more than 3 of their errors, or another minimum describes them as well.\n"
       "Examples:\n  softland fit my.toml --data bench.toml\n"
       "  softland fit my.toml --data bench.toml --unknown structure.youngs_modulus --unknown gaps --out device-17\n"
       "  softland fit my.toml --data wafer.toml --shared structure.youngs_modulus --loss cauchy");

@@ -55,6 +55,7 @@ class DevicesStudy {
     } catch (const Interrupted&) {  // what there is stands
     }
     searched_.give_up();
+    if (beside_.valid()) beside_.wait();  // what it has found is read from here on
     if (stopped() && result_->rows.empty()) take_leader();
     result_->closings += searched_.closings();
     result_->interrupted = stopped();

@@ -42,9 +42,12 @@ bool is_worse(const std::vector<double>& own, const std::vector<double>& of_step
 std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive, const std::vector<DeviceOutcome>& step,
                                        double significant, std::uint64_t seed) {
   std::vector<std::string_view> worse;
+  const std::size_t both = std::min(drive.size(), step.size());  // a verdict that was interrupted has fewer
   for (const std::string_view key : judged_figures) {
     const double least = key == key_of(&Metrics::major_bounce_height) ? significant : 0;
-    if (is_worse(values_of(key, drive, least), values_of(key, step, least), seed)) worse.push_back(key);
+    std::vector<double> own = values_of(key, drive, least), of_step = values_of(key, step, least);
+    own.resize(both), of_step.resize(both);
+    if (both > 0 && is_worse(own, of_step, seed)) worse.push_back(key);
   }
   return worse;
 }

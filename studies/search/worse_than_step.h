@@ -18,8 +18,8 @@ namespace softland {
 inline constexpr std::array judged_figures{key_of(&Metrics::largest_impact_velocity), key_of(&Metrics::major_bounce_height),
                                            key_of(&Metrics::peak_contact_force)};
 
-/// The figures in which the drive is worse, of outcomes by device; `significant`: height of a rebound from which on it counts
-/// [m].
+/// The figures in which the drive is worse, of outcomes by device, as far as both have them; `significant`: height of a rebound
+/// from which on it counts [m].
 [[nodiscard]] std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive,
                                                      const std::vector<DeviceOutcome>& step, double significant,
                                                      std::uint64_t seed);

@@ -477,6 +477,7 @@ TEST(SearchForDevices, ApproachesTheContactThroughStableEquilibria_optimized) {
     EXPECT_LT(json::parse(again.out)["metrics"]["impact_velocity_m_s"], 0.012) << file;
   }
   EXPECT_THAT(o.out, testing::HasSubstr("--hold-step fixed"));
+  EXPECT_THAT(o.out, testing::HasSubstr("\n  softland export out")) << "what to do next";
 }
 
 // A piezo that closes the switch by itself holds it, too: there is no step to delay.

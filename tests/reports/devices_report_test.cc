@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "reports/device_gaps.h"
 #include "reports/result_document.h"
 #include "reports/result_json.h"
 #include "reports/result_reader.h"
@@ -114,7 +115,7 @@ TEST(DevicesReport, SaysThatTheStepIsDelayedAndWhatMeasuringWins) {
 
 TEST(DevicesReport, DrawsDevicesUnderTheStepAndTheWaveformSideBySide) {
   Result r = devices_result();
-  const internal::Picture drawn = internal::course_picture(*r.devices);
+  const internal::Picture drawn = internal::gaps_picture(*r.devices);
   ASSERT_EQ(drawn.charts.size(), 2U);
   EXPECT_EQ(drawn.charts[0].series.size(), 3U) << "a curve for each device, and their median";
   EXPECT_EQ(drawn.charts[0].y_home, drawn.charts[1].y_home) << "they are compared";
@@ -127,8 +128,13 @@ TEST(DevicesReport, DrawsDevicesUnderTheStepAndTheWaveformSideBySide) {
     EXPECT_THAT(text, HasSubstr("band of 5 to 95 %"));
     EXPECT_THAT(text, HasSubstr("clip-devices-best"));
   }
+  ResultDevices changed = *r.devices;  // a file that somebody has edited
+  changed.courses->own.front().pop_back();
+  EXPECT_TRUE(internal::gaps_picture(changed).charts.empty());
+  changed.courses->step = changed.courses->own = {{1}};
+  EXPECT_TRUE(internal::gaps_picture(changed).charts.empty());
   r.devices->courses.reset();
-  EXPECT_TRUE(internal::course_picture(*r.devices).charts.empty());
+  EXPECT_TRUE(internal::gaps_picture(*r.devices).charts.empty());
   EXPECT_THAT(page_html(result_document(r)), Not(HasSubstr("clip-devices-best")));
 }
 

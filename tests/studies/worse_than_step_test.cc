@@ -35,6 +35,16 @@ std::vector<std::string_view> worse(const std::vector<DeviceOutcome>& drive) { r
 using testing::ElementsAre;
 using testing::IsEmpty;
 
+TEST(WorseThanStep, ComparesTheDevicesThatBothHave) {
+  std::vector<DeviceOutcome> few = outcomes(0.2, 100e-9, 0.5e-6);
+  few.resize(40);  // its verdict was interrupted
+  const std::vector<std::string_view> speed{key_of(&Metrics::largest_impact_velocity)};
+  EXPECT_EQ(worse(few), speed);
+  EXPECT_THAT(worse_in(step, few, 1e-9, 3),
+              ElementsAre(key_of(&Metrics::major_bounce_height), key_of(&Metrics::peak_contact_force)));
+  EXPECT_THAT(worse({}), IsEmpty());
+}
+
 TEST(WorseThanStep, NamesTheFiguresInWhichADriveIsWorse) {
   EXPECT_THAT(worse(step), IsEmpty()) << "it is no worse than itself";
   EXPECT_THAT(worse(outcomes(0.05, 100e-9, 0.5e-6)), IsEmpty());
