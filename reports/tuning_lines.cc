@@ -208,7 +208,11 @@ json record_json(int shot, const ContactRecord& record) {
 json recipes_json(const std::vector<Recipe>& recipes) {
   json all = json::array();
   for (const Recipe& recipe : recipes)
-    all.push_back({{"x", recipe.x}, {"volts", recipe.volts}, {"time", recipe.time}, {"cost", recipe.cost}});
+    all.push_back({{"approach", name_of(approaches, recipe.approach)},
+                   {"x", recipe.x},
+                   {"volts", recipe.volts},
+                   {"time", recipe.time},
+                   {"cost", recipe.cost}});
   return {{"recipes", std::move(all)}};
 }
 
@@ -218,9 +222,13 @@ std::vector<Recipe> read_recipes(const json& line) {
   std::vector<Recipe> all;
   for (const json& one : value) {
     require_value(one.is_object(), "recipes", one, R"(must be {"x":[...],"volts":1,"time":1,"cost":0})");
-    require_known(one, "recipes.", {"x", "volts", "time", "cost"});
+    require_known(one, "recipes.", {"approach", "x", "volts", "time", "cost"});
     const auto number = [&](const char* key) { return finite_number(needed(one, key, "recipes."), key, "must be a number"); };
-    all.push_back({.x = numbers(needed(one, "x", "recipes."), "recipes.x"),
+    const json told = one.contains("approach") ? one["approach"] : json(name_of(approaches, Approach::fast));
+    const auto* approach = told.is_string() ? find_named(approaches, told.get_ref<const std::string&>()) : nullptr;
+    require_value(approach != nullptr, "recipes.approach", told, R"(must be "catch" or "quasi-static")");
+    all.push_back({.approach = approach->value,
+                   .x = numbers(needed(one, "x", "recipes."), "recipes.x"),
                    .volts = number("volts"),
                    .time = number("time"),
                    .cost = number("cost")});

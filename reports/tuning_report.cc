@@ -150,13 +150,16 @@ std::string closings_words(std::size_t count) { return count == 1 ? "one closing
 
 std::pair<std::string, std::string> headline_of(const TuningReport& report) {
   const std::string after = closings_words(learned(report));
+  const bool is_slow = report.approach == Approach::quasi_static;
   if (report.closings.empty()) return {"No closing yet.", ""};
   if (report.bounce_free_in_a_row > 0) {
     const std::string row =
         report.bounce_free_in_a_row == 1 ? "once so far" : fmt::format("{} times in a row", report.bounce_free_in_a_row);
     return {fmt::format("After {} the switch lands without a bounce", after),
-            fmt::format(", {}. The waveform kept touches at {}; a plain step on the drawing touches at {}.", row,
-                        quantity(report.kept.predicted.touch_median, "s"), quantity(report.step_closing_time, "s"))};
+            fmt::format(", {}. The waveform kept {}touches at {}; a plain step on the drawing touches at {}{}.", row,
+                        is_slow ? "carries the switch slowly through stable equilibria and " : "",
+                        quantity(report.kept.predicted.touch_median, "s"), quantity(report.step_closing_time, "s"),
+                        is_slow ? fmt::format(" and bounces until {}", quantity(report.step_permanent_contact, "s")) : "")};
   }
   if (report.ever_bounce_free()) return {fmt::format("After {} the last one bounced", after), ", though one before it did not."};
   return {fmt::format("After {} none has landed without a bounce yet.", after), ""};
@@ -392,6 +395,8 @@ TuningReport tuning_report(const Tuner& tuner, std::vector<TunedClosing> closing
           .belief = tuner.belief(),
           .broken_assumption = tuner.broken_assumption(),
           .step_closing_time = tuner.step_closing_time(),
+          .approach = tuner.approach(),
+          .step_permanent_contact = tuner.step_permanent_contact(),
           .bounce_free_in_a_row = tuner.bounce_free_in_a_row(),
           .spread_assumed = tuner.spread_is_assumed(),
           .seed = options.seed,
@@ -413,7 +418,9 @@ json tuning_json(const TuningReport& report, const Provenance& provenance) {
                       {"next", shot_report(scene, report.next)},
                       {"belief", belief_json(report.belief)},
                       {"broken_assumption", report.broken_assumption ? json(*report.broken_assumption) : json(nullptr)},
+                      {"approach", name_of(approaches, report.approach)},
                       {"step_closing_time_s", json_number(report.step_closing_time)},
+                      {"step_permanent_contact_time_s", json_number(report.step_permanent_contact)},
                       {"spread_assumed", report.spread_assumed},
                       {"seed", report.seed}},
                      scene, provenance.command);

@@ -33,6 +33,8 @@ struct TuningReport {
   BeliefSummary belief;
   std::optional<std::string> broken_assumption;
   double step_closing_time = 0;  ///< first touch of the plain step on the nominal device [s]
+  Approach approach = Approach::fast;
+  double step_permanent_contact = Metrics::unset;  ///< where the approach is quasi-static [s]
   int bounce_free_in_a_row = 0;
   bool spread_assumed = false;
   std::uint64_t seed = 1;

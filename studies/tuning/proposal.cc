@@ -17,17 +17,20 @@
 namespace softland {
 
 LandingCost landing_cost(const ImaginedClosing& closing, const TuningScales& s) {
-  constexpr double time_price = 0.34, free_time = 0.88, late_price = 10, margin = 0.99;
+  constexpr double time_price = 0.34, free_time = 0.88, contact_price = 0.02, late_price = 10, margin = 0.99;
   if (!closing.closes()) return {.landing = not_landed};
   const double middle = std::sqrt(s.rebound * s.gap / 20), height = closing.highest;
+  const double of_touch = time_price * std::max(0.0, closing.touch / s.closing_time - free_time);
+  const double of_contact =
+      std::isnan(s.permanent_contact) ? of_touch : contact_price * std::max(0.0, closing.stays_from() / s.permanent_contact - 1);
   return {.landing = (height / (height + middle) + height / (height + s.rebound)) / 2 + 10 * height / s.gap,
-          .time = time_price * std::max(0.0, closing.touch / s.closing_time - free_time) +
-                  late_price * std::max(0.0, closing.touch / (margin * s.latest_touch) - 1)};
+          .time = std::min(of_touch, of_contact) + late_price * std::max(0.0, closing.touch / (margin * s.latest_touch) - 1)};
 }
 
 namespace {
 
 std::string families_for(const TunedScene& scene) {
+  if (scene.approach() == Approach::quasi_static) return std::string(quasi_static_family);
   const PreparedScene& p = scene.nominal();
   const Actuator actuator = scene.options().actuator;
   std::string text = "catch";
@@ -43,7 +46,11 @@ bool ends_with(const std::string& name, std::string_view ending) { return name.e
 
 Shapes::Shapes(const TunedScene& scene) : scene_(&scene) {
   const PreparedScene& p = scene.nominal();
-  const SearchSpace space(p, scene.options().actuator, families_for(scene), scene.scales().closing_time);
+  SearchSpace space(p, scene.options().actuator, families_for(scene), scene.scales().closing_time);
+  if (scene.approach() == Approach::quasi_static) {
+    space = space.paced(scene.scales().permanent_contact);
+    joint_ = *space.quasi_static();
+  }
   drives_ = space.drives();
   starts_ = space.starts();
   others_ = p.drives.waveforms();
@@ -54,11 +61,18 @@ Shapes::Shapes(const TunedScene& scene) : scene_(&scene) {
 void Shapes::describe() {
   variables_.clear();
   coarse_.clear();
+  of_electrode_.clear();
+  if (joint_) variables_ = joint_->variables();
+  for (const Variable& variable : variables_) {
+    coarse_.push_back(false);
+    of_electrode_.push_back(!variable.name.starts_with(piezo_drive) && !ends_with(variable.name, "_s"));
+  }
   for (const DriveSearch& drive : drives_) {
     for (Variable variable : drive.variables) {
       const std::string& name = variable.name;
       if (name == "edge_s") variable.upper = variable.lower;
       coarse_.push_back(name == "edge_s" || name == "level_3_V" || name == "duration_3_s");
+      of_electrode_.push_back(drive.drive != piezo_drive && ends_with(name, "_V"));
       variables_.push_back(std::move(variable));
     }
   }
@@ -67,7 +81,7 @@ void Shapes::describe() {
 Shapes Shapes::within(double highest, double hold) const {
   Shapes own = *this;
   DriveSearch& closing = own.drives_.front();
-  if (closing.drive == piezo_drive) return own;
+  if (joint_ || closing.drive == piezo_drive) return own;
   own.highest_ = highest;
   const double most = std::min(closing.limits.max_voltage, highest);
   closing.hold = std::clamp(closing.hold * hold, closing.limits.min_voltage, std::max(closing.limits.min_voltage, most));
@@ -83,6 +97,10 @@ std::vector<std::vector<double>> Shapes::starts() const { return starts_; }
 std::vector<Waveform> Shapes::waveforms(std::vector<double> x) const {
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = std::clamp(x[k], variables_[k].lower, variables_[k].upper);
   DriveWaveforms all = others_;
+  if (joint_) {
+    for (auto& [drive, waveform] : joint_->waveforms(x)) all[drive] = waveform;
+    return scene_->nominal().in_drive_order(all);
+  }
   std::size_t begin = 0;
   for (const DriveSearch& drive : drives_) {
     all[drive.drive] = drive.waveform(std::span(x).subspan(begin, drive.variables.size()));
@@ -92,14 +110,10 @@ std::vector<Waveform> Shapes::waveforms(std::vector<double> x) const {
 }
 
 std::vector<double> Shapes::in_units(std::vector<double> x, const TunedScene::Units& from, const TunedScene::Units& to) const {
-  std::size_t k = 0;
-  for (const DriveSearch& drive : drives_) {
-    for (const Variable& variable : drive.variables) {
-      if (ends_with(variable.name, "_s")) x[k] *= to.time / from.time;
-      if (ends_with(variable.name, "_V") && drive.drive != piezo_drive) x[k] *= to.volts / from.volts;
-      x[k] = std::clamp(x[k], variables_[k].lower, variables_[k].upper);
-      ++k;
-    }
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (ends_with(variables_[k].name, "_s")) x[k] *= to.time / from.time;
+    if (of_electrode_[k]) x[k] *= to.volts / from.volts;
+    x[k] = std::clamp(x[k], variables_[k].lower, variables_[k].upper);
   }
   return x;
 }
@@ -290,7 +304,8 @@ std::vector<Recipe> searched_recipes(const TunedScene& scene, const Shapes& shap
       for (const Recipe& recipe : recipes) add(limited.in_units(recipe.x, units_of(recipe), units));
     }
     std::ranges::stable_sort(from, {}, [](const Proposal& one) { return one.cost.total(); });
-    Recipe best{.x = from.empty() ? limited.in_units(shapes.starts().front(), {}, {}) : from.front().x,
+    Recipe best{.approach = scene.approach(),
+                .x = from.empty() ? limited.in_units(shapes.starts().front(), {}, {}) : from.front().x,
                 .volts = units.volts,
                 .time = units.time,
                 .cost = from.empty() ? not_landed : from.front().cost.total()};
@@ -311,14 +326,25 @@ std::vector<Recipe> searched_recipes(const TunedScene& scene, const Shapes& shap
 
 }  // namespace
 
-std::vector<Recipe> recipes_of(const TunedScene& scene, const Shapes& shapes, const Watch& watch) {
+std::vector<Recipe> recipes_of(TunedScene& scene, const Watch& watch) {
   const std::size_t count = scene.volts_slope().isZero() ? 1 : static_cast<std::size_t>(scene.options().most_recipes);
   const std::vector<Recipe>& known = scene.options().recipes;
-  if (known.empty()) return searched_recipes(scene, shapes, count, watch);
+  if (known.empty()) {
+    std::vector<Recipe> fast = searched_recipes(scene, Shapes(scene), count, watch);
+    if (!scene.has_stable_path()) return fast;
+    scene.choose(Approach::quasi_static);
+    std::vector<Recipe> slow = searched_recipes(scene, Shapes(scene), count, watch);
+    if (slow.front().cost <= fast.front().cost) return slow;
+    scene.choose(Approach::fast);
+    return fast;
+  }
   require(known.size() == count, [&] { return fmt::format("there are {} recipes, and there must be {}", known.size(), count); });
+  scene.choose(known.front().approach);
+  const std::size_t numbers = Shapes(scene).variables().size();
   for (const Recipe& recipe : known) {
-    require(recipe.x.size() == shapes.variables().size(),
-            [&] { return fmt::format("a recipe has {} numbers, and must have {}", recipe.x.size(), shapes.variables().size()); });
+    require(recipe.approach == scene.approach(), "all recipes must have the same approach");
+    require(recipe.x.size() == numbers,
+            [&] { return fmt::format("a recipe has {} numbers, and must have {}", recipe.x.size(), numbers); });
     require(std::ranges::all_of(recipe.x, [](double x) { return std::isfinite(x); }) && recipe.volts > 0 && recipe.time > 0 &&
                 std::isfinite(recipe.volts) && std::isfinite(recipe.time),
             "the numbers of a recipe must be finite, and its units above 0");

@@ -1,7 +1,8 @@
 // Which waveform to try next: the one with the least expected cost over the devices of a belief (tuner.h has the cost).
 //
 // Shapes: an electrode that closes the switch throws, coasts and catches (family catch of search_space.h: three levels that last
-// for a while each, and the hold level), every other shaped drive pulses. Edges are as short as that family has them.
+// for a while each, and the hold level), every other shaped drive pulses; edges are as short as that family has them. Where the
+// scene's approach is the slow one they are those of quasi_static.h.
 //
 // Recipes are searched once per scene, by CMA-ES on devices that differ as little as they will once one closing is known: for the
 // nominal device, and where that is asked for, for units of volts one and two standard deviations away. In the units of a device
@@ -29,7 +30,7 @@ inline constexpr double not_landed = 3;
 /// The waveforms that may be tried, by the numbers that a search varies.
 class Shapes {
  public:
-  /// Keeps a reference. Throws what SearchSpace throws.
+  /// Those of the scene's approach; keeps a reference. Throws what SearchSpace throws.
   explicit Shapes(const TunedScene& scene);
   /// The same with levels of the electrode that closes the switch up to `highest` [V], where its driver allows that, and its
   /// hold level times `hold`, at most as high.
@@ -56,10 +57,11 @@ class Shapes {
 
   const TunedScene* scene_;
   std::vector<DriveSearch> drives_;
+  std::optional<QuasiStatic> joint_;  // moves all of them
   DriveWaveforms others_;
   std::vector<std::vector<double>> starts_;
   std::vector<Variable> variables_;
-  std::vector<bool> coarse_;
+  std::vector<bool> coarse_, of_electrode_;  // whether a number hardly matters, and whether it goes with an electrode's volts
   double highest_ = std::numeric_limits<double>::infinity();
 };
 
@@ -88,9 +90,9 @@ class Outlook {
 };
 
 [[nodiscard]] inline TunedScene::Units units_of(const Recipe& recipe) { return {.volts = recipe.volts, .time = recipe.time}; }
-/// Those of the options, or else found. That of the nominal device first. Throws InvalidInput for recipes of other shapes,
-/// Interrupted.
-[[nodiscard]] std::vector<Recipe> recipes_of(const TunedScene& scene, const Shapes& shapes, const Watch& watch);
+/// Those of the options, or else the cheaper ones of each approach that the scene has; chooses their approach. That of the
+/// nominal device comes first. Throws InvalidInput for recipes of other shapes, Interrupted.
+[[nodiscard]] std::vector<Recipe> recipes_of(TunedScene& scene, const Watch& watch);
 
 struct Proposal {
   std::vector<double> x;

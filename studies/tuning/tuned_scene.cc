@@ -16,6 +16,7 @@
 #include "objectives/rebounds.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/plain_step.h"
+#include "studies/devices/stable_approach.h"
 #include "studies/search/search_setting.h"
 
 namespace softland {
@@ -174,6 +175,11 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
   scales_ = {.closing_time = closing.touches.front().begin,
              .gap = nominal_.scene.device.gap.contact,
              .rebound = nominal_.scene.metrics.significant_rebound};
+  if (stable_approach(nominal_, options.actuator)) {
+    const Metrics step = metrics(simulate_closing(
+        nominal_.model, signals, {.duration = nominal_.duration, .tolerance = nominal_.tolerance, .stop = watch.stop}));
+    step_stays_from_ = std::isfinite(step.permanent_contact_time) ? step.permanent_contact_time : scales_.closing_time;
+  }
   if (options.touch) scales_.latest_touch = beside_step(*options.touch, scales_.closing_time).limit;
   constexpr double coarsest = 0.1;  // of the closing time
   require(options.laboratory.edge_error < coarsest * scales_.closing_time, [&] {
@@ -181,6 +187,13 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
                        engineering(options.laboratory.edge_error, "s", 3), engineering(scales_.closing_time, "s", 3));
   });
   find_units(watch);
+}
+
+void TunedScene::choose(Approach approach) {
+  require(approach == Approach::fast || has_stable_path(),
+          "no drive that is shaped can carry the switch to its contact through stable equilibria");
+  approach_ = approach;
+  scales_.permanent_contact = approach == Approach::quasi_static ? step_stays_from_ : Metrics::unset;
 }
 
 double TunedScene::delay_deviation() const { return delay_share * scales_.closing_time; }
@@ -260,7 +273,7 @@ std::vector<ImaginedClosing> TunedScene::close(std::span<const ImaginedShot> sho
                        .duration = last + hold_time(),
                        .after_contact = after_touch * t0,
                        .no_end_before = last + tail * t0,
-                       .no_contact_before = longest_wait * t0,
+                       .no_contact_before = approach_ == Approach::quasi_static ? last + longest_wait * t0 : longest_wait * t0,
                        .observer = &landings[i]});
     }
     std::vector<FleetEnd> ends(fleet.size());

@@ -16,6 +16,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -36,7 +37,9 @@ struct TuningScales {
   double closing_time = 0;  ///< T_0: first touch of the plain step on the nominal device [s]
   double gap = 0;           ///< contact gap [m]
   double rebound = 0;       ///< significant rebound [m]
-  double latest_touch = std::numeric_limits<double>::infinity();     ///< that is asked for [s]
+  double latest_touch = std::numeric_limits<double>::infinity();  ///< that is asked for [s]
+  /// When the plain step's contact stays on the nominal device; NaN unless the approach is quasi-static [s].
+  double permanent_contact = std::numeric_limits<double>::quiet_NaN();
   [[nodiscard]] double speed() const { return gap / closing_time; }  ///< [m/s]
 };
 
@@ -56,6 +59,8 @@ struct ImaginedClosing {
   double highest = 0;                                         ///< rebound [m]
   std::vector<ContactOpening> openings = {};                  ///< with the delay [s]
   [[nodiscard]] bool closes() const { return followed && touch == touch; }
+  /// From when on the contact stays [s]; infinite where it is open at last.
+  [[nodiscard]] double stays_from() const { return openings.empty() ? touch : std::max(touch, openings.back().end); }
 };
 
 /// One device under one waveform of every drive.
@@ -76,6 +81,12 @@ class TunedScene {
   /// With the spread of all quantities but the delay of the edges, prepared for closings of an accuracy of 1e-4.
   [[nodiscard]] const PreparedScene& nominal() const { return nominal_; }
   [[nodiscard]] const TuningScales& scales() const { return scales_; }
+  /// How its waveforms close the switch: fast, unless another approach is chosen.
+  [[nodiscard]] Approach approach() const { return approach_; }
+  /// Whether a drive that is shaped can carry the switch to its contact through stable equilibria.
+  [[nodiscard]] bool has_stable_path() const { return std::isfinite(step_stays_from_); }
+  /// Throws InvalidInput for a quasi-static approach without such a path.
+  void choose(Approach approach);
   [[nodiscard]] bool spread_is_assumed() const { return spread_is_assumed_; }
   /// Whether closings go in lanes.
   [[nodiscard]] bool is_in_lanes() const { return why_not_in_lanes(nominal_.model).empty() && options_.vectors != Vectors::none; }
@@ -141,7 +152,9 @@ class TunedScene {
   std::unique_ptr<const Ensemble> ensemble_;
   std::unique_ptr<const DeviceDrives> drives_;
   TuningScales scales_;
-  std::optional<std::size_t> electrode_;  // that closes the switch, among the drives
+  Approach approach_ = Approach::fast;
+  double step_stays_from_ = std::numeric_limits<double>::quiet_NaN();  // [s]; NaN without a stable path
+  std::optional<std::size_t> electrode_;                               // that closes the switch, among the drives
   Eigen::VectorXd volts_slope_, time_slope_, pulled_through_slope_;
   std::optional<NormalBelief> prior_;
   Eigen::MatrixXd prior_factor_;                                     // L L^T is its covariance

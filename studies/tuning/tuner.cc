@@ -72,13 +72,13 @@ std::uint64_t first_draw(int closings) { return (static_cast<std::uint64_t>(clos
 // What no closing changes.
 struct Tuner::Setting {
   Setting(const SceneFile& file, const TunerOptions& options, const Watch& watch)
-      : scene(file, options, watch), shapes(scene), recipes(recipes_of(scene, shapes, watch)) {
+      : scene(file, options, watch), recipes(recipes_of(scene, watch)), shapes(scene) {
     if (!options.wafer.empty()) scene.begin_with(believed_of_wafer(options.wafer, scene.size()).next);
   }
 
   TunedScene scene;
-  Shapes shapes;
   std::vector<Recipe> recipes;
+  Shapes shapes;
 };
 
 struct Tuner::State {
@@ -284,7 +284,9 @@ Tuner Tuner::restarted() const { return Tuner(state_->setting, {}); }
 
 const PreparedScene& Tuner::scene() const { return state_->scene.nominal(); }
 const std::vector<Recipe>& Tuner::recipes() const { return state_->recipes; }
+Approach Tuner::approach() const { return state_->scene.approach(); }
 double Tuner::step_closing_time() const { return state_->scene.scales().closing_time; }
+double Tuner::step_permanent_contact() const { return state_->scene.scales().permanent_contact; }
 bool Tuner::spread_is_assumed() const { return state_->scene.spread_is_assumed(); }
 const TunerShot& Tuner::next() const { return state_->now.next; }
 int Tuner::closings() const { return state_->now.closings; }

@@ -14,6 +14,10 @@
 //
 //   [B / (B + m) + B / (B + h)] / 2 + 10 B / g + 0.34 max(0, t_i / T_0 - 0.88)       3 where it does not close
 //
+// A quasi-static approach pays for its time when the contact stays, t_p, beside that of the plain step, T_p: at most
+// 0.02 max(0, t_p / T_p - 1). Where a drive can carry the switch to its contact, the recipe that costs less says which approach
+// is tuned.
+//
 // Where the first touch is to come by t_b, 10 max(0, t_i / 0.99 t_b - 1) are added.
 //
 // No shot leaves the limits of the drivers, or has a level at which more than one in a thousand devices of the belief would be
@@ -35,6 +39,7 @@
 #include <string>
 #include <vector>
 
+#include "base/choice.h"
 #include "base/watch.h"
 #include "config/criterion.h"
 #include "model/ensemble/fleet.h"
@@ -46,8 +51,18 @@
 
 namespace softland {
 
+/// How the waveforms that are tuned close the switch: by which family of search_space.h.
+enum class Approach {
+  fast,          ///< a drive throws it to its contact and catches it there
+  quasi_static,  ///< a drive carries it slowly through stable equilibria
+};
+inline constexpr auto approaches =
+    std::to_array<Named<Approach>>({{Approach::fast, "catch"}, {Approach::quasi_static, "quasi-static"}});
+static_assert(is_complete<approaches>());
+
 /// A waveform that proposals begin from, searched once for a scene.
 struct Recipe {
+  Approach approach = Approach::fast;
   std::vector<double> x;       ///< numbers of its shape
   double volts = 1, time = 1;  ///< units of the devices that it was searched for, over those of the nominal one
   double cost = 0;             ///< expected of these devices
@@ -126,8 +141,11 @@ class Tuner {
   [[nodiscard]] const PreparedScene& scene() const;
   /// That of the nominal device first.
   [[nodiscard]] const std::vector<Recipe>& recipes() const;
+  [[nodiscard]] Approach approach() const;
   /// The first touch of the plain step on the nominal device [s].
   [[nodiscard]] double step_closing_time() const;
+  /// When the contact of the plain step stays on the nominal device; NaN unless the approach is quasi-static [s].
+  [[nodiscard]] double step_permanent_contact() const;
   /// Whether the scene said how devices differ, or it was assumed.
   [[nodiscard]] bool spread_is_assumed() const;
 

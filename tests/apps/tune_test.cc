@@ -206,6 +206,10 @@ TEST_F(TuneVerb, GoesOnAfterAKillToTheSameBits_optimized) {
   EXPECT_THAT(resumed_with(recipes.dump()), HasSubstr("out/closings.jsonl:3: this program proposes another shot"));
   recipes["recipes"][0]["x"].erase(0);
   EXPECT_THAT(resumed_with(recipes.dump()), HasSubstr("out/closings.jsonl: a recipe has"));
+  recipes["recipes"][0]["approach"] = "glide";
+  EXPECT_THAT(resumed_with(recipes.dump()), HasSubstr("recipes.approach = \"glide\": must be \"catch\" or \"quasi-static\""));
+  recipes["recipes"][0]["approach"] = "quasi-static";
+  EXPECT_THAT(resumed_with(recipes.dump()), HasSubstr("no drive that is shaped can carry the switch to its contact"));
   EXPECT_THAT(resumed_with(R"({"recipes":[]})"), HasSubstr("out/closings.jsonl:2: recipes = []: must be a list of recipes"));
 }
 

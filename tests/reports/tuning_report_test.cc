@@ -76,6 +76,16 @@ TEST(TuningReport, HoldsEveryClosingInItsJson) {
   EXPECT_EQ(j["scene"]["structure"]["kind"], "cantilever");
 }
 
+TEST(TuningReport, SaysWhatASlowApproachIsBeside) {
+  TuningReport report = tuned_sample();
+  EXPECT_EQ(tuning_json(report, {})["approach"], "catch");
+  EXPECT_THAT(terminal_text(tuning_document(report, {})), testing::Not(testing::HasSubstr("bounces until")));
+  report.approach = Approach::quasi_static;
+  report.step_permanent_contact = 442e-6;
+  EXPECT_EQ(tuning_json(report, {})["step_permanent_contact_time_s"], 442e-6);
+  EXPECT_THAT(terminal_text(tuning_document(report, {})), testing::HasSubstr("bounces until 442"));
+}
+
 TEST(TuningReport, SaysInWordsWhatWasSeenAndWhatIsExpected) {
   EXPECT_EQ(
       closing_words(tuned_sample()),

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "studies/tuning/proposal.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {
@@ -45,6 +46,21 @@ TEST(TunedScenes, TheGapsShareTheirFactorAndTheContactGapHasOneOfItsOwn) {
   const auto [same, alone] = factors(VectorXd::Unit(scene.size(), coordinate(scene, "gap.contact")));
   EXPECT_NEAR(same, 1, rounding);
   EXPECT_NEAR(alone, 1.03, rounding);
+}
+
+TEST(LandingCosts, PriceTheTouchOfAFastApproachAndTheContactOfASlowOne) {
+  const ImaginedClosing soft{.followed = true, .touch = 400e-6, .openings = {{.begin = 401e-6, .end = 600e-6}}};
+  TuningScales scales{.closing_time = 20e-6, .gap = 2e-6, .rebound = 1e-9};
+  EXPECT_DOUBLE_EQ(landing_cost(soft, scales).time, 0.34 * (20 - 0.88));
+  scales.permanent_contact = 500e-6;
+  EXPECT_DOUBLE_EQ(landing_cost(soft, scales).time, 0.02 * (600.0 / 500 - 1));
+  scales.permanent_contact = 700e-6;
+  EXPECT_EQ(landing_cost(soft, scales).time, 0);
+  ImaginedClosing open = soft;
+  open.openings.back().end = std::numeric_limits<double>::infinity();
+  EXPECT_DOUBLE_EQ(landing_cost(open, scales).time, 0.34 * (20 - 0.88)) << "as a fast approach pays, at most";
+  scales.latest_touch = 100e-6;
+  EXPECT_GT(landing_cost(soft, scales).time, 10) << "a touch that was asked for earlier";
 }
 
 TEST(TunedScenes, AScenesOwnSpreadIsNotVariedTwice) {

@@ -179,6 +179,48 @@ TEST(Tuners, AnEarlierTouchIsFoundWhereItIsAskedFor_optimized) {
   }
 }
 
+TunerOptions by_piezo() {
+  TunerOptions options = cheap();
+  options.actuator = Actuator::pzt;
+  return options;
+}
+
+SceneFile gold_pzt_with_two_modes() { return gold_pzt({"structure.modes=2"}); }
+
+TEST(Tuners, ASwitchThatAPiezoCanCarryIsLandedSlowlyFromTheFirstShotOn_optimized) {
+  constexpr double few_nanometres = 60e-9, latest = 1.05;
+  Tuner tuner(gold_pzt_with_two_modes(), by_piezo());
+  ASSERT_EQ(tuner.approach(), Approach::quasi_static);
+  const PracticeDevice device(gold_pzt_with_two_modes(), {.seed = 5});
+  for (int k = 1; k <= 3; ++k) {
+    expect_within_limits(tuner, tuner.next().waveforms);
+    EXPECT_LT(tuner.next().predicted.touch_median, latest * tuner.step_permanent_contact()) << k;
+    const PracticeClosing closing = fired(device, tuner.next(), static_cast<std::uint64_t>(k));
+    EXPECT_LT(closing.motion.major_bounce_height, few_nanometres) << k;
+    tuner.learn(closing.record);
+  }
+}
+
+TEST(Tuners, AnEarlyTouchThatIsAskedForIsFlownTo_optimized) {
+  TunerOptions options = by_piezo();
+  options.actuator = Actuator::both;
+  EXPECT_EQ(Tuner(gold_pzt_with_two_modes(), options).approach(), Approach::quasi_static);
+  options.touch = parse_criterion("initial_contact_time < 1.5 step", all_figures);
+  EXPECT_EQ(Tuner(gold_pzt_with_two_modes(), options).approach(), Approach::fast);
+}
+
+TEST(Tuners, RecipesKeepTheirApproach_optimized) {
+  const Tuner searched(gold_pzt_with_two_modes(), by_piezo());
+  TunerOptions options = by_piezo();
+  options.recipes = searched.recipes();
+  EXPECT_EQ(bits(Tuner(gold_pzt_with_two_modes(), options).next()), bits(searched.next()));
+  options.recipes[0].approach = Approach::fast;
+  EXPECT_THROW(Tuner(gold_pzt_with_two_modes(), options), InvalidInput) << "they have another number of parameters";
+  options.recipes[0].approach = Approach::quasi_static;
+  options.actuator = Actuator::electrostatic;
+  EXPECT_THROW(Tuner(gold_pzt_with_two_modes(), options), InvalidInput) << "its contact lies beyond the fold";
+}
+
 // One closing that stays open may be of a device that is rare; a second one is not.
 TEST(Tuners, ContactsThatTwiceStayOpenAreUnexpected_optimized) {
   Tuner tuner(gold_with_two_modes(), cheap());
