@@ -16,11 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> files_of(const StoredSearch& search) {
+// What any search may leave: beside the results of one there is nothing of an earlier one.
+std::vector<std::string> files_of_searches() {
   std::vector<std::string> files{"best.toml",      "best.csv",        "report.html",    "gap.svg", "result.json",
                                  "trajectory.csv", "evaluations.csv", evaluations_file, seeds_file};
-  if (search.robust || search.for_devices) files.insert(files.end(), robustness_files.begin(), robustness_files.end());
-  if (search.for_devices) files.insert(files.end(), for_devices_files.begin(), for_devices_files.end());
+  files.insert(files.end(), robustness_files.begin(), robustness_files.end());
+  files.insert(files.end(), for_devices_files.begin(), for_devices_files.end());
   return files;
 }
 
@@ -34,7 +35,7 @@ ResultFolder claimed(const SearchOutput& output, const StoredSearch& search, con
   std::vector<std::string> kept;
   if (stays) kept = {evaluations_file};
   if (stays && search.seeds > 1) kept.emplace_back(seeds_file);
-  ResultFolder folder = output.claim(files_of(search), kept);
+  ResultFolder folder = output.claim(files_of_searches(), kept);
   // Whoever held the folder until now may have put them elsewhere.
   require_request(!known || is_store(known->place / evaluations_file), [&] {
     return fmt::format("{}: {} is gone; try again", requested("resume"), (known->place / evaluations_file).string());

@@ -251,6 +251,17 @@ int run_seeds(const Common& c, StoredSearch& search, const std::optional<KnownSe
       {.c = c, .search = search, .known = known, .output = output, .places = &places, .seeds = seeds, .limit = limit});
 }
 
+// Says so where the folder holds what was found for another scene: all of it gives way to the results of this search.
+void tell_of_another_scene(const fs::path& folder, const SceneFile& scene) {
+  try {
+    const std::string held = read_scene(SceneFile::load((folder / "best.toml").string())).title;
+    if (held != read_scene(scene).title)
+      say(fmt::format("{} holds results of another scene, \"{}\": those of this search will replace them", folder.string(),
+                      held));
+  } catch (const InvalidInput&) {  // it holds no result, or the search will say what is wrong with the scene
+  }
+}
+
 int optimize_verb(const Common& given, const OptimizeRequest& request) {
   Common c = given;
   if (c.out.empty()) c.out = "softland-out";
@@ -258,6 +269,7 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   std::optional<KnownSearch> known;
   StoredSearch search = asked_or_known(c, request, known);
   const SearchOutput output = output_of(c);
+  if (!known && !c.quiet) tell_of_another_scene(output.folder, search.scene);
   if (known && !c.quiet) tell_of_other_programs((known->place / evaluations_file).string());
   return search.seeds > 1 ? run_seeds(c, search, known, output, request.limit)
                           : run_search({.c = c, .search = search, .known = known, .output = output, .limit = request.limit});

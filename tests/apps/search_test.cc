@@ -291,7 +291,10 @@ TEST_F(Search, LeavesACompactResult) {
 }
 
 TEST_F(Search, EndsWithFourWhenNoWaveformCanCloseAndLeavesNothingOfAnEarlierSearch) {
-  const std::set<std::string> every{"best.toml", "best.csv", "report.html", "result.json", "evaluations.csv", "trajectory.csv"};
+  const std::set<std::string> every{"best.toml",       "best.csv",       "report.html", "result.json",     "evaluations.csv",
+                                    "trajectory.csv",  "drawing.toml",   "drawing.csv", "calibrated.toml", "calibrated.csv",
+                                    "fast.toml",       "soft.csv",       "devices.svg", "devices.csv",     "robustness.html",
+                                    "robustness.json", "evaluations.csv"};
   fs::create_directory(here->path() / "open");
   for (const std::string& name : every) write(here->path() / "open" / name, "of an earlier search");
   const Outcome o = here->run({"optimize", "gold.toml", "--quiet", "--robust", "none", "--budget", "20", "--out", "open", "--set",
@@ -301,6 +304,18 @@ TEST_F(Search, EndsWithFourWhenNoWaveformCanCloseAndLeavesNothingOfAnEarlierSear
   std::set<std::string> left;
   for (const auto& entry : fs::directory_iterator(here->path() / "open")) left.insert(entry.path().filename());
   EXPECT_EQ(left, (std::set<std::string>{"report.html", "gap.svg", "result.json", "evaluations.csv", "evaluations.sqlite"}));
+}
+
+TEST(EarlierSearch, OfAnotherSceneIsNamedBeforeItIsReplaced) {
+  const Workplace here;
+  const std::vector<std::string> asked{"optimize", "gold.toml", "--robust", "none", "--budget", "20", "--out", "out"};
+  const std::string said = "out holds results of another scene, \"A relay\": those of this search will replace them";
+  write(here.path() / "gold.toml",
+        "title = \"A relay\"\n" + shipped("mem-gold.toml").substr(shipped("mem-gold.toml").find("\n[") + 1));
+  EXPECT_THAT(here.run(asked).err, testing::Not(testing::HasSubstr("another scene")));
+  EXPECT_THAT(here.run(asked).err, testing::Not(testing::HasSubstr("another scene"))) << "the same";
+  write(here.path() / "gold.toml", shipped("mem-gold.toml"));
+  EXPECT_THAT(here.run(asked).err, testing::HasSubstr(said));
 }
 
 TEST(InterruptedSearch, WritesTheBestSoFarAndEndsWith130) {
