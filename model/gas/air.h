@@ -1,14 +1,14 @@
 // State of the gas: viscosity and mean free path, one convention for every law.
 //
-//   mu(T) = 1.7894e-5 (T / 297 K)^0.77                      air, where a scene gives no viscosity
+//   mu(T) = beta T^(3/2) / (T + S)                          air, where a scene gives no viscosity
 //   lambda = (mu / p) sqrt(pi R_g T / 2)                    where a scene gives no mean free path
 //   Kn = lambda / h
 //
-// mu viscosity [Pa s], T temperature [K], p ambient pressure [Pa], R_g = 287 J/(kg K) of air, lambda mean free path [m], h local
-// gap [m], Kn Knudsen number. lambda belongs to the viscosity that is used, also where the scene gives that one: 65.45 nm for air
+// beta = 1.458e-6 kg/(s m K^(1/2)), S = 110.4 K, mu viscosity [Pa s], T temperature [K], p ambient pressure [Pa], R_g = 287 J/(kg K) of air, lambda mean free path [m], h local
+// gap [m], Kn Knudsen number. lambda belongs to the viscosity that is used, also where the scene gives that one: 67.00 nm for air
 // at 101325 Pa and 300 K. Other conventions (hard spheres: about 53 nm) differ by 20 %; a scene that wants one gives
-// mean_free_path. mu(T) is a fit for room temperature and some 100 K around it. Source: Purdue PRISM, PUQ 2.2 (MIT licence),
-// examples/matlab/springmassdamperl.m; textbook definition of the viscosity-based mean free path.
+// mean_free_path. Sources: W. Sutherland, Phil. Mag. 36 (1893) 507, with the constants of U.S. Standard Atmosphere, 1976,
+// eq. 51, for 100 to 1900 K; textbook definition of the viscosity-based mean free path.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,10 @@ namespace softland {
 
 inline constexpr double gas_constant_of_air = 287;  ///< R_g [J/(kg K)]
 
-[[nodiscard]] inline double air_viscosity(double temperature) { return 1.7894e-5 * std::pow(temperature / 297, 0.77); }
+[[nodiscard]] inline double air_viscosity(double temperature) {
+  constexpr double beta = 1.458e-6, sutherland = 110.4;
+  return beta * temperature * std::sqrt(temperature) / (temperature + sutherland);
+}
 
 /// mu [Pa s]: as given, or that of air.
 [[nodiscard]] inline double viscosity(const FilmState& gas) {
