@@ -22,10 +22,10 @@ GOLD = ("gold", "mem-gold", ("--devices", "200", "--first-device", "1001"))
 BASELINES = (("knob", "one knob: all volts times s", (*BASELINE, "--method", "knob")),
              ("secant", "secant on the length of the pulse", (*BASELINE, "--method", "secant")),
              ("nelder-mead", "Nelder-Mead on pulse and coast", (*BASELINE, "--method", "nelder-mead")))
-CASES = (("both", "mem-gold-pzt, both drives", ("--scene", "mem-gold-pzt.toml", "--actuator", "both", "--devices", "12", "--first-device", "2001")),
+CASES = (("both", "mem-gold-pzt, both drives, quasi-static", ("--scene", "mem-gold-pzt.toml", "--actuator", "both", "--devices", "12", "--first-device", "2001")),
          ("two-electrodes", "two-electrodes, below 26 nm (a hundredth of the travel) and 1 nm",
           ("--scene", "two-electrodes.toml", *PLATE, "--good", "26e-9")),
-         ("pzt", "mem-gold-pzt, piezo alone", ("--scene", "mem-gold-pzt.toml", "--actuator", "pzt", "--devices", "10", "--closings", "6", "--first-device", "5001")),
+         ("pzt", "mem-gold-pzt, piezo alone, quasi-static", ("--scene", "mem-gold-pzt.toml", "--actuator", "pzt", "--devices", "10", "--closings", "6", "--first-device", "5001")),
          ("bridge", "nickel bridge between two clamps, below 15 nm (a hundredth of the travel) and 1 nm",
           ("--scene", "nickel-bridge.toml", "--devices", "10", "--closings", "6", "--first-device", "5001", "--good", "15e-9")),
          ("plate", "plate of the two-electrodes scene, closed by its lower electrode alone, below 26 nm (a hundredth of the travel) and 1 nm",

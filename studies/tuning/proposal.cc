@@ -330,13 +330,18 @@ std::vector<Recipe> recipes_of(TunedScene& scene, const Watch& watch) {
   const std::size_t count = scene.volts_slope().isZero() ? 1 : static_cast<std::size_t>(scene.options().most_recipes);
   const std::vector<Recipe>& known = scene.options().recipes;
   if (known.empty()) {
-    std::vector<Recipe> fast = searched_recipes(scene, Shapes(scene), count, watch);
-    if (!scene.has_stable_path()) return fast;
+    constexpr double nothing_costs_less = 0.1;
+    const auto searched = [&](Approach approach) {
+      scene.choose(approach);
+      return searched_recipes(scene, Shapes(scene), count, watch);
+    };
+    if (!scene.has_stable_path()) return searched(Approach::fast);
+    std::vector<Recipe> slow = searched(Approach::quasi_static);
+    if (slow.front().cost <= nothing_costs_less) return slow;
+    std::vector<Recipe> fast = searched(Approach::fast);
+    if (fast.front().cost < slow.front().cost) return fast;
     scene.choose(Approach::quasi_static);
-    std::vector<Recipe> slow = searched_recipes(scene, Shapes(scene), count, watch);
-    if (slow.front().cost <= fast.front().cost) return slow;
-    scene.choose(Approach::fast);
-    return fast;
+    return slow;
   }
   require(known.size() == count, [&] { return fmt::format("there are {} recipes, and there must be {}", known.size(), count); });
   scene.choose(known.front().approach);

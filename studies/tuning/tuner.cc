@@ -204,6 +204,7 @@ Tuner::State::Learned Tuner::State::learned(Learned known, const ContactRecord& 
   constexpr double rarely = 0.05;
   if (bounced_long && predicted.bounces <= rarely) ++known.unexpected_bounces;
   if (repeats) {
+    if (quiet) known.kept = known.fired.back().as_proposed;
     known.steering->follow(*first_touch(record));
     known.next.waveforms = known.steering->steered();
     known.next.number += 1;

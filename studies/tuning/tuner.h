@@ -160,7 +160,7 @@ class Tuner {
   [[nodiscard]] int closings() const;
   [[nodiscard]] BeliefSummary belief() const;
   /// The waveform that is best known so far, with what is expected of it: one that was recorded without a bounce, unless the next
-  /// one is expected to be clearly better.
+  /// one is expected to be clearly better. Of shots that are repeated it is the last one that did not bounce.
   [[nodiscard]] const TunerShot& kept() const;
   /// Closings without a bounce up to the last one, in a row.
   [[nodiscard]] int bounce_free_in_a_row() const;
