@@ -87,7 +87,7 @@ std::vector<std::string> sampled_words(const PreparedScene& sampled, const Prepa
                                        const Watch& watch) {
   const Closing as_sampled = simulate(sampled, false, watch);
   std::vector<std::string> all{
-      fmt::format("as sampled, {}: {}", words(sampled.drives.at(drive).source), clause(sampled, as_sampled))};
+      fmt::format("as sampled, {}, on the nominal design: {}", words(sampled.drives.at(drive).source), clause(sampled, as_sampled))};
   if (drawn == nullptr) return all;
   const Closing as_drawn = simulate(*drawn, false, watch);
   if (is_worse(as_sampled.metrics, as_drawn.metrics))

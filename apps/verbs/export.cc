@@ -1,7 +1,9 @@
 // The waveforms of a result, for a generator or a simulator of circuits.
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "apps/exit_status.h"
 #include "apps/progress.h"
@@ -21,6 +23,9 @@ struct ExportedResult {
 
 int export_verb(const Common& c, const ExportedResult& request) {
   const SceneFile file = scene_of_result(request.result);
+  std::error_code ignored;
+  if (!c.quiet && std::filesystem::exists(std::filesystem::path(request.result) / "tune.json", ignored))
+    say("this waveform was tuned on one device, of which tune.json has what is expected; it need not land the nominal design");
   ExportRequest how = request.how;
   how.jobs = job_count({});
   std::string text;

@@ -670,10 +670,10 @@ TEST(Export, ForAGeneratorTellsHowTheSwitchClosesAsSampled_optimized) {
   const Outcome fine = exported("100 MHz", "16", "keysight-arb");
   ASSERT_EQ(fine.status, 0) << fine.err;
   EXPECT_THAT(fine.out, HasSubstr("Sample Rate:100000000\n"));
-  EXPECT_THAT(fine.err, HasSubstr("MS/s, 16 bit: the switch closes"));
+  EXPECT_THAT(fine.err, HasSubstr("MS/s, 16 bit, on the nominal design: the switch closes"));
   EXPECT_THAT(fine.err, Not(HasSubstr("warning")));
   const Outcome coarse = exported("2 MHz", "5", "rigol-csv");
-  EXPECT_THAT(coarse.err, HasSubstr("MS/s, 5 bit: the switch first touches"));
+  EXPECT_THAT(coarse.err, HasSubstr("MS/s, 5 bit, on the nominal design: the switch first touches"));
   EXPECT_THAT(coarse.err, HasSubstr("warning: as drawn, the switch closes"));
 
   // Read back by a scene, it is the same closing.

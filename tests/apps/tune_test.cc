@@ -172,7 +172,9 @@ TEST_F(TuneVerb, LandsADeviceAndLeavesWhatItKnows_optimized) {
   // The voltages of best.toml are those of best.csv, and within the limits.
   const Outcome run = here.run({"simulate", "out/best.toml", "--quiet", "--json", "-"});
   EXPECT_TRUE(run.status == 0 || run.status == 4) << run.err;
-  EXPECT_EQ(here.run({"export", "out"}).out, read(here.path() / "out/best.csv"));
+  const Outcome exported = here.run({"export", "out"});
+  EXPECT_EQ(exported.out, read(here.path() / "out/best.csv"));
+  EXPECT_THAT(exported.err, HasSubstr("this waveform was tuned on one device"));
 }
 
 // What a power cut leaves is gone on with, to the bits of a run that nothing interrupts.
