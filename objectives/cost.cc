@@ -45,6 +45,20 @@ double Aim::own_value(const OwnObjective& objective, const Metrics& closing, con
   return value;
 }
 
+Aim Aim::in_units_of(const Metrics& step) const {
+  constexpr double small = 0.01, large = 100;
+  Aim all = *this;
+  for (Part& part : all.parts_) {
+    if (!part.own) continue;
+    const double value = own_value(*part.own, step, step);
+    require(std::isfinite(value), [&] {
+      return fmt::format("the own objective '{}' gives {} for the plain step; it must be finite", part.own->name(), value);
+    });
+    if (value > 0 && (value < small || value > large)) part.unit = value;
+  }
+  return all;
+}
+
 bool Aim::has_own_cost() const {
   if (is_sum()) return true;
   return parts_[0].own ? parts_[0].own->lands_first() : softland::has_own_cost(parts_[0].target);

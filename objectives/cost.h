@@ -152,6 +152,7 @@ class Aim {
     Target target = Target::bounce;
     double weight = 1;
     std::shared_ptr<const OwnObjective> own = nullptr;  ///< stands in the place of the target
+    double unit = 1;                                    ///< what the values of an own objective are divided by
 
     [[nodiscard]] std::string_view name() const { return own ? own->name() : to_string(target); }
   };
@@ -174,6 +175,9 @@ class Aim {
   [[nodiscard]] bool measures_drive_energy() const;
   /// The own objective by which a search goes from its first evaluation on; null: there is none.
   [[nodiscard]] const OwnObjective* from_the_start() const;
+  /// The same, where own objectives that the plain step does not have between a hundredth and a hundred are divided by its value.
+  /// Throws InvalidInput where that is not finite.
+  [[nodiscard]] Aim in_units_of(const Metrics& step) const;
   /// "bounce", "0.7 bounce + 0.3 energy"
   [[nodiscard]] std::string text() const;
   /// The sum of value(row of the target) with these weights, over the sum of the weights; of an own objective its value for this
@@ -181,7 +185,7 @@ class Aim {
   template <class Value>
   [[nodiscard]] double mean(const Metrics& closing, const Metrics& step, const Value& value) const {
     const auto of = [&](const Part& part) {
-      return part.own ? own_value(*part.own, closing, step) : value(row_of(targets, part.target));
+      return part.own ? own_value(*part.own, closing, step) / part.unit : value(row_of(targets, part.target));
     };
     if (!is_sum()) return of(parts_[0]);
     double sum = 0, weights = 0;
@@ -198,7 +202,7 @@ class Aim {
       if (part.own) own_values(*part.own, closings, step, of_part);
       const double weight = is_sum() ? part.weight : 1;
       for (std::size_t k = 0; k < closings.size(); ++k)
-        sums[k] += weight * (part.own ? of_part[k] : value(row_of(targets, part.target), closings[k]));
+        sums[k] += weight * (part.own ? of_part[k] / part.unit : value(row_of(targets, part.target), closings[k]));
       weights += weight;
     }
     if (is_sum()) {

@@ -26,9 +26,10 @@ class OwnObjective {
 
   /// What messages and results call it.
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// F, which is minimised: >= 0, and about 1 for the plain step, or the figures that it stands beside in the cost are out of
-  /// proportion. It is asked of closings that touch, and could be followed to their end. NaN: the point is infeasible. A value
-  /// below 0 is InvalidInput.
+  /// F, which is minimised: >= 0, and best about 1 for the plain step, beside whose figures it stands in the cost. Where it is
+  /// below 0.01 or above 100 for the step, it is divided by that. It is asked of closings that touch, and could be followed to
+  /// their end. NaN: the point is infeasible. A value below 0 is InvalidInput, and so is one of the plain step that is not
+  /// finite.
   ///
   /// `closing`: in SI units, not known what is NaN: permanent_contact_time of what does not settle, what no search measures
   /// (static_deflection, overshoot, open_settling_time), landing_excess but in the search on the nominal device, and over devices

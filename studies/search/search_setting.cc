@@ -341,7 +341,8 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
     set_drive_figures(step, given, plain);
   }
   scale.step = step.touched() && step.is_complete() ? step : imagined_step(given, period);
-  const double baseline_cost = cost(target, step, scale, given.scene.metrics);
+  const Aim aim = step.touched() && step.is_complete() ? target.in_units_of(step) : target;
+  const double baseline_cost = cost(aim, step, scale, given.scene.metrics);
   // A landing so late that the window ends before the switch could bounce would look like a soft one.
   run.no_contact_before =
       std::min(latest_touch * scale.step.initial_contact_time, given.duration - 2 * given.model.basis().in_contact_period());
@@ -355,7 +356,7 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
   for (const Drive& drive : given.drives) {
     if (drive.limits) limits.emplace(drive.name, *drive.limits);
   }
-  return {.target = target,
+  return {.target = aim,
           .conditions = std::move(beside),
           .given = std::move(given),
           .baseline_scene = std::move(baseline_scene),

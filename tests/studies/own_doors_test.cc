@@ -106,6 +106,29 @@ TEST(OwnObjective, IsSearchedAsTheTargetOfItsFigure_long) {
   EXPECT_EQ(own.goal_met, built_in.goal_met);
 }
 
+TEST(OwnObjective, OfAnotherScaleIsSearchedAsWell_long) {
+  OptimizeOptions options{.target = by(share_of_drive), .family = "pulse", .max_evaluations = 300};
+  const OptimizeResult usual = optimize(quick_gold(), options);
+  for (const double scale : {1e6, 1e-9}) {
+    options.target = by([scale](const Metrics& m, const Metrics& step) { return scale * share_of_drive(m, step); });
+    const OptimizeResult found = optimize(quick_gold(), options);
+    ASSERT_TRUE(found.best) << scale;
+    EXPECT_NEAR(share_of_drive(found.best->metrics, found.baseline.metrics),
+                share_of_drive(usual.best->metrics, usual.baseline.metrics), 1e-3)
+        << scale;
+  }
+}
+
+TEST(OwnObjective, ThatIsNotFiniteForThePlainStepIsRefused) {
+  for (const auto& [value, printed] : {std::pair{std::nan(""), "nan"}, std::pair{HUGE_VAL, "inf"}}) {
+    EXPECT_THAT(refusal([value = value] {
+                  (void)optimize(quick_gold(),
+                                 {.target = by([value](const Metrics&, const Metrics&) { return value; }), .family = "pulse"});
+                }),
+                HasSubstr(std::string("the own objective 'by' gives ") + printed + " for the plain step"));
+  }
+}
+
 TEST(OwnObjective, TakesTheShareOfASumThatItsWeightSays) {
   const Aim sum({{.target = Target::drive, .weight = 3}, {.weight = 1, .own = std::make_shared<By>(share_of_drive)}});
   EXPECT_EQ(sum.text(), "3 drive + 1 by");
