@@ -59,6 +59,7 @@ class MeasurementReader {
     } else {
       read_rows(kind, m);
     }
+    if (has("until")) cut(kind, m);
     if (has("level")) m.levels.assign(m.values.size(), quantities("level", dimension::voltage).front().value);
     read_errors(kind, m);
     return m;
@@ -67,8 +68,8 @@ class MeasurementReader {
  private:
   void check_keys() const {
     static const std::vector<std::string_view> known = [] {
-      std::vector<std::string_view> all{"quantity", "drive", "level", "waveform", "value",   "file",
-                                        "error",    "mode",  "edges", "device",   "per_volt"};
+      std::vector<std::string_view> all{"quantity", "drive", "level", "waveform", "value",    "file",
+                                        "error",    "mode",  "edges", "device",   "per_volt", "until"};
       all.insert(all.end(), of_threshold.begin(), of_threshold.end());
       all.insert(all.end(), of_file.begin(), of_file.end());
       return all;
@@ -312,6 +313,17 @@ class MeasurementReader {
              fmt::format("the {} is in {}: expected {}; per_volt = \"...\" says what a volt stands for", kind.name, unit,
                          describe(kind.dimension)));
     return one.value * (has("unit") ? channel.per_si : 1);
+  }
+
+  // Leaves out the rows after `until`.
+  void cut(const BenchQuantity& kind, BenchMeasurement& m) const {
+    refuse_where(kind.name == of_contact || !kind.is_over_time, "until", "is of a position or velocity only");
+    const double end = quantity("until", {dimension::time}).value;
+    refuse_where(!(end >= m.times.front()), "until", "leaves no row");
+    const auto rows = static_cast<std::size_t>(std::ranges::upper_bound(m.times, end) - m.times.begin());
+    m.times.resize(rows);
+    m.values.resize(rows);
+    m.has_end = true;
   }
 
   // Halfway between the rows on either side, which are open and closed.

@@ -9,6 +9,7 @@
 //   file = "times.csv"               # instead of a value: rows, with a header line
 //   error = "50 ns"                  # one standard deviation, absolute or a percentage of the value
 //   mode = 1                         # of a resonance
+//   until = "60 us"                  # of a position or velocity: rows after it are left out
 //   edges = 1                        # of a contact record: how many edges count from the first touch on, 1 to 3
 //   device = "A7"                    # which device; all measurements without one are of one device
 //
@@ -60,6 +61,7 @@ struct BenchMeasurement {
   std::vector<double> errors = {};      ///< of each, one standard deviation [SI unit]
   std::vector<double> levels = {};      ///< of each [V]; empty: none is given
   std::vector<double> times = {};       ///< of each, of what is over time [s]
+  bool has_end = false;                 ///< it was said up to when rows count
   std::optional<std::string> waveform;  ///< "scene", or a path
   int mode = 1;
   std::string place = {};  ///< "bench.toml:12", for messages

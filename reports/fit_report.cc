@@ -131,6 +131,13 @@ std::vector<std::string> fit_words(const Fit& fit) {
         "The scene does not describe the data within their errors: the squares of {} residuals sum up to {} where {} are "
         "expected. The intervals are too narrow then: an effect is missing in the scene, or the errors are too small.",
         fit.residuals.size(), plain_number(fit.chi_squared(), 3), freedom(fit)));
+  for (const FittedTrace& trace : fit.traces) {
+    if (trace.until < trace.recorded)
+      all.push_back(fmt::format(
+          "The {} counts up to {} of {}: the scene does not describe what comes after, or the least change of the device changes "
+          "it. A key `until` of the measurement says where to end.",
+          row_of(trace.what).words, quantity(trace.until, "s", 3), quantity(trace.recorded, "s", 3)));
+  }
   std::vector<std::string> outliers;
   for (const FitResidual& r : fit.residuals) {
     if (std::abs(r.normalized()) > unlikely)
@@ -196,6 +203,12 @@ json fit_json(const Fit& fit, const Provenance& provenance) {
     if (r.time) one["time_s"] = *r.time;
     residuals.push_back(std::move(one));
   }
+  json traces = json::array();
+  for (const FittedTrace& trace : fit.traces)
+    traces.push_back({{"measurement", trace.measurement},
+                      {"quantity", row_of(trace.what).name},
+                      {"until_s", trace.until},
+                      {"recorded_s", trace.recorded}});
   json data = with_origin(
       {
           {"kind", "fit"},
@@ -212,6 +225,7 @@ json fit_json(const Fit& fit, const Provenance& provenance) {
           {"starts", fit.starts},
           {"converged", fit.converged},
           {"residuals", residuals},
+          {"traces", traces},
           {"chi_squared", fit.found ? json_number(fit.chi_squared()) : json(nullptr)},
           {"chi_squared_before", fit.found ? json_number(fit.chi_squared_before()) : json(nullptr)},
           {"words", fit_words(fit)},

@@ -23,6 +23,7 @@
 #include "sampling/points.h"
 #include "studies/closing/actuator.h"
 #include "studies/closing/auto_settings.h"
+#include "studies/fitting/trace_windows.h"
 
 namespace softland {
 namespace {
@@ -41,6 +42,7 @@ struct Datum {
   Index row = 0;                           // of the reading
   double measured = 0, error = 0;
   std::size_t measurement = 0;
+  double time = unset;  // of a row of a trace [s]
 };
 
 struct FitDevice {
@@ -209,7 +211,8 @@ void add_data(Setup& setup, const Bench& bench) {
                             .row = reads_all ? static_cast<Index>(i) : 0,
                             .measured = m.values[i],
                             .error = m.errors[i],
-                            .measurement = n});
+                            .measurement = n,
+                            .time = m.times.empty() ? unset : m.times[i]});
     }
   }
 }
@@ -722,40 +725,167 @@ std::string fitted_text(const Fit& fit, std::string_view text, const std::string
   return with_spread_of(fitted, path, with_spread);
 }
 
+namespace {
+
+// The data that count, and where the searches from several starts end.
+struct Stage {
+  std::unique_ptr<const Setup> setup;
+  ManyEnds all = {};
+};
+
+// Two ends are one minimum where the data and the prior tell them apart by less than their errors.
+bool is_one_minimum(const LeastSquaresEnd& a, const LeastSquaresEnd& b) {
+  constexpr double apart = 0.1;  // standard deviations, or of the cost
+  double largest = 0;
+  for (std::size_t i = 0; i < a.x.size(); ++i) largest = std::max(largest, std::abs(a.x[i] - b.x[i]));
+  return largest <= apart && std::abs(a.cost - b.cost) <= apart;
+}
+
+Stage solved(Setup setup, const std::vector<std::vector<double>>& starts, const FitOptions& options, const Watch& watch) {
+  Stage stage{.setup = std::make_unique<const Setup>(std::move(setup))};
+  stage.all = solve_from([&] { return problem_of(*stage.setup); }, starts, options.jobs, is_one_minimum, watch);
+  return stage;
+}
+
+// Distinct ends, the best first: those that more rows of the traces may yet prefer.
+std::vector<std::vector<double>> best_ends(const ManyEnds& all) {
+  constexpr std::size_t most = 5;
+  std::vector<const LeastSquaresEnd*> ranked;
+  for (const LeastSquaresEnd& end : all.ends) {
+    if (!end.x.empty()) ranked.push_back(&end);
+  }
+  std::ranges::stable_sort(ranked, {}, [](const LeastSquaresEnd* end) { return end->cost; });
+  std::vector<const LeastSquaresEnd*> distinct;
+  for (const LeastSquaresEnd* end : ranked) {
+    if (distinct.size() < most &&
+        std::ranges::none_of(distinct, [&](const LeastSquaresEnd* other) { return is_one_minimum(*end, *other); }))
+      distinct.push_back(end);
+  }
+  std::vector<std::vector<double>> starts;
+  for (const LeastSquaresEnd* end : distinct) starts.push_back(end->x);
+  return starts;
+}
+
+// When the nominal design first touches, by measurement; NaN of what is no trace.
+std::vector<double> nominal_touches(const Setup& setup, std::size_t measurements) {
+  std::vector<double> touches(measurements, unset);
+  for (const Datum& datum : setup.data) {
+    const FitDevice& device = setup.devices[datum.device];
+    if (std::isnan(datum.time) || !std::isnan(touches[datum.measurement]) || !device.nominal.model.has_contact()) continue;
+    Instrument clock = device.instruments[datum.instrument];
+    clock.what = Measurable::closing_time;
+    clock.times.clear();
+    DeviceReader reader(device.nominal);
+    std::vector<double> middle;
+    for (const std::size_t p : setup.of_device[datum.device]) middle.push_back(setup.parameters[p].mean);
+    if (reader.move_to(middle)) touches[datum.measurement] = reader.read(clock, false).values[0];
+  }
+  return touches;
+}
+
+// The residuals of each trace, in errors, of the rows that count or of those that came last.
+struct TraceMisfit {
+  std::vector<double> rms;  // root mean square, by measurement; infinite where the device cannot be read
+  std::vector<double> rows;
+};
+
+TraceMisfit misfit(const Stage& stage, std::size_t measurements, const TraceWindows* newest = nullptr) {
+  TraceMisfit of{.rms = std::vector<double>(measurements, 0), .rows = std::vector<double>(measurements, 0)};
+  VectorXd values;
+  const bool known = stage.all.found() && Model(*stage.setup).read(stage.all.ends[stage.all.best].x, values, nullptr);
+  for (std::size_t i = 0; i < stage.setup->data.size(); ++i) {
+    const Datum& datum = stage.setup->data[i];
+    if (std::isnan(datum.time) || (newest != nullptr && !newest->is_new(datum.measurement, datum.time))) continue;
+    const double off = (known ? values[static_cast<Index>(i)] - datum.measured : HUGE_VAL) / datum.error;
+    of.rms[datum.measurement] += off * off;
+    of.rows[datum.measurement] += 1;
+  }
+  for (std::size_t m = 0; m < measurements; ++m) of.rms[m] = of.rows[m] > 0 ? std::sqrt(of.rms[m] / of.rows[m]) : 0;
+  return of;
+}
+
+// Whether the scene describes the newest rows as well as those before the first touch, by measurement, but for what chance adds.
+std::vector<bool> described(const TraceMisfit& newest, const TraceMisfit& before) {
+  constexpr double least = 0.15, deviations = 3;
+  std::vector<bool> all;
+  for (std::size_t m = 0; m < newest.rms.size(); ++m) {
+    const double chance = std::max(least, deviations / std::sqrt(2 * std::max(1.0, newest.rows[m])));
+    all.push_back(newest.rms[m] <= (1 + chance) * std::max(1.0, before.rms[m]));
+  }
+  return all;
+}
+
+// Whether the data go with the unknowns as their slopes say, within the errors that follow from these. Past some bounces they do
+// not: slopes of a chaotic course are those of a few steps of its chaos, and promise errors that are far too small.
+bool is_linear(const Stage& stage) {
+  constexpr double largest = 0.5;  // of one standard deviation
+  const Setup& setup = *stage.setup;
+  const LeastSquaresEnd& end = stage.all.ends[stage.all.best];
+  Model model(setup);
+  VectorXd values, moved;
+  MatrixXd slopes;
+  if (!model.read(end.x, values, &slopes)) return false;
+  VectorXd weights(values.size());  // of the residuals, and 1 over their errors
+  for (Index i = 0; i < values.size(); ++i) {
+    const Datum& datum = setup.data[static_cast<std::size_t>(i)];
+    weights[i] = std::sqrt(loss_weight(setup.loss, (values[i] - datum.measured) / datum.error)) / datum.error;
+  }
+  const MatrixXd weighted = weights.asDiagonal() * slopes;
+  const MatrixXd covariance = estimate(weighted.transpose() * weighted, setup.prior).covariance;
+  if (!covariance.allFinite()) return true;
+  const MatrixXd steps = cholesky_factor(covariance);
+  for (Index k = 0; k < steps.cols(); ++k) {
+    const VectorXd z = Eigen::Map<const VectorXd>(end.x.data(), steps.rows()) + steps.col(k);
+    if (!model.read({z.data(), static_cast<std::size_t>(z.size())}, moved, nullptr)) return false;
+    if (weights.cwiseProduct(moved - values - slopes * steps.col(k)).norm() > largest) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 Fit fit(const SceneFile& given, const Bench& bench, const FitOptions& options, const Watch& watch) {
   require(options.starts >= 1 && options.starts <= most_starts,
           [&] { return fmt::format("{} starts: there must be from 1 to {}", options.starts, most_starts); });
   SceneFile file = given;
   const bool assumed = options.unknowns.empty() && assume_spread(file);
-  const Setup setup = setup_of(file, bench, options, watch);
-  Fit found{.scene = setup.devices.front().nominal, .spread_assumed = assumed};
+  const std::size_t measurements = bench.measurements.size();
+  TraceWindows windows(bench, nominal_touches(setup_of(file, bench, options, watch), measurements));
+  Setup first = setup_of(file, windows.inside(), options, watch);
+  const std::vector<std::vector<double>> starts = starts_of(first, options);
+  Stage stage = solved(std::move(first), starts, options, watch);
+  Fit found{.scene = stage.setup->devices.front().nominal, .spread_assumed = assumed};
   found.loss = options.loss;
   found.seed = options.seed;
-  for (const FitDevice& device : setup.devices) found.devices.push_back(device.name);
-
-  // Two ends are one minimum where the data and the prior tell them apart by less than their errors.
-  const ManyEnds all = solve_from([&] { return problem_of(setup); }, starts_of(setup, options), options.jobs,
-                                  [&](const LeastSquaresEnd& a, const LeastSquaresEnd& b) {
-                                    constexpr double apart = 0.1;  // standard deviations, or of the cost
-                                    double largest = 0;
-                                    for (std::size_t i = 0; i < a.x.size(); ++i)
-                                      largest = std::max(largest, std::abs(a.x[i] - b.x[i]));
-                                    return largest <= apart && std::abs(a.cost - b.cost) <= apart;
-                                  },
-                                  watch);
-  found.starts = all.ends.size();
-  found.minima = all.minima;
-  for (const LeastSquaresEnd& end : all.ends) {
+  for (const FitDevice& device : stage.setup->devices) found.devices.push_back(device.name);
+  found.starts = stage.all.ends.size();
+  found.minima = stage.all.minima;
+  for (const LeastSquaresEnd& end : stage.all.ends) {
     found.converged += end.converged;
     found.costs.push_back(end.x.empty() ? unset : end.cost);
   }
-  found.found = all.found();
+  found.found = stage.all.found();
   if (!found.found) return found;
-  EndOfFit end(setup, found);
-  end.add(all.ends[all.best]);
+  const TraceMisfit before_touch = misfit(stage, measurements);
+  while (windows.grow()) {
+    Stage next = solved(setup_of(file, windows.inside(), options, watch), best_ends(stage.all), options, watch);
+    std::vector<bool> goes_on = described(misfit(next, measurements, &windows), before_touch);
+    if (!next.all.found() || !is_linear(next)) goes_on.assign(measurements, false);
+    if (windows.keep(goes_on)) stage = std::move(next);
+  }
+  for (std::size_t m = 0; m < measurements; ++m) {
+    const BenchMeasurement& one = bench.measurements[m];
+    if (!one.times.empty())
+      found.traces.push_back({.measurement = m,
+                              .what = std::ranges::find(measurables, one.quantity, &MeasurableRow::name)->value,
+                              .until = windows.end(m),
+                              .recorded = one.times.back()});
+  }
+  EndOfFit end(*stage.setup, found);
+  end.add(stage.all.ends[stage.all.best]);
   end.add_population();
   if (options.suggest) end.add_next(watch);
-  found.doubts = doubts_of(found, all, all.ends[all.best]);
+  found.doubts = doubts_of(found, stage.all, stage.all.ends[stage.all.best]);
   if (found.doubts.empty()) return found;
   for (FittedUnknown& u : found.unknowns) u.standard_error = u.low = u.high = unset;
   return found;

@@ -8,7 +8,8 @@
 // than the normal one count with their mean and standard deviation.
 //
 // Unknowns are those of each device, or shared by all. The searches begin at the nominal device and at points of low discrepancy
-// spread over the prior; the best end counts. Standard errors are those of the linearised problem there.
+// spread over the prior; the best end counts. Standard errors are those of the linearised problem there. Of traces the rows up to
+// the first touch count at first, and the best ends go on to more of them as long as the scene describes those (trace_windows.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -61,6 +62,13 @@ struct FitResidual {
   [[nodiscard]] double normalized_before() const { return (before - measured) / error; }
 };
 
+/// Of a trace, position or velocity, the rows that count: up to where the scene describes it.
+struct FittedTrace {
+  std::size_t measurement = 0;  ///< number in the bench file
+  Measurable what = Measurable::velocity;
+  double until = 0, recorded = 0;  ///< times of the last row that counts, and of the last one [s]
+};
+
 struct NextMeasurement {
   std::string name;  ///< "closing time at 22 V"
   Measurable what = Measurable::pull_in;
@@ -84,6 +92,7 @@ struct Fit {
   std::vector<FittedUnknown> unknowns;
   Estimate estimate;  ///< of several devices its weak directions are those of the mean device, by the unknowns of the first
   std::vector<FitResidual> residuals;
+  std::vector<FittedTrace> traces = {};
   std::vector<NextMeasurement> next;  ///< the best first
   std::optional<FittedPopulation> population;
   std::size_t starts = 0, converged = 0, minima = 0;

@@ -72,8 +72,16 @@ quantity = "velocity"
 file = "v.csv"
 level = "20 V"
 error = "1 mm/s"
+[[measurement]]
+quantity = "velocity"
+file = "v.csv"
+level = "20 V"
+error = "1 mm/s"
+until = "0.5 us"
 )",
                                   "bench.toml", folder.path());
+  EXPECT_EQ(bench.measurements[3].times, std::vector<double>{0});
+  EXPECT_TRUE(bench.measurements[3].has_end && !bench.measurements[2].has_end);
   EXPECT_EQ(bench.measurements[0].levels, (std::vector<double>{0, 5}));
   EXPECT_NEAR(bench.measurements[0].values[0], 41.5e-15, 1e-27);
   ASSERT_EQ(bench.measurements[1].values.size(), 2U);
@@ -198,6 +206,8 @@ TEST(Bench, NamesTheKeyThatAFileOfAnInstrumentLacks) {
   expect_so("velocity", scope + "column = 2\nunit = \"um\"", "the velocity is in um: expected a velocity");
   expect_so("velocity", scope + "column = 2\nunit = \"m/s\"\nper_volt = \"1 m/s\"", "must not stand beside a unit");
   expect_so("velocity", "file = \"plain.csv\"", "the file names no unit: say unit");
+  expect_so("velocity", scope + "column = 2\nunit = \"m/s\"\nuntil = \"-1 us\"", "leaves no row");
+  expect_so("contact", low + "closed = \"below\"\nuntil = \"9 us\"", "is of a position or velocity only");
   expect_so("capacitance", scope + "column = 2", "is of a file over time only");
 }
 TEST(Bench, ContactKeysOfAnOptionAreThoseOfAMeasurement) {

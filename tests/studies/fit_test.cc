@@ -11,6 +11,7 @@
 #include "base/random.h"
 #include "scenes.h"
 #include "studies/fitting/estimate.h"
+#include "studies/fitting/trace_windows.h"
 
 namespace softland::fit_test {
 namespace {
@@ -119,6 +120,104 @@ TEST(Fit, FindsOneAmountThatIsAddedToSeveralKeys) {
   }
   EXPECT_TRUE(is_there);
 }
+// The velocity of a bouncing switch that differs from its scene, in steps of a quarter of a microsecond.
+struct BouncingDevice {
+  SceneFile scene = gold({"structure.modes=2", "waveform.main.level=20 V", "driver.main.max_voltage=40 V"});
+  std::vector<double> truth{1.025, 1.0, 0.98};  // thickness, modulus, gaps
+  static constexpr double noise = 0.5e-3;       // [m/s]
+  double touch = 0;
+
+  [[nodiscard]] Bench bench(double until) {
+    const PreparedScene p = prepare(scene);
+    std::vector<double> values;
+    for (const SpreadVariable& v : p.scene.spread.variables)
+      values.push_back(v.name == "gaps" ? truth[2] : v.name == "structure.thickness" ? truth[0] : truth[1]);
+    DeviceReader reader(p);
+    EXPECT_TRUE(reader.move_to(values));
+    Instrument vibrometer{.what = Measurable::velocity, .level = 20};
+    for (double t = 0; t < until; t += 0.25e-6) vibrometer.times.push_back(t);
+    touch = reader.read({.what = Measurable::closing_time, .level = 20}, false).values[0];
+    const Eigen::VectorXd velocities = reader.read(vibrometer, false).values;
+    const double resonance = reader.read({.what = Measurable::frequency}, false).values[0], error = 3e-3 * resonance;
+    Bench all{.name = "bench.toml", .measurements = {}, .changes = {}};
+    all.measurements.push_back({.quantity = "frequency", .values = {resonance}, .errors = {error}, .place = "bench.toml:1"});
+    BenchMeasurement trace{.quantity = "velocity", .times = vibrometer.times, .place = "bench.toml:5"};
+    for (std::size_t i = 0; i < vibrometer.times.size(); ++i) {
+      trace.values.push_back(velocities[static_cast<Eigen::Index>(i)] + noise * random_normal(3, Stream::measurement, i));
+      trace.errors.push_back(noise);
+      trace.levels.push_back(20);
+    }
+    all.measurements.push_back(trace);
+    return all;
+  }
+};
+
+TEST(Fit, OfARecordWithBouncesGoesOnAsLongAsTheSceneDescribesThem_optimized) {
+  SKIP_WITHOUT_CERES();
+  BouncingDevice device;
+  const Fit found = fit(device.scene, device.bench(250e-6), {.starts = 8, .suggest = false});
+  ASSERT_TRUE(found.found);
+  EXPECT_EQ(found.doubts, std::vector<std::string>{});
+  ASSERT_EQ(found.traces.size(), 1U);
+  EXPECT_GT(found.traces[0].until, 1.2 * device.touch) << "bounces tell more than the way to the contact";
+  EXPECT_LT(found.traces[0].until, found.traces[0].recorded);
+  for (const auto& [name, value] : {std::pair{"structure.thickness", 2.05e-6}, std::pair{"gaps", 0.98}}) {
+    const FittedUnknown& u = unknown(found, name);
+    EXPECT_LT(std::abs(u.value - value), 4 * u.standard_error) << name << ' ' << u.value << " +- " << u.standard_error;
+    EXPECT_LT(u.standard_error, 2e-3 * value) << name;
+  }
+}
+
+TEST(Fit, OfARecordThatLeavesTheSceneEndsBefore_optimized) {
+  SKIP_WITHOUT_CERES();
+  BouncingDevice device;
+  Bench bench = device.bench(100e-6);
+  BenchMeasurement& trace = bench.measurements[1];
+  constexpr double leaves = 30e-6, strange = 20e-3;  // [s], [m/s]
+  for (std::size_t i = 0; i < trace.times.size(); ++i) {
+    if (trace.times[i] > leaves) trace.values[i] += strange;
+  }
+  const Fit found = fit(device.scene, bench, {.starts = 8, .suggest = false});
+  ASSERT_TRUE(found.found);
+  EXPECT_LE(found.traces.at(0).until, leaves);
+  const FittedUnknown& gaps = unknown(found, "gaps");
+  EXPECT_LT(std::abs(gaps.value - device.truth[2]), 4 * gaps.standard_error);
+  trace.has_end = true;
+  const Fit whole = fit(device.scene, bench, {.starts = 2, .suggest = false});
+  EXPECT_EQ(whole.traces.at(0).until, whole.traces.at(0).recorded) << "the end that is said counts";
+  EXPECT_FALSE(whole.doubts.empty());
+}
+
+TEST(TraceWindows, GrowTogetherAndStopApart) {
+  Bench bench{.name = "bench.toml", .measurements = {}, .changes = {}};
+  for (int k = 0; k < 3; ++k) {
+    BenchMeasurement trace{.quantity = "velocity"};
+    for (int i = 0; i <= 20; ++i) trace.times.push_back(i), trace.values.push_back(0), trace.errors.push_back(1);
+    bench.measurements.push_back(trace);
+  }
+  bench.measurements[2].has_end = true;
+  TraceWindows windows(bench, {4, 8, 4});
+  EXPECT_EQ(windows.inside().measurements[0].times.back(), 4);
+  EXPECT_EQ(windows.inside().measurements[1].values.size(), 9U);
+  EXPECT_EQ(windows.inside().measurements[2].times.size(), 21U);
+  ASSERT_TRUE(windows.grow());
+  EXPECT_EQ(windows.end(0), 5);
+  EXPECT_EQ(windows.end(1), 10);
+  EXPECT_TRUE(windows.is_new(0, 5) && !windows.is_new(0, 4) && !windows.is_new(2, 5));
+  EXPECT_FALSE(windows.keep({true, false, true}));
+  EXPECT_EQ(windows.end(0), 4);
+  EXPECT_EQ(windows.end(1), 8);
+  int grown = 0;
+  while (windows.grow()) {
+    ++grown;
+    EXPECT_TRUE(windows.keep({true, true, true}));
+    ASSERT_LT(grown, 20);
+  }
+  EXPECT_EQ(grown, 8) << "4 times 1.25 to the eighth is the first beyond 20";
+  EXPECT_EQ(windows.end(0), 20);
+  EXPECT_EQ(windows.end(1), 8);
+}
+
 TEST(Fit, IsTheSameForAnyNumberOfThreads) {
   SKIP_WITHOUT_CERES();
   const Bench bench = bench_of(all_kinds, {}, 1);
