@@ -124,6 +124,22 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
         "poissons_ratio would use E / (1 - nu^2)",
         file.origin("structure.width").text, file.written("structure.width")));
   }
+  if (structure.plate_strain && device.piezo && std::isnan(device.piezo->e31)) {
+    const double more = 1 / (1 - structure.poissons_ratio) - 1;
+    warnings.push_back(fmt::format(
+        "{}: with plate_strain = true a layer pulls across the width as well: its moment is {:.0f} % above that of d31 at the "
+        "beam's Poisson's ratio; give e31 = d31 E / (1 - nu) of the layer",
+        file.origin("piezo.d31").text, 100 * more));
+  }
+  if (const auto* adhesive = device.contact ? std::get_if<AdhesiveAsperities>(&device.contact->model) : nullptr) {
+    const double tabor = adhesive->tabor_number();
+    if (tabor > AdhesiveAsperities::largest_tabor_number)
+      warnings.push_back(
+          fmt::format("{}: the Tabor number of its summits is {:.2g}; the adhesion of this law (DMT) is for numbers below about "
+                      "{:.1g}: soft or "
+                      "sticky summits pull off at as little as three quarters of its force, and dissipate",
+                      file.origin("contact.adhesion_energy").text, tabor, AdhesiveAsperities::largest_tabor_number));
+  }
   return warnings;
 }
 
