@@ -44,6 +44,7 @@ class BlockReader {
   [[nodiscard]] bool may_be_headings(const CellList& cells) const;
   void read_row(const CellList& cells, std::size_t line, bool unended);
   void take_number(std::size_t k, const Cell& cell, std::string_view text, std::size_t line, bool unended);
+  void take_unit(std::size_t k, Cell& cell, std::string_view text, std::size_t line, bool unended);
   [[nodiscard]] bool was_cut(const CellList& cells) const;
   void take_beside(const CellList& cells, std::size_t line, std::string_view text);
   [[nodiscard]] CellList paired(const CellList& cells, std::size_t line) const;
@@ -64,7 +65,8 @@ class BlockReader {
   std::string_view first_row_;
   std::size_t width_ = 0;  // cells of a row
   std::size_t rows_with_words_ = 0;
-  std::size_t last_length_ = 0;  // of the last cell of all rows so far; 0 where they differ
+  std::vector<std::optional<Unit>> cell_units_;  // of each column, that its numbers have beside them
+  std::size_t last_length_ = 0;                  // of the last cell of all rows so far; 0 where they differ
 };
 
 void BlockReader::find_layout() {
@@ -77,7 +79,7 @@ void BlockReader::find_layout() {
   pairs_ = keys_.decimal == ',' && separator_ == ',' && text_.find('"') == std::string_view::npos;
   if (pairs_) {
     CellList cells;
-    split_cells(last.front().text, separator_, cells);
+    split_row(last.front().text, separator_, cells);
     while (!cells.empty() && cells.back().empty()) cells.pop_back();
     is_numeric_.assign((cells.size() + 1) / 2, true);
   }
@@ -89,7 +91,7 @@ bool BlockReader::begins_block(const CellList& cells) const {
   for (std::size_t i = 0; i < is_numeric_.size(); ++i) {
     if (!is_numeric_[i]) continue;
     if (!may_be_value(cells[i])) return false;
-    has_number |= looks_like_number(cells[i]);
+    has_number |= holds_number(cells[i]);
   }
   // A key before the only column of numbers has its value there.
   const std::size_t last = is_numeric_.size() - 1;
@@ -175,6 +177,31 @@ void BlockReader::take_number(std::size_t k, const Cell& cell, std::string_view 
   }
 }
 
+// A number with a unit is taken in the first unit of its column, "-999 ns" above "1 us", and so must be all others.
+void BlockReader::take_unit(std::size_t k, Cell& cell, std::string_view text, std::size_t line, bool unended) {
+  std::optional<Unit>& unit = cell_units_[k];
+  const auto refuse = [&](const std::string& why) {
+    fail(line, static_cast<std::size_t>(block_.columns[k]),
+         fmt::format("is \"{}\", and numbers above {}", shown_cell(text), why));
+  };
+  if (cell.kind == CellKind::number && unit && cell.value != 0) {
+    if (!unended) refuse("have a unit, " + unit->symbol);
+    cell.kind = CellKind::no_number;
+  }
+  if (cell.kind != CellKind::no_number) return;
+  const std::optional<Measured> number = measured_cell(text);
+  if (!number) return;
+  if (!unit && block_.lines.size() == block_.missing[k].count) {
+    unit = number->unit;
+    block_.units[k] = unit->symbol;
+  }
+  if (!unit) refuse("have none");
+  if (unit->measure != number->unit->measure || (unit->measure == Measure::other && unit->symbol != number->unit->symbol))
+    refuse("are in " + unit->symbol);
+  cell = read_cell(number->number, decimal_);
+  if (unit->per_si != number->unit->per_si) cell.value = number->si() * unit->per_si;
+}
+
 void BlockReader::read_row(const CellList& cells, std::size_t line, bool unended) {
   const auto cut = [&](const std::string& why) {
     // What ends in the middle is shorter than a row.
@@ -192,7 +219,8 @@ void BlockReader::read_row(const CellList& cells, std::size_t line, bool unended
   std::size_t k = 0;
   for (std::size_t i = 0; i < is_numeric_.size(); ++i) {
     if (!is_numeric_[i]) continue;
-    const Cell cell = read_cell(cells[i], decimal_);
+    Cell cell = read_cell(cells[i], decimal_);
+    take_unit(k, cell, cells[i], line, unended);
     if (cell.kind == CellKind::no_number) {
       if (unended) {
         for (std::size_t j = 0; j < k; ++j) block_.values[j].pop_back();
@@ -251,7 +279,7 @@ void BlockReader::refuse_shifted(const CellList& cells, std::size_t line) const 
 void BlockReader::take_headings(const std::vector<Line>& above) {
   std::vector<CellList> cells(above.size());
   for (std::size_t i = 0; i < above.size(); ++i) {
-    split_cells(above[i].text, separator_, cells[i]);
+    split_row(above[i].text, separator_, cells[i]);
     block_.preamble.take_line(above[i].text, cells[i]);
   }
   if (!above.empty()) refuse_shifted(cells.back(), above.back().number);
@@ -292,6 +320,7 @@ void BlockReader::make_columns() {
   block_.values.resize(count);
   block_.missing.resize(count);
   block_.digits.resize(count);
+  cell_units_.resize(count);
   for (std::vector<double>& column : block_.values) column.reserve(text_.size() / (8 * count + 8));
 }
 
@@ -303,7 +332,7 @@ void BlockReader::read_lines() {
   while (lines.next()) {
     if (lines.number() <= static_cast<std::size_t>(keys_.skip)) continue;
     if (trimmed(lines.line()).empty()) continue;
-    split_cells(lines.line(), separator_, cells);
+    split_row(lines.line(), separator_, cells);
     if (!in_block) {
       if (!begins_block(cells)) {
         above.push_back({lines.line(), lines.number()});
@@ -331,7 +360,7 @@ void BlockReader::read_lines() {
 void BlockReader::refuse_broken_row(const std::vector<Line>& above) const {
   CellList cells, before;
   if (!above.empty()) {
-    split_cells(above.back().text, separator_, cells);
+    split_row(above.back().text, separator_, cells);
     const bool is_row = numbers_in(cells) > 0 && std::all_of(cells.begin(), cells.end(), may_be_value);
     if (is_row)
       fail(above.back().number, 0,
@@ -344,19 +373,19 @@ void BlockReader::refuse_broken_row(const std::vector<Line>& above) const {
                                   std::isalpha(static_cast<unsigned char>(first.front())) == 0 && first.front() != '#';
     if (begins_as_number && std::ranges::count(first, '"') % 2 != 0)
       fail(above[i].number, 0, "a quote is not closed (skip leaves out lines at the beginning)");
-    split_cells(above[i].text, separator_, cells);
+    split_row(above[i].text, separator_, cells);
     if (cells.size() < is_numeric_.size()) continue;
     std::optional<std::size_t> broken;
     bool has_number = false;
     for (std::size_t k = 0; k < is_numeric_.size(); ++k) {
       if (!is_numeric_[k]) continue;
-      has_number |= looks_like_number(cells[k]);
+      has_number |= holds_number(cells[k]);
       if (!broken && !may_be_value(cells[k])) broken = k;
     }
     if (!broken || (!has_number && is_numeric_.size() > 1)) continue;
     bool is_below_heading = false;
     if (i > 0 && i + 1 == above.size()) {
-      split_cells(above[i - 1].text, separator_, before);
+      split_row(above[i - 1].text, separator_, before);
       is_below_heading = std::any_of(before.begin(), before.end(), [](std::string_view cell) {
         const std::optional<Unit> own = unit_of(cell), named = heading_of(cell).unit;
         const bool is_time = (own && own->measure == Measure::time) || (named && named->measure == Measure::time);
@@ -385,12 +414,9 @@ Block BlockReader::read() {
   find_layout();
   make_columns();
   read_lines();
-  const auto rows = static_cast<double>(block_.lines.size());
   if (block_.lines.empty()) refusals_.fail("no row of numbers was found below the headings");
   if (2 * rows_with_words_ >= block_.lines.size() && rows_with_words_ > 0)
     refusals_.fail("no columns of numbers were found: most lines hold words as well");
-  if (block_.preamble.samples && *block_.preamble.samples < rows && block_.columns.size() == 1)
-    refusals_.fail(fmt::format("the file speaks of {} samples and holds {}", *block_.preamble.samples, rows));
   refuse_two_meanings();
   return std::move(block_);
 }

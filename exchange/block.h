@@ -18,7 +18,7 @@ struct Block {
   std::vector<std::vector<double>> values;  ///< NaN where a number is missing
   std::vector<Missing> missing;
   std::vector<std::uint32_t> lines;       ///< of the rows
-  std::vector<std::string> names, units;  ///< of the columns, as they stand above them; empty where there are none
+  std::vector<std::string> names, units;  ///< of the columns, as they stand above or in them; empty where there are none
   std::vector<int> digits;                ///< significant ones of the numbers of each column, of some rows
   bool has_headings = false;
   Preamble preamble;

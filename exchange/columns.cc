@@ -14,6 +14,7 @@
 #include "exchange/cells.h"
 #include "exchange/measure.h"
 #include "exchange/parsers.h"
+#include "exchange/time_axis.h"
 
 namespace softland::internal {
 namespace {
@@ -28,19 +29,13 @@ class RecordingMaker {
   Recording make();
 
  private:
-  [[noreturn]] void fail(std::size_t line, std::size_t column, const std::string& rule) const {
-    refusals_.fail(line, column, rule);
-  }
   [[noreturn]] void fail(const std::string& rule) const { refusals_.fail(rule); }
 
   [[nodiscard]] std::optional<Unit> unit_of_column(std::size_t k) const;
   void drop_rows_without_numbers();
   [[nodiscard]] std::optional<std::size_t> time_place() const;
   [[nodiscard]] std::optional<std::size_t> named_place(const std::string& name, int number, std::string_view key) const;
-  [[nodiscard]] std::optional<Unit> time_unit(std::size_t place) const;
-  [[nodiscard]] bool is_sample_count(std::size_t place, const std::optional<Unit>& unit) const;
   void set_times(std::optional<std::size_t> place);
-  void set_even_times();
   [[nodiscard]] bool is_second_time(std::size_t k, std::size_t time) const;
   void add_channel(std::size_t k, bool is_only);
   void scale_codes();
@@ -121,79 +116,23 @@ bool RecordingMaker::is_second_time(std::size_t k, std::size_t time) const {
   return true;
 }
 
-void RecordingMaker::set_even_times() {
-  if (!made_.interval) return;
-  const std::size_t count = block_.lines.size();
-  double start = 0;
-  if (preamble_.start) {
-    start = *preamble_.start;
-  } else if (preamble_.trigger_sample) {
-    start = -*preamble_.trigger_sample * *made_.interval;
-  } else if (preamble_.centre) {
-    start = *preamble_.centre - static_cast<double>(count / 2) * *made_.interval;
-  }
-  // Where the first sample is a whole number of intervals from t = 0, one sample is at 0 exactly.
-  constexpr double whole = 1e-6;
-  const double steps = start / *made_.interval, rounded = std::round(steps);
-  made_.times.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto k = static_cast<double>(i);
-    made_.times[i] = std::abs(steps - rounded) < whole ? (rounded + k) * *made_.interval : start + k * *made_.interval;
-  }
-}
-
-// The unit of the times that the keys or the file say.
-std::optional<Unit> RecordingMaker::time_unit(std::size_t place) const {
-  if (keys_.time_unit.empty()) return unit_of_column(place);
-  const std::optional<Unit> unit = unit_of(keys_.time_unit);
-  if (!unit || unit->measure != Measure::time)
-    fail(fmt::format("time_unit = \"{}\" is no unit of time; there are s, ms, us, ns and ps", printable_line(keys_.time_unit)));
-  return unit;
-}
-
-// Whether the column of times numbers the samples, whose interval the preamble says.
-bool RecordingMaker::is_sample_count(std::size_t place, const std::optional<Unit>& unit) const {
-  if (unit) return unit->measure == Measure::samples;
-  const std::string name = lower_case(heading_of(block_.names[place]).name);
-  const std::vector<double>& raw = block_.values[place];
-  return !name.starts_with('t') && made_.interval &&
-         std::all_of(raw.begin(), raw.end(), [](double value) { return value == std::floor(value); });
-}
-
 void RecordingMaker::set_times(std::optional<std::size_t> place) {
-  made_.interval = preamble_.interval;
-  const std::size_t count = block_.lines.size();
-  // The samples of a generator are one period.
-  const bool is_period = (!place || block_.names[*place] == "xpos") && preamble_.samples == static_cast<double>(count);
-  if (is_period && !made_.interval && preamble_.period.value_or(0) > 0)
-    made_.interval = *preamble_.period / static_cast<double>(count);
-  if (is_period && !made_.interval && preamble_.frequency.value_or(0) > 0)
-    made_.interval = 1 / (*preamble_.frequency * static_cast<double>(count));
-  if (!place) return set_even_times();
-  const std::vector<double>& raw = block_.values[*place];
-  const Missing& missing = block_.missing[*place];
-  if (missing.count > 0)
-    fail(missing.line, static_cast<std::size_t>(block_.columns[*place]), "the time is missing; it must be a finite number");
-  std::optional<Unit> unit = time_unit(*place);
-  if (is_sample_count(*place, unit)) {
-    for (std::size_t i = 1; i < count; ++i) {
-      if (raw[i] != raw[i - 1] + 1)
-        fail(block_.lines[i], static_cast<std::size_t>(block_.columns[*place]),
-             fmt::format("the number of the sample is {}, and that above {}; they must follow each other", raw[i], raw[i - 1]));
-    }
-    return set_even_times();
-  }
-  if (!unit && preamble_.horizontal_unit && preamble_.horizontal_unit->symbol == "s") unit = preamble_.horizontal_unit;
-  made_.times_have_unit = unit.has_value();
-  if (!unit) unit = Unit{.measure = Measure::time, .symbol = "s"};
-  if (unit->measure != Measure::time)
-    fail(fmt::format("column {} is in {} and no time; time_column names another, or time_unit says its unit",
-                     block_.columns[*place], unit->symbol));
-  made_.has_times = true;
-  made_.times.resize(count);
-  for (std::size_t i = 0; i < count; ++i) made_.times[i] = unit->in_si(raw[i]);
-  const double largest = std::max(std::abs(made_.times.front()), std::abs(made_.times.back()));
-  if (largest > 0) made_.last_digit = std::pow(10, std::floor(std::log10(largest)) - block_.digits[*place] + 1);
+  std::optional<TimeColumn> column;
+  if (place)
+    column.emplace(TimeColumn{.raw = block_.values[*place],
+                              .missing = block_.missing[*place],
+                              .name = heading_of(block_.names[*place]).name,
+                              .unit = unit_of_column(*place),
+                              .column = block_.columns[*place],
+                              .digits = block_.digits[*place],
+                              .lines = block_.lines});
+  RowTimes rows = times_of_rows(column ? &*column : nullptr, block_.lines.size(), preamble_, keys_, refusals_);
+  made_.times = std::move(rows.times);
+  made_.interval = rows.interval;
+  made_.has_times = rows.stand_in_file;
+  made_.times_have_unit = rows.have_unit;
+  made_.last_digit = rows.last_digit;
+  made_.notes.insert(made_.notes.end(), rows.notes.begin(), rows.notes.end());
 }
 
 // Codes of a converter that stand for volts.
@@ -298,8 +237,9 @@ Recording RecordingMaker::make() {
   refuse_spectrum();
   const std::optional<std::size_t> place = time_place();
   set_times(place);
-  if (preamble_.samples && *preamble_.samples > static_cast<double>(block_.lines.size()))
-    made_.notes.push_back(fmt::format("the file speaks of {} samples and holds {}", *preamble_.samples, block_.lines.size()));
+  const TimeClaim* const samples = preamble_.first(TimeClaim::Of::samples);
+  if (samples != nullptr && samples->value > static_cast<double>(block_.lines.size()))
+    made_.notes.push_back(fmt::format("the file speaks of {} samples and holds {}", samples->value, block_.lines.size()));
   for (std::size_t k = 0; k < block_.columns.size(); ++k) {
     if (k == place || (place && is_second_time(k, *place))) continue;
     add_channel(k, block_.columns.size() == (place ? 2U : 1U));

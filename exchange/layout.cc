@@ -12,6 +12,7 @@
 #include "base/trimmed.h"
 #include "exchange/cells.h"
 #include "exchange/decoding.h"
+#include "exchange/measure.h"
 
 namespace softland::internal {
 
@@ -24,18 +25,36 @@ void Refusals::fail(const std::string& rule) const { throw InvalidInput(fmt::for
 
 std::string shown_cell(std::string_view cell) { return printable_line(shortened(cell, 40)); }
 
+void split_row(std::string_view line, char separator, CellList& cells) {
+  split_cells(line, separator, cells);
+  if (separator != ' ') return;
+  std::size_t kept = 0;
+  for (const std::string_view cell : cells) {
+    const bool may_be_unit = kept > 0 && cell.find_first_of("+-.,0123456789") != 0;
+    if (may_be_unit && looks_like_number(cells[kept - 1]) && is_unit_of_cells(unit_of(cell))) {
+      const char* const first = cells[kept - 1].data();
+      cells[kept - 1] = {first, static_cast<std::size_t>(cell.data() + cell.size() - first)};
+    } else {
+      cells[kept++] = cell;
+    }
+  }
+  cells.resize(kept);
+}
+
 bool is_blank(const CellList& cells) {
   return std::all_of(cells.begin(), cells.end(), [](std::string_view cell) { return cell.empty(); });
 }
 
+bool holds_number(std::string_view cell) { return looks_like_number(cell) || measured_cell(cell); }
+
 bool may_be_value(std::string_view cell) {
   DecimalSign any;
   const CellKind kind = read_cell(cell, any).kind;
-  return kind == CellKind::number || kind == CellKind::blank || kind == CellKind::not_finite;
+  return kind == CellKind::blank || kind == CellKind::not_finite || holds_number(cell);
 }
 
 std::size_t numbers_in(const CellList& cells) {
-  return static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), looks_like_number));
+  return static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), holds_number));
 }
 
 std::vector<Line> last_lines(std::string_view text, std::size_t skip) {
@@ -67,7 +86,7 @@ char separator_of(const std::vector<Line>& lines) {
     for (const char separator : separators) {
       std::size_t fitting = 0;
       for (const Line& line : lines) {
-        split_cells(line.text, separator, cells);
+        split_row(line.text, separator, cells);
         const std::size_t numbers = numbers_in(cells);
         const bool all = std::all_of(cells.begin(), cells.end(), may_be_value);
         fitting += cells.size() > 1 && numbers > 0 && (all || !alone);
@@ -85,13 +104,14 @@ std::vector<bool> numeric_columns(const std::vector<Line>& last, char separator)
     CellList cells;
     int lines = 0;
     for (const Line& line : last) {
-      split_cells(line.text, separator, cells);
+      split_row(line.text, separator, cells);
       if (numbers_in(cells) == 0) break;
       if (excess.size() < cells.size()) excess.resize(cells.size(), -lines);
       const bool counts = !without_words || std::all_of(cells.begin(), cells.end(), may_be_value);
       for (std::size_t i = 0; i < excess.size(); ++i) {
         DecimalSign any;
-        const CellKind kind = i < cells.size() ? read_cell(cells[i], any).kind : CellKind::no_number;
+        CellKind kind = i < cells.size() ? read_cell(cells[i], any).kind : CellKind::no_number;
+        if (kind == CellKind::no_number && i < cells.size() && measured_cell(cells[i])) kind = CellKind::number;
         if (kind == CellKind::no_number) --excess[i];
         if (counts && (kind == CellKind::number || kind == CellKind::not_finite)) ++excess[i];
       }

@@ -32,8 +32,12 @@ class Refusals {
 
 /// As much of a cell as a message shows.
 [[nodiscard]] std::string shown_cell(std::string_view cell);
+/// The cells of a line; a unit behind a number belongs to its cell, "5.0 V", where blanks separate, too.
+void split_row(std::string_view line, char separator, CellList& cells);
 [[nodiscard]] bool is_blank(const CellList& cells);
-/// Whether a cell is a number, nothing, or what instruments write for a number that they do not have.
+/// Whether a cell is a number, with or without a unit.
+[[nodiscard]] bool holds_number(std::string_view cell);
+/// Whether a cell is that, nothing, or what instruments write for a number that they do not have.
 [[nodiscard]] bool may_be_value(std::string_view cell);
 [[nodiscard]] std::size_t numbers_in(const CellList& cells);
 

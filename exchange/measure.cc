@@ -150,9 +150,8 @@ Heading heading_of(std::string_view text) {
   return heading;
 }
 
-std::optional<double> measured_value(std::string_view text, const std::optional<Unit>& unit) {
+std::optional<Measured> measured(std::string_view text) {
   text = trimmed(text);
-  if (const std::size_t colon = text.rfind(':'); colon != std::string_view::npos) text = trimmed(text.substr(colon + 1));
   const std::size_t end = std::min(text.find_first_not_of("+-.,0123456789"), text.size());
   std::size_t stop = end;
   if (end + 1 < text.size() && (text[end] == 'e' || text[end] == 'E')) {
@@ -160,12 +159,34 @@ std::optional<double> measured_value(std::string_view text, const std::optional<
     if (digits != end + 1) stop = std::min(digits, text.size());
   }
   DecimalSign any;
-  const Cell number = read_cell(trimmed(text.substr(0, stop)), any);
-  if (number.kind != CellKind::number) return std::nullopt;
-  const std::string_view rest = trimmed(text.substr(stop));
-  if (rest.empty()) return unit ? unit->in_si(number.value) : number.value;
-  const std::optional<Unit> own = unit_of(rest);
-  return own ? std::optional(own->in_si(number.value)) : std::nullopt;
+  const std::string_view number = trimmed(text.substr(0, stop)), rest = trimmed(text.substr(stop));
+  const Cell cell = read_cell(number, any);
+  if (cell.kind != CellKind::number) return std::nullopt;
+  Measured made{.value = cell.value, .number = number, .unit = unit_of(rest)};
+  return rest.empty() || made.unit ? std::optional(std::move(made)) : std::nullopt;
+}
+
+std::optional<Measured> measured_value(std::string_view text, const std::optional<Unit>& unit) {
+  text = trimmed(text);
+  if (const std::size_t colon = text.rfind(':'); colon != std::string_view::npos) {
+    const bool is_clock = text.substr(0, colon).find_first_not_of("0123456789:-/ .") == std::string_view::npos;
+    if (is_clock && colon > 0) return std::nullopt;
+    text = text.substr(colon + 1);
+  }
+  std::optional<Measured> number = measured(text);
+  if (number && !number->unit) number->unit = unit;
+  return number;
+}
+
+bool is_unit_of_cells(const std::optional<Unit>& unit) {
+  if (!unit) return false;
+  const bool is_suffix = unit->symbol == "m" || unit->symbol == "g";  // of SPICE, too
+  return unit->measure == Measure::time || unit->measure == Measure::voltage || (unit->measure == Measure::other && !is_suffix);
+}
+
+std::optional<Measured> measured_cell(std::string_view cell) {
+  std::optional<Measured> number = measured(cell);
+  return number && is_unit_of_cells(number->unit) ? number : std::nullopt;
 }
 
 }  // namespace softland::internal

@@ -26,8 +26,22 @@ struct Heading {
 /// Name and unit of a column of which the heading is known.
 [[nodiscard]] Heading heading_of(std::string_view text);
 
-/// A number and what follows it, "160000Hz", "8 ns", "CH1:2e-06", in SI units where the unit is known; nothing where there is no
-/// number. A unit that is given by the key of the number, "Sample interval (us)", comes in `unit`.
-[[nodiscard]] std::optional<double> measured_value(std::string_view text, const std::optional<Unit>& unit = {});
+/// A number with the unit that stands behind it, where there is one.
+struct Measured {
+  double value = 0;         ///< as written
+  std::string_view number;  ///< the text of it
+  std::optional<Unit> unit = {};
+  [[nodiscard]] double si() const { return unit ? unit->in_si(value) : value; }
+};
+/// "160000Hz", "8 ns", "5"; nothing where there is no number, or no unit that is known behind it.
+[[nodiscard]] std::optional<Measured> measured(std::string_view text);
+/// The same of a value in a preamble, which may have the name of a channel before it, "CH1:2e-06", but is no time of the day. A
+/// unit that is given by the key of the number, "Sample interval (us)", comes in `unit`.
+[[nodiscard]] std::optional<Measured> measured_value(std::string_view text, const std::optional<Unit>& unit);
+
+/// Whether a unit is one that stands beside numbers in cells: "5.0 V", "-52.43 us".
+[[nodiscard]] bool is_unit_of_cells(const std::optional<Unit>& unit);
+/// A cell that is a number with such a unit; nothing for any other.
+[[nodiscard]] std::optional<Measured> measured_cell(std::string_view cell);
 
 }  // namespace softland::internal

@@ -22,6 +22,6 @@ namespace softland::internal {
 
 /// Whether bytes begin as the Universal File Format does.
 [[nodiscard]] bool is_uff(std::string_view content);
-[[nodiscard]] Recording read_uff(std::string_view content, const std::string& file);
+[[nodiscard]] Recording read_uff(std::string_view content, const std::string& file, const ReadKeys& keys);
 
 }  // namespace softland::internal

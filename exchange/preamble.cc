@@ -12,66 +12,67 @@
 namespace softland::internal {
 namespace {
 
-enum class Says { interval, rate, start, trigger_sample, centre, samples, frequency, period, vertical_scale, high, low };
+enum class Says { interval, rate, start, trigger_sample, centre, samples, frequency, period, level };
 
 /// A key of a preamble in lower case, letters and digits alone.
 struct KeyRow {
   std::string_view key;
   Says says;
-  std::optional<double> Preamble::*member;
+  std::optional<double> Preamble::*member = nullptr;  ///< of a level; the others are claims
 };
 constexpr std::array known_keys{
-    KeyRow{"sampleinterval", Says::interval, &Preamble::interval},
-    KeyRow{"samplinginterval", Says::interval, &Preamble::interval},
-    KeyRow{"samplingperiod", Says::interval, &Preamble::interval},
-    KeyRow{"sampleperiod", Says::interval, &Preamble::interval},
-    KeyRow{"sampleperiodinseconds", Says::interval, &Preamble::interval},
-    KeyRow{"increment", Says::interval, &Preamble::interval},
-    KeyRow{"xincrement", Says::interval, &Preamble::interval},
-    KeyRow{"xincr", Says::interval, &Preamble::interval},
-    KeyRow{"xinc", Says::interval, &Preamble::interval},
-    KeyRow{"timeincrement", Says::interval, &Preamble::interval},
-    KeyRow{"deltat", Says::interval, &Preamble::interval},
-    KeyRow{"dt", Says::interval, &Preamble::interval},
-    KeyRow{"tinc", Says::interval, &Preamble::interval},
-    KeyRow{"horizontalinterval", Says::interval, &Preamble::interval},
-    KeyRow{"horizinterval", Says::interval, &Preamble::interval},
-    KeyRow{"tincr", Says::interval, &Preamble::interval},
-    KeyRow{"horizontalresolution", Says::interval, &Preamble::interval},
-    KeyRow{"timeinterval", Says::interval, &Preamble::interval},
-    KeyRow{"deltax", Says::interval, &Preamble::interval},
-    KeyRow{"hresolution", Says::interval, &Preamble::interval},
-    KeyRow{"resolution", Says::interval, &Preamble::interval},
-    KeyRow{"samplerate", Says::rate, &Preamble::interval},
-    KeyRow{"samplingrate", Says::rate, &Preamble::interval},
-    KeyRow{"samplefrequency", Says::rate, &Preamble::interval},
-    KeyRow{"samplingfrequency", Says::rate, &Preamble::interval},
-    KeyRow{"start", Says::start, &Preamble::start},
-    KeyRow{"t0", Says::start, &Preamble::start},
-    KeyRow{"x0", Says::start, &Preamble::start},
-    KeyRow{"hoffset", Says::start, &Preamble::start},
-    KeyRow{"xorigin", Says::start, &Preamble::start},
-    KeyRow{"xorg", Says::start, &Preamble::start},
-    KeyRow{"xzero", Says::start, &Preamble::start},
-    KeyRow{"xstart", Says::start, &Preamble::start},
-    KeyRow{"tstart", Says::start, &Preamble::start},
-    KeyRow{"starttime", Says::start, &Preamble::start},
-    KeyRow{"horizontalstart", Says::start, &Preamble::start},
-    KeyRow{"triggerpoint", Says::trigger_sample, &Preamble::trigger_sample},
-    KeyRow{"zeroindex", Says::trigger_sample, &Preamble::trigger_sample},
-    KeyRow{"triggersample", Says::trigger_sample, &Preamble::trigger_sample},
-    KeyRow{"horizontalposition", Says::centre, &Preamble::centre},
-    KeyRow{"recordlength", Says::samples, &Preamble::samples},
-    KeyRow{"memorylength", Says::samples, &Preamble::samples},
-    KeyRow{"datalength", Says::samples, &Preamble::samples},
-    KeyRow{"datapoints", Says::samples, &Preamble::samples},
-    KeyRow{"dots", Says::samples, &Preamble::samples},
-    KeyRow{"samples", Says::samples, &Preamble::samples},
-    KeyRow{"period", Says::period, &Preamble::period},
-    KeyRow{"frequency", Says::frequency, &Preamble::frequency},
-    KeyRow{"verticalscale", Says::vertical_scale, &Preamble::vertical_scale},
-    KeyRow{"highlevel", Says::high, &Preamble::high},
-    KeyRow{"lowlevel", Says::low, &Preamble::low},
+    KeyRow{"sampleinterval", Says::interval},
+    KeyRow{"samplinginterval", Says::interval},
+    KeyRow{"samplingperiod", Says::interval},
+    KeyRow{"sampleperiod", Says::interval},
+    KeyRow{"sampleperiodinseconds", Says::interval},
+    KeyRow{"increment", Says::interval},
+    KeyRow{"xincrement", Says::interval},
+    KeyRow{"xincr", Says::interval},
+    KeyRow{"xinc", Says::interval},
+    KeyRow{"timeincrement", Says::interval},
+    KeyRow{"deltat", Says::interval},
+    KeyRow{"dt", Says::interval},
+    KeyRow{"tinc", Says::interval},
+    KeyRow{"horizontalinterval", Says::interval},
+    KeyRow{"horizinterval", Says::interval},
+    KeyRow{"tincr", Says::interval},
+    KeyRow{"horizontalresolution", Says::interval},
+    KeyRow{"timeinterval", Says::interval},
+    KeyRow{"deltax", Says::interval},
+    KeyRow{"hresolution", Says::interval},
+    KeyRow{"resolution", Says::interval},
+    KeyRow{"samplerate", Says::rate},
+    KeyRow{"samplingrate", Says::rate},
+    KeyRow{"samplefrequency", Says::rate},
+    KeyRow{"samplingfrequency", Says::rate},
+    KeyRow{"start", Says::start},
+    KeyRow{"t0", Says::start},
+    KeyRow{"x0", Says::start},
+    KeyRow{"hoffset", Says::start},
+    KeyRow{"xorigin", Says::start},
+    KeyRow{"xorg", Says::start},
+    KeyRow{"xzero", Says::start},
+    KeyRow{"xstart", Says::start},
+    KeyRow{"tstart", Says::start},
+    KeyRow{"starttime", Says::start},
+    KeyRow{"horizontalstart", Says::start},
+    KeyRow{"triggerpoint", Says::trigger_sample},
+    KeyRow{"zeroindex", Says::trigger_sample},
+    KeyRow{"triggersample", Says::trigger_sample},
+    KeyRow{"horizontalposition", Says::centre},
+    KeyRow{"recordlength", Says::samples},
+    KeyRow{"memorylength", Says::samples},
+    KeyRow{"datalength", Says::samples},
+    KeyRow{"datapoints", Says::samples},
+    KeyRow{"numberofdatapoints", Says::samples},
+    KeyRow{"dots", Says::samples},
+    KeyRow{"samples", Says::samples},
+    KeyRow{"period", Says::period},
+    KeyRow{"frequency", Says::frequency},
+    KeyRow{"verticalscale", Says::level, &Preamble::vertical_scale},
+    KeyRow{"highlevel", Says::level, &Preamble::high},
+    KeyRow{"lowlevel", Says::level, &Preamble::low},
 };
 
 /// Keys of units.
@@ -99,6 +100,7 @@ constexpr std::array formats{
     FormatRow{"Siglent CSV", {"source,", "second,volt"}},
     FormatRow{"Tektronix CSV", {"record length", "sample interval"}},
     FormatRow{"Tektronix CSV", {"sample interval", "horizontal scale"}},
+    FormatRow{"Rigol CSV", {"posorig", "trigger mode"}},
     FormatRow{"Rigol CSV", {"increment"}},
     FormatRow{"Rigol CSV", {"t0", "tinc"}},
     FormatRow{"Keysight CSV", {"xinc", "xorg"}},
@@ -120,9 +122,37 @@ std::string letters_of(std::string_view key) {
   return letters;
 }
 
+// What a number says of the times; nothing where its unit does not go with its key.
+std::optional<TimeClaim> claim_of(Says says, const Measured& number) {
+  using Of = TimeClaim::Of;
+  const bool is_rate = says == Says::rate || says == Says::frequency;
+  const bool is_count = says == Says::samples || says == Says::trigger_sample;
+  const Measure due = is_rate ? Measure::frequency : is_count ? Measure::samples : Measure::time;
+  if (number.unit && number.unit->measure != due) return std::nullopt;
+  TimeClaim claim{.value = number.si(), .has_unit = number.unit.has_value() || is_rate};
+  if (is_rate || says == Says::interval || says == Says::period) {
+    if (!(claim.value > 0)) return std::nullopt;
+    if (is_rate) claim.value = 1 / claim.value;
+    claim.of = says == Says::period || says == Says::frequency ? Of::period : Of::interval;
+  } else {
+    claim.of = says == Says::start            ? Of::start
+               : says == Says::trigger_sample ? Of::trigger_sample
+               : says == Says::centre         ? Of::centre
+                                              : Of::samples;
+  }
+  return claim;
+}
+
 }  // namespace
 
-void Preamble::take(std::string_view key, std::string_view value) {
+const TimeClaim* Preamble::first(TimeClaim::Of of) const {
+  const auto found = std::find_if(claims.begin(), claims.end(), [&](const TimeClaim& claim) { return claim.of == of; });
+  return found == claims.end() ? nullptr : &*found;
+}
+
+bool Preamble::take(std::string_view key, std::string_view value) {
+  key = trimmed(key);
+  while (key.ends_with('=') || key.ends_with(':')) key = trimmed(key.substr(0, key.size() - 1));
   const Heading heading = heading_of(key);
   const std::string letters = letters_of(heading.unit ? std::string_view(heading.name) : key);
   value = trimmed(value);
@@ -132,30 +162,33 @@ void Preamble::take(std::string_view key, std::string_view value) {
     const std::optional<Unit> unit = unit_of(colon == std::string_view::npos ? value : value.substr(colon + 1));
     std::optional<Unit>& to = is_vertical ? vertical_unit : horizontal_unit;
     if (unit && !to) to = unit;
-    return;
+    return unit.has_value();
   }
   if (letters == "source" && source.empty()) source = value;
-  for (const KeyRow& row : known_keys) {
-    if (letters != row.key) continue;
-    const std::optional<double> number = measured_value(value, heading.unit);
-    std::optional<double>& to = this->*row.member;
-    if (!number || to) return;
-    if (row.says == Says::rate) {
-      if (*number > 0) to = 1 / *number;
-    } else if (row.says != Says::interval || *number > 0) {
-      to = *number;
-    }
-    return;
+  const auto row = std::find_if(known_keys.begin(), known_keys.end(), [&](const KeyRow& one) { return one.key == letters; });
+  if (row == known_keys.end()) return false;
+  const std::optional<Measured> number = measured_value(value, heading.unit);
+  if (!number) return false;
+  if (row->says == Says::level) {
+    if (!(this->*row->member)) this->*row->member = number->si();
+  } else if (std::optional<TimeClaim> claim = claim_of(row->says, *number)) {
+    const bool is_known = std::any_of(claims.begin(), claims.end(), [&](const TimeClaim& one) {
+      return one.of == claim->of && one.value == claim->value && one.has_unit == claim->has_unit;
+    });
+    claim->key = key;
+    if (!is_known) claims.push_back(std::move(*claim));
   }
+  return true;
 }
 
 void Preamble::take_line(std::string_view line, const std::vector<std::string_view>& cells) {
   text += lower_case(line) + "\n";
+  bool is_taken = false;
   std::vector<std::string_view> filled;
   for (const std::string_view cell : cells) {
     const std::size_t equals = cells.size() > 1 ? cell.find('=') : std::string_view::npos;
-    if (equals != std::string_view::npos) {
-      take(cell.substr(0, equals), cell.substr(equals + 1));
+    if (equals != std::string_view::npos && equals + 1 < cell.size()) {
+      is_taken |= take(cell.substr(0, equals), cell.substr(equals + 1));
     } else if (!cell.empty()) {
       filled.push_back(cell);
     }
@@ -165,8 +198,9 @@ void Preamble::take_line(std::string_view line, const std::vector<std::string_vi
                        std::any_of(filled.begin() + 2, filled.end(), [&](std::string_view cell) { return cell != filled[1]; });
   if (differs) return;
   if (filled.size() >= 2) {
-    for (std::size_t i = 0; i + 1 < filled.size(); i += 2) take(filled[i], filled[i + 1]);
+    for (std::size_t i = 0; i + 1 < filled.size(); i += 2) is_taken |= take(filled[i], filled[i + 1]);
   }
+  if (is_taken) return;
   std::string_view words = trimmed(line);
   while (!words.empty() && std::string_view("#;%*/\" ").find(words.front()) != std::string_view::npos) words.remove_prefix(1);
   if (const std::size_t at = words.find_first_of(":=\t;,"); at != std::string_view::npos)

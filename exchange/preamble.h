@@ -10,15 +10,18 @@
 
 namespace softland::internal {
 
-/// What is known after all lines above the numbers; NaN, 0 or nothing where the file does not say it.
+/// A number that a file says of its times beside them.
+struct TimeClaim {
+  enum class Of { interval, start, trigger_sample, centre, samples, period };
+  Of of = Of::interval;
+  std::string key;        ///< as the file writes it
+  double value = 0;       ///< [s], or a number of samples
+  bool has_unit = false;  ///< the file says the unit of this number
+};
+
+/// What is known after all lines above the numbers; nothing where the file does not say it.
 struct Preamble {
-  std::optional<double> interval = {};        ///< between samples [s]
-  std::optional<double> start = {};           ///< time of the first sample [s]
-  std::optional<double> trigger_sample = {};  ///< number of the sample at t = 0
-  std::optional<double> centre = {};          ///< time of the middle of the record [s]
-  std::optional<double> samples = {};         ///< how many there should be
-  std::optional<double> period = {};          ///< that the samples are [s]
-  std::optional<double> frequency = {};       ///< of the period that the samples are [Hz]
+  std::vector<TimeClaim> claims = {};         ///< in the order of the file, none of them twice
   std::optional<double> vertical_scale = {};  ///< per division
   std::optional<double> high = {}, low = {};  ///< that the largest and the smallest code stand for [V]
   std::optional<Unit> vertical_unit = {};
@@ -28,8 +31,10 @@ struct Preamble {
 
   /// Takes what one line says: `cells` as separated in the file.
   void take_line(std::string_view line, const std::vector<std::string_view>& cells);
-  /// Takes a key and its value. What it does not know says nothing.
-  void take(std::string_view key, std::string_view value);
+  /// Takes a key and its value, and returns whether it knows the key.
+  bool take(std::string_view key, std::string_view value);
+  /// The first claim of a kind, or none.
+  [[nodiscard]] const TimeClaim* first(TimeClaim::Of of) const;
 };
 
 /// Whether a line of cells is a key that is known, and a number or a unit as its value.

@@ -39,7 +39,7 @@ Recording read_recording(const std::string& file, const ReadKeys& keys) { return
 Recording parse_recording(std::string_view content, const std::string& file, const ReadKeys& keys) {
   require(!content.empty(), [&] { return file + ": the file is empty"; });
   if (internal::is_uff(content)) {
-    Recording made = internal::read_uff(content, file);
+    Recording made = internal::read_uff(content, file, keys);
     if (keys.interval) take_even_times(made, *keys.interval);
     return made;
   }

@@ -183,6 +183,8 @@ Recording points_of(const Source& source, const std::string& file) {
     throw InvalidInput(fmt::format("{}:{}: \"{}\" {}", file, token.line, printable_line(shortened(token.text)), rule));
   };
   require(!source.tokens.empty(), [&] { return fmt::format("{}: a source without points", file); });
+  bool is_signed = false;
+  for (std::size_t i = 0; i < source.tokens.size(); i += 2) is_signed |= source.tokens[i].text.starts_with('-');
   for (std::size_t i = 0; i < source.tokens.size(); i += 2) {
     const Token& at = source.tokens[i];
     const std::optional<SpiceNumber> time = spice_number(at.text);
@@ -192,7 +194,7 @@ Recording points_of(const Source& source, const std::string& file) {
     const std::optional<SpiceNumber> volts = spice_number(level.text);
     if (!volts) fail(level, "must be a voltage, such as 5 or 120m");
     const double before = made.times.empty() ? 0 : made.times.back();
-    made.times.push_back(time->has_plus ? before + time->value : time->value);
+    made.times.push_back(time->has_plus && !is_signed ? before + time->value : time->value);
     made.lines.push_back(static_cast<std::uint32_t>(at.line));
     channel.values.push_back(volts->value);
   }
@@ -200,16 +202,38 @@ Recording points_of(const Source& source, const std::string& file) {
   return made;
 }
 
+/// Times without a suffix, in lines of two numbers.
+struct PlainTimes {
+  std::vector<double> all;
+  std::size_t repeated = 0;  ///< rows of the same time as the row above
+  bool thrice = false;       ///< three rows have one time
+
+  void take(double time) {
+    const std::size_t count = all.size();
+    const bool repeats = count > 0 && all[count - 1] == time;
+    repeated += repeats;
+    thrice |= repeats && count > 1 && all[count - 2] == time;
+    all.push_back(time);
+  }
+  // A jump is two points of one time. More of them, or every time twice, is a record whose times are rounded.
+  [[nodiscard]] bool are_rounded() const {
+    constexpr std::size_t fewest = 8;
+    return thrice || (all.size() >= fewest && 2 * repeated + 1 >= all.size());
+  }
+};
+
 }  // namespace
 
-// Two numbers on every line, and what plain columns do not have: suffixes, comments or a plus before some times.
+// Two numbers on every line, and what plain columns do not have: suffixes, comments or a plus before some times, where others
+// have no sign. A plus beside times with a minus, or before all of them, is a sign.
 bool is_spice_pwl(std::string_view text) {
   constexpr std::size_t enough = 64;
   if (has_pwl_bracket(text)) return true;
   Lines lines(text);
   std::vector<Token> tokens;
-  bool has_suffix = false, has_continuation = false, has_comma = false;
-  std::size_t rows = 0, pluses = 0, signless = 0;
+  bool has_suffix = false, has_continuation = false, has_comma = false, has_bare_time = false;
+  std::size_t rows = 0, pluses = 0, minuses = 0;
+  PlainTimes times;
   while (rows < enough && lines.next()) {
     const std::string_view line = without_comment(lines.line());
     if (line.empty()) continue;
@@ -223,13 +247,18 @@ bool is_spice_pwl(std::string_view text) {
       const std::optional<SpiceNumber> number = spice_number(tokens[i].text);
       if (!number) return false;
       has_suffix |= number->has_suffix;
-      if (i % 2 == 0) ++(number->has_plus ? pluses : signless);
+      if (i % 2 != 0) continue;
+      pluses += number->has_plus;
+      minuses += tokens[i].text.starts_with('-');
+      has_bare_time |= !number->has_plus && !tokens[i].text.starts_with('-');
+      times.take(number->value);
     }
     ++rows;
   }
   if (rows == 0) return false;
-  if (has_comma) return has_suffix || has_continuation;
-  return has_suffix || has_continuation || pluses == 0 || signless > 0;
+  if (has_suffix || has_continuation) return true;
+  if (has_comma || (pluses > 0 && (minuses > 0 || !has_bare_time))) return false;
+  return pluses > 0 || !times.are_rounded();
 }
 
 Recording read_spice_pwl(std::string_view text, const std::string& file, const ReadKeys& keys) {

@@ -21,6 +21,7 @@
 #include "exchange/decoding.h"
 #include "exchange/measure.h"
 #include "exchange/parsers.h"
+#include "exchange/time_axis.h"
 
 namespace softland::internal {
 namespace {
@@ -293,6 +294,29 @@ std::vector<double> times_of(const Header& header, const Values& values) {
   return times;
 }
 
+// First abscissa and increment of uneven abscissas are 0, or else those of the abscissas.
+void require_same_axis(const Header& header, const Values& values, const std::vector<double>& times, std::size_t line,
+                       const Refusals& refusals, const ReadKeys& keys) {
+  if (header.is_even || (header.first == 0 && header.step == 0)) return;
+  constexpr int digits_of_abscissas = 6;
+  const Unit unit = unit_of(header.time_unit).value_or(Unit{.measure = Measure::time, .symbol = "s"});
+  Preamble said;
+  using Of = TimeClaim::Of;
+  said.claims.push_back({.of = Of::start, .key = "first abscissa", .value = unit.in_si(header.first), .has_unit = true});
+  if (header.step > 0)
+    said.claims.push_back({.of = Of::interval, .key = "increment", .value = unit.in_si(header.step), .has_unit = true});
+  const std::vector<std::uint32_t> lines(times.size(), static_cast<std::uint32_t>(line));
+  const Missing none;
+  const TimeColumn column{.raw = values.abscissas,
+                          .missing = none,
+                          .name = "time",
+                          .unit = unit,
+                          .column = 1,
+                          .digits = digits_of_abscissas,
+                          .lines = lines};
+  static_cast<void>(times_of_rows(&column, times.size(), said, keys, refusals));
+}
+
 void add_channel(Recording& made, const Header& header, Values values) {
   Channel channel;
   channel.heading = channel.name = header.label.empty() ? std::string(trimmed(header.lines[0])) : header.label;
@@ -326,7 +350,7 @@ bool is_uff(std::string_view content) {
   return kind.starts_with("58b ") || std::find(known.begin(), known.end(), kind) != known.end();
 }
 
-Recording read_uff(std::string_view content, const std::string& file) {
+Recording read_uff(std::string_view content, const std::string& file, const ReadKeys& keys) {
   Recording made{.file = file, .format = "UFF 58", .has_times = true};
   Reader in(content, file);
   std::vector<std::string> others;
@@ -347,6 +371,7 @@ Recording read_uff(std::string_view content, const std::string& file) {
     Values values = read_values(in, header, made.left_out);
     if (values.ordinates.empty()) in.fail("a data set 58 without a whole value");
     std::vector<double> times = times_of(header, values);
+    require_same_axis(header, values, times, first_line, Refusals(file), keys);
     if (header.is_binary) made.format = "UFF 58b";
     if (!made.channels.empty() && times != made.times) {
       made.left_out.push_back(fmt::format("data set \"{}\", whose times are others", printable_line(header.label)));
