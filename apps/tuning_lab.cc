@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -27,6 +28,7 @@
 namespace softland::apps {
 namespace {
 
+using internal::plain_number;
 using internal::quantity;
 using std::chrono::milliseconds;
 
@@ -86,11 +88,19 @@ class HandLab final : public TuningLab {
 
   std::optional<ContactRecord> fire(const ToldShot& shot, const SentSignals& sent) override {
     const std::filesystem::path file = folder_ / fmt::format("shot-{}.csv", shot.number);
-    write_whole(file, csv(sent.signals, shot.duration(), sent.sample_rates));
+    // The file is for the generator, before the amplifier.
+    std::map<std::string, Signal> signals = sent.signals;
+    std::string before;
+    for (const auto& [drive, amplifier] : sent.amplifiers) {
+      Signal& signal = signals.at(drive);
+      signal = scaled(signal, 1 / amplifier);
+      before += fmt::format(", {} in volts before an amplifier of {}", drive, plain_number(amplifier, 6));
+    }
+    write_whole(file, csv(signals, shot.duration(), sent.sample_rates));
     say(
-        fmt::format("shot {}: load {} into the generator, close the switch by it once, and record the contact for {} from the "
+        fmt::format("shot {}: load {} into the generator{}, close the switch by it once, and record the contact for {} from the "
                     "start of the waveform",
-                    shot.number, file.string(), quantity(shot.duration(), "s")));
+                    shot.number, file.string(), before, quantity(shot.duration(), "s")));
     try {
       return asked(shot);
     } catch (const Stopped&) {

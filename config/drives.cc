@@ -237,6 +237,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
     if (check_limits) check_order(driver, *limits);
     if (const DriverModel model = read_model(driver, drive); !model.is_ideal()) one.source = model;
     one.errors = read_errors(driver);
+    if (driver.is_present() && driver.is_given("amplifier")) one.amplifier = driver.number("amplifier");
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;

@@ -271,6 +271,7 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
     if (source.parallel_capacitance > 0) insert("parallel_capacitance", source.parallel_capacitance, dimension::capacitance);
     if (source.sample_rate) insert("sample_rate", *source.sample_rate, dimension::frequency);
     if (source.bits) keys.insert("bits", *source.bits);
+    if (drive.amplifier) keys.insert("amplifier", *drive.amplifier);
     if (drive.errors.gain != 1) keys.insert("gain", drive.errors.gain);
     if (drive.errors.offset != 0) insert("offset", drive.errors.offset, dimension::voltage);
     if (drive.errors.delay != 0) insert("delay", drive.errors.delay, dimension::time);

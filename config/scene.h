@@ -110,6 +110,7 @@ struct Drive {
   std::optional<double> before = {};        ///< what is given of it before t = 0 [V]; none: 0 V
   std::optional<DriverLimits> limits = {};  ///< none: unlimited; of electrodes whose Vdp is known [0, 1.5 Vdp]
   DriverModel source = {};                  ///< ideal where the scene says nothing of it; without load before prepare()
+  std::optional<double> amplifier = {};     ///< volts at the switch, of which all here are, per volt of the source
   SourceErrors errors = {};                 ///< gain, offset and delay of the source
 
   [[nodiscard]] double hold_level() const;                                  ///< [V]

@@ -64,8 +64,11 @@ struct FoundKey {
   std::vector<Dimension> dimensions;
 };
 
-std::function<std::string(double)> refusal_outside(const Range& range, const std::string& unit) {
-  return [range, unit](double value) { return range.contains(value) ? std::string() : range.rule(unit); };
+std::function<std::string(double)> refusal_outside(const Range& range, const std::string& unit, std::string_view beyond = {}) {
+  return [range, unit, beyond](double value) {
+    if (range.contains(value)) return std::string();
+    return beyond.empty() ? range.rule(unit) : fmt::format("{}; {}", range.rule(unit), beyond);
+  };
 }
 
 struct DriveErrorRow {
@@ -94,17 +97,19 @@ FoundKey find_drive_error(const SceneFile::Impl& file, const Device& device, con
   if (const std::string why = why_no_drive(device, parts[1]); !why.empty()) fail(": " + why);
   const auto* error = find_named(drive_errors, parts[2]);
   if (error == nullptr) fail(hint(parts[2], names_of(drive_errors)));
-  const bool is_factor = error->value == DriveError::gain;
   const SectionReader of_drive(file, parts[0], parts[1]);
   const bool is_given = of_drive.is_present() && error->value != DriveError::jitter && of_drive.is_given(error->name);
-  const Range range = Key{.range = is_factor ? Range{.least = 0, .least_open = true} : Range{}}.range_of(error->dimension);
+  // The jitter of edges is of either sign, and no key of a driver.
+  const Key* const key = find_section(parts[0])->find(error->name);
+  const Key any_value;
+  const Key& ranged = error->value == DriveError::gain ? *key : any_value;
   return {.varied = {.path = name,
                      .unit = unit_symbol(error->dimension),
                      .nominal = is_given ? of_drive.number(error->name) : error->nominal,
                      .measured_in = error->dimension,
                      .member = {},
                      .drive = VariedDrive{.name = parts[1], .error = error->value},
-                     .refusal = refusal_outside(range, unit_symbol(error->dimension))},
+                     .refusal = refusal_outside(ranged.range_of(error->dimension), unit_symbol(error->dimension), ranged.beyond)},
           .dimensions = {error->dimension}};
 }
 
@@ -355,6 +360,12 @@ SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const st
                                                                     .high = scale.of("truncate_high", Truncation{}.high)});
   } catch (const InvalidParameter& error) {
     file.fail(in.path(key_of_parameter(in, error.parameter())), error.what());
+  }
+  for (const VariedKey& key : variable.keys) {
+    if (!key.drive || key.drive->error != DriveError::gain) continue;
+    const double median = DeviceSpread::value(variable, key, variable.distribution.quantile(0.5));
+    if (const std::string rule = key.refusal(median); !rule.empty())
+      in.fail(fmt::format("the median of {} is {}: {}", key.name(), median, rule));
   }
   return variable;
 }

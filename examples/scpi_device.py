@@ -135,7 +135,8 @@ def fire(shot, generator, oscilloscope, options):
         raise ValueError(f"the drives are {', '.join(shot['drives'])}; this generator gives {options.drive} alone")
     drive = shot["drives"][options.drive]
     duration = drive["time_s"][-1] + shot["hold_s"]
-    generator.load(samples(drive, options.sample_rate, duration), options.sample_rate, options.amplifier)
+    amplifier = options.amplifier or drive.get("amplifier", 1)
+    generator.load(samples(drive, options.sample_rate, duration), options.sample_rate, amplifier)
     oscilloscope.arm(duration)
     generator.trigger()
     return edges(oscilloscope.record(), options.open_voltage, options.closed_voltage)
@@ -147,7 +148,7 @@ def main():
     parser.add_argument("--oscilloscope", required=True, metavar="HOST[:PORT]")
     parser.add_argument("--drive", default="main", help="the electrode that the generator drives (default: main)")
     parser.add_argument("--sample-rate", type=float, default=50e6, help="of the generator [1/s] (default: 50e6)")
-    parser.add_argument("--amplifier", type=float, default=1, help="voltage at the switch over that of the generator (default: 1)")
+    parser.add_argument("--amplifier", type=float, help="voltage at the switch over that of the generator (default: what [driver] says, or 1)")
     parser.add_argument("--open-voltage", type=float, default=1.0, help="across the open contact [V] (default: 1)")
     parser.add_argument("--closed-voltage", type=float, default=0.0, help="across the closed contact [V] (default: 0)")
     parser.add_argument("--timeout", type=float, default=10, help="for an answer of an instrument [s] (default: 10)")

@@ -54,6 +54,21 @@ std::vector<std::string> exported_drives(const PreparedScene& p, const std::stri
   return {named};
 }
 
+double amplification(const Drive& drive, const Sampling& sampling) {
+  if (!sampling.amplifier) return drive.amplifier.value_or(1);
+  const double factor = told_quantity(requested("amplifier"), *sampling.amplifier, dimension::none);
+  require_field(factor > 0, "amplifier", "0", [] { return "must be above 0: volts at the switch per volt of the generator"; });
+  return factor;
+}
+
+std::string amplifier_words(const Drive& drive, double factor) {
+  if (factor == 1 && drive.amplifier.value_or(1) == 1) return {};
+  const bool is_other = drive.amplifier && *drive.amplifier != factor;
+  return fmt::format(
+      "amplifier of drive '{}': volts of the file are those at the switch over {}{}", drive.name, plain_number(factor, 6),
+      is_other ? fmt::format(", not over the {} of [driver.{}]", plain_number(*drive.amplifier, 6), drive.name) : "");
+}
+
 void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling) {
   for (const std::string& drive : drives) {
     if (sampling.rate) file.set(fmt::format("driver.{}.sample_rate=\"{}\"", drive, *sampling.rate));
@@ -69,8 +84,7 @@ std::string generator_text(const GeneratorFormat& format, const PreparedScene& p
                        drive);
   });
   const double rate = *source.sample_rate;
-  const double factor = sampling.amplifier ? told_quantity(requested("amplifier"), *sampling.amplifier, dimension::none) : 1;
-  require_field(factor > 0, "amplifier", "0", [] { return "must be above 0: volts at the switch per volt of the generator"; });
+  const double factor = amplification(p.drives.at(drive), sampling);
   GeneratorSamples samples{.name = drive, .rate = rate};
   const double last = std::round(told.pieces().back().begin * rate);
   for (double k = 0; k <= last; ++k) samples.volts.push_back(told.voltage(k / rate) / factor);

@@ -18,13 +18,19 @@ namespace softland {
 struct Sampling {
   std::optional<std::string> rate, bits;  ///< instead of those of [driver]
   std::string drive = {};                 ///< the only one that is exported; empty: all
-  std::optional<std::string> amplifier;   ///< volts at the switch over volts at the generator
+  std::optional<std::string> amplifier;   ///< volts at the switch over volts at the generator, instead of that of [driver]
   std::optional<std::string> marker;      ///< a time
 };
 
 /// The drives of voltages that are exported: the named one, or all that are not at 0 V at all times. Throws InvalidInput where it
 /// is none.
 [[nodiscard]] std::vector<std::string> exported_drives(const PreparedScene& prepared, const std::string& named);
+
+/// By what the volts at the switch are divided in the file of a generator: what `sampling` says, else the drive, else 1. Throws
+/// InvalidInput where it is not above 0.
+[[nodiscard]] double amplification(const Drive& drive, const Sampling& sampling);
+/// Tells this factor; empty where it is 1.
+[[nodiscard]] std::string amplifier_words(const Drive& drive, double factor);
 
 /// Puts sample rate and bits into [driver] of these drives.
 void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling);

@@ -278,11 +278,20 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
       sent_signals(p, measured.are_none() ? p.waveforms() : waveforms_of(p, measured, request.jobs, watch, say), sent_as);
   if (!request.sampling.drive.empty())
     std::erase_if(sent.signals, [&](const auto& one) { return one.first != request.sampling.drive; });
+  if (generator == nullptr && request.format != "codes") {
+    for (const auto& [name, amplifier] : sent.amplifiers) {
+      if (sent.signals.contains(name))
+        say(fmt::format("amplifier of drive '{}': volts are those at the switch, {} of them a volt of its source ([driver.{}])",
+                        name, plain_number(amplifier, 6), name));
+    }
+  }
   const double end = std::max(p.duration, last_breakpoint(sent.signals));  // the hold level belongs to the waveform
   if (request.format == "csv") return csv(sent.signals, end, sent.sample_rates);
   if (request.format == "spice-pwl") return spice_pwl(sent.signals, end);
   if (generator == nullptr) return codes(coded(p, sent, say));
   std::string text = for_generator(*generator, what, sent, request.sampling);
+  const Drive& drive = p.drives.at(what.drives.front());
+  if (const std::string words = amplifier_words(drive, amplification(drive, request.sampling)); !words.empty()) say(words);
   if (measured.are_none()) {
     for (const std::string& line : sampled_words(p, what.drawn ? &*what.drawn : nullptr, what.drives.front(), watch)) say(line);
   }

@@ -56,7 +56,7 @@ std::vector<double> numbers(const json& value, const std::string& key) {
 
 Table read_drive(const json& value, const std::string& path) {
   require_value(value.is_object(), path, value, R"(must be {"time_s":[...],"V":[...]})");
-  require_known(value, path + ".", {"time_s", "V"});
+  require_known(value, path + ".", {"time_s", "V", "amplifier"});
   Table table{.time = numbers(needed(value, "time_s", path + "."), path + ".time_s"),
               .voltage = numbers(needed(value, "V", path + "."), path + ".V")};
   require(table.time.size() == table.voltage.size(), [&] {
@@ -109,10 +109,10 @@ std::vector<Waveform> ToldShot::waveforms(const PreparedScene& nominal) const {
   return nominal.in_drive_order(all);
 }
 
-ToldShot told_shot(int number, double hold_time, const std::map<std::string, Signal>& signals) {
+ToldShot told_shot(int number, double hold_time, const SentSignals& sent) {
   constexpr double tolerance = 1e-4;  // of the peak
-  ToldShot shot{.number = number, .hold_time = hold_time, .drives = {}};
-  for (const auto& [name, signal] : signals) {
+  ToldShot shot{.number = number, .hold_time = hold_time, .drives = {}, .amplifiers = sent.amplifiers};
+  for (const auto& [name, signal] : sent.signals) {
     Table& table = shot.drives[name];
     for (const auto& [time, voltage] : polyline(signal, signal.pieces().back().begin, tolerance * signal.peak(), 0)) {
       table.time.push_back(time);
@@ -153,7 +153,15 @@ ToldShot read_shot(const json& line) {
   require_value(shot.hold_time > 0, "hold_s", line["hold_s"], "must be above 0");
   const json& drives = needed(line, "drives");
   require_value(drives.is_object() && !drives.empty(), "drives", drives, R"(must be {"NAME":{"time_s":[...],"V":[...]}})");
-  for (const auto& [name, drive] : drives.items()) shot.drives[name] = read_drive(drive, "drives." + shortened(name));
+  for (const auto& [name, drive] : drives.items()) {
+    const std::string path = "drives." + shortened(name);
+    shot.drives[name] = read_drive(drive, path);
+    if (const auto amplifier = drive.find("amplifier"); amplifier != drive.end()) {
+      const double factor = finite_number(*amplifier, path + ".amplifier", "must be a number");
+      require_value(factor > 0, path + ".amplifier", *amplifier, "must be above 0");
+      shot.amplifiers[name] = factor;
+    }
+  }
   return shot;
 }
 
@@ -185,6 +193,7 @@ ContactRecord read_record(const json& line, int shot, double duration) {
 json shot_json(const ToldShot& shot) {
   json drives = json::object();
   for (const auto& [name, table] : shot.drives) drives[name] = {{"time_s", table.time}, {"V", table.voltage}};
+  for (const auto& [name, amplifier] : shot.amplifiers) drives[name]["amplifier"] = amplifier;
   return {{"shot", shot.number}, {"hold_s", shot.hold_time}, {"drives", std::move(drives)}};
 }
 

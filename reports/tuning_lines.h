@@ -19,18 +19,19 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/closing/sent_signals.h"
 #include "studies/tuning/contact_record.h"
 #include "studies/tuning/tuner.h"
-#include "waveforms/signal.h"
 #include "waveforms/table.h"
 
 namespace softland {
 
 /// What a device is told.
 struct ToldShot {
-  int number = 0;                       ///< counted from 1
-  double hold_time = 0;                 ///< how long the last levels are held and recorded [s]
-  std::map<std::string, Table> drives;  ///< by name
+  int number = 0;                                 ///< counted from 1
+  double hold_time = 0;                           ///< how long the last levels are held and recorded [s]
+  std::map<std::string, Table> drives;            ///< by name, in volts at the switch
+  std::map<std::string, double> amplifiers = {};  ///< of those that have one: volts at the switch per volt of the source
 
   /// When the last row of any drive comes [s].
   [[nodiscard]] double last_row() const;
@@ -41,8 +42,8 @@ struct ToldShot {
   [[nodiscard]] std::vector<Waveform> waveforms(const PreparedScene& nominal) const;
 };
 
-/// Signals of sources in rows: straight pieces exactly, curves within 1e-4 of their peak.
-[[nodiscard]] ToldShot told_shot(int number, double hold_time, const std::map<std::string, Signal>& signals);
+/// Signals at the switch in rows: straight pieces exactly, curves within 1e-4 of their peak.
+[[nodiscard]] ToldShot told_shot(int number, double hold_time, const SentSignals& sent);
 
 /// The longest line that is read [byte].
 inline constexpr std::size_t longest_line = std::size_t{16} << 20;

@@ -126,7 +126,7 @@ const std::vector<TunedClosing>& TuningSession::closings() const { return state_
 
 ToldShot TuningSession::told() const {
   const TunerShot& shot = tuner().next();
-  return told_shot(shot.number, shot.hold_time, sent_signals(tuner().scene(), shot.waveforms).signals);
+  return told_shot(shot.number, shot.hold_time, sent_signals(tuner().scene(), shot.waveforms));
 }
 
 void TuningSession::learn(const ContactRecord& record, const Watch& watch) {

@@ -212,6 +212,9 @@ int check_verb(const Common& c) {
                         "optimize, release, limit and robustness refuse the scene as it is",
                         name, given_quantity(signal.peak(), "V"), name));
     }
+    if (drive.amplifier)
+      driver += fmt::format(", amplifier {}: the source gives at most {}", plain_number(*drive.amplifier, 6),
+                            given_quantity(signal.peak() / *drive.amplifier, "V"));
     if (!drive.errors.are_none()) {
       const auto& [gain, offset, delay, edges] = drive.errors;
       driver += fmt::format(", gain {}, offset {}, delay {}", plain_number(gain, 6), given_quantity(offset, "V"),

@@ -52,8 +52,10 @@ void add_export(Verb& verb) {
                 "samples at this rate, instead of what [driver] says: \"27 MHz\"");
   verb.optional("--bits", request->how.sampling.bits, "N",
                 "rounded to 2^N voltages between the limits of [driver], instead of what it says");
-  verb.optional("--amplifier", request->how.sampling.amplifier, "K",
-                "an amplifier between generator and switch: volts of the file are those at the switch over K");
+  verb.optional(
+      "--amplifier", request->how.sampling.amplifier, "K",
+      "an amplifier between generator and switch, instead of the amplifier of [driver]: volts of a generator's file are those "
+      "at the switch over K");
   verb.optional("--marker", request->how.sampling.marker, "TIME", "where the sync output of the generator falls (keysight-arb)");
   verb.option("--drive", request->how.sampling.drive, "DRIVE", "of several drives this one alone");
   verb.option("--signal", request->how.signal, "NAME",

@@ -436,7 +436,7 @@ class Scene(MutableMapping[str, Any]):
             simulators "spice-pwl", and the switch itself, "spice-model", "spice-bench", "verilog-a".
         waveforms: in the place of some of the scene's, in volts; own waveforms as tables. drive: of several this one.
         signal: what the source is told, or its output. sample_rate [Hz], bits: instead of those of [driver].
-        amplifier: volts at the switch per volt of the generator. marker: when the sync output falls [s] (keysight-arb).
+        amplifier: volts at the switch per volt of the generator, instead of that of [driver]. marker: when the sync output falls [s] (keysight-arb).
         measured: {"Vdp": "54.2 V", "frequency": "10.2 kHz"} of a device that gets its own waveform.
         Warns where the switch does not close under the samples as well as under the waveform itself. Raises InvalidInput.
         """
@@ -454,7 +454,7 @@ class Scene(MutableMapping[str, Any]):
         with shown(progress) as tell:
             text, said = _softland.export(scene._native, request, tell)
         for line in said:
-            if not line.startswith("as sampled"):
+            if not line.startswith(("as sampled", "amplifier of drive")):
                 warnings.warn(line.removeprefix("warning: "), stacklevel=2)
         return text
 

@@ -23,13 +23,15 @@ Array = npt.NDArray[np.float64]
 class Shot:
     """One closing that a device is asked for, open loop.
 
-    Attributes: `number`, from 1; `waveforms`, {drive: Waveform}, tables [V] that begin at t = 0; `hold`, how long the last levels are held [s];
-    `duration`, how long the contact is recorded from t = 0 on [s].
+    Attributes: `number`, from 1; `waveforms`, {drive: Waveform}, tables that begin at t = 0, in volts at the switch; `amplifiers`, {drive: volts at the
+    switch per volt of its generator}, 1 where [driver] has no amplifier; `hold`, how long the last levels are held [s]; `duration`, how long the contact is
+    recorded from t = 0 on [s].
     """
 
     def __init__(self, told: tuple[int, float, float, dict[str, _softland.Waveform], str]) -> None:
         self.number, self.hold, self.duration, drives, self._line = told
         self.waveforms = {drive: Waveform._of(one) for drive, one in drives.items()}
+        self.amplifiers = {drive: float(one.get("amplifier", 1)) for drive, one in self.line["drives"].items()}
 
     def points(self, drive: str = "main") -> tuple[Array, Array]:
         """Times [s] and voltages [V] between which a drive goes straight, (n,) and (n,); two of one time are a jump, the last one is held."""
@@ -37,7 +39,7 @@ class Shot:
         return np.array(table["times"]), np.array(table["voltages"])
 
     def samples(self, rate: float, drive: str = "main") -> Array:
-        """Voltages [V] at k / rate [Hz], (n,), from t = 0 up to `duration`: for a generator that plays samples."""
+        """Voltages at the switch [V] at k / rate [Hz], (n,), from t = 0 up to `duration`; a generator plays them over `amplifiers[drive]`."""
         return np.asarray(self.waveforms[drive](np.arange(int(np.ceil(self.duration * rate)) + 1) / rate))
 
     @property

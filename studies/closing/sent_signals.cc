@@ -24,6 +24,7 @@ SentSignals sent_signals(const PreparedScene& p, const std::vector<Waveform>& wa
     const Signal told = p.told(k, waveforms[k]);
     all.signals.emplace(names[k], sent == Sent::output ? p.driven(k, told) : p.told_samples(k, told));
     if (const auto rate = p.drives[k].source.sample_rate; rate && sent == Sent::told) all.sample_rates.emplace(names[k], *rate);
+    if (p.drives[k].amplifier) all.amplifiers.emplace(names[k], *p.drives[k].amplifier);
   }
   return all;
 }

@@ -19,6 +19,8 @@ enum class Sent { told, output };
 struct SentSignals {
   std::map<std::string, Signal> signals;
   std::map<std::string, double> sample_rates = {};  ///< of those that are samples [Hz]
+  std::map<std::string, double> amplifiers =
+      {};  ///< of those that have one: volts at the switch, as signals are, per volt of the source
 };
 /// Of one waveform per drive in the order of Switch::drives().
 [[nodiscard]] SentSignals sent_signals(const PreparedScene& prepared, const std::vector<Waveform>& waveforms,

@@ -708,6 +708,51 @@ TEST(Export, ForAGeneratorTellsHowTheSwitchClosesAsSampled_optimized) {
   }
 }
 
+// The closing, its limits and all that is said of it are those at the switch; only what the generator is told is less.
+TEST(Export, AnAmplifierOfTheDriverIsCountedOnce) {
+  const Workplace here;
+  const auto scene = [&](const std::string& name, const std::string& keys) {
+    write(here.path() / name,
+          edited(edited(shipped("mem-gold.toml"), "level = \"1.25 Vdp\"", "level = \"18 V\""), "max_voltage = \"1.5 Vdp\"",
+                 "max_voltage = \"40 V\"\nsample_rate = \"25 MHz\"\nbits = 14\n" + keys + "#"));
+    return name;
+  };
+  scene("plain.toml", ""), scene("amplified.toml", "amplifier = 20\n"), scene("gain.toml", "gain = 20\n");
+  const auto exported = [&](const std::string& file, const std::string& format, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"export", file, "--format", format};
+    words.insert(words.end(), more.begin(), more.end());
+    return here.run(words);
+  };
+  const Outcome refused = exported("gain.toml", "siglent-csv", {"--amplifier", "20"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, testing::AllOf(HasSubstr("driver.main.gain = 20"), HasSubstr("key amplifier")));
+  for (const std::string format : {"keysight-arb", "siglent-csv", "tektronix-csv", "rigol-csv", "digilent-csv"}) {
+    SCOPED_TRACE(format);
+    const Outcome by_key = exported("amplified.toml", format), by_option = exported("plain.toml", format, {"--amplifier", "20"});
+    ASSERT_EQ(by_key.status, 0) << by_key.err;
+    EXPECT_EQ(by_key.out, by_option.out);
+    EXPECT_EQ(by_key.err, by_option.err);
+    EXPECT_THAT(by_key.err, HasSubstr("volts of the file are those at the switch over 20\n"));
+    const Outcome instead = exported("amplified.toml", format, {"--amplifier", "10"});
+    EXPECT_EQ(instead.out, exported("plain.toml", format, {"--amplifier", "10"}).out);
+    EXPECT_THAT(instead.err, HasSubstr("over 10, not over the 20 of [driver.main]"));
+  }
+  const std::string siglent = exported("amplified.toml", "siglent-csv").out;
+  EXPECT_NEAR(std::stod(siglent.substr(siglent.find("\n2,") + 3)), 18.0 / 20, 40.0 / 16384 / 20);
+  for (const std::string format : {"csv", "spice-pwl", "codes"})
+    EXPECT_EQ(exported("amplified.toml", format).out, exported("plain.toml", format).out);
+  EXPECT_THAT(exported("amplified.toml", "csv").err, HasSubstr("volts are those at the switch, 20 of them a volt of its source"));
+  const auto figures = [&](const std::string& file) {
+    const Outcome o = here.run({"simulate", file, "--quiet", "--json", "-"});
+    EXPECT_EQ(o.status, 0) << o.err;
+    return json::parse(o.out)["metrics"].dump();
+  };
+  EXPECT_EQ(figures("amplified.toml"), figures("plain.toml"));
+  const Outcome checked = here.run({"check", "amplified.toml"});
+  EXPECT_THAT(checked.out, HasSubstr("amplifier 20: the source gives at most 899.96"));
+  EXPECT_THAT(checked.out, HasSubstr("Vdp 14.214"));
+}
+
 TEST(Export, WritesTheSwitchForACircuit) {
   const Workplace here;
   const Outcome model = here.run({"export", "gold.toml", "--format", "spice-model"});

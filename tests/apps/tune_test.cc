@@ -294,9 +294,16 @@ TEST_F(TuneVerb, AsksAPersonWhatTheOscilloscopeShowed_optimized) {
   write(here.path() / "shot.toml",
         edited(plate, "family = \"step\"\nlevel = \"1.3 Vdp\"", "family = \"table\"\nfile = \"out/shot-1.csv\""));
   EXPECT_EQ(here.run({"check", "shot.toml", "--quiet"}).status, 0);
-  // Another tuning in the folder leaves its own shots there.
+  const auto held = [&] {
+    return std::stod(read(here.path() / "out/shot-1.csv").substr(read(here.path() / "out/shot-1.csv").rfind(',') + 1));
+  };
+  const double held_at_switch = held();
+  // Another tuning in the folder leaves its own shots there, for a generator before its amplifier.
   write(here.path() / "stdin.txt", "21.5 us\n2\nstop\n");
-  static_cast<void>(here.run({"tune", "plate.toml", "--by-hand", "--effort", "0.2", "--jobs", "1", "--out", "out", "--quiet"}));
+  const Outcome amplified = here.run({"tune", "plate.toml", "--by-hand", "--effort", "0.2", "--jobs", "1", "--out", "out",
+                                      "--quiet", "--set", "driver.main.amplifier=20"});
+  EXPECT_THAT(amplified.err, HasSubstr("load out/shot-1.csv into the generator, main in volts before an amplifier of 20, close"));
+  EXPECT_NEAR(held(), held_at_switch / 20, 1e-12 * held_at_switch);
   EXPECT_TRUE(fs::exists(here.path() / "out/shot-2.csv"));
   EXPECT_FALSE(fs::exists(here.path() / "out/shot-4.csv"));
   EXPECT_TRUE(fs::exists(here.path() / "out/shot-of-mine.csv"));

@@ -31,7 +31,7 @@ class TuningLabs : public testing::Test {
  protected:
   static void SetUpTestSuite() { std::signal(SIGPIPE, SIG_IGN); }
 
-  static ToldShot shot(int number = 1) { return told_shot(number, 1e-4, {{"main", Signal::constant(17)}}); }
+  static ToldShot shot(int number = 1) { return told_shot(number, 1e-4, {.signals = {{"main", Signal::constant(17)}}}); }
   static ContactRecord fired(const std::string& command, std::chrono::milliseconds patience = 10s) {
     return *command_lab(command, patience)->fire(shot(), {});
   }
@@ -62,6 +62,20 @@ TEST_F(TuningLabs, TellACommandWhatToDoAndReadWhatCameOfIt) {
   lab->finish();
   for (int i = 0; i < 100 && read(file).find("done") == std::string::npos; ++i) std::this_thread::sleep_for(10ms);
   EXPECT_THAT(read(file), HasSubstr("\n{\"done\":true}\n"));
+}
+
+TEST_F(TuningLabs, NameTheAmplifierBesideVoltsAtTheSwitch) {
+  const SentSignals sent{.signals = {{"main", Signal::constant(18)}, {"upper", Signal::constant(9)}},
+                         .amplifiers = {{"main", 20}}};
+  const json line = shot_json(told_shot(1, 1e-4, sent));
+  EXPECT_EQ(line, json::parse(R"({"shot":1,"hold_s":1e-4,"drives":{"main":{"time_s":[0,0],"V":[0,18],"amplifier":20},)"
+                              R"("upper":{"time_s":[0,0],"V":[0,9]}}})"));
+  const ToldShot read_back = read_shot(line);
+  EXPECT_EQ(shot_json(read_back), line);
+  EXPECT_EQ(read_back.drives.at("main").voltage.back(), 18) << "a simulated device is driven by them";
+  json wrong = line;
+  wrong["drives"]["main"]["amplifier"] = 0;
+  EXPECT_THROW((void)read_shot(wrong), InvalidInput);
 }
 
 TEST_F(TuningLabs, ReadEveryKindOfRecord) {

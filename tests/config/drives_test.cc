@@ -1,4 +1,5 @@
 // Waveforms and limits in volts.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -155,6 +156,34 @@ TEST(Drives, ErrorsOfSourcesAreReadAndWrittenBack) {
   EXPECT_THAT(said("delay = \"-1 us\"\n"), testing::StartsWith("x.toml:42: driver.main.delay = \"-1 us\": must be "));
   EXPECT_THAT(said("offset = \"0.1 Vdp\"\n"),
               testing::StartsWith("x.toml:42: driver.main.offset = \"0.1 Vdp\": expected a voltage"));
+}
+
+TEST(Drives, AnAmplifierIsNoGain) {
+  const auto text = [](const std::string& keys) {
+    return std::string(small_scene) + "[driver.main]\nmax_voltage = \"60 V\"\n" + keys;
+  };
+  EXPECT_FALSE(read_scene(SceneFile::parse(text(""), "x.toml")).drives(pull_in).at("main").amplifier);
+  const Scene scene = read_scene(SceneFile::parse(text("amplifier = 20\n"), "x.toml"));
+  for (const Scene& one : {scene, read_scene(resolved(scene, pull_in))}) {
+    const Drives drives = one.drives(pull_in);
+    EXPECT_EQ(drives.at("main").amplifier, 20);
+    EXPECT_EQ(drives.at("main").limits->max_voltage, 60) << "at the switch";
+    EXPECT_TRUE(drives.at("main").errors.are_none());
+  }
+  for (const double gain : {0.5, 2.0}) EXPECT_EQ(message(text(fmt::format("gain = {}\n", gain))), "");
+  for (const double gain : {0.499, 2.001, 20.0, 0.05}) {
+    EXPECT_THAT(message(text(fmt::format("gain = {}\n", gain))),
+                testing::AllOf(testing::HasSubstr("x.toml:42: driver.main.gain"), testing::HasSubstr("must be in [0.5, 2]"),
+                               testing::HasSubstr("key amplifier")));
+    // The same of devices that differ by it.
+    const std::string spread =
+        fmt::format("[spread]\n\"driver.main.gain\" = {{ distribution = \"empirical\", values = [\"{} %\", \"{} %\"] }}\n",
+                    99 * gain, 101 * gain);
+    EXPECT_THAT(message(text(spread)),
+                testing::AllOf(testing::HasSubstr("the median of driver.main.gain"), testing::HasSubstr("key amplifier")));
+  }
+  EXPECT_THAT(message(text("amplifier = 0\n")), testing::StartsWith("x.toml:42: driver.main.amplifier = 0: must be "));
+  EXPECT_THAT(message(text("amplifier = \"20 V\"\n")), testing::StartsWith("x.toml:42: driver.main.amplifier"));
 }
 
 TEST(Drives, SourcesThatMakeNoSenseAreRefused) {

@@ -81,10 +81,10 @@ class ScpiDevice(unittest.TestCase):
             server.shutdown()
             server.server_close()
 
-    def answers(self, *shots):
+    def answers(self, *shots, options=("--amplifier", "20")):
         told = "".join(json.dumps(shot) + "\n" for shot in [*shots, {"done": True}])
         done = subprocess.run([sys.executable, str(ROOT / "examples/scpi_device.py"), "--generator", self.generator.address(), "--oscilloscope",
-                               self.oscilloscope.address(), "--sample-rate", str(SAMPLE_RATE), "--amplifier", "20"],
+                               self.oscilloscope.address(), "--sample-rate", str(SAMPLE_RATE), *options],
                               input=told, capture_output=True, text=True, timeout=30, check=True)
         return [json.loads(line) for line in done.stdout.splitlines()]
 
@@ -110,6 +110,13 @@ class ScpiDevice(unittest.TestCase):
             self.assertAlmostEqual(volts[round(time * SAMPLE_RATE)], due, places=3)
         self.assertIn("*TRG", self.generator.commands)
         self.assertIn(":SING", self.oscilloscope.commands)
+
+    def test_the_amplifier_of_the_scene_is_counted_once(self):
+        told = self.shot()
+        told["drives"]["main"]["amplifier"] = 20
+        for options, factor in (((), 20), (("--amplifier", "10"), 10)):
+            self.answers(told, options=options)
+            self.assertAlmostEqual(float(re.findall(r"SOUR1:VOLT:HIGH ([^;]+)", "\n".join(self.generator.commands))[-1]), 18 / factor)
 
     def test_what_an_instrument_complains_of_is_the_answer(self):
         self.generator.error = '-222,"Data out of range"'

@@ -76,8 +76,17 @@ class Tunings(unittest.TestCase):
         said = []
         found = self.scene.tune(device, closings=2, callback=said.append, **QUICK)
         self.assertEqual([shot.number for shot in seen], [1, 2])
+        self.assertEqual([shot.amplifiers for shot in seen], [{"main": 1}, {"main": 1}])
         self.assertIn("one bounce", said[0])
         self.assertEqual(len(found.closings), 2)
+
+    def test_volts_are_those_at_the_switch_behind_an_amplifier(self):
+        plain = self.scene.tuning(**QUICK).shot()
+        self.scene["driver.main.amplifier"] = 20
+        amplified = self.scene.tuning(**QUICK).shot()
+        self.assertEqual(amplified.amplifiers, {"main": 20})
+        self.assertEqual(amplified.line["drives"]["main"], {**plain.line["drives"]["main"], "amplifier": 20})
+        self.assertTrue(self.scene.device(seed=7)(amplified).items() == self.scene.device(seed=7)(plain).items())
 
     def test_what_a_device_raises_comes_out_and_nothing_is_lost(self):
         simulated = self.scene.device(seed=7)
