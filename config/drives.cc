@@ -145,7 +145,7 @@ const Range& any_voltage() {
 std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_view drive, const PullInVoltages& known) {
   DriverLimits limits{.min_voltage = 0, .max_voltage = std::numeric_limits<double>::infinity()};
   if (known.dynamic_pull_in > 0 && drive != piezo_drive) {
-    limits.max_voltage = std::min(default_max_voltage * known.dynamic_pull_in, any_voltage().most);
+    limits.max_voltage = std::min(default_limit(known), any_voltage().most);
   } else if (!in.is_present()) {
     return std::nullopt;
   }
@@ -268,7 +268,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
       std::string broken = violation(compiled, may_be_samples ? limits_of_samples(*limits, one.source) : *limits);
       if (!broken.empty()) {
         if (!driver.is_present())
-          broken += fmt::format("; without [{}] the limits are 0 V and {} Vdp", driver.path(), default_max_voltage);
+          broken += fmt::format("; without [{}] the limits are 0 V and {}", driver.path(), default_limit_words(known));
         broken += missing_rise(waveform, before, *limits);
         file.fail_section(in.path(), broken);
       }
@@ -360,8 +360,10 @@ void check_drives(const SceneFile::Impl& file, Scene& scene) {
           file.fail_section(driver.path(), fmt::format("missing key '{}' (a voltage such as \"1 V\")", key));
       }
     }
-    if (!waveform.keys_in_pull_in_units().empty() || !driver.keys_in_pull_in_units().empty())
+    if (!waveform.keys_in_pull_in_units().empty() || !driver.keys_in_pull_in_units().empty()) {
       scene.need_pull_in.emplace_back(drive);
+      if (waveform.keys_in_pull_in_units().empty()) scene.limits_in_pull_in.emplace_back(drive);
+    }
   }
   // The rules of a family do not depend on how large a volt is: any pull-in voltage will do for them. What another one changes is
   // not given in volts.

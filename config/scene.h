@@ -1,6 +1,7 @@
 // A scene file, read and checked: the only place that sees text, units and keys. Everything behind it is plain SI.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <filesystem>
@@ -96,8 +97,13 @@ struct PullInVoltages {
   double dynamic_pull_in = 0;  ///< Vdp [V]
 };
 
-/// Of an electrode without [driver], in a search [Vdp].
+/// Of an electrode without [driver], in a search: by the larger of Vsp and Vdp.
 inline constexpr double default_max_voltage = 1.5;
+[[nodiscard]] inline double default_limit(const PullInVoltages& pull_in) {
+  return default_max_voltage * std::max(pull_in.static_pull_in, pull_in.dynamic_pull_in);
+}
+/// "1.5 Vsp".
+[[nodiscard]] std::string default_limit_words(const PullInVoltages& pull_in);
 
 /// The names of the piezo and of the dispersion force among the drives.
 inline constexpr std::string_view piezo_drive = "piezo", dispersion_drive = "dispersion";
@@ -108,7 +114,7 @@ struct Drive {
   std::string name = {};                    ///< of the electrode, piezo_drive or dispersion_drive
   std::optional<Waveform> waveform = {};    ///< none: it stays at 0 V
   std::optional<double> before = {};        ///< what is given of it before t = 0 [V]; none: 0 V
-  std::optional<DriverLimits> limits = {};  ///< none: unlimited; of electrodes whose Vdp is known [0, 1.5 Vdp]
+  std::optional<DriverLimits> limits = {};  ///< none: unlimited; of electrodes whose Vdp is known [0, default_limit()]
   DriverModel source = {};                  ///< ideal where the scene says nothing of it; without load before prepare()
   std::optional<double> amplifier = {};     ///< volts at the switch, of which all here are, per volt of the source
   SourceErrors errors = {};                 ///< gain, offset and delay of the source
@@ -198,6 +204,8 @@ struct Scene {
   Calibration calibration;
   /// Drives (electrode names) whose waveform or written limits use Vsp or Vdp.
   std::vector<std::string> need_pull_in;
+  /// Those of them whose limits alone are in Vsp or Vdp.
+  std::vector<std::string> limits_in_pull_in = {};
   /// What each drive stands at where the pull-in voltages of another are asked for, in the order of Switch::drives(): its hold
   /// level where that does not depend on Vsp or Vdp, else 0 V; of the dispersion force the factor less one.
   std::vector<double> standing;

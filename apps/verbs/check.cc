@@ -151,8 +151,8 @@ int check_verb(const Common& c) {
   for (const double omega : p.model.basis().angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   if (p.model.has_contact()) add("in-contact period", quantity(p.model.basis().in_contact_period(), "s", 4));
-  std::map<std::string, nlohmann::json> pull_in;  // by electrode that has one
-  std::map<std::string, double> searched_to;      // what a search takes for the limit where the scene has none [V]
+  std::map<std::string, nlohmann::json> pull_in;      // by electrode that has one
+  std::map<std::string, PullInVoltages> searched_to;  // what a search takes for the limit where the scene has none
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     if (!pulls_in(p.scene.device, k)) {
       add("electrode " + p.scene.device.electrodes[k].name, "on the far side, pulls away from the contact");
@@ -162,8 +162,9 @@ int check_verb(const Common& c) {
     const auto found = pull_in_json(
         p, k, known != p.pull_in.end() ? known->second : quick_pull_in(p.model, k, bias_of(p.scene, k), work->watch()));
     const nlohmann::json& v = found["pull_in"];
-    if (v["dynamic_V"].is_number())
-      searched_to[p.scene.device.electrodes[k].name] = default_max_voltage * v["dynamic_V"].get<double>();
+    if (v["static_V"].is_number() && v["dynamic_V"].is_number())
+      searched_to[p.scene.device.electrodes[k].name] = {.static_pull_in = v["static_V"].get<double>(),
+                                                        .dynamic_pull_in = v["dynamic_V"].get<double>()};
     if (found["status"] == to_string(Status::no_contact)) {
       const std::string& name = p.scene.device.electrodes[k].name;
       add("electrode " + name, "pulls away from the contact where the switch rests: no pull-in voltage");
@@ -204,9 +205,9 @@ int check_verb(const Common& c) {
       driver = fmt::format("driver {} to {}", given_quantity(drive.limits->min_voltage, "V"),
                            given_quantity(drive.limits->max_voltage, "V"));
     } else if (searched != searched_to.end()) {
-      driver = fmt::format("no [driver.{}]: a search takes 0 V to {} Vdp, {}", name, plain_number(default_max_voltage),
-                           quantity(searched->second, "V", 5));
-      if (signal.peak() > searched->second)
+      driver = fmt::format("no [driver.{}]: a search takes 0 V to {}, {}", name, default_limit_words(searched->second),
+                           quantity(default_limit(searched->second), "V", 5));
+      if (signal.peak() > default_limit(searched->second))
         warnings.push_back(
             fmt::format("[waveform.{}] reaches {}, beyond what a search takes for its limit without [driver.{}]: "
                         "optimize, release, limit and robustness refuse the scene as it is",

@@ -17,7 +17,7 @@ Section driver_section() {
       .is_named = true,
       .keys =
           {number("min_voltage", drive_voltage, any, "default for an electrode: 0 V"),
-           number("max_voltage", drive_voltage, any, "default for an electrode: 1.5 Vdp"),
+           number("max_voltage", drive_voltage, any, "default for an electrode: 1.5 times the larger of Vsp and Vdp"),
            number("max_slew", {dimension::slew_rate}, positive, "absent: unlimited"),
            number("bandwidth", {dimension::frequency}, positive, "of the source, of first order; absent: unlimited")
                .such_as("1 MHz"),

@@ -39,11 +39,13 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
     const auto& electrodes = written.device.electrodes;
     const auto at = std::find_if(electrodes.begin(), electrodes.end(), [&](const Electrode& e) { return e.name == name; });
     const auto k = static_cast<std::size_t>(at - electrodes.begin());
+    const auto known = prepared.pull_in.find(name);
+    if (known == prepared.pull_in.end()) continue;  // of limits alone
     const Switch model(written.device, quadrature);
     const std::vector<double> bias = bias_of(written, k);
     const StaticPullIn statically = static_pull_in(model, k, bias);
     const DynamicPullIn dynamically = dynamic_pull_in(model, k, statically, bias, watch);
-    const ElectrodePullIn& own = prepared.pull_in.at(name);
+    const ElectrodePullIn& own = known->second;
     const double by_static = error_safety * std::abs(statically.voltage - own.statically.voltage);
     const double by_dynamic = error_safety * std::abs(dynamically.voltage - own.dynamically.voltage) +
                               dynamic_pull_in_precision * own.dynamically.voltage;

@@ -64,7 +64,7 @@ std::vector<Signal> PreparedScene::driven(std::vector<Signal> told) const {
 }
 
 std::map<std::string, PullInVoltages> PreparedScene::voltage_units() const {
-  std::map<std::string, PullInVoltages> units;
+  std::map<std::string, PullInVoltages> units = pull_in_of_limits;
   for (const auto& [name, p] : pull_in) {
     units[name] = {.static_pull_in = p.statically.voltage, .dynamic_pull_in = p.dynamically.voltage};
   }
@@ -212,6 +212,30 @@ ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bi
   return found;
 }
 
+namespace {
+
+// A limit is one of the source, whatever the other drives stand at: where the switch has no open state under them, Vsp and Vdp of
+// a limit are those with the other drives at 0 V. A waveform in these units has none then.
+bool take_limits_at_rest(PreparedScene& p, std::size_t electrode, const PullInFinder& find_pull_in, const Watch& watch) {
+  const std::vector<std::string> names = p.drive_names();
+  if (std::ranges::find(p.scene.limits_in_pull_in, names[electrode]) == p.scene.limits_in_pull_in.end()) return false;
+  std::vector<double> bias = bias_of(p.scene, electrode);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] != dispersion_drive) bias[k] = 0;
+  }
+  const ElectrodePullIn found = find_pull_in(p.model, electrode, bias, watch);
+  if (found.dynamically.status != Status::done) return false;
+  p.pull_in_of_limits[names[electrode]] = {.static_pull_in = found.statically.voltage,
+                                           .dynamic_pull_in = found.dynamically.voltage};
+  p.scene.warnings.push_back(
+      fmt::format("[driver.{}]: Vsp and Vdp of its limits, {} and {}, are those with the other drives at 0 V: there are none{}",
+                  names[electrode], engineering(found.statically.voltage, "V", 5), engineering(found.dynamically.voltage, "V", 5),
+                  under_bias(p, electrode)));
+  return true;
+}
+
+}  // namespace
+
 PreparedScene prepare(const SceneFile& file, bool default_limits, const Watch& watch, const PullInFinder& find_pull_in) {
   const Scene scene = read_scene(file);
   const double accuracy = scene.simulate.tolerance > 0 ? SimulateOptions{}.accuracy : scene.simulate.accuracy;
@@ -227,7 +251,7 @@ PreparedScene prepare(const SceneFile& file, bool default_limits, const Watch& w
     const ElectrodePullIn found = find_pull_in(p.model, k, bias_of(scene, k), watch);
     watch.throw_if_stopped();
     const bool ok = found.dynamically.status == Status::done;
-    if (needed && !ok) {
+    if (needed && !ok && !take_limits_at_rest(p, k, find_pull_in, watch)) {
       file.refuse("electrode." + name + ".span",
                   "its pull-in voltage is needed for the unit Vsp or Vdp, but none could be found" + under_bias(p, k));
     }

@@ -35,9 +35,12 @@ struct PreparedScene {
   Scene scene;
   Switch model;
   std::map<std::string, ElectrodePullIn> pull_in;  ///< electrodes whose pull-in was needed
-  Drives drives;                                   ///< in volts; the load of a source with a resistance is the open switch
-  double duration = 0;                             ///< window [s]
-  double tolerance = 0;                            ///< of the integrator
+  /// Of electrodes whose limits alone are in Vsp or Vdp, and which have none under what the other drives stand at: with these at
+  /// 0 V.
+  std::map<std::string, PullInVoltages> pull_in_of_limits = {};
+  Drives drives;         ///< in volts; the load of a source with a resistance is the open switch
+  double duration = 0;   ///< window [s]
+  double tolerance = 0;  ///< of the integrator
   SwitchOptions quadrature = {};
   /// Where the scene says effects = "auto": what it describes and what was left out. The scene above is the one without.
   std::shared_ptr<const DescribedEffects> effects = {};

@@ -54,9 +54,9 @@ TEST(Drives, StandBeforeTheyBegin) {
   EXPECT_EQ(drives(step + "before = \"-3 V\"\n[driver.main]\nmin_voltage = \"-5 V\"\n").at("main").before, -3);
   EXPECT_EQ(drives(step + "before = \"0.5 Vsp\"\n").at("main").before, 25);
   const auto said = [](const std::string& from, const std::string& to) { return message(edited(small_scene, from, to)); };
-  EXPECT_EQ(said(main_waveform, step + "before = \"70 V\"\n"),
-            "x.toml:27: [waveform.main]: the voltage reaches 70 V, above the driver's max_voltage of 60 V; without [driver.main] "
-            "the limits are 0 V and 1.5 Vdp");
+  EXPECT_EQ(said(main_waveform, step + "before = \"80 V\"\n"),
+            "x.toml:27: [waveform.main]: the voltage reaches 80 V, above the driver's max_voltage of 75 V; without [driver.main] "
+            "the limits are 0 V and 1.5 Vsp");
   EXPECT_EQ(said(main_waveform, step + "before = \"3 m\"\n"),
             "x.toml:30: waveform.main.before = \"3 m\": expected a voltage [V], got a length [m]");
   EXPECT_EQ(said(piezo_waveform, "family = \"step\"\nlevel = \"1 V\"\nbefore = \"1 Vdp\"\n"),
@@ -288,8 +288,13 @@ TEST(Drives, AnElectrodeIsLimitedByDefaultWhereItsPullInIsKnown) {
   EXPECT_FALSE(scene.drives({}).at("main").limits);
   const DriverLimits limits = scene.drives(pull_in).at("main").limits.value();
   EXPECT_EQ(limits.min_voltage, 0);
-  EXPECT_EQ(limits.max_voltage, 1.5 * 40);
+  EXPECT_EQ(limits.max_voltage, 1.5 * 50) << "of the larger of Vsp and Vdp";
   EXPECT_TRUE(std::isinf(limits.max_slew));
+  // Where more than the static voltage closes the switch from rest, Vdp is the larger one.
+  const std::map<std::string, PullInVoltages> slow{{"main", {.static_pull_in = 30, .dynamic_pull_in = 40}}};
+  EXPECT_EQ(scene.drives(slow).at("main").limits.value().max_voltage, 1.5 * 40);
+  const Scene above = with_main("family = \"step\"\nlevel = \"1.2 Vsp\"\n");
+  EXPECT_NO_THROW(static_cast<void>(above.drives({{"main", {.static_pull_in = 60, .dynamic_pull_in = 40}}})));
 }
 
 TEST(Drives, WrittenLimitsReplaceTheDefaultsOneByOne) {
@@ -299,7 +304,7 @@ TEST(Drives, WrittenLimitsReplaceTheDefaultsOneByOne) {
   file.set("waveform.main.rise_time=1 us");
   const DriverLimits limits = read_scene(file).drives(pull_in).at("main").limits.value();
   EXPECT_EQ(limits.min_voltage, -0.1 * 50);
-  EXPECT_EQ(limits.max_voltage, 1.5 * 40);
+  EXPECT_EQ(limits.max_voltage, 1.5 * 50) << "of the larger of Vsp and Vdp";
   EXPECT_EQ(limits.max_slew, 60e6);
 }
 

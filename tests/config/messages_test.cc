@@ -195,8 +195,8 @@ INSTANTIATE_TEST_SUITE_P(Dispersion, BadFile, testing::Values(
     Edit{"[electrode.main]", "[electrode.dispersion]", "x.toml:12: [electrode.dispersion]: the name 'dispersion' is reserved for the dispersion force"}));
 
 INSTANTIATE_TEST_SUITE_P(Drives, BadFile, testing::Values(
-    Edit{R"(level = "1.25 Vdp")", R"(level = "1.6 Vdp")", "x.toml:27: [waveform.main]: the voltage reaches 64 V, above the driver's max_voltage of 60 V; without [driver.main] the limits are 0 V and 1.5 Vdp"},
-    Edit{R"(level = "1.25 Vdp")", R"(level = "-1 V")", "x.toml:27: [waveform.main]: the voltage reaches -1 V, below the driver's min_voltage of 0 V; without [driver.main] the limits are 0 V and 1.5 Vdp"},
+    Edit{R"(level = "1.25 Vdp")", R"(level = "2 Vdp")", "x.toml:27: [waveform.main]: the voltage reaches 80 V, above the driver's max_voltage of 75 V; without [driver.main] the limits are 0 V and 1.5 Vsp"},
+    Edit{R"(level = "1.25 Vdp")", R"(level = "-1 V")", "x.toml:27: [waveform.main]: the voltage reaches -1 V, below the driver's min_voltage of 0 V; without [driver.main] the limits are 0 V and 1.5 Vsp"},
     Edit{R"(level = "1.25 Vdp")", "level = \"1.25 Vdp\"\nrise_time = \"-1 us\"", R"(x.toml:30: waveform.main.rise_time = "-1 us": must be in [0 s, 1 ks])"},
     Edit{R"("0.6 V", "0 V"])", R"("0.6 Vdp", "0 V"])", R"(x.toml:32: waveform.piezo.levels = ["0.2 V", "0.6 Vdp", "0 V"]: pull-in voltages belong to electrodes; give the piezo volts [V])"},
     Edit{R"("0.6 V", "0 V"])", R"("0.6 V"])", R"(x.toml:33: waveform.piezo.times = ["20 us", "41 us"]: times of a pulse are 2 for 2 levels; there must be one fewer than levels)"},
@@ -328,7 +328,7 @@ INSTANTIATE_TEST_SUITE_P(Set, BadOption, testing::Values(
     Options{{"gap.contact=4 um"}, R"(--set gap.contact=4 um: must be less than gap.electrode = "3.5 um")"},
     Options{{"gap.electrode=1 um"}, R"(x.toml:11: gap.contact = "2 um": must be less than gap.electrode = "1 um")"},
     Options{{"electrode.side.fringing=none"}, R"(--set electrode.side.fringing=none: [electrode.side]: missing key 'span' (a list such as ["10 um", "tip"]))"},
-    Options{{"waveform.main.level=70 V"}, "--set waveform.main.level=70 V: [waveform.main]: the voltage reaches 70 V, above the driver's max_voltage of 60 V; without [driver.main] the limits are 0 V and 1.5 Vdp"},
+    Options{{"waveform.main.level=80 V"}, "--set waveform.main.level=80 V: [waveform.main]: the voltage reaches 80 V, above the driver's max_voltage of 75 V; without [driver.main] the limits are 0 V and 1.5 Vsp"},
     Options{{"driver.main={min_voltage=\"0 V\", max_voltage=\"60 V\", max_slew=\"20 V/us\"}"}, "x.toml:27: [waveform.main]: the voltage jumps, faster than the driver's max_slew of 20 V/us; rise_time = \"driver\" makes it as steep as that permits, in 2.5 us"},
     Options{{"waveform.side.family=step"}, "--set waveform.side.family=step: [waveform.side]: no such electrode (known: main, piezo)"},
     Options{{"title=\xff"}, "--set title: the value is not UTF-8 text"},

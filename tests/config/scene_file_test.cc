@@ -237,7 +237,7 @@ edge = "5e-06 s"
 
 [driver.main]
 min_voltage = "0 V"
-max_voltage = "60 V"
+max_voltage = "75 V"
 
 [driver.piezo]
 min_voltage = "-1 V"

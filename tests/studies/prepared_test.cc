@@ -46,7 +46,38 @@ TEST(Prepare, ComputesPullInForDefaultLimitsWhenAsked) {
   EXPECT_FALSE(prepare(file).drives.at("main").limits);
   const PreparedScene limited = prepare(file, true);
   EXPECT_DOUBLE_EQ(limited.drives.at("main").limits.value().min_voltage, 0);
-  EXPECT_DOUBLE_EQ(limited.drives.at("main").limits.value().max_voltage, 1.5 * limited.pull_in.at("main").dynamically.voltage);
+  EXPECT_DOUBLE_EQ(limited.drives.at("main").limits.value().max_voltage, 1.5 * limited.pull_in.at("main").statically.voltage);
+}
+
+// The contact is reached before the fold, and Vsp is 1.34 Vdp.
+TEST(Prepare, TakesAStepAboveTheStaticPullInVoltageByDefault) {
+  const SceneFile file = SceneFile::parse(R"(
+structure = { kind = "cantilever", length = "75 um", width = "30 um", thickness = "5 um", youngs_modulus = "78 GPa", density = "19200 kg/m^3" }
+gap = { electrode = "0.6 um", contact = "0.2 um" }
+electrode.main = { span = ["30 um", "40 um"], fringing = "none" }
+contact = { model = "linear", pad_length = "10 um", stiffness = "10 kN/m" }
+waveform.main = { family = "step", level = "1.2 Vsp" }
+)",
+                                          "x.toml");
+  const PreparedScene p = prepare(file);
+  const ElectrodePullIn& own = p.pull_in.at("main");
+  EXPECT_GT(1.2 * own.statically.voltage, 1.5 * own.dynamically.voltage);
+  EXPECT_DOUBLE_EQ(p.drives.at("main").limits.value().max_voltage, 1.5 * own.statically.voltage);
+}
+
+// Under the piezo the switch has no open state, and the limits of the electrode are those of its source all the same.
+TEST(Prepare, LimitsInPullInVoltagesDoNotDependOnOtherDrives) {
+  constexpr std::string_view closed =
+      "waveform.piezo={family = \"table\", times = [\"0 s\", \"1 us\"], voltages = [\"0 V\", \"-1 V\"]}";
+  const PreparedScene p = prepare(gold_pzt({closed, "waveform.main.level=17 V"}));
+  const PreparedScene at_rest = prepare(gold_pzt({"waveform.main.level=17 V"}));
+  EXPECT_DOUBLE_EQ(p.drives.at("main").limits.value().max_voltage, at_rest.drives.at("main").limits.value().max_voltage);
+  EXPECT_THAT(p.pull_in, IsEmpty());
+  EXPECT_THAT(p.scene.warnings,
+              testing::Contains(testing::HasSubstr("with the other drives at 0 V: there are none, under piezo at -1 V")));
+  EXPECT_NO_THROW(static_cast<void>(resolved(p.scene, p.voltage_units())));
+  // A level in these units has none to refer to.
+  EXPECT_THAT(refusal([&] { (void)prepare(gold_pzt({closed})); }), testing::EndsWith("could be found, under piezo at -1 V"));
 }
 
 TEST(Prepare, OrdersSignalsAsTheSwitchDoesAndLeavesUndrivenDrivesAtZero) {
