@@ -473,37 +473,6 @@ bool keeps_closed(const Switch& model, const std::optional<ClosedEquilibrium>& c
   return closed && (closed->smallest_eigenvalue > 0 || !judges_stability(model));
 }
 
-double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts, double precision) {
-  constexpr double factor = 1.05, range = 10;
-  std::vector<double> levels(volts.begin(), volts.end());
-  const auto holds = [&](double v) {
-    levels[drive] = v;
-    return keeps_closed(model, closed_equilibrium(model, levels));
-  };
-  // Below its release voltage nothing holds the switch.
-  const double start = std::fmax(std::abs(volts[drive]), factor * release_voltage(model, drive, volts));
-  if (!(start > 0)) return nan;
-  double low = start, high = start;
-  if (holds(start)) {
-    do {
-      low = high;
-      high *= factor;
-      if (high > range * start) return nan;
-    } while (holds(high));
-  } else {
-    do {
-      high = low;
-      low /= factor;
-      if (low < start / range) return nan;
-    } while (!holds(low));
-  }
-  while (high - low > precision * high) {
-    const double middle = low + (high - low) / 2;
-    (holds(middle) ? low : high) = middle;
-  }
-  return high;
-}
-
 namespace {
 
 ClosedEquilibrium closed_at(const Switch& model, const Eigen::VectorXd& q, double contact_force, std::span<const double> volts) {
@@ -585,10 +554,41 @@ std::optional<ClosedEquilibrium> closed_equilibrium_near(const Switch& model, st
   return found ? found : closed_equilibrium(model, volts);
 }
 
-double pull_through_voltage_near(const Switch& model, std::size_t drive, std::span<const double> volts,
-                                 const ClosedEquilibrium& near, double precision) {
-  constexpr double factor = 1.05, range = 10;
-  std::vector<double> levels(volts.begin(), volts.end());
+namespace {
+
+// The steps in which a pull-through voltage is looked for, and how far.
+constexpr double pull_through_factor = 1.05, pull_through_range = 10;
+
+// Looks for closed equilibria up or down from `start`, whatever there is at other voltages.
+double pull_through_by_walk(const Switch& model, std::size_t drive, std::vector<double> levels, double start, double precision) {
+  const auto holds = [&](double v) {
+    levels[drive] = v;
+    return keeps_closed(model, closed_equilibrium(model, levels));
+  };
+  double low = start, high = start;
+  if (holds(start)) {
+    do {
+      low = high;
+      high *= pull_through_factor;
+      if (high > pull_through_range * start) return nan;
+    } while (holds(high));
+  } else {
+    do {
+      high = low;
+      low /= pull_through_factor;
+      if (low < start / pull_through_range) return nan;
+    } while (!holds(low));
+  }
+  while (high - low > precision * high) {
+    const double middle = low + (high - low) / 2;
+    (holds(middle) ? low : high) = middle;
+  }
+  return high;
+}
+
+// Upwards by Newton's method from a closed equilibrium near that at `start`; none where that ends nowhere.
+std::optional<double> pull_through_from(const Switch& model, std::size_t drive, std::vector<double> levels, double start,
+                                        const ClosedEquilibrium& near, double precision) {
   std::optional<ClosedEquilibrium> last = near;
   const auto follows = [&](double v) {
     levels[drive] = v;
@@ -597,19 +597,40 @@ double pull_through_voltage_near(const Switch& model, std::size_t drive, std::sp
     if (found) last = std::move(next);
     return found;
   };
-  double low = volts[drive], high = low;
-  if (!follows(low)) return pull_through_voltage(model, drive, volts, precision);
-  for (high *= factor; follows(high); high *= factor) {
+  double low = start, high = start;
+  if (!follows(start)) return std::nullopt;
+  do {
     low = high;
-    if (high > range * volts[drive]) return nan;
-  }
+    high *= pull_through_factor;
+    if (high > pull_through_range * start) return nan;
+  } while (follows(high));
   while (high - low > precision * high) {
     const double middle = low + (high - low) / 2;
     (follows(middle) ? low : high) = middle;
   }
   // Newton's method may have failed where there is an equilibrium.
   levels[drive] = high;
-  return keeps_closed(model, closed_equilibrium(model, levels)) ? pull_through_voltage(model, drive, volts, precision) : high;
+  return keeps_closed(model, closed_equilibrium(model, levels)) ? std::nullopt : std::optional(high);
+}
+
+}  // namespace
+
+double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts, double precision) {
+  // Below its release voltage nothing holds the switch.
+  const double start = std::fmax(std::abs(volts[drive]), pull_through_factor * release_voltage(model, drive, volts));
+  if (!(start > 0)) return nan;
+  std::vector<double> levels(volts.begin(), volts.end());
+  levels[drive] = start;
+  const auto closed = closed_equilibrium(model, levels);
+  const auto found =
+      keeps_closed(model, closed) ? pull_through_from(model, drive, levels, start, *closed, precision) : std::nullopt;
+  return found ? *found : pull_through_by_walk(model, drive, std::move(levels), start, precision);
+}
+
+double pull_through_voltage_near(const Switch& model, std::size_t drive, std::span<const double> volts,
+                                 const ClosedEquilibrium& near, double precision) {
+  const auto found = pull_through_from(model, drive, {volts.begin(), volts.end()}, std::abs(volts[drive]), near, precision);
+  return found ? *found : pull_through_voltage(model, drive, volts, precision);
 }
 
 bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias, const Watch& watch, double tolerance) {

@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "model/pull_in.h"
+#include "reports/json_number.h"
 #include "reports/quantity.h"
+#include "reports/result_json.h"
+#include "studies/closing/by_modes.h"
 #include "studies/closing/closed_state.h"
-#include "studies/closing/static_excess.h"
 #include "studies/devices/stable_approach.h"
 
 namespace softland {
@@ -36,8 +38,14 @@ json pull_in_json(const PreparedScene& p, std::size_t k, const ElectrodePullIn& 
                {"dynamic_V", number(d.voltage)},
                {"release_V", number(closed.release)},
                {"pulled_through_V", number(closed.pulled_through)}}}};
-  if (const double excess = static_excess(p.scene, k, s.voltage); std::isfinite(excess))
-    found["pull_in"]["static_excess"] = excess;
+  found["pull_in"]["by_modes"] = nullptr;
+  if (const ModeLadder ladder(p); ladder.exists() && std::isfinite(s.voltage)) {
+    const VoltagesByModes more = voltages_by_modes(ladder, p.scene, k, closed.pulled_through);
+    for (const auto& [key, voltage] : {std::pair("static_V", &more.static_pull_in), std::pair("release_V", &more.release),
+                                       std::pair("pulled_through_V", &more.pulled_through)}) {
+      if (!voltage->values.empty()) found["pull_in"]["by_modes"][key] = internal::by_modes_json(*voltage);
+    }
+  }
   const std::vector<std::string> names = p.drive_names();
   for (std::size_t other = 0; other < names.size(); ++other) {
     if (bias[other] == 0) continue;
@@ -92,6 +100,12 @@ bool collapsed(const json& pull_in) { return pull_in["status"] == to_string(Stat
 std::string volts(const json& v) {
   constexpr int digits = 5;
   return v.is_number() ? internal::quantity(v.get<double>(), "V", digits) : "none";
+}
+
+std::string shift_words(const json& pull_in, const char* key) {
+  const std::optional<ByModes> found =
+      internal::read_by_modes(pull_in["by_modes"].is_object() ? pull_in["by_modes"][key] : json());
+  return found ? shift_words(*found) : std::string();
 }
 
 std::string deflection_words(const json& pull_in) {

@@ -14,8 +14,9 @@ namespace softland {
 inline constexpr const char* no_open_state = "no pull-in voltage: the switch has no open state";
 
 /// Pull-in of electrode `k` under the bias of the other drives (bias_of()): {"status", "pull_in": {"static_V", ...}}, and
-/// {"bias_V": {NAME: ...}} of those that do not stand at 0, "bias_factor" of the dispersion force; of a bridge that stretches
-/// "static_excess" (studies/closing/static_excess.h).
+/// {"bias_V": {NAME: ...}} of those that do not stand at 0, "bias_factor" of the dispersion force. "pull_in" has
+/// "by_modes", static, release and pull-through voltage by the number of modes (studies/closing/by_modes.h), null where there are
+/// no more modes than the scene has.
 [[nodiscard]] nlohmann::json pull_in_of(const PreparedScene& prepared, std::size_t k, const Watch& watch);
 
 /// The same of voltages that are known.
@@ -35,6 +36,9 @@ inline constexpr const char* no_open_state = "no pull-in voltage: the switch has
 
 /// "piezo -1.5 V": the other drives of pull_in_of() that do not stand at 0; empty where all do.
 [[nodiscard]] std::string bias_words(const PreparedScene& prepared, std::size_t k);
+
+/// "-6.1 %, to 142.7 V": by how much more modes move the voltage `key` of `pull_in`; empty where there are no more modes.
+[[nodiscard]] std::string shift_words(const nlohmann::json& pull_in, const char* key);
 
 /// How far the contact point is deflected at the static pull-in voltage.
 [[nodiscard]] std::string deflection_words(const nlohmann::json& pull_in);

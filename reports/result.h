@@ -231,6 +231,11 @@ struct ResultFamily {
   double evaluations = Metrics::unset, cost = Metrics::unset;
 };
 
+struct ResultPullIn {
+  double static_pull_in = Metrics::unset, dynamic_pull_in = Metrics::unset;  ///< [V]
+  std::optional<ByModes> static_by_modes = {};  ///< none where there are no more modes than the scene has
+};
+
 struct Result {
   bool is_search = false;  ///< of optimize, else of simulate
   std::string status, message, title;
@@ -252,7 +257,7 @@ struct Result {
   std::optional<ResultLimit> limit;
   std::map<std::string, double> parameters;             ///< of the winner, by drive.name
   std::map<std::string, std::array<double, 2>> bounds;  ///< within which they were searched
-  std::map<std::string, PullInVoltages> pull_in;        ///< by electrode
+  std::map<std::string, ResultPullIn> pull_in;          ///< by electrode
   std::vector<double> natural_frequencies;              ///< [rad/s]
   std::optional<Work> work;                             ///< of the shown run
   std::vector<std::string> warnings;

@@ -297,8 +297,10 @@ ReportSection facts(const Result& result) {
   fact("Evaluations", std::isfinite(result.evaluations) ? whole(result.evaluations) : "");
   fact("Ended by", result.termination);
   if (result.pull_in.size() == 1) {  // several do not fit here
-    const PullInVoltages& voltages = result.pull_in.begin()->second;
-    fact("Static pull-in", measured(voltages.static_pull_in, "V", 5));
+    const ResultPullIn& voltages = result.pull_in.begin()->second;
+    const std::string shift = voltages.static_by_modes ? shift_words(*voltages.static_by_modes) : "";
+    fact("Static pull-in",
+         measured(voltages.static_pull_in, "V", 5) + (shift.empty() ? shift : fmt::format(" (more modes move it by {})", shift)));
     fact("Dynamic pull-in", measured(voltages.dynamic_pull_in, "V", 5));
   }
   std::string modes;

@@ -22,7 +22,7 @@ json internal::counted_json(const Points& points) {
 }
 
 // One electrode is the usual case; several are told apart by name.
-json internal::pull_in_json(const std::map<std::string, PullInVoltages>& pull_in) {
+json internal::pull_in_json(const std::map<std::string, ResultPullIn>& pull_in) {
   if (pull_in.empty()) return nullptr;
   if (pull_in.size() == 1) return record_json(pull_in.begin()->second);
   json all = json::object();
@@ -34,6 +34,30 @@ json internal::pull_in_json(const std::map<std::string, PullInVoltages>& pull_in
 json internal::certified_json(const std::vector<IllConditioned>& figures) {
   json all = json::object();
   for (const IllConditioned& f : figures) all[std::string(f.figure.key)] = record_json(f.spread);
+  return all;
+}
+
+json internal::by_modes_json(const ByModes& found) {
+  json all{{"converged", json_number(found.converged)}};
+  for (const auto& [modes, value] : found.values) all[std::to_string(modes)] = json_number(value);
+  return all;
+}
+
+json internal::eigenvalues_json(const std::optional<ByModes>& found) {
+  if (!found) return nullptr;
+  json all = by_modes_json(*found);
+  all.erase("converged");
+  return all;
+}
+
+json internal::static_by_modes_json(const std::optional<ByModes>& found) {
+  return found ? json{{"static_V", by_modes_json(*found)}} : json();
+}
+
+json internal::voltages_json(const std::map<std::string, ByModes>& of_electrodes) {
+  if (of_electrodes.empty()) return nullptr;
+  json all = json::object();
+  for (const auto& [electrode, found] : of_electrodes) all[electrode] = by_modes_json(found);
   return all;
 }
 

@@ -18,6 +18,12 @@ namespace softland {
 
 [[nodiscard]] nlohmann::json closed_state_json(const ClosedState& state);
 
+namespace internal {
+/// {"5": number, "10": ..., "20": ..., "converged": number}, and back; a number that there is not is null.
+[[nodiscard]] nlohmann::json by_modes_json(const ByModes& found);
+[[nodiscard]] std::optional<ByModes> read_by_modes(const nlohmann::json& found);
+}  // namespace internal
+
 /// Status and figures of a run, but for those of the drives.
 [[nodiscard]] nlohmann::json metrics_json(const Metrics& metrics);
 

@@ -65,10 +65,16 @@ ResultRun run(const PreparedScene& p, const Closing& closing, const MetricsOptio
           .collapse_time = closing.trajectory.collapse_time};
 }
 
-std::map<std::string, PullInVoltages> pull_in(const PreparedScene& p) {
-  std::map<std::string, PullInVoltages> all;
-  for (const auto& [name, e] : p.pull_in)
-    all[name] = {.static_pull_in = e.statically.voltage, .dynamic_pull_in = e.dynamically.voltage};
+std::map<std::string, ResultPullIn> pull_in(const PreparedScene& p) {
+  std::map<std::string, ResultPullIn> all;
+  const ModeLadder ladder(p);
+  for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
+    const auto found = p.pull_in.find(p.scene.device.electrodes[k].name);
+    if (found == p.pull_in.end()) continue;
+    ResultPullIn& one = all[found->first];
+    one = {.static_pull_in = found->second.statically.voltage, .dynamic_pull_in = found->second.dynamically.voltage};
+    if (ladder.exists()) one.static_by_modes = static_pull_in_by_modes(ladder, p.scene, k);
+  }
   return all;
 }
 

@@ -42,12 +42,18 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] std::vector<Rebound> read_rebounds(const nlohmann::json& rows);
 [[nodiscard]] nlohmann::json counted_json(const Points& points);
 [[nodiscard]] Points read_points(const nlohmann::json& points);
-[[nodiscard]] nlohmann::json pull_in_json(const std::map<std::string, PullInVoltages>& pull_in);
-[[nodiscard]] std::map<std::string, PullInVoltages> read_pull_in(const nlohmann::json& pull_in);
+[[nodiscard]] nlohmann::json pull_in_json(const std::map<std::string, ResultPullIn>& pull_in);
+[[nodiscard]] std::map<std::string, ResultPullIn> read_pull_in(const nlohmann::json& pull_in);
+[[nodiscard]] nlohmann::json static_by_modes_json(const std::optional<ByModes>& found);
+[[nodiscard]] std::optional<ByModes> read_static_by_modes(const nlohmann::json& found);
 [[nodiscard]] nlohmann::json certified_json(const std::vector<IllConditioned>& figures);
 [[nodiscard]] std::vector<IllConditioned> read_certified(const nlohmann::json& figures);
 [[nodiscard]] inline std::string integrator_name(Integrator integrator) { return std::string(to_string(integrator)); }
 [[nodiscard]] Integrator read_integrator(const nlohmann::json& name);
+/// By the number of modes: an eigenvalue, and voltages of electrodes, with what they lead to; null where there are no more modes.
+[[nodiscard]] nlohmann::json eigenvalues_json(const std::optional<ByModes>& found);
+[[nodiscard]] nlohmann::json voltages_json(const std::map<std::string, ByModes>& of_electrodes);
+[[nodiscard]] std::map<std::string, ByModes> read_voltages(const nlohmann::json& of_electrodes);
 [[nodiscard]] HoldWindows read_windows(const nlohmann::json& windows);
 
 }  // namespace internal
@@ -120,12 +126,15 @@ void members(A& a, ClosedState& state) {
   a("stable", internal::OrNull{state.stable});
   a("smallest_eigenvalue_rad2_s2", state.smallest_eigenvalue);
   a("pulled_through_V", state.pulled_through);
+  a.custom("by_modes", state.by_modes, internal::eigenvalues_json, internal::read_by_modes);
+  a.custom("pulled_through_by_modes_V", state.pulled_through_by_modes, internal::voltages_json, internal::read_voltages);
 }
 
 template <class A>
-void members(A& a, PullInVoltages& volts) {
+void members(A& a, ResultPullIn& volts) {
   a("static_V", volts.static_pull_in);
   a("dynamic_V", volts.dynamic_pull_in);
+  a.custom("by_modes", volts.static_by_modes, internal::static_by_modes_json, internal::read_static_by_modes);
 }
 
 template <class A>

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -119,10 +120,10 @@ std::vector<Rebound> internal::read_rebounds(const json& rows) {
 Points internal::read_points(const json& points) { return JsonReader::read<Points>(points); }
 
 // Of one electrode without its name.
-std::map<std::string, PullInVoltages> internal::read_pull_in(const json& volts) {
+std::map<std::string, ResultPullIn> internal::read_pull_in(const json& volts) {
   if (!volts.is_object()) return {};
-  if (volts.contains("static_V") || volts.contains("dynamic_V")) return {{"", JsonReader::read<PullInVoltages>(volts)}};
-  return JsonReader::read<std::map<std::string, PullInVoltages>>(volts);
+  if (volts.contains("static_V") || volts.contains("dynamic_V")) return {{"", JsonReader::read<ResultPullIn>(volts)}};
+  return JsonReader::read<std::map<std::string, ResultPullIn>>(volts);
 }
 
 std::vector<IllConditioned> internal::read_certified(const json& certified) {
@@ -137,6 +138,32 @@ std::vector<IllConditioned> internal::read_certified(const json& certified) {
 Integrator internal::read_integrator(const json& name) {
   const auto found = std::ranges::find(all_integrators, text(name), [](Integrator one) { return to_string(one); });
   return found == all_integrators.end() ? Integrator::automatic : *found;
+}
+
+std::optional<ByModes> internal::read_by_modes(const json& found) {
+  if (!found.is_object()) return std::nullopt;
+  ByModes all;
+  for (const auto& [modes, value] : found.items()) {
+    if (modes == "converged") {
+      all.converged = number(value);
+    } else {
+      int count = 0;
+      const auto [end, error] = std::from_chars(modes.data(), modes.data() + modes.size(), count);
+      if (error == std::errc() && end == modes.data() + modes.size()) all.values[count] = number(value);
+    }
+  }
+  return all.values.empty() ? std::nullopt : std::optional(std::move(all));
+}
+
+std::optional<ByModes> internal::read_static_by_modes(const json& found) { return read_by_modes(at(found, {"static_V"})); }
+
+std::map<std::string, ByModes> internal::read_voltages(const json& of_electrodes) {
+  std::map<std::string, ByModes> all;
+  if (!of_electrodes.is_object()) return all;
+  for (const auto& [electrode, found] : of_electrodes.items()) {
+    if (std::optional<ByModes> one = read_by_modes(found)) all[electrode] = std::move(*one);
+  }
+  return all;
 }
 
 HoldWindows internal::read_windows(const json& ends) {

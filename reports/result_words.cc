@@ -131,7 +131,12 @@ Headline headline(const Result& result) {
   const double window = window_end(result);
   const bool leaves = result.closed_state && result.closed_state->stable == false && result.best.figures &&
                       touches(*result.best.figures) && result.best.status != "collapsed_onto_electrode";
-  const std::string rest = leaves ? " It does not stay closed: the hold levels pull it through the contact in the end." : "";
+  const std::string rest =
+      !leaves ? ""
+      : result.closed_state->smallest_eigenvalue > 0
+          ? " Whether it stays closed depends on the number of modes: with more of them than the scene keeps it "
+            "is pulled through the contact."
+          : " It does not stay closed: the hold levels pull it through the contact in the end.";
   if (!result.is_search) {
     if (result.status == "interrupted") return {"The simulation was interrupted.", ""};
     return {capitalised(closing_clause({.subject = "the switch"}, result.best, window)) + "." + rest, ""};

@@ -219,7 +219,7 @@ TableCell drive_cell(const DriveRobustness& drive) {
 }
 
 ReportSection about(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, unheld, interrupted] = report;
   const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().known.calibration();
   return {.id = "charts",
           .heading = "How the devices differ",
@@ -378,11 +378,11 @@ std::vector<KeyNumber> keys_of(const Robustness& found) {
 }  // namespace
 
 Document robustness_document(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, unheld, interrupted] = report;
   Document document{.title = nominal.scene.title,
                     .origin = "robustness",
                     .sections = {about(report)},
-                    .warnings = nominal.scene.warnings,
+                    .warnings = warnings(report),
                     .made = internal::origin(nominal, command)};
   document.made.seed = options.seed;
   document.made.tolerance = found.tolerance;

@@ -16,6 +16,7 @@
 #include "reports/result_json.h"
 #include "reports/robustness_words.h"
 #include "studies/closing/closed_state.h"
+#include "studies/closing/simulate.h"
 #include "studies/devices/box_and_chaos.h"
 #include "waveforms/export.h"
 
@@ -145,13 +146,23 @@ void add_details(RobustnessReport& report, bool other_ways_too, const Watch& wat
                   report.options, watch);
   report.derivatives = derivatives(report.nominal, internal::exactly_measured(report.nominal, last), {}, watch);
   report.windows = hold_windows(report.nominal, report.options, watch);
+  if (report.nominal.model.has_contact()) {
+    const std::vector<Signal> signals = report.nominal.driven(report.nominal.in_drive_order(last.waveforms));
+    report.unheld = hold_warning(report.nominal.model, signals, closed_state(report.nominal, signals));
+  }
   report.courses = device_courses(report.nominal, last, report.found, report.options);
   if (other_ways_too) report.box_and_chaos = box_and_chaos(report.nominal, last, report.options, {}, watch);
   report.interrupted = watch.stopped();
 }
 
+std::vector<std::string> warnings(const RobustnessReport& report) {
+  std::vector<std::string> all = report.nominal.scene.warnings;
+  if (!report.unheld.empty()) all.push_back(report.unheld);
+  return all;
+}
+
 json robustness_json(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, unheld, interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   const auto drive_json = [&](const DriveRobustness& d) {
     json figures = json::object(), worst = json::array(), failures = json::object();
@@ -195,13 +206,13 @@ json robustness_json(const RobustnessReport& report) {
                       {"sensitivity", sensitivity_json(sensitivity)},
                       {"derivatives", internal::derivatives_json(derivatives, found.drives.back())},
                       {"other_ways", ways ? internal::other_ways_json(*ways, found.drives.back(), nominal) : json(nullptr)},
-                      {"warnings", nominal.scene.warnings},
+                      {"warnings", warnings(report)},
                       {"scene_toml", nominal.resolved().text()}},
                      nominal, command);
 }
 
 std::string robustness_csv(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, unheld, interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   std::string text = "device";
   // Names may hold commas and quotes.

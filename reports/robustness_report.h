@@ -28,12 +28,16 @@ struct RobustnessReport {
   std::vector<DeviceCourse> courses = {};
   std::optional<BoxAndChaos> box_and_chaos = {};  ///< of the last drive as well
   HoldWindows windows = {};                       ///< of hold levels, whatever the drive
+  std::string unheld = {};                        ///< why the last drive does not hold the nominal device, hold_warning()
   bool interrupted = found.interrupted;           ///< in the study, or in what was to be known beside it
 };
 
 /// What is known of the last drive beside its figures, `other_ways_too` at the cost of further searches; nothing where the work
 /// was interrupted.
 void add_details(RobustnessReport& report, bool other_ways_too, const Watch& watch);
+
+/// Those of the nominal scene, and why the last drive does not hold the nominal device.
+[[nodiscard]] std::vector<std::string> warnings(const RobustnessReport& report);
 
 [[nodiscard]] nlohmann::json robustness_json(const RobustnessReport& report);
 

@@ -65,11 +65,17 @@ std::string closed_state_words(const ClosedState& state) {
   std::string words = !state.exists   ? "no equilibrium under the hold levels"
                       : !state.stable ? "stable or not is not judged: one mode of a beam clamped at both ends cannot tell"
                       : *state.stable ? "stable under the hold levels"
+                      : state.flips   ? "stable or not under the hold levels depends on the number of modes"
                                       : "unstable under the hold levels";
-  for (const auto& [electrode, volts] : state.pulled_through)
+  for (const auto& [electrode, volts] : state.pulled_through) {
     words += std::isfinite(volts)
                  ? fmt::format("; electrode {} pulls the beam through from {} on", electrode, quantity(volts, "V", 4))
                  : fmt::format("; electrode {} pulls the beam through at no voltage tried", electrode);
+    const auto more = state.pulled_through_by_modes.find(electrode);
+    if (more == state.pulled_through_by_modes.end()) continue;
+    if (const std::string shift = shift_words(more->second); !shift.empty())
+      words += fmt::format(" (more modes move it by {})", shift);
+  }
   return words;
 }
 
@@ -179,6 +185,11 @@ int check_verb(const Common& c) {
         (collapsed(found) ? no_open_state
                           : fmt::format("Vsp {}, Vdp {}", volts(v["static_V"]), dynamic_words(p, k, v)) + roughly) +
             (p.model.has_contact() ? ", release " + volts(v["release_V"]) : "") + (bias.empty() ? "" : ", under " + bias));
+    if (v["by_modes"].is_object()) {
+      std::string shifts = "more modes move Vsp by " + shift_words(v, "static_V");
+      if (v["release_V"].is_number()) shifts += ", release by " + shift_words(v, "release_V");
+      add("", shifts);
+    }
   }
   if (p.scene.device.dispersion) {
     add("dispersion force", dispersion_words(p, work->watch()));

@@ -26,7 +26,6 @@
 #include "reports/quantity.h"
 #include "reports/sweep_report.h"
 #include "studies/closing/auto_settings.h"
-#include "studies/closing/static_excess.h"
 #include "studies/closing/sweep.h"
 #include "studies/search/search_space.h"
 
@@ -101,6 +100,11 @@ std::string kind_words(const nlohmann::json& found) {
                                                              : " (the contact point reaches the contact first)";
 }
 
+std::string shift_clause(const nlohmann::json& found, const char* key) {
+  const std::string shift = shift_words(found, key);
+  return shift.empty() ? shift : "; more modes move it by " + shift;
+}
+
 // What pull_in_of() has found of an electrode, in words.
 std::string words_of(const PreparedScene& p, std::size_t k, const nlohmann::json& one) {
   std::string text = fmt::format("electrode {}\n", p.scene.device.electrodes[k].name);
@@ -109,18 +113,15 @@ std::string words_of(const PreparedScene& p, std::size_t k, const nlohmann::json
   if (one["status"] == to_string(Status::no_contact))
     return text + "  pulls away from the contact where the switch rests: no pull-in voltage\n";
   const nlohmann::json& found = one["pull_in"];
-  text += collapsed(one)
-              ? fmt::format("  {}\n", no_open_state)
-              : fmt::format("  static pull-in   {}{}\n  pull-in position {}\n  dynamic pull-in  {}\n", volts(found["static_V"]),
-                            kind_words(found), deflection_words(found), dynamic_words(p, k, found));
-  if (found.contains("static_excess") && found["static_excess"] > static_excess_worth_telling)
-    text += fmt::format("  resolved         the static one is {} % above that with {} modes\n",
-                        internal::plain_number(100 * found["static_excess"].get<double>(), 2), most_static_modes);
+  text += collapsed(one) ? fmt::format("  {}\n", no_open_state)
+                         : fmt::format("  static pull-in   {}{}{}\n  pull-in position {}\n  dynamic pull-in  {}\n",
+                                       volts(found["static_V"]), kind_words(found), shift_clause(found, "static_V"),
+                                       deflection_words(found), dynamic_words(p, k, found));
   if (p.model.has_contact()) {
-    text += fmt::format("  release          {}\n", volts(found["release_V"]));
+    text += fmt::format("  release          {}{}\n", volts(found["release_V"]), shift_clause(found, "release_V"));
     if (found["pulled_through_V"].is_number())
-      text += fmt::format("  pulled through   {}: from there on a closed switch goes on to the electrode\n",
-                          volts(found["pulled_through_V"]));
+      text += fmt::format("  pulled through   {}: from there on a closed switch goes on to the electrode{}\n",
+                          volts(found["pulled_through_V"]), shift_clause(found, "pulled_through_V"));
   }
   return text;
 }

@@ -93,7 +93,7 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
     folder->publish(report.interrupted);
   }
   print_json_or(c, j, text);
-  return report.interrupted ? exit_interrupted : exit_done;
+  return report.interrupted ? exit_interrupted : report.unheld.empty() ? exit_done : exit_no_success;
 }
 
 }  // namespace

@@ -4,15 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include "base/engineering.h"
 #include "model/closing.h"
 #include "model/constants.h"
 #include "objectives/figures.h"
+#include "studies/closing/by_modes.h"
+#include "studies/closing/closed_state.h"
 #include "studies/closing/closing_progress.h"
 #include "studies/closing/prepared.h"
-#include "studies/closing/static_excess.h"
 
 namespace softland {
 namespace {
@@ -24,17 +26,26 @@ struct Judged {
   double value, scale;
 };
 
+// A closing with some number of modes.
 struct Judgement {
   std::vector<Judged> figures;
-  std::vector<double> static_pull_in;  // of every electrode [V]
+  PreparedScene scene;
 };
+
+// As well as figures are judged: a dynamic pull-in voltage takes as long as tens of closings.
+ElectrodePullIn pull_in_to_be_judged(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch) {
+  constexpr double precision = 1e-5;
+  ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
+  found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, watch, run_tolerance, precision);
+  return found;
+}
 
 Judgement judged(const SceneFile& file, int modes, const Watch& watch) {
   SceneFile with = file;
   with.assign("structure.modes", modes);
   with.assign("simulate.effects",
               std::string("all"));  // every number of modes is judged on the same effects; they are chosen after
-  const PreparedScene p = prepare(with, false, watch);
+  const PreparedScene p = prepare(with, false, watch, pull_in_to_be_judged);
   const double omega = p.model.basis().angular_frequencies()[0], gap = p.scene.device.gap.contact;
   const Trajectory t = simulate_closing(p.model, p.signals(),
                                         {.duration = p.duration,
@@ -48,18 +59,16 @@ Judgement judged(const SceneFile& file, int modes, const Watch& watch) {
   scale[&Metrics::initial_contact_time] = 1 / omega;
   scale[&Metrics::impact_velocity] = gap * omega;
   scale[&Metrics::major_bounce_height] = gap;
-  Judgement found;
-  std::vector<Judged>& list = found.figures;
+  std::vector<Judged> list;
   for (const Figure& figure : compared_figures) list.push_back({figure.value(m), scale[figure]});
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     const auto known = p.pull_in.find(p.scene.device.electrodes[k].name);
     const StaticPullIn statically =
         known == p.pull_in.end() ? static_pull_in(p.model, k, bias_of(p.scene, k)) : known->second.statically;
     list.push_back({statically.voltage, 0});
-    found.static_pull_in.push_back(statically.voltage);
     if (known != p.pull_in.end()) list.push_back({known->second.dynamically.voltage, 0});
   }
-  return found;
+  return {.figures = std::move(list), .scene = p};
 }
 
 // The largest relative change of any figure; one that comes or goes has changed entirely.
@@ -72,26 +81,36 @@ double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
   return most;
 }
 
-// Of every electrode.
-std::vector<double> resolved_voltages(const Scene& scene) {
-  std::vector<double> voltages;
-  for (std::size_t k = 0; k < scene.device.electrodes.size(); ++k) voltages.push_back(resolved_pull_in(scene, k));
-  return voltages;
+// The most that twice and four times as many modes move a static voltage of an electrode.
+double statics_moved(const Scene& scene, int modes) {
+  SwitchOptions options = quadrature_for(scene.simulate.accuracy, modes);
+  options.modes = modes;
+  const Switch own(scene.device, options);
+  const ModeLadder ladder(scene, own);
+  double most = 0;
+  for (std::size_t k = 0; k < scene.device.electrodes.size(); ++k) {
+    if (!pulls_in(scene.device, k)) continue;
+    const VoltagesByModes more = voltages_by_modes(ladder, scene, k, closed_range(own, k, bias_of(scene, k)).pulled_through);
+    for (const ByModes* voltage : {&more.static_pull_in, &more.release, &more.pulled_through})
+      most = std::fmax(most, std::min(1.0, std::abs(voltage->moved())));
+  }
+  return most;
 }
 
-// Of voltages over those that are resolved; of none that is not known.
-double largest_excess(const std::vector<double>& voltages, const std::vector<double>& resolved) {
-  double most = 0;
-  for (std::size_t k = 0; k < resolved.size(); ++k) most = std::fmax(most, voltages[k] / resolved[k] - 1);
-  return most;
+// Whether the modes of a scene say of its closed state under the hold levels what more modes do.
+bool agrees_on_stability(const PreparedScene& p) {
+  const ModeLadder ladder(p);
+  const auto closed = closed_equilibria(ladder, hold_levels(p.signals()));
+  return !closed.front() || (judges_stability(p.model) && !stability(ladder, closed).flips);
 }
 
 }  // namespace
 
 std::string AutoModes::note() const {
   const std::string judged =
-      touches ? "t_i, v_i, the highest rebound of the first period after contact and the pull-in voltages"
-              : "the pull-in voltages, the only figures that are judged since the closing does not touch in its window,";
+      touches
+          ? "t_i, v_i, the highest rebound of the first period after contact and the pull-in, release and pull-through voltages"
+          : "the static voltages, the only figures that are judged since the closing does not touch in its window,";
   const std::string not_judged = "later rebounds, and with them B_H, N_B and t_p, are not judged and may move more";
   return settled() ? fmt::format(R"(structure.modes = "auto": {} mode{}; further ones move {} by at most {}; {})", modes,
                                  modes == 1 ? "" : "s", judged, engineering(100 * moved, "%", 2), not_judged)
@@ -103,19 +122,21 @@ AutoModes choose_modes(const SceneFile& file, const Watch& watch) {
   const Scene scene = read_scene(file);
   const bool both_clamped = scene.device.structure.kind == StructureKind::clamped_clamped;
   const int further = both_clamped ? 6 : 3;
-  const std::vector<double> resolved = resolved_voltages(scene);
-  std::vector<Judgement> known;
+  std::map<int, Judgement> known;
+  const auto with = [&](int modes) -> const Judgement& {
+    const auto found = known.find(modes);
+    return found != known.end() ? found->second : known.emplace(modes, judged(file, modes, watch)).first->second;
+  };
   AutoModes found;
   for (int modes = 1; modes + further <= most_modes; ++modes) {
-    found = {.modes = modes};
-    for (int more = 1; more <= further && found.settled(); ++more) {
-      while (static_cast<int>(known.size()) < modes + more)
-        known.push_back(judged(file, static_cast<int>(known.size()) + 1, watch));
-      const auto index = static_cast<std::size_t>(modes - 1), further_index = index + static_cast<std::size_t>(more);
-      found.moved = std::max({found.moved, change(known[index].figures, known[further_index].figures),
-                              largest_excess(known[index].static_pull_in, resolved)});
-    }
-    found.touches = std::isfinite(known[static_cast<std::size_t>(modes - 1)].figures.front().value);
+    // Statics are cheap: no closing is followed with modes that they rule out, but the last.
+    found = {.modes = modes, .moved = statics_moved(scene, modes)};
+    if (!found.settled() && modes + further < most_modes) continue;
+    const Judgement& own = with(modes);
+    found.touches = std::isfinite(own.figures.front().value);
+    for (int more = 1; more <= further && found.settled(); ++more)
+      found.moved = std::max(found.moved, change(own.figures, with(modes + more).figures));
+    if (found.settled() && !agrees_on_stability(own.scene)) found.moved = 1;
     if (found.settled()) break;
   }
   return found;

@@ -4,9 +4,10 @@
 // the first mode after it (the first macro-bounce), under the scene's own waveforms, and the static and dynamic pull-in voltages
 // that the scene uses. The first number of modes is taken that three further ones do not move by more than the tolerance: on the
 // reference closing three to five modes agree within 2 % in the rebound height, and the sixth moves it by half. Between two
-// clamps every second mode is antisymmetric, so six are tried, and where the beam stretches a static pull-in voltage must not be
-// further above that with all modes (static_excess.h) either. A figure counts relative to its own size, but at least to a
-// hundredth of what a closing is like (contact gap, and that times the first frequency).
+// clamps every second mode is antisymmetric, so six are tried. Nor may twice and four times as many modes (by_modes.h) move
+// static pull-in, release and pull-through voltages by more, or say otherwise of whether the closed state is stable. A figure
+// counts relative to its own size, but at least to a hundredth of what a closing is like (contact gap, and that times the first
+// frequency).
 #pragma once
 
 #include <string>

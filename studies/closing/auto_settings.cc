@@ -9,8 +9,8 @@
 
 #include "base/engineering.h"
 #include "studies/closing/auto_modes.h"
+#include "studies/closing/by_modes.h"
 #include "studies/closing/effect_ablation.h"
-#include "studies/closing/static_excess.h"
 
 namespace softland {
 namespace {
@@ -58,7 +58,7 @@ PreparedScene choose(PreparedScene prepared, bool default_limits, const Watch& w
 
 PreparedScene prepare_and_choose(const SceneFile& file, bool default_limits, const Watch& watch) {
   PreparedScene prepared = choose(prepare(file, default_limits, watch), default_limits, watch);
-  for (std::string& warning : static_excess_warnings(prepared)) prepared.scene.warnings.push_back(std::move(warning));
+  for (std::string& warning : mode_warnings(prepared)) prepared.scene.warnings.push_back(std::move(warning));
   return prepared;
 }
 

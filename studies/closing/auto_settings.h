@@ -12,8 +12,8 @@ namespace softland {
 /// Interrupted where `watch` asks to stop.
 [[nodiscard]] PreparedScene choose(PreparedScene prepared, bool default_limits = false, const Watch& watch = {});
 
-/// What a user's scene asks for: prepare(), then choose(); and a warning where its modes do not resolve a bridge that stretches
-/// (static_excess.h), which takes longer than a closing.
+/// What a user's scene asks for: prepare(), then choose(); and a warning where more modes move its static pull-in voltages
+/// (by_modes.h).
 [[nodiscard]] PreparedScene prepare_and_choose(const SceneFile& file, bool default_limits = false, const Watch& watch = {});
 
 }  // namespace softland

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
 #include "base/engineering.h"
 
@@ -12,15 +13,24 @@ ClosedState closed_state(const PreparedScene& prepared, const std::vector<Signal
   const Switch& model = prepared.model;
   const std::vector<double> levels = hold_levels(signals);
   ClosedState state;
-  if (const auto closed = closed_equilibrium(model, levels)) {
+  const ModeLadder ladder(prepared);
+  const auto closed = closed_equilibria(ladder, levels);
+  if (closed.front()) {
     state.exists = true;
-    state.contact_force = closed->contact_force;
-    state.smallest_eigenvalue = closed->smallest_eigenvalue;
-    if (judges_stability(model)) state.stable = closed->smallest_eigenvalue > 0;
+    state.contact_force = closed.front()->contact_force;
+    state.smallest_eigenvalue = closed.front()->smallest_eigenvalue;
+    const StabilityByModes judged = stability(ladder, closed);
+    state.stable = judged.stable;
+    state.flips = judged.flips;
+    if (ladder.exists()) state.by_modes = judged.eigenvalues;
   }
   const std::vector<Electrode>& electrodes = model.device().electrodes;
   for (std::size_t k = 0; k < electrodes.size(); ++k) {
-    if (pulls_in(model.device(), k)) state.pulled_through[electrodes[k].name] = pull_through_voltage(model, k, levels);
+    if (!pulls_in(model.device(), k)) continue;
+    const std::string& name = electrodes[k].name;
+    state.pulled_through[name] = pull_through_voltage(model, k, levels);
+    if (ladder.exists())
+      state.pulled_through_by_modes[name] = pulled_through_by_modes(ladder, k, levels, state.pulled_through[name]);
   }
   return state;
 }
@@ -62,14 +72,41 @@ std::string unstable_rest(const Switch& model, const std::vector<Signal>& signal
       engineering(smallest, "rad^2/s^2", 3));
 }
 
+namespace {
+
+// "9.97e10 rad^2/s^2 with 5 modes, -6.9e10 with 10, none with 20"
+std::string by_modes_words(const ByModes& found, std::string_view unit, int digits) {
+  std::string words;
+  for (const auto& [modes, value] : found.values)
+    words += fmt::format("{}{} with {}{}", words.empty() ? "" : ", ",
+                         std::isfinite(value) ? engineering(value, unit, digits) : "none", modes,
+                         !words.empty() ? ""
+                         : modes == 1   ? " mode"
+                                        : " modes");
+  return words;
+}
+
+}  // namespace
+
 std::string warning(const ClosedState& state) {
   if (!state.exists || state.stable.value_or(true)) return {};
   std::string words =
-      "the hold levels do not keep the switch closed: its closed equilibrium is unstable, and the beam is pulled through the "
-      "contact "
-      "onto the electrode, sooner or later";
+      state.flips
+          ? fmt::format(
+                "whether the hold levels keep the switch closed depends on the number of modes: the smallest eigenvalue of "
+                "its closed equilibrium, which must be positive, is {}",
+                by_modes_words(*state.by_modes, "rad^2/s^2", 3))
+          : std::string(
+                "the hold levels do not keep the switch closed: its closed equilibrium is unstable, and the beam is pulled "
+                "through the contact onto the electrode, sooner or later");
   for (const auto& [electrode, volts] : state.pulled_through) {
-    if (volts == volts) words += fmt::format(" (electrode {}: from {} on)", electrode, engineering(volts, "V", 4));
+    const auto more = state.pulled_through_by_modes.find(electrode);
+    if (state.flips && more != state.pulled_through_by_modes.end()) {
+      words += fmt::format("; electrode {} pulls the beam through the contact from this voltage on: {}", electrode,
+                           by_modes_words(more->second, "V", 4));
+    } else if (std::isfinite(volts)) {
+      words += fmt::format(" (electrode {}: from {} on)", electrode, engineering(volts, "V", 4));
+    }
   }
   return words;
 }

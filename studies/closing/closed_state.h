@@ -8,18 +8,23 @@
 #include <string>
 #include <vector>
 
+#include "studies/closing/by_modes.h"
 #include "studies/closing/prepared.h"
 
 namespace softland {
 
 struct ClosedState {
   bool exists = false;         ///< an equilibrium with a contact force above zero
-  std::optional<bool> stable;  ///< not set: the modes that are kept cannot tell, or there is no such equilibrium
+  std::optional<bool> stable;  ///< with every number of modes that can tell; not set where none can, or there is no equilibrium
   double contact_force = std::numeric_limits<double>::quiet_NaN();        ///< there [N]
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();  ///< ClosedEquilibrium::smallest_eigenvalue [rad^2/s^2]
   /// By electrode that pulls towards the contact: voltage from which on the closed switch is pulled through [V]; NaN where there
   /// is none within ten times its hold level.
   std::map<std::string, double> pulled_through;
+  /// The smallest eigenvalue and those voltages with more modes (by_modes.h); none where there are no more.
+  std::optional<ByModes> by_modes;
+  std::map<std::string, ByModes> pulled_through_by_modes;
+  bool flips = false;  ///< StabilityByModes::flips
 };
 
 /// The voltages of an electrode between which a closed switch stays closed, its other drives at a bias.

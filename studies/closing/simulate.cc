@@ -254,6 +254,28 @@ void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared,
   }
 }
 
+// A switch that the modes of its scene hold has not settled where twice or four times as many let it go.
+void judge_with_more_modes(Closing& c, const PreparedScene& prepared, const std::vector<Signal>& signals) {
+  Metrics& m = c.metrics;
+  if (m.status == Status::open) {
+    const StabilityByModes open = open_stability(ModeLadder(prepared), hold_levels(signals));
+    if (!open.flips) return;
+    m.status = Status::no_contact;
+    c.warnings.push_back(
+        "whether the switch stays open depends on the number of modes: under its hold levels it has no stable open "
+        "equilibrium with more of them");
+    return;
+  }
+  if (m.status != Status::done || !m.settled || !hold_of(prepared.model, signals).closed) return;
+  const ModeLadder ladder(prepared);
+  if (stability(ladder, closed_equilibria(ladder, hold_levels(signals))).stable != false) return;
+  c.trajectory.is_held = m.settled = false;
+  m.status = Status::not_settled;
+  c.trajectory.hold_force = Metrics::unset;
+  for (double Metrics::*const figure : {&Metrics::permanent_contact_time, &Metrics::bounce_time, &Metrics::hold_force})
+    m.*figure = c.errors[figure] = Metrics::unset;
+}
+
 // Errors and warnings of a closing are not known where its runs were interrupted.
 void say_interrupted(Closing& c) {
   const bool complete = c.trajectory.status != Status::interrupted;
@@ -321,6 +343,7 @@ Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watc
       c.metrics.status = Status::open;
     }
   }
+  judge_with_more_modes(c, prepared, runs.signals());
   if (!c.trajectory.is_held && c.metrics.status != Status::open) {
     const ClosedState state = closed_state(prepared, runs.signals());
     c.warnings.push_back(hold_warning(prepared.model, runs.signals(), state));
@@ -334,7 +357,7 @@ Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watc
 }
 
 std::string hold_warning(const Switch& model, const std::vector<Signal>& signals, const ClosedState& state) {
-  if (hold_of(model, signals).is_held) return {};
+  if (state.stable != false && hold_of(model, signals).is_held) return {};
   const std::string unstable = warning(state);
   return unstable.empty() ? std::string(not_held) : unstable;
 }

@@ -123,7 +123,7 @@ struct OptimizeResult {
   long evaluations_of_modes = 0;
   bool better_than_baseline = false;
   /// A goal that is met is a success, whatever the plain step does.
-  [[nodiscard]] bool is_success() const { return best && (goal_met || better_than_baseline); }
+  [[nodiscard]] bool is_success() const { return best && !best->is_pulled_through && (goal_met || better_than_baseline); }
   std::vector<std::string> broken_conditions = {};  ///< by the winner
   std::vector<TriedWaveform> tried = {};            ///< see OptimizeOptions::keep_tried
 

@@ -64,7 +64,7 @@ TEST(Success, IsNotAClosedStateThatIsPulledThrough_optimized) {
   const auto at = [&](const char* level) {
     return here.run({"simulate", "bridge.toml", "--quiet", "--json", "-", "--set", level});
   };
-  const Outcome leaves = at("waveform.main.level=67 V"), stays = at("waveform.main.level=63 V");
+  const Outcome leaves = at("waveform.main.level=67 V"), stays = at("waveform.main.level=62 V");
   EXPECT_EQ(parsed(leaves)["status"], "not_settled");
   EXPECT_EQ(parsed(leaves)["closed_state"]["stable"], false);
   EXPECT_EQ(leaves.status, 4);
@@ -76,6 +76,54 @@ TEST(Success, IsNotAClosedStateThatIsPulledThrough_optimized) {
                 R"(waveform.main={family="pulse",levels=["63 V","0 V"],times=["30 us"],edge="1 us"})"});
   EXPECT_EQ(parsed(opens)["status"], "not_settled") << opens.out;
   EXPECT_EQ(opens.status, 0) << opens.err;
+}
+
+TEST(Success, IsNotAVerdictThatMoreModesReverse_optimized) {
+  const Workplace here;
+  write(here.path() / "bridge.toml", bridge);
+  const std::vector<std::string> at_64{"bridge.toml", "--quiet", "--set", "waveform.main.level=64 V"};
+  const auto run = [&](const char* verb, std::vector<std::string> words, bool as_json) {
+    words.insert(words.begin(), verb);
+    if (as_json) words.insert(words.end(), {"--json", "-"});
+    return here.run(words);
+  };
+  const Outcome flips = run("simulate", at_64, true);
+  const json state = parsed(flips)["closed_state"];
+  EXPECT_EQ(flips.status, 4) << flips.out;
+  EXPECT_EQ(parsed(flips)["status"], "not_settled");
+  EXPECT_EQ(parsed(flips)["metrics"]["settled"], false);
+  EXPECT_EQ(state["stable"], false);
+  EXPECT_EQ(state["by_modes"].size(), 3U) << state;
+  EXPECT_GT(state["by_modes"]["4"], 0);
+  EXPECT_EQ(state["by_modes"]["4"], state["smallest_eigenvalue_rad2_s2"]);
+  EXPECT_LT(state["by_modes"]["8"], 0);
+  EXPECT_LT(state["by_modes"]["16"], state["by_modes"]["8"]);
+  EXPECT_NEAR(state["pulled_through_by_modes_V"]["main"]["converged"].get<double>(), 62.58, 0.05);
+  const Outcome words = run("simulate", at_64, false);
+  EXPECT_THAT(words.out.substr(0, 400), HasSubstr("Whether it stays closed depends on the number of modes"));
+  EXPECT_THAT(words.out, Not(HasSubstr("ettled                                 yes")));
+  EXPECT_EQ(run("robustness",
+                {"bridge.toml", "--quiet", "--samples", "8", "--set", "waveform.main.level=64 V", "--set",
+                 "spread.\"structure.thickness\"={distribution=\"normal\",cov=\"0.1 %\"}"},
+                true)
+                .status,
+            4);
+  // pull-in says by how much more modes move its voltages, and to what where that is above 1 %.
+  const Outcome voltages = run("pull-in", {"bridge.toml", "--quiet"}, true);
+  EXPECT_EQ(voltages.status, 0);
+  EXPECT_NEAR(parsed(voltages)["pull_in"]["by_modes"]["pulled_through_V"]["4"].get<double>(), 66.09, 0.01);
+  EXPECT_NEAR(parsed(voltages)["pull_in"]["by_modes"]["static_V"]["converged"].get<double>(),
+              parsed(voltages)["pull_in"]["static_V"].get<double>(), 0.02);
+  EXPECT_THAT(run("pull-in", {"bridge.toml", "--quiet"}, false).out,
+              AllOf(HasSubstr("(fold of the static branch); more modes move it by -0.0085 %\n"),
+                    HasSubstr("goes on to the electrode; more modes move it by -5.3 %, to 62.58 V")));
+  // A plate has no more modes.
+  write(here.path() / "plate.toml", edited(between_two, "side = \"both\"\ngap = \"3 um\"\n", ""));
+  const Outcome plate =
+      run("simulate", {"plate.toml", "--quiet", "--set", "waveform.main.level=16 V", "--set", "gap.contact=2 um"}, true);
+  EXPECT_EQ(plate.status, 0) << plate.out << plate.err;
+  EXPECT_TRUE(parsed(plate)["closed_state"]["by_modes"].is_null());
+  EXPECT_TRUE(parsed(plate)["closed_state"]["pulled_through_by_modes_V"].is_null());
 }
 
 TEST(Success, OfALimitSaysFirstThatTheHoldLevelsPullTheSwitchThrough_slow) {

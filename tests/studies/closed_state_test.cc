@@ -122,7 +122,7 @@ TEST(ClosedState, SmallestEigenvalueIsThatOfDifferences) {
 TEST(ClosedState, BelowThePullThroughVoltageAPushedBeamComesBack) {
   ASSERT_TRUE(std::isfinite(pulled_through()));
   // An electrode that is moved by a hundredth of its length pushes the beam to one side.
-  for (const double share : {0.98, 1.03}) {
+  for (const double share : {0.93, 1.03}) {
     const PreparedScene p = prepare(bridge({level(share * pulled_through()), "electrode.main.span=[\"42 um\", \"260 um\"]",
                                             "simulate.duration=3 ms", "simulate.tolerance=1e-7"}));
     const Closing c = simulate(p, false);
@@ -132,7 +132,7 @@ TEST(ClosedState, BelowThePullThroughVoltageAPushedBeamComesBack) {
 }
 
 TEST(ClosedState, ThatIsUnstableHasNotSettledAndHoldsNothing) {
-  const PreparedScene stable = prepare(bridge({level(0.97 * pulled_through())}));
+  const PreparedScene stable = prepare(bridge({level(0.93 * pulled_through())}));  // with more modes, too
   const Closing stays = simulate(stable, true);
   EXPECT_TRUE(stays.metrics.settled);
   EXPECT_GT(stays.metrics.hold_force, 0);
@@ -148,11 +148,14 @@ TEST(ClosedState, ThatIsUnstableHasNotSettledAndHoldsNothing) {
   EXPECT_THAT(leaves.warnings, testing::Contains(HasSubstr("closed equilibrium is unstable")));
 }
 
-TEST(ClosedState, OfOneModeBetweenTwoClampsIsNotJudged) {
-  const ClosedState state = state_at(bridge({level(1.03 * pulled_through()), "structure.modes=1"}));
+TEST(ClosedState, OfOneModeBetweenTwoClampsIsJudgedByMore) {
+  const SceneFile file = bridge({level(1.2 * pulled_through()), "structure.modes=1"});
+  const ClosedState state = state_at(file);
   EXPECT_TRUE(state.exists);
-  EXPECT_FALSE(state.stable.has_value());
-  EXPECT_EQ(warning(state), "");
+  EXPECT_GT(state.smallest_eigenvalue, 0) << "one mode has no motion to one side";
+  EXPECT_EQ(state.stable, false);
+  EXPECT_THAT(warning(state), HasSubstr("do not keep the switch closed"));
+  EXPECT_FALSE(simulate(prepare(file), false).metrics.settled);
 }
 
 TEST(ClosedState, DevicesThatAreNotHeldHaveNotSettled) {

@@ -1,0 +1,210 @@
+#include "studies/closing/by_modes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "base/engineering.h"
+
+namespace softland {
+namespace {
+
+constexpr double found_to = 1e-5;  // relative: what a voltage is found to with more modes
+
+// What values with ever more modes tend to. Three of numbers of modes that double make a geometric series (Aitken); the last is
+// taken where it hardly differs from the one before, or has all modes that there are and little left to go.
+double extrapolated(const std::map<int, double>& values) {
+  constexpr double rounding = 3 * found_to, fastest = 0.5, left = 0.02;  // changes of the last value, and their ratio
+  if (values.size() < 2) return std::nan("");
+  const auto last = std::prev(values.end()), before = std::prev(last);
+  const double change = last->second - before->second, size = std::abs(last->second);
+  if (std::abs(change) <= rounding * size) return last->second;
+  if (values.size() == 3 && values.begin()->first * 4 == last->first) {
+    const double ratio = change / (before->second - values.begin()->second);
+    return std::abs(ratio) <= fastest ? last->second + change * ratio / (1 - ratio) : std::nan("");
+  }
+  return last->first == most_static_modes && std::abs(change) <= left * size ? last->second : std::nan("");
+}
+
+// One voltage by modes: find(switch) is asked of one switch after the other, and of the finest one where the others leave much to
+// be extrapolated.
+template <class Find>
+ByModes voltage_by_modes(const ModeLadder& ladder, Find&& find) {
+  constexpr double much = 5e-3;  // of the voltage, between the last two
+  std::map<int, double> values;
+  double change = 0, last = std::nan("");
+  const auto add = [&](const Switch& model) {
+    const double here = find(model);
+    change = std::abs(here - last) / std::abs(here);
+    values[static_cast<int>(model.modes())] = last = here;
+  };
+  for (const Switch* model : ladder.switches()) add(*model);
+  if (change > much && values.size() == 3 && values.rbegin()->first < most_static_modes) add(ladder.finest());
+  return by_modes(std::move(values));
+}
+
+// An equilibrium of fewer modes as the beginning of one of more.
+ClosedEquilibrium with_modes_of(ClosedEquilibrium closed, const Switch& model) {
+  closed.q.conservativeResizeLike(Eigen::VectorXd::Zero(model.modes()));
+  return closed;
+}
+
+StabilityByModes judged_stability(const std::vector<const Switch*>& switches, const std::vector<double>& eigenvalues) {
+  StabilityByModes found;
+  std::map<int, double> values;
+  bool any = false, all = true;
+  for (std::size_t k = 0; k < switches.size(); ++k) {
+    const auto modes = static_cast<int>(switches[k]->modes());
+    values[modes] = eigenvalues[k];
+    if (std::isfinite(eigenvalues[k]) && !judges_stability(*switches[k])) continue;
+    const bool yes = eigenvalues[k] > 0;
+    found.stable = found.stable.value_or(true) && yes;
+    any = any || yes;
+    all = all && yes;
+  }
+  found.eigenvalues = by_modes(std::move(values));
+  if (any && all && found.eigenvalues.converged <= 0) found.stable = all = false;
+  found.flips = any && !all;
+  return found;
+}
+
+std::string mode_warning(const Scene& scene, std::size_t electrode, const ByModes& voltage) {
+  constexpr int digits = 5;
+  return fmt::format(
+      "structure.modes = {}: more modes move the static pull-in voltage of electrode {}, {}, by {}; dynamic pull-in "
+      "and release are as uncertain",
+      scene.device.structure.modes, scene.device.electrodes[electrode].name,
+      engineering(voltage.values.begin()->second, "V", digits), shift_words(voltage));
+}
+
+}  // namespace
+
+ByModes by_modes(std::map<int, double> values) {
+  const double converged = extrapolated(values);
+  return {.values = std::move(values), .converged = converged};
+}
+
+double ByModes::moved() const {
+  if (values.size() < 2) return 0;
+  const double own = values.begin()->second, last = values.rbegin()->second;
+  if (std::isfinite(own) != std::isfinite(last)) return std::numeric_limits<double>::infinity();
+  return (std::isfinite(converged) ? converged : last) / own - 1;
+}
+
+bool ByModes::is_worth_telling() const { return std::abs(moved()) > mode_shift_worth_telling; }
+
+ModeLadder::ModeLadder(const Scene& scene, const Switch& own) : scene_(&scene), own_(&own) {
+  const Structure& s = own.device().structure;
+  if (s.kind == StructureKind::plate || s.kind == StructureKind::modes) return;
+  for (const int modes : {2 * s.modes, 4 * s.modes}) {
+    const int most = richer_.empty() ? s.modes : static_cast<int>(richer_.back().modes());
+    if (std::min(modes, most_static_modes) > most) richer_.push_back(with(std::min(modes, most_static_modes)));
+  }
+}
+
+Switch ModeLadder::with(int modes) const {
+  const SimulateOptions& asked = scene_->simulate;
+  SwitchOptions options = quadrature_for(asked.tolerance > 0 ? SimulateOptions{}.accuracy : asked.accuracy, modes);
+  options.modes = modes;
+  return Switch(scene_->device, options);
+}
+
+std::vector<const Switch*> ModeLadder::switches() const {
+  std::vector<const Switch*> all{own_};
+  for (const Switch& one : richer_) all.push_back(&one);
+  return all;
+}
+
+const Switch& ModeLadder::finest() const {
+  if (!finest_) finest_ = with(most_static_modes);
+  return *finest_;
+}
+
+std::vector<std::optional<ClosedEquilibrium>> closed_equilibria(const ModeLadder& ladder, std::span<const double> volts) {
+  std::vector<std::optional<ClosedEquilibrium>> all;
+  for (const Switch* model : ladder.switches()) {
+    const bool has_near = !all.empty() && all.back();
+    all.push_back(has_near ? closed_equilibrium_near(*model, volts, with_modes_of(*all.back(), *model))
+                           : closed_equilibrium(*model, volts));
+  }
+  return all;
+}
+
+StabilityByModes stability(const ModeLadder& ladder, std::span<const std::optional<ClosedEquilibrium>> closed) {
+  std::vector<double> eigenvalues;
+  for (const auto& one : closed) eigenvalues.push_back(one ? one->smallest_eigenvalue : std::nan(""));
+  return judged_stability(ladder.switches(), eigenvalues);
+}
+
+StabilityByModes open_stability(const ModeLadder& ladder, std::span<const double> volts) {
+  std::vector<double> eigenvalues;
+  for (const Switch* model : ladder.switches()) {
+    const std::optional<Eigen::VectorXd> open = model->open_equilibrium(volts);
+    eigenvalues.push_back(open ? open_tangent_eigenvalue(*model, *open, volts) : std::nan(""));
+  }
+  return judged_stability(ladder.switches(), eigenvalues);
+}
+
+ByModes static_pull_in_by_modes(const ModeLadder& ladder, const Scene& scene, std::size_t electrode) {
+  return voltage_by_modes(
+      ladder, [&](const Switch& model) { return static_pull_in(model, electrode, bias_of(scene, electrode)).voltage; });
+}
+
+ByModes pulled_through_by_modes(const ModeLadder& ladder, std::size_t electrode, std::vector<double> volts, double own) {
+  constexpr double below = 0.95;  // of the voltage with fewer modes
+  std::optional<ClosedEquilibrium> near;
+  double found = own;
+  return voltage_by_modes(ladder, [&](const Switch& model) {
+    if (&model != ladder.switches().front()) {
+      if (std::isfinite(found)) volts[electrode] = below * found;
+      near = near ? closed_equilibrium_near(model, volts, with_modes_of(*near, model)) : closed_equilibrium(model, volts);
+      found = near ? pull_through_voltage_near(model, electrode, volts, *near, found_to)
+                   : pull_through_voltage(model, electrode, volts, found_to);
+    }
+    return found;
+  });
+}
+
+VoltagesByModes voltages_by_modes(const ModeLadder& ladder, const Scene& scene, std::size_t electrode, double pulled_through) {
+  VoltagesByModes found{.static_pull_in = static_pull_in_by_modes(ladder, scene, electrode), .release = {}, .pulled_through = {}};
+  if (!ladder.switches().front()->has_contact()) return found;
+  std::vector<double> levels = bias_of(scene, electrode);
+  found.release = voltage_by_modes(ladder, [&](const Switch& model) { return release_voltage(model, electrode, levels); });
+  levels[electrode] = found.release.values.begin()->second;
+  if (std::isfinite(levels[electrode])) found.pulled_through = pulled_through_by_modes(ladder, electrode, levels, pulled_through);
+  return found;
+}
+
+std::string shift_words(const ByModes& voltage) {
+  constexpr int digits = 5;
+  constexpr double least = 1e-5;
+  const double moved = voltage.moved();
+  if (std::isnan(moved)) return {};
+  if (std::isinf(moved)) {
+    const auto [modes, last] = *voltage.values.rbegin();
+    return std::isfinite(last) ? fmt::format("to {} with {} modes, from none", engineering(last, "V", digits), modes)
+                               : fmt::format("to none with {} modes", modes);
+  }
+  if (std::abs(moved) < least) return "less than 0.001 %";
+  const std::string share = engineering(100 * moved, "%", 2);
+  if (!voltage.is_worth_telling()) return share;
+  if (std::isfinite(voltage.converged)) return fmt::format("{}, to {}", share, engineering(voltage.converged, "V", digits));
+  return fmt::format("{} and on, to {} with {} modes", share, engineering(voltage.values.rbegin()->second, "V", digits),
+                     voltage.values.rbegin()->first);
+}
+
+std::vector<std::string> mode_warnings(const PreparedScene& prepared) {
+  std::vector<std::string> warnings;
+  const ModeLadder ladder(prepared);
+  if (!ladder.exists()) return warnings;
+  for (std::size_t k = 0; k < prepared.scene.device.electrodes.size(); ++k) {
+    if (!pulls_in(prepared.scene.device, k)) continue;
+    const ByModes voltage = static_pull_in_by_modes(ladder, prepared.scene, k);
+    if (voltage.is_worth_telling()) warnings.push_back(mode_warning(prepared.scene, k, voltage));
+  }
+  return warnings;
+}
+
+}  // namespace softland
