@@ -130,7 +130,7 @@ TEST(Simulate, PrintsTheAgreedJsonAndNothingElse) {
     EXPECT_TRUE(j["errors"][chaotic].is_null()) << chaotic << ": two runs cannot tell its range";
   }
   EXPECT_GT(j["errors"]["impact_velocity_m_s"], 0);
-  EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"static_V", "dynamic_V"}));
+  EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"static_V", "dynamic_V", "by_modes"}));
   EXPECT_EQ(keys(j["work"]), (std::set<std::string>{"integrator", "steps", "rhs_evaluations", "wall_s"}));
   EXPECT_EQ(j["natural_frequencies_rad_s"].size(), 4U);
   EXPECT_TRUE(j["metrics"]["peak_slew_V_s"].is_null()) << "a jump has no finite slew";
@@ -255,8 +255,8 @@ TEST(PullIn, PrintsTheAgreedJson) {
   const json j = json::parse(o.out);
   EXPECT_EQ(keys(j), (std::set<std::string>{"status", "pull_in", "electrodes", "stable_path"}));
   EXPECT_EQ(j["electrodes"], (json{{"main", {{"status", j["status"]}, {"pull_in", j["pull_in"]}}}}));
-  EXPECT_EQ(keys(j["pull_in"]),
-            (std::set<std::string>{"static_V", "static_kind", "deflection_m", "dynamic_V", "release_V", "pulled_through_V"}));
+  EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"static_V", "static_kind", "deflection_m", "dynamic_V", "release_V",
+                                                       "pulled_through_V", "by_modes"}));
   EXPECT_EQ(j["status"], "done");
   EXPECT_LT(j["pull_in"]["dynamic_V"], j["pull_in"]["static_V"]);
   EXPECT_LT(j["pull_in"]["release_V"], j["pull_in"]["static_V"]);

@@ -249,7 +249,7 @@ TEST(ByModes, OfEveryVerdictAgreeOrAreTold_optimized) {
   EXPECT_FALSE(expect_told(held_in_the_middle(1.01 * with_four, 4)));
 }
 
-TEST(ByModes, LeaveAutomaticModesNoClosedStateThatIsNotJudged) {
+TEST(ByModes, LeaveAutomaticModesNoClosedStateThatIsNotJudged_optimized) {
   SceneFile file = held_in_the_middle(50, 1);
   const PreparedScene one = prepare(file);
   const ByModes through =
@@ -258,6 +258,7 @@ TEST(ByModes, LeaveAutomaticModesNoClosedStateThatIsNotJudged) {
   for (const double share : {0.95, 1.02}) {
     file = held_in_the_middle(share * last, 1);
     file.set("structure.modes=auto");
+    file.set("simulate.accuracy=1e-3");
     const AutoModes chosen = choose_modes(file);
     EXPECT_GT(chosen.modes, 1) << share;
     const PreparedScene p = prepare(held_in_the_middle(share * last, chosen.modes));

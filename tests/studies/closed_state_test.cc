@@ -149,7 +149,7 @@ TEST(ClosedState, ThatIsUnstableHasNotSettledAndHoldsNothing) {
 }
 
 TEST(ClosedState, OfOneModeBetweenTwoClampsIsJudgedByMore) {
-  const SceneFile file = bridge({level(1.2 * pulled_through()), "structure.modes=1"});
+  const SceneFile file = bridge({level(1.2 * pulled_through()), "structure.modes=1", "simulate.accuracy=1e-3"});
   const ClosedState state = state_at(file);
   EXPECT_TRUE(state.exists);
   EXPECT_GT(state.smallest_eigenvalue, 0) << "one mode has no motion to one side";
