@@ -249,6 +249,21 @@ TEST(ByModes, OfEveryVerdictAgreeOrAreTold_optimized) {
   EXPECT_FALSE(expect_told(held_in_the_middle(1.01 * with_four, 4)));
 }
 
+// So damped that no step overshoots: at 264 V it stays open with 4 modes, whose pull-in voltage is 271.3 V; it is 256.5 V.
+TEST(ByModes, OfASwitchThatOnlyFewKeepOpenAreTold) {
+  SceneFile file = bridge(10, "4");
+  file.set("gas={ model = \"linear\", quality_factor = 0.2 }");
+  file.set("simulate.accuracy=1e-3");
+  const auto at = [&](const char* level) {
+    file.set(std::string("waveform.main.level=") + level);
+    return simulate(prepare(file), false);
+  };
+  EXPECT_EQ(at("250 V").metrics.status, Status::open);
+  const Closing closing = at("264 V");
+  EXPECT_EQ(closing.metrics.status, Status::no_contact);
+  EXPECT_THAT(closing.warnings, Contains(HasSubstr("whether the switch stays open depends on the number of modes")));
+}
+
 TEST(ByModes, LeaveAutomaticModesNoClosedStateThatIsNotJudged_optimized) {
   SceneFile file = held_in_the_middle(50, 1);
   const PreparedScene one = prepare(file);
