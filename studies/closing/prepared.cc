@@ -88,11 +88,6 @@ std::string begins_elsewhere(const DriveWaveforms& waveforms, const std::map<std
 // The cheapest that deliver on random scenes: results/accuracy.md.
 double tolerance_for(double accuracy, bool stiff) { return std::clamp(accuracy / 10, 1e-12, stiff ? 1e-4 : 1e-3); }
 
-SwitchOptions quadrature_for(double accuracy, int modes) {
-  constexpr double points_per_digit = 4, fewest = 8;  // and two to a mode, which has about half a wave more than the last
-  return {.points_per_length = std::max({fewest, points_per_digit * -std::log10(accuracy), 2.0 * modes + 4})};
-}
-
 namespace {
 
 constexpr double longest_window = 1e3;  // [s], as the longest simulate.duration
@@ -239,8 +234,15 @@ bool take_limits_at_rest(PreparedScene& p, std::size_t electrode, const PullInFi
 PreparedScene prepare(const SceneFile& file, bool default_limits, const Watch& watch, const PullInFinder& find_pull_in) {
   const Scene scene = read_scene(file);
   const double accuracy = scene.simulate.tolerance > 0 ? SimulateOptions{}.accuracy : scene.simulate.accuracy;
-  const SwitchOptions quadrature = quadrature_for(accuracy, scene.device.structure.modes);
-  PreparedScene p{.scene = scene, .model = Switch(scene.device, quadrature), .quadrature = quadrature};
+  ResolvedSwitch resolved = resolved_switch(scene.device, accuracy);
+  PreparedScene p{
+      .scene = scene, .model = std::move(resolved.model), .quadrature = resolved.quadrature, .quadrature_accuracy = accuracy};
+  if (resolved.error > accuracy) {
+    p.scene.warnings.push_back(
+        fmt::format("the loads at touch are integrated along the structure to {} only, not to accuracy {}: more quadrature "
+                    "points do not help",
+                    engineering(resolved.error, "", 1), engineering(accuracy, "")));
+  }
   if (std::string warning = slenderness_warning(scene.device.structure); !warning.empty()) {
     p.scene.warnings.push_back(std::move(warning));
   }

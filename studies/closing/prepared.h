@@ -14,6 +14,7 @@
 #include "config/scene.h"
 #include "model/pull_in.h"
 #include "model/switch.h"
+#include "studies/closing/quadrature.h"
 #include "waveforms/signal.h"
 
 namespace softland {
@@ -42,6 +43,7 @@ struct PreparedScene {
   double duration = 0;   ///< window [s]
   double tolerance = 0;  ///< of the integrator
   SwitchOptions quadrature = {};
+  double quadrature_accuracy = 0;  ///< that it was chosen for
   /// Where the scene says effects = "auto": what it describes and what was left out. The scene above is the one without.
   std::shared_ptr<const DescribedEffects> effects = {};
 
@@ -83,9 +85,8 @@ struct PreparedScene {
 [[nodiscard]] std::string begins_elsewhere(const DriveWaveforms& waveforms, const std::map<std::string, double>& before,
                                            const PreparedScene& scene);
 
-/// Integrator tolerance and quadrature that deliver a relative `accuracy` of t_i, v_i, B_H and the peak force.
+/// Integrator tolerance that delivers a relative `accuracy` of t_i, v_i, B_H and the peak force.
 [[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: with a compressible film
-[[nodiscard]] SwitchOptions quadrature_for(double accuracy, int modes);
 
 /// Finds the pull-in voltages of an electrode of a switch, by its number, under a bias of the other drives: electrode_pull_in(),
 /// or who remembers what that has found.

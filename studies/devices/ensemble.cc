@@ -136,10 +136,11 @@ void DeviceBuilder::describe(SampledDevice& device) {
         if (!key.drive) key.member(scratch_) = DeviceSpread::value(variable, key, device.values[i]);
       }
     }
-    device.model.emplace(scratch_.device, nominal.quadrature, &nominal.model);
+    device.model.emplace(switch_like(scratch_.device, nominal.model, nominal.quadrature, nominal.quadrature_accuracy));
     return;
   }
-  device.model.emplace(read_scene(ensemble_->scene(device.values)).device, nominal.quadrature, &nominal.model);
+  const Device own = read_scene(ensemble_->scene(device.values)).device;
+  device.model.emplace(switch_like(own, nominal.model, nominal.quadrature, nominal.quadrature_accuracy));
 }
 
 double closing_time(const Switch& model, std::size_t drive, double step, Bias bias, double duration) {

@@ -27,9 +27,11 @@ constexpr double ranking_accuracy = 1e-4;
 
 PreparedScene for_ranking(const PreparedScene& given) {
   PreparedScene coarse = given;
-  coarse.quadrature.points_per_length = std::min(
-      given.quadrature.points_per_length, quadrature_for(ranking_accuracy, given.scene.device.structure.modes).points_per_length);
-  coarse.model = Switch(coarse.scene.device, coarse.quadrature);
+  ResolvedSwitch ranking = resolved_switch(given.scene.device, ranking_accuracy);
+  if (ranking.model.quadrature().points() >= given.model.quadrature().points()) return coarse;
+  coarse.model = std::move(ranking.model);
+  coarse.quadrature = ranking.quadrature;
+  coarse.quadrature_accuracy = ranking_accuracy;
   return coarse;
 }
 

@@ -1,0 +1,33 @@
+// How many quadrature points a switch takes.
+//
+// Loads grow as 1/h^2 and faster, so that they are steepest where the beam comes next to an electrode: a dip of gap h and
+// curvature h'' is sqrt(2 h / h'') wide. On the way to the contact that is at touch. There the points are checked by doubling.
+#pragma once
+
+#include "model/switch.h"
+
+namespace softland {
+
+/// What a smooth load takes at a relative accuracy.
+[[nodiscard]] SwitchOptions quadrature_for(double accuracy, int modes);
+/// Twice the points.
+[[nodiscard]] SwitchOptions finer_than(const SwitchOptions& quadrature);
+
+/// Relative difference of the loads in a state q between two quadratures of one switch, in the norm of the static energy: the
+/// largest of every drive and of the gas.
+[[nodiscard]] double load_difference(const Switch& one, const Switch& other, const Eigen::VectorXd& q);
+
+/// A switch whose quadrature delivers a relative accuracy at touch.
+struct ResolvedSwitch {
+  Switch model;
+  SwitchOptions quadrature;
+  double error = 0;  ///< relative, of the loads at touch
+};
+/// Has few points that do, from quadrature_for(accuracy, modes) on. Where more points do not help, since the loads are not
+/// smooth, `error` is above `accuracy`.
+[[nodiscard]] ResolvedSwitch resolved_switch(const Device& device, double accuracy);
+/// A device that varies from a nominal one whose `quadrature` delivers `accuracy`: with that quadrature, or with a finer one
+/// where it touches nearer to the electrode.
+[[nodiscard]] Switch switch_like(const Device& device, const Switch& nominal, const SwitchOptions& quadrature, double accuracy);
+
+}  // namespace softland
