@@ -132,7 +132,7 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
 Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
   Closing c = simulate(prepared, true, watch);
   if (!c.judge) return c;
-  if (c.judge->status != Status::done) {
+  if (!c.judge->came_to_its_end) {
     c.warnings.emplace_back("the figures could not be certified: there is no other run to judge them by");
     return c;
   }
@@ -153,7 +153,7 @@ Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
     c.warnings.insert(c.warnings.begin(), "interrupted before the figures were certified");
     return c;
   }
-  std::erase_if(cloud, [](const Trajectory& t) { return t.status != Status::done; });
+  std::erase_if(cloud, [](const Trajectory& t) { return !came_to_its_end(t); });
   std::vector<Metrics> runs;
   for (Trajectory& t : cloud) {
     t.hold_force = c.trajectory.hold_force;  // that of the closed equilibrium, which one part in 1e7 does not move

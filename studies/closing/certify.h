@@ -42,7 +42,8 @@ inline constexpr double error_safety = 3;
 /// The first rebound in which runs differ, named by what made them differ. None for runs that do not.
 [[nodiscard]] std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, const MetricsOptions& options);
 
-/// Runs the scene's own waveforms with simulate() and certifies the figures; not those of a run, or of a judge, that is not done.
+/// Runs the scene's own waveforms with simulate() and certifies the figures; not those of a run, or of a judge, that
+/// did not come to its end.
 /// `jobs`: threads for the cloud; does not change the result.
 [[nodiscard]] Closing certify(const PreparedScene& prepared, const Watch& watch = {}, int jobs = 1);
 

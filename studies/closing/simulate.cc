@@ -117,7 +117,6 @@ double error(const Run& run, const Run& other, const PreparedScene& prepared) {
 }
 
 constexpr double tighter_by = 100;
-constexpr int finer_by = 2;
 constexpr double loosest_tolerance = 0.1;     // that simulate_closing takes
 constexpr double least_tolerance = 0.99e-13;  // beyond which rounding decides; 1e-13 itself as quotients give it
 // Of a fifth-order method 2.5 times the steps are to be expected; what needs this many more is not waited for.
@@ -139,26 +138,24 @@ class ClosingRuns {
   Run as_asked() { return run(prepared_.model, prepared_.tolerance, prepared_.quadrature, ClosingOptions{}.max_steps); }
 
   Run tighter_than(const Run& r) {
-    const SwitchOptions finer{.points_per_length = finer_by * r.quadrature.points_per_length,
-                              .points_per_panel = finer_by * r.quadrature.points_per_panel};
-    return run(Switch(prepared_.scene.device, finer), r.tolerance / tighter_by, finer,
+    const SwitchOptions finer = finer_than(r.quadrature);
+    return run(Switch(prepared_.scene.device, finer), std::max(r.tolerance / tighter_by, least_tolerance), finer,
                most_growth * (least_steps + r.trajectory.work.steps));
   }
 
   Run judge_of(const Run& r) {
     if (!can_tighten(r)) return looser_than(r);
     Run tighter = tighter_than(r);
-    return tighter.trajectory.status == Status::done || watch_.stopped() ? std::move(tighter) : looser_than(r);
+    return came_to_its_end(tighter.trajectory) || watch_.stopped() ? std::move(tighter) : looser_than(r);
   }
 
- private:
   Run looser_than(const Run& r) {
-    const SwitchOptions coarser{.points_per_length = r.quadrature.points_per_length / finer_by,
-                                .points_per_panel = std::max(1, r.quadrature.points_per_panel / finer_by)};
-    return run(Switch(prepared_.scene.device, coarser), std::min(loosest_tolerance, r.tolerance * tighter_by), coarser,
+    const SwitchOptions finer = finer_than(r.quadrature);
+    return run(Switch(prepared_.scene.device, finer), std::min(loosest_tolerance, r.tolerance * tighter_by), finer,
                ClosingOptions{}.max_steps);
   }
 
+ private:
   Run run(const Switch& model, double tolerance, const SwitchOptions& quadrature, long max_steps) {
     Run r{.tolerance = tolerance, .quadrature = quadrature};
     const std::string what =
@@ -194,24 +191,39 @@ class ClosingRuns {
 struct JudgedRun {
   Run own, judge;
   double error;
+  const char* why;  // the error is no less
 };
 
 // Finds the judge of a run. Where runs may be tightened the judge takes the place of the run, and has one of its own, until the
-// error is within the accuracy asked for or that no longer helps.
+// error is within the accuracy asked for or that no longer helps: then the tightest run is delivered, and a looser one judges it.
+// Where rounding forbids a tighter integrator the quadrature alone is refined.
 JudgedRun with_judge(Run own, ClosingRuns& runs, const PreparedScene& prepared, bool may_tighten) {
+  const double accuracy = prepared.scene.simulate.accuracy;
   Run judge = runs.judge_of(own);
   double e = error(own, judge, prepared);
-  for (int vain = 0; may_tighten && e > prepared.scene.simulate.accuracy && vain < most_in_vain &&
-                     judge.trajectory.status == Status::done && judge.tolerance < own.tolerance && can_tighten(judge);) {
+  const char* why = can_tighten(own) ? "and no tighter run comes to its end" : "and rounding forbids a tighter run";
+  const auto judge_is_tighter = [&] { return came_to_its_end(judge.trajectory) && judge.tolerance < own.tolerance; };
+  for (int vain = 0; may_tighten && e > accuracy && judge_is_tighter();) {
+    why = "for so small a change decides it";
+    if (vain == most_in_vain) break;
     Run next = runs.tighter_than(judge);
-    if (next.trajectory.status != Status::done) break;
+    if (!came_to_its_end(next.trajectory)) break;
     const double less = error(judge, next, prepared);
     vain = less < helps * e ? 0 : vain + 1;
     e = less;
     own = std::move(judge);
     judge = std::move(next);
   }
-  return {.own = std::move(own), .judge = std::move(judge), .error = e};
+  constexpr double enough = 0.2;  // of a tolerance, for a run to tell the error that it leaves
+  if (judge_is_tighter() && e > accuracy && may_tighten) std::swap(own, judge);
+  const double ratio = judge.tolerance / own.tolerance;
+  if (came_to_its_end(judge.trajectory) && ratio > enough && ratio < 1 / enough) {  // it judges the quadrature alone
+    if (ratio <= 1) own = std::move(judge);
+    judge = runs.looser_than(own);
+    e = error(own, judge, prepared);
+    why = "and rounding forbids a tighter run";
+  }
+  return {.own = std::move(own), .judge = std::move(judge), .error = e, .why = why};
 }
 
 // In one digit, or as many as tell it from a bound that it is above.
@@ -238,9 +250,7 @@ void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared,
                     engineering(accuracy, ""), engineering(own.tolerance, "", 1),
                     std::isfinite(run.error) ? fmt::format("still known to {} only", in_telling_digits(run.error, accuracy))
                                              : "not known at all",
-                    is_tighter         ? "for so small a change decides it"
-                    : can_tighten(own) ? "and no tighter run comes to its end"
-                                       : "and rounding forbids a tighter run"));
+                    run.why));
   }
   const double moved = std::abs(own.metrics.bounce_time - judge.metrics.bounce_time);
   if (own.metrics.bounce_count != judge.metrics.bounce_count || moved > 0.01 * std::abs(own.metrics.bounce_time)) {
@@ -290,6 +300,10 @@ void say_interrupted(Closing& c) {
 
 }  // namespace
 
+bool came_to_its_end(const Trajectory& run) {
+  return run.status == Status::done || (run.status == Status::collapsed_onto_electrode && !run.touches.empty());
+}
+
 void allow_for_residual(FigureValues& errors, const Trajectory& run) {
   double& drive_energy = errors[&Metrics::drive_energy];
   if (drive_energy < run.energy_error) drive_energy = run.energy_error;
@@ -308,15 +322,16 @@ Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watc
   if (may_tighten && best.trajectory.status == Status::numerical_failure && can_tighten(best)) best = runs.tighter_than(best);
 
   Closing c;
-  if (estimate_errors && best.trajectory.status == Status::done) {
+  if (estimate_errors && came_to_its_end(best.trajectory)) {
     JudgedRun run = with_judge(std::move(best), runs, prepared, may_tighten);
     const Run& judge = run.judge;
     c.judge = {.status = judge.trajectory.status,
+               .came_to_its_end = came_to_its_end(judge.trajectory),
                .message = judge.trajectory.message,
                .metrics = judge.metrics,
                .tolerance = judge.tolerance,
                .quadrature = judge.quadrature};
-    if (judge.trajectory.status == Status::done) {
+    if (c.judge->came_to_its_end) {
       add_errors(c, run, prepared, may_tighten);
     } else if (!watch.stopped()) {
       c.warnings.push_back(fmt::format(

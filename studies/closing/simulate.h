@@ -19,10 +19,11 @@ namespace softland {
 struct Certificate;
 
 /// The run that judges another: a hundredth of its tolerance, twice its quadrature points. Where rounding leaves no room for
-/// that, or such a run fails, a hundred times its tolerance and half its points: the difference is then the error of the judge.
+/// that, or such a run fails, a hundred times its tolerance: the difference is then the integration error of the judge.
 struct Judge {
   Status status = Status::not_run;
-  std::string message = {};  ///< why, where it is not done
+  bool came_to_its_end = false;
+  std::string message = {};  ///< why not
   Metrics metrics;
   double tolerance = 0;
   SwitchOptions quadrature;
@@ -50,6 +51,10 @@ struct Closing {
 
 /// A stated error is this often the difference of two runs, of which the tighter one errs as well.
 inline constexpr double stated_safety = 2;
+
+/// Whether the figures of a run can be judged by another: it ran through its window, or it touched and was then pulled onto the
+/// electrode, which leaves t_i and v_i.
+[[nodiscard]] bool came_to_its_end(const Trajectory& run);
 
 /// What a run misses in the balance of its energies its drives may have given: no error of the drive energy is less.
 void allow_for_residual(FigureValues& errors, const Trajectory& run);
@@ -90,10 +95,10 @@ void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const st
 /// Runs the scene's own waveforms. With `estimate_errors` a second, tighter run measures the error of each figure; where a scene
 /// asks for an accuracy that t_i, v_i, B_H or the peak force do not have (relative; B_H to at least the significant rebound, the
 /// force to at least least_peak_force()), tolerance and quadrature are tightened until they have, or until that no longer
-/// helps. No run is its own judge, and no error is 0. Asked to stop, the status of the figures is interrupted: they are those of
-/// the last run that was complete, without errors, or of the part of the first one that was run. A switch that is not held (see
-/// set_hold()) has not settled, however quiet it is at the end of the window. One that has not touched, and was not meant to (see
-/// stays_open()), has the status `open`.
+/// helps; the figures are then those of the tightest run. No run is its own judge, and no error is 0. Asked to stop, the status
+/// of the figures is interrupted: they are those of the last run that was complete, without errors, or of the part of the first
+/// one that was run. A switch that is not held (see set_hold()) has not settled, however quiet it is at the end of the window.
+/// One that has not touched, and was not meant to (see stays_open()), has the status `open`.
 [[nodiscard]] Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watch& watch = {});
 
 }  // namespace softland
