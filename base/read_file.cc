@@ -60,7 +60,7 @@ class Descriptor {
 
 }  // namespace
 
-std::string read_file(const std::filesystem::path& path) {
+std::string look_into(const std::filesystem::path& path) {
   const std::string name = path.string();
   const auto check = [&](bool done) {
     if (!done) throw InvalidInput(name + ": cannot be read: " + std::generic_category().message(errno));
@@ -81,6 +81,11 @@ std::string read_file(const std::filesystem::path& path) {
     require(content.size() <= largest_file,
             name + ": is too large, it must have at most " + std::to_string(largest_file >> 20) + " MiB");
   }
+  return content;
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  std::string content = look_into(path);
   mark_as_read(path);
   return content;
 }

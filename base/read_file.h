@@ -14,6 +14,9 @@ inline constexpr std::size_t largest_file = std::size_t{64} << 20;
 /// (a folder, a device, a pipe: it is not waited for), or is larger than `largest_file`.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
+/// The same of a file that is no input of this run: results may replace it.
+[[nodiscard]] std::string look_into(const std::filesystem::path& path);
+
 /// For files that others read, such as databases.
 void mark_as_read(const std::filesystem::path& path);
 

@@ -100,8 +100,8 @@ std::string generator_text(const GeneratorFormat& format, const PreparedScene& p
 std::vector<std::string> sampled_words(const PreparedScene& sampled, const PreparedScene* drawn, const std::string& drive,
                                        const Watch& watch) {
   const Closing as_sampled = simulate(sampled, false, watch);
-  std::vector<std::string> all{
-      fmt::format("as sampled, {}, on the nominal design: {}", words(sampled.drives.at(drive).source), clause(sampled, as_sampled))};
+  std::vector<std::string> all{fmt::format("as sampled, {}, on the nominal design: {}", words(sampled.drives.at(drive).source),
+                                           clause(sampled, as_sampled))};
   if (drawn == nullptr) return all;
   const Closing as_drawn = simulate(*drawn, false, watch);
   if (is_worse(as_sampled.metrics, as_drawn.metrics))

@@ -40,8 +40,8 @@ void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const
 [[nodiscard]] std::string generator_text(const GeneratorFormat& format, const PreparedScene& prepared, const std::string& drive,
                                          const Signal& told, const Sampling& sampling);
 
-/// How the nominal design closes under the samples of a drive, and a warning where it does not as well as under the waveform that they
-/// were taken of; null: that is not there without them.
+/// How the nominal design closes under the samples of a drive, and a warning where it does not as well as under the waveform that
+/// they were taken of; null: that is not there without them.
 [[nodiscard]] std::vector<std::string> sampled_words(const PreparedScene& sampled, const PreparedScene* drawn,
                                                      const std::string& drive, const Watch& watch);
 

@@ -23,6 +23,7 @@
 #include "apps/stores.h"
 #include "apps/streams.h"
 #include "apps/verbs/verbs.h"
+#include "base/read_file.h"
 #include "base/shell_word.h"
 #include "config/assumed_spread.h"
 #include "optimizers/problem.h"
@@ -254,11 +255,12 @@ int run_seeds(const Common& c, StoredSearch& search, const std::optional<KnownSe
 // Says so where the folder holds what was found for another scene: all of it gives way to the results of this search.
 void tell_of_another_scene(const fs::path& folder, const SceneFile& scene) {
   try {
-    const std::string held = read_scene(SceneFile::load((folder / "best.toml").string())).title;
-    if (held != read_scene(scene).title)
+    const fs::path best = folder / "best.toml";
+    const std::optional<std::string> held = SceneFile::parse(look_into(best), best.string()).written("title");
+    if (held && held != scene.written("title"))
       say(fmt::format("{} holds results of another scene, \"{}\": those of this search will replace them", folder.string(),
-                      held));
-  } catch (const InvalidInput&) {  // it holds no result, or the search will say what is wrong with the scene
+                      *held));
+  } catch (const InvalidInput&) {  // it holds no result
   }
 }
 

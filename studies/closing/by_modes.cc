@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "base/engineering.h"
+#include "studies/closing/quadrature.h"
 
 namespace softland {
 namespace {
@@ -106,9 +107,7 @@ ModeLadder::ModeLadder(const Scene& scene, const Switch& own) : scene_(&scene), 
 
 Switch ModeLadder::with(int modes) const {
   const SimulateOptions& asked = scene_->simulate;
-  SwitchOptions options = quadrature_for(asked.tolerance > 0 ? SimulateOptions{}.accuracy : asked.accuracy, modes);
-  options.modes = modes;
-  return Switch(scene_->device, options);
+  return resolved_switch(scene_->device, asked.tolerance > 0 ? SimulateOptions{}.accuracy : asked.accuracy, modes).model;
 }
 
 std::vector<const Switch*> ModeLadder::switches() const {
@@ -184,8 +183,8 @@ std::string shift_words(const ByModes& voltage) {
   if (std::isnan(moved)) return {};
   if (std::isinf(moved)) {
     const auto [modes, last] = *voltage.values.rbegin();
-    return std::isfinite(last) ? fmt::format("to {} with {} modes, from none", engineering(last, "V", digits), modes)
-                               : fmt::format("to none with {} modes", modes);
+    return std::isfinite(last) ? fmt::format("so much that there is one, {} with {} modes", engineering(last, "V", digits), modes)
+                               : fmt::format("so much that there is none with {} modes", modes);
   }
   if (std::abs(moved) < least) return "less than 0.001 %";
   const std::string share = engineering(100 * moved, "%", 2);

@@ -59,18 +59,24 @@ double load_difference(const Switch& one, const Switch& other, const Eigen::Vect
   return most;
 }
 
-ResolvedSwitch resolved_switch(const Device& device, double accuracy) {
+ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optional<int> modes) {
   constexpr double growth = 1.25, most_growth = 16;
   constexpr double helps = 0.5;    // what leaves more than this of the error does not
   constexpr int most_in_vain = 4;  // in a row: loads whose error does not fall by then are not smooth
-  const auto switch_with = [&](const SwitchOptions& q) { return ResolvedSwitch{.model = Switch(device, q), .quadrature = q}; };
-  ResolvedSwitch best = switch_with(quadrature_for(accuracy, device.structure.modes));
+  const auto with_modes = [&](SwitchOptions q) {
+    q.modes = modes;
+    return q;
+  };
+  const auto switch_with = [&](const SwitchOptions& q) {
+    return ResolvedSwitch{.model = Switch(device, with_modes(q)), .quadrature = with_modes(q)};
+  };
+  ResolvedSwitch best = switch_with(quadrature_for(accuracy, modes.value_or(device.structure.modes)));
   const double most_points = most_growth * best.quadrature.points_per_length;
   for (bool is_checked = false; !is_checked;) {
     is_checked = true;
     const std::vector<Eigen::VectorXd> states = at_touch(best.model);
     const auto set_error = [&](ResolvedSwitch& r) {
-      const Switch finer(device, finer_than(r.quadrature), &r.model);
+      const Switch finer(device, with_modes(finer_than(r.quadrature)), &r.model);
       r.error = 0;
       for (const Eigen::VectorXd& q : states) r.error = std::max(r.error, load_difference(r.model, finer, q));
     };

@@ -4,6 +4,8 @@
 // curvature h'' is sqrt(2 h / h'') wide. On the way to the contact that is at touch. There the points are checked by doubling.
 #pragma once
 
+#include <optional>
+
 #include "model/switch.h"
 
 namespace softland {
@@ -24,8 +26,8 @@ struct ResolvedSwitch {
   double error = 0;  ///< relative, of the loads at touch
 };
 /// Has few points that do, from quadrature_for(accuracy, modes) on. Where more points do not help, since the loads are not
-/// smooth, `error` is above `accuracy`.
-[[nodiscard]] ResolvedSwitch resolved_switch(const Device& device, double accuracy);
+/// smooth, `error` is above `accuracy`. `modes`: instead of those of the structure.
+[[nodiscard]] ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optional<int> modes = {});
 /// A device that varies from a nominal one whose `quadrature` delivers `accuracy`: with that quadrature, or with a finer one
 /// where it touches nearer to the electrode.
 [[nodiscard]] Switch switch_like(const Device& device, const Switch& nominal, const SwitchOptions& quadrature, double accuracy);
