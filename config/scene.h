@@ -97,7 +97,7 @@ struct PullInVoltages {
   double dynamic_pull_in = 0;  ///< Vdp [V]
 };
 
-/// Of an electrode without [driver], in a search: by the larger of Vsp and Vdp.
+/// The limit of an electrode without [driver], in a search: by the larger of Vsp and Vdp.
 inline constexpr double default_max_voltage = 1.5;
 [[nodiscard]] inline double default_limit(const PullInVoltages& pull_in) {
   return default_max_voltage * std::max(pull_in.static_pull_in, pull_in.dynamic_pull_in);

@@ -15,7 +15,7 @@ namespace {
 
 using Of = TimeClaim::Of;
 
-// Of an interval or a time that is written with few digits, relative.
+// The relative error of an interval or a time that is written with few digits.
 constexpr double printed_digits = 1e-5;
 // Single precision, in which some instruments compute their times, relative.
 constexpr double single_precision = 1.2e-7;
@@ -125,7 +125,7 @@ void RowTimer::find_intervals() {
   }
 }
 
-// Without times that tell which one is right, all intervals must be the same.
+// All intervals must be the same where no times tell which one is right.
 void RowTimer::require_same_intervals() {
   if (intervals_.empty()) return;
   const Interval& first = intervals_.front();

@@ -26,7 +26,7 @@ struct Sampling {
 /// is none.
 [[nodiscard]] std::vector<std::string> exported_drives(const PreparedScene& prepared, const std::string& named);
 
-/// By what the volts at the switch are divided in the file of a generator: what `sampling` says, else the drive, else 1. Throws
+/// The divisor of the volts at the switch in the file of a generator: what `sampling` says, else the drive, else 1. Throws
 /// InvalidInput where it is not above 0.
 [[nodiscard]] double amplification(const Drive& drive, const Sampling& sampling);
 /// Tells this factor; empty where it is 1.

@@ -50,7 +50,7 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] std::vector<IllConditioned> read_certified(const nlohmann::json& figures);
 [[nodiscard]] inline std::string integrator_name(Integrator integrator) { return std::string(to_string(integrator)); }
 [[nodiscard]] Integrator read_integrator(const nlohmann::json& name);
-/// By the number of modes: an eigenvalue, and voltages of electrodes, with what they lead to; null where there are no more modes.
+/// An eigenvalue and voltages of electrodes by the number of modes, with what they lead to; null where there are no more modes.
 [[nodiscard]] nlohmann::json eigenvalues_json(const std::optional<ByModes>& found);
 [[nodiscard]] nlohmann::json voltages_json(const std::map<std::string, ByModes>& of_electrodes);
 [[nodiscard]] std::map<std::string, ByModes> read_voltages(const nlohmann::json& of_electrodes);

@@ -32,7 +32,7 @@ struct ByModes {
   [[nodiscard]] double moved() const;
   [[nodiscard]] bool is_worth_telling() const;
 };
-/// From values by the number of modes.
+/// Extrapolates values by the number of modes.
 [[nodiscard]] ByModes by_modes(std::map<int, double> values);
 
 /// The switches of a scene with its own modes and with more. A plate and a table of modes have no more.

@@ -62,7 +62,7 @@ struct FitResidual {
   [[nodiscard]] double normalized_before() const { return (before - measured) / error; }
 };
 
-/// Of a trace, position or velocity, the rows that count: up to where the scene describes it.
+/// The rows of a trace (position or velocity) that count: up to where the scene describes it.
 struct FittedTrace {
   std::size_t measurement = 0;  ///< number in the bench file
   Measurable what = Measurable::velocity;

@@ -151,7 +151,7 @@ TEST(TimeAxis, NumbersOfSamplesThatBeginLaterAreLater) {
     for (std::size_t i = 0; i < 20; ++i) EXPECT_NEAR(made.times[i], -1e-3 + 2e-6 * static_cast<double>(first + i), 1e-15);
     EXPECT_EQ(made.notes.empty(), first == 0);
   }
-  // Of a generator the first sample has number 1.
+  // The first sample of a generator has number 1.
   const Recording later = read_axis(easywave(256, 20, [](std::size_t i) { return static_cast<double>(i + 11); }));
   EXPECT_NEAR(later.times.front(), 10 * 1e-3 / 256, 1e-15);
   axis_refused(easywave(256, 20, [](std::size_t i) { return static_cast<double>(i + 250); }),

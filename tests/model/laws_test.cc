@@ -497,7 +497,7 @@ TEST(EndFlow, WeakensTheFilmsThatTakeALength) {
   }
 }
 
-// Of air at 300 K, as the tables have it: 2.3 % less than the standard atmosphere says [Pa s].
+// The viscosity of air at 300 K, as the tables have it: 2.3 % less than the standard atmosphere says [Pa s].
 const double viscosity_of_the_tables = 1.7894e-5 * std::pow(300.0 / 297, 0.77);
 
 TEST(GasLaw, HasTheTabulatedDampingPerLength) {
