@@ -29,6 +29,9 @@ double extrapolated(const std::map<int, double>& values) {
   return last->first == most_static_modes && std::abs(change) <= left * size ? last->second : std::nan("");
 }
 
+// The statics of many modes end in rounding, which depends on how a program is linked.
+double to_ten_digits(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.9e}", value)) : value; }
+
 // One voltage by modes: find(switch) is asked of one switch after the other, and of the finest one where the others leave much to
 // be extrapolated.
 template <class Find>
@@ -83,6 +86,9 @@ std::string mode_warning(const Scene& scene, std::size_t electrode, const ByMode
 }  // namespace
 
 ByModes by_modes(std::map<int, double> values) {
+  for (auto one = values.begin(); one != values.end(); ++one) {
+    if (one != values.begin()) one->second = to_ten_digits(one->second);
+  }
   const double converged = extrapolated(values);
   return {.values = std::move(values), .converged = converged};
 }
