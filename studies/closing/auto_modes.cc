@@ -15,6 +15,7 @@
 #include "studies/closing/closed_state.h"
 #include "studies/closing/closing_progress.h"
 #include "studies/closing/prepared.h"
+#include "studies/closing/quadrature.h"
 
 namespace softland {
 namespace {
@@ -83,9 +84,7 @@ double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
 
 // The most that twice and four times as many modes move a static voltage of an electrode.
 double statics_moved(const Scene& scene, int modes) {
-  SwitchOptions options = quadrature_for(scene.simulate.accuracy, modes);
-  options.modes = modes;
-  const Switch own(scene.device, options);
+  const Switch own = resolved_switch(scene.device, scene.simulate.accuracy, modes).model;
   const ModeLadder ladder(scene, own);
   double most = 0;
   for (std::size_t k = 0; k < scene.device.electrodes.size(); ++k) {

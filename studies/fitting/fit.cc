@@ -611,6 +611,13 @@ Setup setup_of(const SceneFile& file, const Bench& bench, const FitOptions& opti
   }
   add_parameters(setup, options.shared, without_prior);
   add_prior(setup);
+  return setup;
+}
+
+// The same with these measurements.
+Setup with_data(Setup setup, const Bench& bench) {
+  for (FitDevice& device : setup.devices) device.instruments.clear();
+  setup.data.clear();
   add_data(setup, bench);
   return setup;
 }
@@ -850,10 +857,9 @@ Fit fit(const SceneFile& given, const Bench& bench, const FitOptions& options, c
   SceneFile file = given;
   const bool assumed = options.unknowns.empty() && assume_spread(file);
   const std::size_t measurements = bench.measurements.size();
-  TraceWindows windows(bench, nominal_touches(setup_of(file, bench, options, watch), measurements));
-  Setup first = setup_of(file, windows.inside(), options, watch);
-  const std::vector<std::vector<double>> starts = starts_of(first, options);
-  Stage stage = solved(std::move(first), starts, options, watch);
+  const Setup whole = with_data(setup_of(file, bench, options, watch), bench);
+  TraceWindows windows(bench, nominal_touches(whole, measurements));
+  Stage stage = solved(with_data(whole, windows.inside()), starts_of(whole, options), options, watch);
   Fit found{.scene = stage.setup->devices.front().nominal, .spread_assumed = assumed};
   found.loss = options.loss;
   found.seed = options.seed;
@@ -868,7 +874,7 @@ Fit fit(const SceneFile& given, const Bench& bench, const FitOptions& options, c
   if (!found.found) return found;
   const TraceMisfit before_touch = misfit(stage, measurements);
   while (windows.grow()) {
-    Stage next = solved(setup_of(file, windows.inside(), options, watch), best_ends(stage.all), options, watch);
+    Stage next = solved(with_data(whole, windows.inside()), best_ends(stage.all), options, watch);
     std::vector<bool> goes_on = described(misfit(next, measurements, &windows), before_touch);
     if (!next.all.found() || !is_linear(next)) goes_on.assign(measurements, false);
     if (windows.keep(goes_on)) stage = std::move(next);
