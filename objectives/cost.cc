@@ -83,6 +83,15 @@ std::string Aim::text() const {
   return text;
 }
 
+double excess_over_step(const Metrics& closing, const Metrics& step) {
+  double excess = 0;
+  for (double Metrics::*figure : hard_figures) {
+    const double ratio = Shares::ratio(closing.*figure, step.*figure);
+    if (ratio > 1 + excess) excess = ratio - 1;
+  }
+  return excess;
+}
+
 double cost(const Aim& aim, const Metrics& m, const CostScale& scale, const MetricsOptions& options) {
   if (!m.is_complete()) return std::numeric_limits<double>::infinity();
   if (!m.touched()) return 10 + m.closest / scale.contact_gap;
@@ -96,6 +105,8 @@ double cost(const Aim& aim, const Metrics& m, const CostScale& scale, const Metr
   const double t = shares.of(&Metrics::initial_contact_time);
   const double late = t + 10 * std::max(0.0, t - scale.free_touch);
   shares.lead = 0.2 * h + 0.15 * v * v + 0.45 * k + 0.1 * s * s + 0.05 * p + 0.02 * late;
+  const double excess = scale.step_lands && !aim.has_own_objective() ? excess_over_step(m, scale.step) : 0;
+  shares.lead += excess;
   // What lets go again is no landing, however softly it came: behind all that stay, before what never touches.
   const double reopening = m.reopened ? 5 : 0;
   if (!aim.has_own_cost() && aim.from_the_start() == nullptr) return reopening + shares.lead;
@@ -104,7 +115,7 @@ double cost(const Aim& aim, const Metrics& m, const CostScale& scale, const Metr
   if (aim.from_the_start() != nullptr) {
     judged = own / (1 + own);
   } else if (!(m.major_bounce_height > options.significant_rebound / 2)) {
-    const double ordered = own + shares.lead / 1000;
+    const double ordered = own + excess + shares.lead / 1000;
     judged = ordered / (1 + ordered);
   }
   const double cost = reopening + judged;

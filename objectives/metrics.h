@@ -54,6 +54,8 @@ struct Metrics {
   bool reopened = false;            ///< at the end of the run, by more than half of the contact gap
 
   [[nodiscard]] bool touched() const { return std::isfinite(initial_contact_time); }
+  /// Whether it settled without a significant rebound.
+  [[nodiscard]] bool lands() const { return settled && bounce_count == 0; }
   /// Whether the closing could be followed to the end of its window.
   [[nodiscard]] bool is_complete() const {
     return status == Status::done || status == Status::no_contact || status == Status::not_settled;

@@ -324,13 +324,11 @@ Outcome judged(PyScene& scene, std::string name, const py::dict& others, std::ui
   return run([&](const Watch& watch) {
     kept->found = robustness(nominal, drives, options, watch);
     watch.throw_if_stopped();
-    kept->report = std::make_unique<RobustnessReport>(
-        RobustnessReport{.nominal = nominal, .found = kept->found, .options = options, .command = command});
+    kept->report = std::make_unique<RobustnessReport>(RobustnessReport{
+        .nominal = nominal, .found = kept->found, .options = options, .command = command, .spread_assumed = assumed});
     add_details(*kept->report, other_ways_too, watch);
     watch.throw_if_stopped();
-    nlohmann::json data = robustness_json(*kept->report);
-    data["spread_assumed"] = assumed;
-    return Outcome{.json = json_text(data),
+    return Outcome{.json = json_text(robustness_json(*kept->report)),
                    .files = {{"robustness.json", [kept] { return json_text(robustness_json(*kept->report), 2); }},
                              {"devices.csv", [kept] { return robustness_csv(*kept->report); }},
                              {"robustness.html", [kept] { return page_html(robustness_document(*kept->report)); }}}};
@@ -351,15 +349,11 @@ Outcome calibrated(PyScene& scene, const std::map<std::string, double>& errors, 
     });
     *found->second = error;
   }
-  PyScene spread{.file = scene.file, .directory = scene.directory};
-  const bool assumed = assume_spread(spread.file);
   Run run(progress);
   return {.json = run([&](const Watch& watch) {
-            const IdentificationStudy found = identify(spread.file, options, watch);
+            const IdentificationStudy found = identify(scene.file, options, watch);
             watch.throw_if_stopped();
-            nlohmann::json data = measurements_json(found, options, command);
-            data["spread_assumed"] = assumed;
-            return json_text(data);
+            return json_text(measurements_json(found, options, command));
           })};
 }
 

@@ -246,7 +246,7 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
                   .closings = static_cast<double>(found.closings),
                   .measure = found.chosen ? found.chosen->measure : "",
                   .waveform = found.chosen ? found.chosen->family : "",
-                  .better_than_plain_step = !found.plain_step_wins,
+                  .better_than_plain_step = !found.best.plain_step_wins,
                   .worse_in = {},
                   .drawing = found.drawing.best ? FigureValues(found.drawing.best->metrics) : FigureValues(),
                   .drawing_status = found.drawing.best ? std::string(to_string(found.drawing.best->metrics.status)) : "",
@@ -338,9 +338,9 @@ std::string internal::devices_headline(const Result& result) {
     std::string figures;
     for (const std::string& key : d.worse_in) figures += (figures.empty() ? "" : " and ") + figure_name(key);
     return fmt::format(
-        "Over the process variation{}, no waveform that was found is as good as the plain step: the best is worse in its {}. "
+        "{}Over the process variation{}, no waveform that was found is as good as the plain step: the best is worse in its {}. "
         "best.toml is the plain step.",
-        assumed, figures);
+        d.goal_met == true ? "The plain step does not bounce on 95 % of the devices. " : "", assumed, figures);
   }
   const std::string lands = own->bounce_free >= half ? fmt::format("{} close without a rebound (plain step {}), and 95 % touch",
                                                                    percent(own->bounce_free), percent(step->bounce_free))

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/assumed_spread.h"
 #include "reports/document.h"
 #include "reports/estimates.h"
 #include "reports/json_number.h"
@@ -106,6 +107,7 @@ json measurements_json(const IdentificationStudy& study, const IdentificationOpt
                       {"status", study.interrupted ? "interrupted" : "done"},
                       {"devices", study.devices},
                       {"seed", options.seed},
+                      {"spread_assumed", study.spread_assumed},
                       {"drives_piezo", study.drives_piezo},
                       {"figures", std::move(figures)},
                       {"references", rows(study.references)},
@@ -131,10 +133,10 @@ std::string measurements_text(const IdentificationStudy& study, const Identifica
       left_out > 0 ? fmt::format(" Left out are pairs that do no better than one of their figures: {}.", left_out) : "";
   return terminal_text(
       {.headline =
-           fmt::format("{} devices of the spread. For each the factors of volts and of time were searched under which the "
+           fmt::format("{}{} devices of the spread. For each the factors of volts and of time were searched under which the "
                        "recipe lands it most softly; then they were told from what is measured, by a fit to the other "
                        "half of the devices, and the devices closed with what was told.",
-                       study.devices),
+                       study.spread_assumed ? std::string(assumed_words) + " " : "", study.devices),
        .doubt = study.interrupted ? "Interrupted: not all is judged." : "",
        .sections = {{.id = "measured",
                      .heading = "What measuring tells",

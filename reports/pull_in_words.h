@@ -37,7 +37,7 @@ inline constexpr const char* no_open_state = "no pull-in voltage: the switch has
 /// "piezo -1.5 V": the other drives of pull_in_of() that do not stand at 0; empty where all do.
 [[nodiscard]] std::string bias_words(const PreparedScene& prepared, std::size_t k);
 
-/// "-6.1 %, to 142.7 V": by how much more modes move the voltage `key` of `pull_in`; empty where there are no more modes.
+/// "−6.1 %, to 142.7 V": by how much more modes move the voltage `key` of `pull_in`; empty where there are no more modes.
 [[nodiscard]] std::string shift_words(const nlohmann::json& pull_in, const char* key);
 
 /// How far the contact point is deflected at the static pull-in voltage.

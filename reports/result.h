@@ -242,7 +242,8 @@ struct Result {
   std::string target, actuator, waveform, optimizer, termination, termination_message;  ///< of a search
   std::vector<ResultFamily> families;  ///< of the search, where there were several
   std::optional<std::uint64_t> seed;
-  std::optional<bool> goal_met, better_than_baseline;
+  std::optional<bool> goal_met, better_than_baseline, plain_step_wins;
+  double harder_than_step = Metrics::unset;  ///< see OptimizeResult
   double evaluations = Metrics::unset;
   ResultRun best;      ///< the winner, or the single run
   ResultRun baseline;  ///< the plain step

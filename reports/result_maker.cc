@@ -188,7 +188,7 @@ Result result_of(const OptimizeResult& found, const OptimizeOptions& options, co
                           : to_string(Status::no_contact);
   r.target = options.target.text();
   r.actuator = name_of(actuators, options.actuator);
-  r.waveform = found.family;
+  r.waveform = found.plain_step_wins ? "step" : found.family;
   if (found.families.size() > 1) {
     for (const SearchedFamilyResult& one : found.families)
       r.families.push_back({.family = one.family, .evaluations = static_cast<double>(one.evaluations), .cost = one.cost});
@@ -200,6 +200,8 @@ Result result_of(const OptimizeResult& found, const OptimizeOptions& options, co
   r.termination_message = found.search.message;
   r.goal_met = found.goal_met;
   r.better_than_baseline = found.better_than_baseline;
+  r.plain_step_wins = found.plain_step_wins;
+  r.harder_than_step = found.harder_than_step;
   r.pull_in = pull_in(found.scene);
   r.baseline = run(found.baseline_scene, found.baseline, metrics_options);
   r.baseline.cost = found.baseline_cost;
@@ -249,7 +251,6 @@ Result result_of(const ForDevicesResult& found, const OptimizeOptions& options, 
                  const Provenance& provenance) {
   Result r = result_of(found.best, options, provenance);
   if (!found.rows.empty()) r.devices = devices_of(found, options, std::move(next_command));
-  if (found.plain_step_wins) r.waveform = "step";
   if (found.interrupted) r.status = "interrupted";
   r.search.value_name = "cost, on the nominal device";
   return r;

@@ -307,6 +307,8 @@ void members_of_search(A& a, Result& result) {
   a("termination_message", result.termination_message);
   a("goal_met", result.goal_met);
   a("better_than_baseline", result.better_than_baseline);
+  a("plain_step_wins", result.plain_step_wins);
+  a("harder_than_step", result.harder_than_step);
   a.object("baseline", [&](auto& baseline) {
     members(baseline, result.baseline);
     internal::figure_errors(baseline, result.baseline.errors);

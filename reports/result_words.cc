@@ -147,7 +147,17 @@ Headline headline(const Result& result) {
         ""};
   Headline line;
   if (result.status == "interrupted") line.main = "The search was interrupted; this is its best so far. ";
-  if (result.status != "interrupted" && result.goal_met == false) line.main = "The goal was not met. ";
+  const bool ended = result.status != "interrupted";
+  if (ended && result.plain_step_wins == true) {
+    return {
+        "The plain step does not bounce, and no waveform was found that is better and not harder than it. best.toml is the plain "
+        "step.",
+        capitalised(closing_clause({.subject = step_subject, .object = "the switch"}, result.baseline, window)) + "." + rest};
+  }
+  if (ended && result.goal_met == false) line.main = "The goal was not met. ";
+  if (ended && result.harder_than_step > 0)
+    line.main += fmt::format("The best waveform is harder than the plain step, by {} in touch speed, force or energy. ",
+                             percent(result.harder_than_step));
   line.main += result.best.figures
                    ? capitalised(closing_clause({.subject = own_subject, .object = "the switch"}, result.best, window))
                    : "No feasible waveform was found";

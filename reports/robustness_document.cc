@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "config/assumed_spread.h"
 #include "reports/box_and_chaos_report.h"
 #include "reports/derivatives_report.h"
 #include "reports/device_scatter.h"
@@ -219,19 +220,21 @@ TableCell drive_cell(const DriveRobustness& drive) {
 }
 
 ReportSection about(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, unheld, interrupted] = report;
+  const auto& [nominal, found, options, command, spread_assumed, sensitivity, derivatives, courses, ways, windows, unheld,
+               interrupted] = report;
   const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().known.calibration();
-  return {.id = "charts",
-          .heading = "How the devices differ",
-          .parts = {Paragraph{fmt::format("{} devices of the spread ({} points): {}. {}{}{}", found.devices,
-                                          name_of(point_sets, options.points), spread_words(nominal.scene.spread),
-                                          calibration.is_empty()
-                                              ? "All have the volts that were designed for the nominal device."
-                                              : "The plain step has the volts of the nominal device; every other drive is in "
-                                                "the units of each device, known of it: " +
-                                                    calibration_words(calibration) + ".",
-                                          error_words(nominal.scene.spread), outside_words(found))},
-                    Paragraph{found.interrupted ? "Interrupted: these are not all devices." : ""}}};
+  return {
+      .id = "charts",
+      .heading = "How the devices differ",
+      .parts = {Paragraph{fmt::format(
+                    "{}{} devices of the spread ({} points): {}. {}{}{}", spread_assumed ? std::string(assumed_words) + " " : "",
+                    found.devices, name_of(point_sets, options.points), spread_words(nominal.scene.spread),
+                    calibration.is_empty() ? "All have the volts that were designed for the nominal device."
+                                           : "The plain step has the volts of the nominal device; every other drive is in "
+                                             "the units of each device, known of it: " +
+                                                 calibration_words(calibration) + ".",
+                    error_words(nominal.scene.spread), outside_words(found))},
+                Paragraph{found.interrupted ? "Interrupted: these are not all devices." : ""}}};
 }
 
 ReportSection statistics_section(const RobustnessReport& report) {
@@ -378,7 +381,8 @@ std::vector<KeyNumber> keys_of(const Robustness& found) {
 }  // namespace
 
 Document robustness_document(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, unheld, interrupted] = report;
+  const auto& [nominal, found, options, command, spread_assumed, sensitivity, derivatives, courses, ways, windows, unheld,
+               interrupted] = report;
   Document document{.title = nominal.scene.title,
                     .origin = "robustness",
                     .sections = {about(report)},

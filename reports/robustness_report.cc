@@ -162,7 +162,8 @@ std::vector<std::string> warnings(const RobustnessReport& report) {
 }
 
 json robustness_json(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, unheld, interrupted] = report;
+  const auto& [nominal, found, options, command, spread_assumed, sensitivity, derivatives, courses, ways, windows, unheld,
+               interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   const auto drive_json = [&](const DriveRobustness& d) {
     json figures = json::object(), worst = json::array(), failures = json::object();
@@ -199,6 +200,7 @@ json robustness_json(const RobustnessReport& report) {
                       {"duration_s", found.duration},
                       {"tolerance", found.tolerance},
                       {"spread", spread_json(nominal.scene.spread)},
+                      {"spread_assumed", spread_assumed},
                       {"hold_window_V", internal::windows_json(windows)},
                       {"hold_window_devices", windows.devices},
                       {"drives", std::move(drives)},
@@ -212,7 +214,8 @@ json robustness_json(const RobustnessReport& report) {
 }
 
 std::string robustness_csv(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, unheld, interrupted] = report;
+  const auto& [nominal, found, options, command, spread_assumed, sensitivity, derivatives, courses, ways, windows, unheld,
+               interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   std::string text = "device";
   // Names may hold commas and quotes.

@@ -22,7 +22,8 @@ struct RobustnessReport {
   const PreparedScene& nominal;
   const Robustness& found;
   RobustnessOptions options;
-  std::string command;  ///< the command line
+  std::string command;          ///< the command line
+  bool spread_assumed = false;  ///< the scene says nothing of how devices differ
   Sensitivity sensitivity = {};
   Derivatives derivatives = {};
   std::vector<DeviceCourse> courses = {};

@@ -94,15 +94,12 @@ int calibrate_verb(const Common& c, const CalibrateRequest& request) {
   options.seed = seed_of(request.seed, options.seed);
   if (!request.errors.empty()) read_errors(request.errors, options);
   if (!request.steps.empty()) options.steps = read_steps(request.steps);
-  SceneFile file = load_scene_or_result(c);
-  const bool spread_assumed = assume_spread(file);
+  const SceneFile file = load_scene_or_result(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   static_cast<void>(claim_places(c, {}));
   const IdentificationStudy study = identify(file, options, work->watch());
   work.reset();
-  nlohmann::json j = measurements_json(study, options, c.command);
-  j["spread_assumed"] = spread_assumed;
-  print_json_or(c, j, (spread_assumed ? std::string(assumed_words) + "\n" : std::string()) + measurements_text(study, options));
+  print_json_or(c, measurements_json(study, options, c.command), measurements_text(study, options));
   return study.interrupted ? exit_interrupted : exit_done;
 }
 

@@ -68,12 +68,11 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
   std::optional<ResultFolder> folder = claim_places(c, files);
 
   const Robustness found = robustness(nominal, drives, options, work->watch());
-  RobustnessReport report{.nominal = nominal, .found = found, .options = options, .command = c.command};
+  RobustnessReport report{
+      .nominal = nominal, .found = found, .options = options, .command = c.command, .spread_assumed = spread_assumed};
   add_details(report, request.box_and_chaos, work->watch());
-  nlohmann::json j = robustness_json(report);
-  j["spread_assumed"] = spread_assumed;
-  std::string text =
-      (spread_assumed ? std::string(assumed_words) + "\n" : std::string()) + terminal_text(robustness_document(report));
+  const nlohmann::json j = robustness_json(report);
+  std::string text = terminal_text(robustness_document(report));
   work.reset();
   if (folder) {
     write_files(*folder, report);

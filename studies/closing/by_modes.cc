@@ -193,7 +193,7 @@ std::string shift_words(const ByModes& voltage) {
                                : fmt::format("so much that there is none with {} modes", modes);
   }
   if (std::abs(moved) < least) return "less than 0.001 %";
-  const std::string share = engineering(100 * moved, "%", 2);
+  const std::string share = (moved < 0 ? "−" : "") + engineering(100 * std::abs(moved), "%", 2);
   if (!voltage.is_worth_telling()) return share;
   if (std::isfinite(voltage.converged)) return fmt::format("{}, to {}", share, engineering(voltage.converged, "V", digits));
   return fmt::format("{} and on, to {} with {} modes", share, engineering(voltage.values.rbegin()->second, "V", digits),

@@ -83,7 +83,7 @@ struct VoltagesByModes {
 [[nodiscard]] ByModes pulled_through_by_modes(const ModeLadder& ladder, std::size_t electrode, std::vector<double> volts,
                                               double own);
 
-/// "-6.1 %, to 142.7 V": by how much more modes move a voltage, and to what where that is worth telling.
+/// "−6.1 %, to 142.7 V": by how much more modes move a voltage, and to what where that is worth telling.
 [[nodiscard]] std::string shift_words(const ByModes& voltage);
 
 /// Sentences for the static pull-in voltages of a scene that are worth telling.

@@ -174,7 +174,7 @@ EstimatedQuantile estimated_quantile(const std::vector<double>& sample, double p
   return {.value = sample_quantile(sample, probability), .interval = quantile_interval(sample, probability)};
 }
 
-bool is_bounce_free(const DeviceOutcome& o) { return o.closed() && o.metrics.settled && o.metrics.bounce_count == 0; }
+bool is_bounce_free(const DeviceOutcome& o) { return o.closed() && o.metrics.lands(); }
 
 Yield yield_of(std::size_t devices, std::size_t all) {
   return {.devices = devices,

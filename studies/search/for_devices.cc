@@ -379,8 +379,8 @@ class DevicesStudy {
       std::erase_if(drives, [](const DriveRobustness& one) { return one.name == for_the_devices; });
       drives.push_back(std::move(next.drives.back()));
     }
-    result_->plain_step_wins = !result_->worse_in.empty();
-    if (result_->plain_step_wins) {
+    result_->best.plain_step_wins = !result_->worse_in.empty();
+    if (result_->best.plain_step_wins) {
       row_of_devices().judged = step;
       win({});
     } else {
@@ -434,7 +434,7 @@ class DevicesStudy {
   // Judges the choices on the fresh devices, and leaves out those that a sooner one equals in speed, rebound and force.
   void decide_choices() {
     std::vector<DeviceChoice> all = std::exchange(result_->choices, {});
-    if (result_->plain_step_wins) return;
+    if (result_->best.plain_step_wins) return;
     const double significant = first().given.scene.metrics.significant_rebound;
     const std::vector<DriveRobustness>& drives = result_->verdict.drives;
     const double of_step = waited(drives.front().outcomes, result_->free.figure);
@@ -480,16 +480,17 @@ class DevicesStudy {
     const Metrics& m = best.best->metrics;
     best.goal_met = goal_met(options_.target, m, drawing.baseline.metrics);
     best.confirmed = best.goal_met && std::ranges::all_of(best.checks, [](const ConfirmingRun& run) {
-                       return run.varied == Varied::gas || (run.metrics.settled && run.metrics.bounce_count == 0);
+                       return run.varied == Varied::gas || run.metrics.lands();
                      });
-    best.better_than_baseline = !result_->plain_step_wins;
+    best.better_than_baseline = !best.plain_step_wins;
+    best.harder_than_step = hardness_beyond_step(m, drawing.baseline.metrics);
     best.best_cost = searched_.cost().value(row_of_devices().judged.outcomes, searched_.aims().tail);
     best.baseline_cost = searched_.cost().value(result_->verdict.drives.front().outcomes, searched_.aims().tail);
   }
 
   // Until both carry a steady force, where they do.
   void draw_courses() {
-    if (result_->plain_step_wins) return;
+    if (result_->best.plain_step_wins) return;
     const DriveRobustness &step = result_->verdict.drives.front(), &own = row_of_devices().judged;
     double end = 0;
     for (const DriveRobustness* one : {&step, &own})
@@ -545,6 +546,11 @@ void share_budget(OptimizeOptions& options, ForDevicesOptions& devices) {
   options.max_evaluations = std::max(1L, all / share_of_drawing);
   devices.closings = all - options.max_evaluations;
   devices.are_a_budget = true;
+}
+
+bool ForDevicesResult::plain_step_lands() const {
+  return !verdict.drives.empty() && quantile_95(verdict.drives.front().outcomes, key_of(&Metrics::major_bounce_height)) <=
+                                        varied.scene.metrics.significant_rebound;
 }
 
 ForDevicesResult optimize_for_devices(const SceneFile& file, const OptimizeOptions& options, const ForDevicesOptions& devices) {

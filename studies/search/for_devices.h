@@ -65,8 +65,8 @@ struct ForDevicesResult {
   PreparedScene varied;  ///< the scene with the spread that was looked at, over the window of the verdict
   OptimizeResult drawing;
   /// On the nominal device: the waveform that wins; best_scene is none where the search was interrupted before the choice.
+  /// The plain step wins where all that was found is worse over the devices.
   OptimizeResult best;
-  bool plain_step_wins = false;
   bool spread_assumed = false;                  ///< the scene says nothing of how devices differ
   std::optional<ChosenFrom> chosen;             ///< none where the plain step wins
   std::vector<ChosenFrom> candidates = {};      ///< the best first
@@ -91,6 +91,9 @@ struct ForDevicesResult {
   std::vector<FulfilledCondition> conditions{};  ///< of the winner
   long closings = 0;                             ///< of devices, in all searches
   bool interrupted = false;
+
+  /// Whether 95 % of the devices rebound by no more than what counts under the plain step.
+  [[nodiscard]] bool plain_step_lands() const;
 };
 
 /// Options of the nominal search as optimize(), whose max_seconds is that of everything. Throws as

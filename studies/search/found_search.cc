@@ -34,7 +34,9 @@ OptimizeResult& FoundSearch::best() {
 
 bool FoundSearch::is_success() const {
   const auto* devices = std::get_if<ForDevicesResult>(&result);
-  return best().is_success() && (devices == nullptr || !devices->plain_step_wins);
+  // A plain step under which no device bounces is an answer.
+  const bool has_answer = devices == nullptr || !devices->best.plain_step_wins || devices->plain_step_lands();
+  return best().is_success() && has_answer;
 }
 
 FoundSearch run(PlannedSearch& search) {

@@ -19,6 +19,7 @@
 #include "base/executor.h"
 #include "base/random.h"
 #include "base/require.h"
+#include "config/assumed_spread.h"
 #include "model/constants.h"
 #include "optimizers/problem.h"
 #include "sampling/confidence.h"
@@ -298,10 +299,11 @@ void judge_told(Told& told, const RobustCost& cost, const std::vector<Waveform>&
 
 }  // namespace
 
-IdentificationStudy identify(const SceneFile& file, const IdentificationOptions& options, const Watch& watch) {
+IdentificationStudy identify(SceneFile file, const IdentificationOptions& options, const Watch& watch) {
   require(options.samples >= fewest_measured && options.samples <= most_measured, [&] {
     return fmt::format("{} devices: there must be from {} to {}", options.samples, fewest_measured, most_measured);
   });
+  const bool spread_assumed = assume_spread(file);
   const Device device = read_scene(file).device;
   require(device.contact.has_value(), "calibrate needs a [contact] section: without contact there is nothing to land on");
   require(has_pulling_electrode(device), "calibrate needs an electrode that pulls in: its voltage is what devices differ in");
@@ -319,7 +321,7 @@ IdentificationStudy identify(const SceneFile& file, const IdentificationOptions&
   const Ensemble ensemble(nominal, options.samples, options.seed);
   const RobustCost cost(setting, aim, build_all(ensemble, {}, options.seed, options.jobs, watch));
 
-  IdentificationStudy study{.devices = cost.devices()};
+  IdentificationStudy study{.devices = cost.devices(), .spread_assumed = spread_assumed};
   study.drives_piezo = nominal.model.has_piezo() && nominal.told(recipe).back().peak() > 0;
   study.figures = measure(instruments(nominal, meter, options), nominal.model, cost, options.jobs, watch);
   study.best.assign(study.devices, no_factors);

@@ -65,15 +65,16 @@ struct IdentificationStudy {
   std::vector<Prediction> references;   ///< nothing, own units, all figures, the best factors themselves
   std::vector<Prediction> predictions;  ///< single figures and pairs, the best first; those not judged last
   std::size_t devices = 0;
-  bool drives_piezo = false;  ///< whose voltages then have a factor of their own
+  bool spread_assumed = false;  ///< the scene says nothing of how devices differ
+  bool drives_piezo = false;    ///< whose voltages then have a factor of their own
   bool interrupted = false;
 };
 
 inline constexpr std::uint64_t fewest_measured = 16, most_measured = 100'000;
 
-/// Throws InvalidInput for a scene without [spread], contact, or an electrode that pulls in; for one whose drive is the plain
-/// step, which has no landing to pin; and for samples outside [fewest_measured, most_measured]. Throws Interrupted where `watch`
-/// asks to stop before the best factors of all devices are known.
-[[nodiscard]] IdentificationStudy identify(const SceneFile& file, const IdentificationOptions& options, const Watch& watch = {});
+/// Assumes a spread where the scene has none. Throws InvalidInput for a scene without contact, or an electrode that pulls in; for
+/// one whose drive is the plain step, which has no landing to pin; and for samples outside [fewest_measured, most_measured].
+/// Throws Interrupted where `watch` asks to stop before the best factors of all devices are known.
+[[nodiscard]] IdentificationStudy identify(SceneFile file, const IdentificationOptions& options, const Watch& watch = {});
 
 }  // namespace softland

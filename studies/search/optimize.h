@@ -122,6 +122,8 @@ struct OptimizeResult {
   /// Evaluations on top of the search's, each with all these numbers of modes, where its landings belonged to those of the scene.
   long evaluations_of_modes = 0;
   bool better_than_baseline = false;
+  bool plain_step_wins = false;  ///< the winner is the plain step, which lands; what else was found is harder or no better
+  double harder_than_step = 0;   ///< hardness_beyond_step() of the winner
   /// A goal that is met is a success, whatever the plain step does.
   [[nodiscard]] bool is_success() const { return best && !best->is_pulled_through && (goal_met || better_than_baseline); }
   std::vector<std::string> broken_conditions = {};  ///< by the winner
@@ -139,6 +141,10 @@ struct OptimizeResult {
 /// The goal of `settling`: permanent contact within so many times the first touch of the plain step. On the shipped gold
 /// cantilevers this is about 1.1 times the best that is known of pulses.
 inline constexpr double settling_goal = 1.3;
+
+/// By how much a closing exceeds the plain step in touch speed, peak contact force or impact energy, as a share of the step's; 0
+/// where that is no more than a thousandth.
+[[nodiscard]] double hardness_beyond_step(const Metrics& closing, const Metrics& step);
 
 /// Goal of every target: settled without a significant rebound; settling: soon enough, too, or before the baseline where that
 /// does not touch; the others with a cost of their own, and sums: their own figure is also better than the baseline's. Of a sum

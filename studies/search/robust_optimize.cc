@@ -315,7 +315,7 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
   result.is_told = cost.is_told(outcomes);
   out.better_than_baseline = result.is_told && out.best_cost < out.baseline_cost;
   const Metrics& drawn = out.best->metrics;
-  out.goal_met = out.better_than_baseline && drawn.settled && drawn.bounce_count == 0;
+  out.goal_met = out.better_than_baseline && drawn.lands();
   if (robust.aim.measure.yield) result.yield = share_that_fulfils(outcomes, *robust.aim.measure.yield);
   for (const Criterion& condition : robust.aim.conditions) {
     const Yield share = share_that_fulfils(outcomes, condition);

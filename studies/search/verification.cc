@@ -13,6 +13,8 @@
 namespace softland {
 namespace {
 
+constexpr double as_hard = 1e-3;  // excess over the plain step that is none
+
 // The target's own figure, infinite where the closing has none; of a sum, the mean of figures over their units of
 // the baseline.
 double figure(const Aim& aim, const Metrics& m, const Metrics& baseline) {
@@ -32,11 +34,20 @@ Verification::Verification(const SearchSetting& setting, const OptimizeOptions& 
       baseline_(setting.baseline.metrics),
       target_(options.target),
       conditions_(setting.conditions),
-      watch_{.progress = options.on_preparation} {}
+      judges_hardness_(!options.target.has_own_objective() && !(broken(setting.conditions, setting.baseline.metrics) > 0)),
+      watch_{.progress = options.on_preparation} {
+  if (!judges_hardness_ || !baseline_.lands()) return;
+  add({.scene = setting.baseline_scene,
+       .cost = setting.baseline_cost,
+       .family = "step",
+       .variables = setting.space.variables(),
+       .parameters = {},
+       .is_plain_step = true});
+}
 
 bool Verification::Verified::better_than(const Verified& other) const {
-  return std::tuple(-static_cast<int>(belief), broken, figure, cost) <
-         std::tuple(-static_cast<int>(other.belief), other.broken, other.figure, other.cost);
+  return std::tuple(-static_cast<int>(belief), broken, excess, figure, cost) <
+         std::tuple(-static_cast<int>(other.belief), other.broken, other.excess, other.figure, other.cost);
 }
 
 std::optional<Varied> Verification::undone_by(const PreparedScene& scene) const {
@@ -55,10 +66,11 @@ void Verification::add(FoundWaveform candidate) {
                .cost = cost,
                .figure = figure(target_, m, baseline_),
                .broken = broken(conditions_, m),
-               .belief = met(m)                             ? Belief::meets_goal
-                         : m.settled && m.bounce_count == 0 ? Belief::lands
-                         : m.settled                        ? Belief::settles
-                                                            : Belief::touches};
+               .excess = excess(m),
+               .belief = met(m) && !(excess(m) > 0) ? Belief::meets_goal
+                         : m.lands()                ? Belief::lands
+                         : m.settled                ? Belief::settles
+                                                    : Belief::touches};
   if (!target_.is_sum() && (target_.is_about(Target::bounce) || target_.is_about(Target::rebound)))
     now.figure = std::max(now.figure, given_.scene.metrics.significant_rebound);
   if (now.belief == Belief::meets_goal) {
@@ -67,6 +79,8 @@ void Verification::add(FoundWaveform candidate) {
   }
   if (!best_ || now.better_than(*best_)) best_ = std::move(now);
 }
+
+double Verification::excess(const Metrics& m) const { return judges_hardness_ ? hardness_beyond_step(m, baseline_) : 0; }
 
 double Verification::best_cost() const { return best_ ? best_->cost : std::numeric_limits<double>::infinity(); }
 
@@ -87,6 +101,8 @@ void Verification::move_to(OptimizeResult& result) {
   for (const Criterion& one : conditions_) {
     if (softland::broken({one}, m) > 0) result.broken_conditions.push_back(one.text);
   }
+  result.plain_step_wins = best_->found.is_plain_step;
+  result.harder_than_step = best_->excess;
   result.checks = confirm(best_->found.scene);
   result.best_scene = std::move(best_->found.scene);
   result.best = std::move(best_->closing);
@@ -105,6 +121,11 @@ std::vector<Criterion> Verification::known(const Metrics& m) const {
     if (std::isfinite(one.figure.value(m))) all.push_back(one);
   }
   return all;
+}
+
+double hardness_beyond_step(const Metrics& closing, const Metrics& step) {
+  const double excess = excess_over_step(closing, step);
+  return excess > as_hard ? excess : 0;
 }
 
 bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline) {

@@ -1,5 +1,6 @@
 // What of a search's candidates is believed: none before its run over the whole window, nor preferred where a tighter integrator
-// or a richer beam undoes its landing. Of those that stand up to these the best is the one whose worst is best.
+// or a richer beam undoes its landing. A plain step that lands is a candidate, too, so that no winner is then harder than it. The
+// best is, among those that stand up to all this, the one whose worst is best.
 #pragma once
 
 #include <map>
@@ -19,6 +20,7 @@ struct FoundWaveform {
   std::string family;
   std::vector<Variable> variables;           ///< of the family
   std::map<std::string, double> parameters;  ///< by drive.name; empty where the family cannot describe it
+  bool is_plain_step = false;
 };
 
 /// Verifies candidates, and keeps the best.
@@ -50,6 +52,7 @@ class Verification {
     double cost = 0;    // the search's own; of what is confirmed the worst of beams
     double figure = 0;  // the target's own; rebounds that are not significant are equal
     double broken = 0;  // by how much it breaks the conditions
+    double excess = 0;  // by how much it is harder than the plain step, as a share of the step's figures
     Belief belief = Belief::touches;
     std::optional<Varied> failed = {};  // what meets the goal no more, where this is varied
 
@@ -57,6 +60,7 @@ class Verification {
   };
 
   [[nodiscard]] bool met(const Metrics& m) const;
+  [[nodiscard]] double excess(const Metrics& m) const;
   [[nodiscard]] std::optional<Varied> undone_by(const PreparedScene& scene) const;
   [[nodiscard]] std::vector<Criterion> known(const Metrics& m) const;
 
@@ -65,6 +69,7 @@ class Verification {
   const Metrics& baseline_;
   Aim target_;
   std::vector<Criterion> conditions_;
+  bool judges_hardness_;  // an own objective does not, nor conditions that the plain step breaks
   Watch watch_;
   std::optional<Verified> best_;
 };

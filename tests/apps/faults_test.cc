@@ -230,6 +230,40 @@ TEST_F(Faults, AFileAboveItsLimitIsAnErrorOfEveryVerbThatWritesOne_optimized) {
   EXPECT_FALSE(fs::exists(here->path() / "lost-simulate/report.html"));
 }
 
+// Whether every key of an object, and all that is no object, has the same value in the other.
+bool holds(const json& all, const json& part) {
+  if (!part.is_object() || !all.is_object()) return all == part;
+  return std::ranges::all_of(part.items(),
+                             [&](const auto& one) { return all.contains(one.key()) && holds(all[one.key()], one.value()); });
+}
+
+// What --json tells stands in the folder too, which may hold more: curves.
+TEST_F(Faults, TheJsonOfAFolderIsThatOfTheOption_optimized) {
+  int compared = 0;
+  for (const std::string& verb : verbs) {
+    if (!takes(verb, "--json") || !takes(verb, "--out") || reads_stores_only(verb) || verb == "slurm" || verb == "explore" ||
+        verb == "modes")
+      continue;
+    std::vector<std::string> more = calls()[verb].quick;
+    if (verb == "accuracy") more = {"gold.toml", "--set", "structure.modes=1", "--set", "simulate.duration=60 us"};
+    if (verb == "pull-in") more = more + std::vector<std::string>{"--sweep", "0 V:10 V:3"};
+    const fs::path folder = here->path() / ("told-" + verb);
+    const Outcome o = here->run(words(verb, more + std::vector<std::string>{"--json", "told.json", "--out", folder.string()}));
+    ASSERT_TRUE(fs::exists(here->path() / "told.json")) << verb << ": " << o.err;
+    const json told = json::parse(read(here->path() / "told.json"));
+    fs::remove(here->path() / "told.json");
+    if (!fs::is_directory(folder)) continue;  // a table
+    for (const fs::directory_entry& one : fs::directory_iterator(folder)) {
+      if (one.path().extension() != ".json") continue;
+      ++compared;
+      const json kept = json::parse(read(one.path()));
+      for (const auto& [key, value] : told.items())
+        EXPECT_TRUE(kept.contains(key) && holds(kept[key], value)) << verb << ": " << key << " in " << one.path().filename();
+    }
+  }
+  EXPECT_GE(compared, 7);
+}
+
 // Each verb gets its signal while it waits.
 void Faults::expect_each_ends(const std::vector<std::pair<std::string, int>>& told) {
   std::vector<std::unique_ptr<Workplace>> places;

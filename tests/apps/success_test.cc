@@ -115,8 +115,8 @@ TEST(Success, IsNotAVerdictThatMoreModesReverse_optimized) {
   EXPECT_NEAR(parsed(voltages)["pull_in"]["by_modes"]["static_V"]["converged"].get<double>(),
               parsed(voltages)["pull_in"]["static_V"].get<double>(), 0.02);
   EXPECT_THAT(run("pull-in", {"bridge.toml", "--quiet"}, false).out,
-              AllOf(HasSubstr("(fold of the static branch); more modes move it by -0.0085 %\n"),
-                    HasSubstr("goes on to the electrode; more modes move it by -5.3 %, to 62.58 V")));
+              AllOf(HasSubstr("(fold of the static branch); more modes move it by −0.0085 %\n"),
+                    HasSubstr("goes on to the electrode; more modes move it by −5.3 %, to 62.58 V")));
   // A plate has no more modes.
   write(here.path() / "plate.toml", edited(between_two, "side = \"both\"\ngap = \"3 um\"\n", ""));
   const Outcome plate =

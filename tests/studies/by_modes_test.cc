@@ -140,7 +140,7 @@ TEST(ByModes, OfABridgeBentByManyThicknessesLeadToFiniteDifferences) {
 TEST(ByModes, AreSaidOfAStaticPullInVoltageFromOnePercentOn) {
   EXPECT_THAT(prepare_and_choose(bridge(10, "4")).scene.warnings,
               Contains(HasSubstr("structure.modes = 4: more modes move the static pull-in voltage of electrode main, 271.28 V, "
-                                 "by -5.5 %, to 256.48 V")));
+                                 "by −5.5 %, to 256.48 V")));
   EXPECT_THAT(mode_warnings(prepare(bridge(10, "20"))), testing::IsEmpty());
   EXPECT_THAT(mode_warnings(prepare(bridge(1, "4"))), testing::IsEmpty());
   EXPECT_THAT(mode_warnings(prepare(gold())), testing::IsEmpty());

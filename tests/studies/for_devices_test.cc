@@ -64,7 +64,7 @@ TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
   Asked memory;
   const ForDevicesResult found = searched(quick_gold(), race_closings / 4, 1, 2, &memory);
   ASSERT_TRUE(found.best.best_scene);
-  EXPECT_FALSE(found.plain_step_wins);
+  EXPECT_FALSE(found.best.plain_step_wins);
   EXPECT_LT(cost_of(found, "for the devices"), 0.7 * cost_of(found, "plain step"));
   EXPECT_LE(cost_of(found, "for the devices"), cost_of(found, "for the drawing"));
   EXPECT_LT(cost_of(found, "Vdp to 1 %"), cost_of(found, "for the devices"));
@@ -141,7 +141,7 @@ TEST(ForDevices, AreNeverGivenWhatIsWorseThanThePlainStep_optimized) {
                                                       {.verdict = 200, .families = "step", .closings = 100});
   ASSERT_TRUE(found.best.best_scene);
   EXPECT_LE(cost_of(found, "for the devices"), 1.01 * cost_of(found, "plain step"));
-  EXPECT_EQ(found.plain_step_wins, !found.worse_in.empty());
+  EXPECT_EQ(found.best.plain_step_wins, !found.worse_in.empty());
 }
 
 TEST(ForDevices, LooksAtDevicesBeforeTheDrawingIsSearchedFor_optimized) {

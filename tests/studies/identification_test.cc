@@ -137,10 +137,16 @@ TEST(Measurements, RankAPiezosUnitFirstWhereLittleElseVaries_slow) {
   EXPECT_TRUE(std::isnan(study().predictions.front().piezo_miss));
 }
 
+TEST(Measurements, AssumeASpreadWhereTheSceneHasNone) {
+  const IdentificationStudy found = identify(without(recipe(), "spread"), quick());
+  EXPECT_TRUE(found.spread_assumed);
+  EXPECT_FALSE(study().spread_assumed);
+  EXPECT_EQ(found.devices, study().devices);
+}
+
 TEST(Measurements, RefuseWhatHasNoLandingToPin_optimized) {
   const auto refused = [](const SceneFile& file) { return refusal([&] { static_cast<void>(identify(file, quick())); }); };
   EXPECT_NE(refused(gold_at_17_volts()).find("the plain step"), std::string::npos);
-  EXPECT_NE(refused(without(recipe(), "spread")).find("there is no [spread]"), std::string::npos);
   EXPECT_NE(refused(without(recipe(), "contact")).find("[contact]"), std::string::npos);
 }
 

@@ -252,7 +252,7 @@ TEST(OwnObjective, ForDevicesIsRacedAsTheTargetOfItsFigure_slow) {
   options.target = by(share_of_drive);
   const ForDevicesResult own = optimize_for_devices(scene, options, devices);
   EXPECT_EQ(own.drawing.parameters, built_in.drawing.parameters);
-  EXPECT_EQ(own.plain_step_wins, built_in.plain_step_wins);
+  EXPECT_EQ(own.best.plain_step_wins, built_in.best.plain_step_wins);
   ASSERT_EQ(own.rows.size(), built_in.rows.size());
   ASSERT_GE(own.rows.size(), 3U);
   for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(own.rows[k].judged.bounce_free.value, built_in.rows[k].judged.bounce_free.value);
