@@ -45,13 +45,19 @@ double rounding_at_end(const SignalPiece& piece, double end) {
   const double straight = std::abs(piece.value) + std::abs(piece.slope * duration);
   const double swing = std::abs(piece.amplitude) + std::abs(piece.amplitude_slope * duration);
   double of_terms = 0;  // as large as they would be without decay: what is left of an exponential is no jump
+  double rate = std::abs(piece.slope);
   for (const SignalTerm& term : piece.terms) {
-    double power = 1, size = 0;
-    for (std::size_t k = 0; k < term.cosine.size(); ++k, power *= duration)
-      size += (std::abs(term.cosine[k]) + std::abs(term.sine[k])) * power;
+    double power = 1, before = 0, size = 0;
+    for (std::size_t k = 0; k < term.cosine.size(); ++k, before = power, power *= duration) {
+      const double coefficient = std::abs(term.cosine[k]) + std::abs(term.sine[k]);
+      size += coefficient * power;
+      rate += static_cast<double>(k) * coefficient * before;
+    }
     of_terms += size * (1 + std::abs(term.angular_frequency) * duration + std::abs(term.sweep) * duration * duration);
   }
-  return roundings * epsilon * (straight + swing * (1 + piece.angular_frequency * end + std::abs(piece.phase)) + of_terms);
+  // The times of both ends are rounded as well, the more the later they are.
+  return roundings * epsilon *
+         (rate * end + straight + swing * (1 + piece.angular_frequency * end + std::abs(piece.phase)) + of_terms);
 }
 
 /// Where `function` changes sign in (low, high): bisection to the last bit that matters, nothing if it does not change sign.

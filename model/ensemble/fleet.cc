@@ -289,8 +289,10 @@ double drive_energy(const FleetClosing& c, const LaneClosing& lane) {
 }
 
 fleet::LaneRunner runner(Vectors vectors) {
-#ifdef SOFTLAND_LANES
+#ifdef SOFTLAND_LANES_AVX512
   if (vectors == Vectors::avx512) return fleet::run_avx512;
+#endif
+#ifdef SOFTLAND_LANES
   if (vectors == Vectors::avx2) return fleet::run_avx2;
 #else
   static_cast<void>(vectors);
@@ -305,10 +307,12 @@ bool has(Vectors vectors) {
   __builtin_cpu_init();
   const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
   if (vectors == Vectors::avx2) return avx2;
+#ifdef SOFTLAND_LANES_AVX512
   if (vectors == Vectors::avx512) {
     return avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
            __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd");
   }
+#endif
 #endif
   return vectors == Vectors::none;
 }

@@ -23,7 +23,8 @@ Eigen::Index coordinate(const TunedScene& scene, std::string_view name) {
 TEST(TunedScenes, TheOriginIsTheNominalDevice) {
   const TunedScene scene(gold_with_two_modes(), {.vectors = Vectors::none}, {});
   const std::vector<VectorXd> origin{VectorXd::Zero(scene.size())};
-  const Device& own = scene.devices(origin)[0].sampled.model->device();
+  const std::vector<ImaginedDevice> devices = scene.devices(origin);
+  const Device& own = devices[0].sampled.model->device();
   const Device& nominal = scene.nominal().scene.device;
   EXPECT_DOUBLE_EQ(own.structure.thickness, nominal.structure.thickness);
   EXPECT_DOUBLE_EQ(own.gap.contact, nominal.gap.contact);
@@ -113,8 +114,8 @@ TEST(TunedScenes, UnitsFollowThePullInVoltageAndThePeriod) {
   const auto of = [&](const char* name) {
     const VectorXd z = VectorXd::Unit(scene.size(), coordinate(scene, name));
     const std::vector<VectorXd> points{z};
-    const Switch& own = *scene.devices(points)[0].sampled.model;
-    return std::pair{scene.units(z), own.basis().angular_frequencies()[0]};
+    const std::vector<ImaginedDevice> devices = scene.devices(points);
+    return std::pair{scene.units(z), devices[0].sampled.model->basis().angular_frequencies()[0]};
   };
   constexpr double second_order = 2e-3;
   const auto [thicker, frequency] = of("structure.thickness");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "base/literals.h"
 #include "tests/support/not_finite.h"
@@ -75,6 +76,20 @@ TEST(BSpline, IsContinuousWithItsFirstTwoDerivatives) {
     EXPECT_NEAR(curvature(pieces[i - 1]), curvature(pieces[i]), 1e-6) << t;
   }
   EXPECT_TRUE(std::isinf(spline.peak_slew())) << "it begins with a jump";
+}
+
+// Its times are rounded, the more the later they are.
+TEST(BSpline, OfManyLevelsHasNoJumps) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const std::size_t n : {20, 100, 1000}) {
+    for (int draw = 0; draw < 200'000 / static_cast<int>(n); ++draw) {
+      std::vector<double> levels(n);
+      for (double& level : levels) level = 40 * uniform(random) - 5;
+      levels.front() = 0;
+      ASSERT_TRUE(std::isfinite(signal(BSpline{.levels = levels, .duration = 1e-4 * (1 + uniform(random))}).peak_slew())) << n;
+    }
+  }
 }
 
 TEST(BSpline, StaysBetweenItsLevelsAndEndsOnTheLast) {
