@@ -30,9 +30,18 @@ py::array_t<double> array(std::span<const double> values) {
   return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-std::vector<double> numbers(const py::object& given) {
-  const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
-  if (!values) throw py::error_already_set();
+// An object that a user's function gave, with its type: "'abc' (str)".
+std::string shown(const py::handle& given) {
+  constexpr std::size_t longest = 80;
+  std::string text = py::repr(given);
+  if (text.size() > longest) text = text.substr(0, longest - 3) + "...";
+  return text + " (" + std::string(py::str(py::type::handle_of(given).attr("__name__"))) + ")";
+}
+
+// Takes what a user's function, named by `who`, gave for numbers.
+std::vector<double> numbers(const py::object& given, const std::string& who) {
+  const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);  // clears the error
+  require(static_cast<bool>(values), [&] { return who + " gave " + shown(given) + "; it must give numbers, as an array"; });
   return {values.data(), values.data() + values.size()};
 }
 
@@ -72,7 +81,7 @@ double PythonWaveform::Arc::at(double time) const {
 }
 
 std::vector<double> PythonWaveform::called(const std::vector<double>& times, std::span<const double> x) const {
-  std::vector<double> volts = numbers(voltage_(array(times), array(x)));
+  std::vector<double> volts = numbers(voltage_(array(times), array(x)), "the own waveform '" + name_ + "'");
   require(volts.size() == times.size(), [&] {
     return "the own waveform '" + name_ + "' gave " + std::to_string(volts.size()) + " volts for " +
            std::to_string(times.size()) + " times";
@@ -91,7 +100,8 @@ std::shared_ptr<const PythonWaveform::Course> PythonWaveform::course(std::span<c
   made->x.assign(x.begin(), x.end());
   try {
     const py::gil_scoped_acquire held;
-    made->breakpoints = numbers(PyCallable_Check(breakpoints_.ptr()) != 0 ? breakpoints_(array(x)) : breakpoints_);
+    made->breakpoints = numbers(PyCallable_Check(breakpoints_.ptr()) != 0 ? breakpoints_(array(x)) : breakpoints_,
+                                "the function of the breakpoints of the own waveform '" + name_ + "'");
     double begin = 0;
     for (const double end : made->breakpoints) {
       if (end > begin) made->arcs.push_back({.begin = begin, .end = end});
@@ -168,7 +178,12 @@ PythonObjective::~PythonObjective() {
 double PythonObjective::value(const Metrics& closing, const Metrics& step) const {
   const py::gil_scoped_acquire held;
   try {
-    return value_(figures_of(closing), figures_of(step)).cast<double>();
+    const py::object told = value_(figures_of(closing), figures_of(step));
+    try {
+      return told.cast<double>();
+    } catch (const py::cast_error&) {
+      throw InvalidInput("the objective '" + name_ + "' gave " + shown(told) + "; it must give a number");
+    }
   } catch (...) {
     first_.keep(std::current_exception());
     throw;
@@ -185,7 +200,7 @@ void PythonObjective::values(std::span<const Metrics> closings, const Metrics& s
                      [&](const Metrics& one) { return figure.value(one); });
       all[py::str(std::string(figure.quantity()))] = column;
     }
-    const std::vector<double> told = numbers(value_(all, figures_of(step)));
+    const std::vector<double> told = numbers(value_(all, figures_of(step)), "the objective '" + name_ + "'");
     require(told.size() == values.size(), [&] {
       return "the objective '" + name_ + "' gave " + std::to_string(told.size()) + " values for " +
              std::to_string(values.size()) + " devices: over devices its figures are arrays, and it returns an array";

@@ -40,10 +40,16 @@ PyWaveform made(const std::string& name, const py::dict& parameters) {
         continue;
       }
       const py::object value = parameters[key];
-      if (const auto* number = std::get_if<double Family::*>(&parameter.member)) {
-        one.** number = value.cast<double>();
-      } else {
-        one.*std::get<std::vector<double> Family::*>(parameter.member) = value.cast<std::vector<double>>();
+      const auto* number = std::get_if<double Family::*>(&parameter.member);
+      try {
+        if (number != nullptr) {
+          one.** number = value.cast<double>();
+        } else {
+          one.*std::get<std::vector<double> Family::*>(parameter.member) = value.cast<std::vector<double>>();
+        }
+      } catch (const py::cast_error&) {
+        throw InvalidInput(fmt::format("{}: {} must be {}, not {}", name, parameter.name,
+                                       number != nullptr ? "a number" : "a list of numbers", std::string(py::repr(value))));
       }
     }
     for (const auto& [key, ignored] : parameters) {

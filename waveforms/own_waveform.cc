@@ -65,7 +65,9 @@ class Following {
 
   [[nodiscard]] std::vector<double> breakpoints() const {
     std::vector<double> times{0};
-    for (const double time : own_.waveform->breakpoints(own_.x)) {
+    const std::vector<double> given = own_.waveform->breakpoints(own_.x);
+    if (given.empty()) check_constant();
+    for (const double time : given) {
       require(std::isfinite(time) && time >= times.back(), [&] {
         return named(fmt::format("its breakpoint at {} s comes after that at {} s; they must be finite and increase from 0", time,
                                  times.back()));
@@ -74,6 +76,24 @@ class Following {
       if (time > times.back()) times.push_back(time);
     }
     return times;
+  }
+
+  // Without breakpoints it stands at its voltage at t = 0 for ever: that is what is meant where it is constant, and not 0 V.
+  void check_constant() const {
+    constexpr double first = 1e-12, last = 1e3;  // [s]
+    constexpr int looks = 300;
+    const double begin = voltage(0);
+    double when = 0;
+    for (int k = 0; k <= looks && when == 0; ++k) {
+      const double time = first * std::pow(last / first, static_cast<double>(k) / looks);
+      if (voltage(time) != begin) when = time;
+    }
+    require(begin != 0 && when == 0, [&] {
+      return named(
+          fmt::format("it has no breakpoints, so that it would stand at its voltage at t = 0 s, {} V, for ever{}; its "
+                      "breakpoints are the times at which it kinks or jumps, the last one that from which on it stays",
+                      begin, when > 0 ? fmt::format(", and it is {} V at {:.3g} s", voltage(when), when) : ""));
+    });
   }
 
   // How large the waveform is, as far as it is known before it is followed.

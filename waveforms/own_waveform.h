@@ -48,7 +48,7 @@ class OwnWaveform {
   /// What can be varied; nothing unless it says so. Their values are the `x` of the others, in this order.
   [[nodiscard]] virtual std::vector<OwnParameter> parameters() const { return {}; }
   /// Times at which the voltage kinks or jumps [s]: above 0 and increasing. The last one is the end: from then on the voltage
-  /// stays. None: it is constant from t = 0 on. Of two that differ by rounding only the later one counts.
+  /// stays. None: it must be constant, and not 0 V. Of two that differ by rounding only the later one counts.
   [[nodiscard]] virtual std::vector<double> breakpoints(std::span<const double> x) const = 0;
   /// The voltage [V] at a time [s] from 0 to the end; where it jumps, that after the jump.
   [[nodiscard]] virtual double voltage(double time, std::span<const double> x) const = 0;
@@ -72,7 +72,7 @@ struct FamilyOf<Own> {
 /// are not finite and in order about its start.
 [[nodiscard]] Own own(std::shared_ptr<const OwnWaveform> waveform);
 /// Throws InvalidInput with the name of the waveform where it is null, has other parameters than these, breakpoints are not in
-/// order, a voltage is not finite, or between two breakpoints it is not smooth.
+/// order, there are none and the voltage is not constant, a voltage is not finite, or between two breakpoints it is not smooth.
 [[nodiscard]] Signal signal(const Own& own, double before = 0);
 /// "the own waveform 'NAME'": how messages name one.
 [[nodiscard]] std::string described(const Own& own);

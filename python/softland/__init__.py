@@ -10,6 +10,7 @@ All numbers are in SI units; text with a unit is read like in a scene file. docs
 """
 
 from . import _softland
+from ._arguments import check_arguments
 from ._closing import Closing
 from ._errors import InvalidInput
 from ._evaluator import Evaluator
@@ -28,3 +29,5 @@ __all__ = [
     "Closing", "Evaluator", "InvalidInput", "Modes", "Outcome", "OwnWaveform", "PracticeDevice", "Quantity", "Record", "Recording", "Result", "Scene", "Shot", "Store", "Tuning", "Waveform",
     "contact_edges", "load", "open", "read", "shipped", "units",
 ]  # fmt: skip
+
+check_arguments(globals(), __all__)

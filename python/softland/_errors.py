@@ -15,3 +15,7 @@ class InvalidInput(ValueError):
         self.key = key
         self.file = file
         self.line = line
+
+
+class WrongType(InvalidInput, TypeError):
+    """An argument of a function has the wrong type: the message names the argument (`key`), the type that is due and the value."""

@@ -118,7 +118,8 @@ class OwnWaveform(Waveform):
 
     voltage: (times, x) -> volts, arrays of shape (n,), (d,) -> (n,) [s] -> [V]: smooth between the breakpoints. It is called a few times for each
         candidate, from several threads in turn.
-    breakpoints: the times at which it kinks or jumps [s], above 0 and increasing, or a function (x) -> these. From the last one on it stays.
+    breakpoints: the times at which it kinks or jumps [s], above 0 and increasing, or a function (x) -> these. From the last one on it stays;
+        without one it must be constant.
     parameters: {name: (lower, upper, start)}, between which bounds a search varies x; names by custom with their unit ("rise_s").
     x: values of these; default: their starts.
 

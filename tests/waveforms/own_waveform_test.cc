@@ -114,6 +114,14 @@ TEST(OwnWaveform, WithoutBreakpointsIsConstantAfterWhatStoodBefore) {
   EXPECT_EQ(constant.pieces().size(), 1u);
 }
 
+TEST(OwnWaveform, WithoutBreakpointsIsRefusedWhereItWouldBeZeroForEverOrIsNotConstant) {
+  expect_invalid([] { (void)signal(made([](double) { return 0.0; }, {})); }, {"'made'", "no breakpoints", "0 V, for ever"});
+  expect_invalid([] { (void)signal(made([](double t) { return 1e6 * std::min(t, 20e-6); }, {})); },
+                 {"'made'", "no breakpoints", "0 V, for ever", "and it is"});
+  expect_invalid([] { (void)signal(made([](double t) { return t < 3e-6 ? 5.0 : 7.0; }, {})); },
+                 {"'made'", "no breakpoints", "5 V, for ever", "and it is 7 V"});
+}
+
 TEST(OwnWaveform, HasItsParametersAndIsCalledByItsName) {
   auto waveform = std::make_shared<Made>([](double) { return 1.0; }, std::vector<double>{});
   waveform->known = {{"level_V", 0, 5, 1}, {"rise_s", 1e-6, 2e-6, 1.5e-6}};
