@@ -46,11 +46,13 @@ void Bar::print(const State& state) const {
 
 WatchedWork::WatchedWork(bool quiet, const std::atomic<bool>* stop) : bar_(quiet) {
   watch_.stop = stop;
-  watch_.progress = [this](std::string_view what, double part) {
+  watch_.progress = [this](std::string_view told_of, double told_part) {
     const std::scoped_lock lock(mutex_);
+    const auto [what, part] = progress_.told(told_of, told_part);
     pace_.note(what, part, bar_.elapsed());
     if (!bar_.due()) return;
-    bar_.show([&](double elapsed) { return std::pair(part, pace_.words(elapsed)); });
+    const double done = part;
+    bar_.show([&](double elapsed) { return std::pair(done, pace_.words(elapsed)); });
     shown_ = true;
   };
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "apps/pace.h"
+#include "base/monotone_progress.h"
 #include "base/watch.h"
 #include "studies/search/optimize.h"
 
@@ -49,6 +50,7 @@ class WatchedWork {
   std::mutex mutex_;  // of what follows: it may be told from several threads
   Bar bar_;
   bool shown_ = false;
+  MonotoneProgress progress_;
   WorkPace pace_;
   Watch watch_;
 };

@@ -56,15 +56,19 @@ StoppedByInterrupt::~StoppedByInterrupt() {
 Run::Run(py::object progress) : progress_(std::move(progress)) {
   watch_.stop = &stop_;
   if (progress_.is_none()) return;
-  watch_.progress = [this](std::string_view what, double part) {
+  watch_.progress = [this](std::string_view told_of, double told_part) {
     using namespace std::chrono;
+    const auto [what, part] = [&] {
+      const std::scoped_lock lock(progress_lock_);
+      return shown_.told(told_of, told_part);
+    }();
     constexpr auto least = milliseconds(100);
     const auto now = steady_clock::now().time_since_epoch();
     auto told = told_.load(std::memory_order_relaxed);
     if (given_up() || (now - steady_clock::duration(told) < least && part < 1) ||
         !told_.compare_exchange_strong(told, now.count()))
       return;
-    call([&] { progress_(py::str(what.data(), what.size()), part); });
+    call([&, name = what, done = part] { progress_(py::str(name), done); });
   };
 }
 

@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/monotone_progress.h"
 #include "base/watch.h"
 
 namespace softland::python {
@@ -87,6 +88,8 @@ class Run {
   std::exception_ptr first_;
   pybind11::object progress_;
   std::atomic<std::chrono::steady_clock::rep> told_ = 0;
+  std::mutex progress_lock_;  // guards what follows
+  MonotoneProgress shown_;
   Watch watch_;
 
  public:

@@ -1,0 +1,38 @@
+// Oracle: what is shown of one name is never less than what was shown of it before, for any sequence that is told.
+#include "base/monotone_progress.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <string>
+
+namespace softland {
+namespace {
+
+TEST(MonotoneProgress, NeverRunsBackWhateverItIsTold) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> part(-0.1, 1.1);
+  MonotoneProgress progress;
+  std::map<std::string, double> shown;
+  for (int i = 0; i < 10'000; ++i) {
+    const auto [name, now] = progress.told(i % 3 == 0 ? "closing" : "dynamic pull-in voltage", part(random));
+    const auto before = shown.find(name);
+    EXPECT_TRUE(before == shown.end() || now >= before->second) << name << " " << now;
+    EXPECT_TRUE(now >= 0 && now <= 1) << now;
+    shown[name] = now;
+  }
+  EXPECT_GT(shown.size(), 2U);
+}
+
+TEST(MonotoneProgress, NamesTheRoundThatBeginsAgainAndNotAPartThatComesLate) {
+  MonotoneProgress progress;
+  EXPECT_EQ(progress.told("closing", 0.5), std::pair(std::string("closing"), 0.5));
+  EXPECT_EQ(progress.told("closing", 0.4), std::pair(std::string("closing"), 0.5));
+  EXPECT_EQ(progress.told("closing", 0.1), std::pair(std::string("closing (2)"), 0.1));
+  EXPECT_EQ(progress.told("cloud", 0.2), std::pair(std::string("cloud"), 0.2));
+  EXPECT_EQ(progress.told("closing", 0.3), std::pair(std::string("closing (2)"), 0.3));
+}
+
+}  // namespace
+}  // namespace softland
