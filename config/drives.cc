@@ -176,7 +176,7 @@ DriverModel read_model(const SectionReader& in, std::string_view drive) {
     in.require(in.is_given("max_voltage"), "bits", "needs max_voltage: it divides the voltages from min_voltage to max_voltage");
   }
   in.require(!model.source_resistance || drive != piezo_drive, "source_resistance",
-             "charges an electrode; the capacitance of the piezo layer is not described by a scene");
+             "charges an electrode; a piezo layer is driven without one");
   if (in.is_given("parallel_capacitance")) {
     model.parallel_capacitance = in.number("parallel_capacitance");
     in.require(model.parallel_capacitance == 0 || model.source_resistance, "parallel_capacitance",
@@ -242,6 +242,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
     const double offset = drive == dispersion_drive ? -1 : 0;  // the value of a force factor is what it has beyond 1
+    one.begins_closed = in.is_given(before_state_key) && in.text(before_state_key) == closed_state_word;
     if (in.is_given(before_key)) one.before = offset + volts(in.quantities(before_key).front(), known);
     Waveform waveform;
     if (in.is_given(file_key)) {
@@ -287,6 +288,26 @@ std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene,
   for (const Drive& drive : read_all(file, scene.device, pull_in, LimitChecks::without_pull_in, notes))
     levels.push_back(drive.hold_level());
   return levels;
+}
+
+/// Tells whether runs begin closed, and checks that all waveforms name one state.
+bool begins_closed(const SceneFile::Impl& file, const Device& device) {
+  std::string closed;  // the key of a drive that says so
+  for (const std::string& drive : drive_names(device)) {
+    const SectionReader in(file, "waveform", drive);
+    if (!in.is_present() || !in.is_given(before_state_key) || in.text(before_state_key) != closed_state_word) continue;
+    in.require(device.contact.has_value(), before_state_key, "needs a [contact]: without one nothing is closed");
+    closed = join_path(in.path(), before_state_key);
+  }
+  if (closed.empty()) return false;
+  for (const std::string& drive : drive_names(device)) {
+    const SectionReader in(file, "waveform", drive);
+    if (!in.is_present() || !in.is_given(before_state_key)) continue;
+    in.require(
+        in.text(before_state_key) == closed_state_word, before_state_key,
+        fmt::format("contradicts {} = \"closed\": a run begins in one state of the switch, whichever drive names it", closed));
+  }
+  return true;
 }
 
 }  // namespace
@@ -368,6 +389,7 @@ void check_drives(const SceneFile::Impl& file, Scene& scene) {
   // The rules of a family do not depend on how large a volt is: any pull-in voltage will do for them. What another one changes is
   // not given in volts.
   scene.standing = levels_held(file, scene, 1, &scene.file_notes);
+  scene.begins_closed = begins_closed(file, device);
   if (scene.need_pull_in.empty()) return;
   const std::vector<double> of_half = levels_held(file, scene, 0.5, nullptr);
   for (std::size_t k = 0; k < of_half.size(); ++k) {

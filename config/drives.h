@@ -25,6 +25,8 @@ inline constexpr std::string_view first = "first";    ///< shift: the first row 
 inline constexpr std::array all{column, time_column, interval, skip, unit, time_unit, decimal, scale, shift};
 }  // namespace file_keys
 inline constexpr std::string_view before_key = "before";  ///< of every family: the value before t = 0
+/// Key of every family that names the equilibrium under the values before t = 0 in which a run begins.
+inline constexpr std::string_view before_state_key = "before_state", open_state = "open", closed_state_word = "closed";
 /// What may stand as the rise time of a step: that of the driver's max_slew.
 inline constexpr std::string_view steepest_rise = "driver";
 

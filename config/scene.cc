@@ -293,6 +293,11 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
                 is_factor ? Quantity{.value = 1 + value, .dimension = dimension::none}
                           : Quantity{.value = value, .dimension = dimension::voltage});
   }
+  for (const Drive& drive : drives) {
+    if (!drive.begins_closed) continue;
+    file.assign(internal::join_path(internal::join_path("waveform", drive.name), internal::before_state_key),
+                std::string(internal::closed_state_word));
+  }
   return file;
 }
 

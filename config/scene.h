@@ -55,8 +55,8 @@ class SceneFile {
   /// Takes a section or a key out, if it is there.
   void erase(const std::string& path);
   /// Replaces [waveform.DRIVE] by this waveform in volts and seconds, with digits that read back to the same bits. The rows of a
-  /// Table stand in the scene itself. What it stands at before t = 0 stays as it is written. Throws InvalidInput for a waveform
-  /// outside its family's rules.
+  /// Table stand in the scene itself. What it stands at before t = 0, and in which state, stays as it is written. Throws
+  /// InvalidInput for a waveform outside its family's rules.
   void set_waveform(const std::string& drive, const Waveform& given);
 
   /// Forgets where keys were written: messages about them then say the name of the file alone.
@@ -114,6 +114,7 @@ struct Drive {
   std::string name = {};                    ///< of the electrode, piezo_drive or dispersion_drive
   std::optional<Waveform> waveform = {};    ///< none: it stays at 0 V
   std::optional<double> before = {};        ///< what is given of it before t = 0 [V]; none: 0 V
+  bool begins_closed = false;               ///< its before_state: see Scene::begins_closed
   std::optional<DriverLimits> limits = {};  ///< none: unlimited; of electrodes whose Vdp is known [0, default_limit()]
   DriverModel source = {};                  ///< ideal where the scene says nothing of it; without load before prepare()
   std::optional<double> amplifier = {};     ///< volts at the switch, of which all here are, per volt of the source
@@ -202,6 +203,8 @@ struct Scene {
   MetricsOptions metrics;
   DeviceSpread spread;
   Calibration calibration;
+  /// Runs begin in the closed equilibrium under what the drives stand at before t = 0, not in the open one.
+  bool begins_closed = false;
   /// Drives (electrode names) whose waveform or written limits use Vsp or Vdp.
   std::vector<std::string> need_pull_in;
   /// Those of them whose limits alone are in Vsp or Vdp.

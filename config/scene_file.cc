@@ -554,8 +554,10 @@ void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
         }
       },
       waveform);
-  if (const toml::node* before = impl_->find({"waveform", drive, std::string(internal::before_key)}))
-    before->visit([&](const auto& node) { table.insert(internal::before_key, node); });
+  for (const std::string_view key : {internal::before_key, internal::before_state_key}) {
+    if (const toml::node* before = impl_->find({"waveform", drive, std::string(key)}))
+      before->visit([&](const auto& node) { table.insert(key, node); });
+  }
   toml::table* waveforms = impl_->root["waveform"].as_table();
   if (!waveforms) waveforms = impl_->root.insert_or_assign("waveform", toml::table{}).first->second.as_table();
   waveforms->insert_or_assign(drive, std::move(table));

@@ -11,6 +11,7 @@
 #include "base/require.h"
 #include "model/closing/stepping.h"
 #include "model/gas/gas_law.h"
+#include "model/piezo_layer.h"
 
 namespace softland {
 namespace {
@@ -23,6 +24,7 @@ class Run {
   Run(const Switch& model, std::span<const Signal> signals, const ClosingOptions& options, ClosingObserver& observer)
       : model_(model),
         options_(options),
+        signals_(signals),
         plane_(model.device().gap.contact),
         parts_(model, signals, options, observer),
         stepping_(parts_),
@@ -35,14 +37,12 @@ class Run {
   Trajectory run() {
     const auto begin = std::chrono::steady_clock::now();
     if (parts_.rest) {
+      out_.began_closed = parts_.phase.in_contact();
       go_through_stretches();
       finish();
     } else {
       end(Status::collapsed_at_rest);
-      out_.message =
-          model_.rest()
-              ? "under what the drives stand at before t = 0 the switch has no stable open state: they close it"
-              : "with every drive at rest the switch has no stable open state: the dispersion force closes it by itself";
+      say_why_no_start();
     }
     out_.work = stepping_.work();
     out_.work.rhs_evaluations = parts_.equations.evaluations();
@@ -51,6 +51,20 @@ class Run {
   }
 
  private:
+  void say_why_no_start() {
+    const bool asked_open = options_.start == StartState::open;
+    ClosingOptions other = options_;
+    other.start = asked_open ? StartState::closed : StartState::open;
+    if (const auto found = start_of(model_, signals_, other)) out_.other_start = model_.contact_deflection(found->data());
+    if (!asked_open) {
+      out_.message = "under what the drives stand at before t = 0 the switch has no stable closed state to begin in";
+    } else if (model_.rest()) {
+      out_.message = "under what the drives stand at before t = 0 the switch has no stable open state: they close it";
+    } else {
+      out_.message = "with every drive at rest the switch has no stable open state: the dispersion force closes it by itself";
+    }
+  }
+
   void go_through_stretches() {
     const std::vector<double> stops = parts_.drives.stretches(options_.duration);
     for (std::size_t i = 0; i + 1 < stops.size() && !ended_; ++i) {
@@ -195,6 +209,7 @@ class Run {
     audit_.settle(here());
     out_.energy = audit_.balance();
     out_.energy_error = audit_.error();
+    out_.layer_energy = layer_charging_energy(model_.device(), signals_, here().time);
     out_.deepest_penetration = parts_.touches.deepest_penetration();
     if (parts_.touches.count() > 0) {
       out_.steady_force_time = parts_.force.steady_from();
@@ -223,6 +238,7 @@ class Run {
 
   const Switch& model_;
   const ClosingOptions& options_;
+  std::span<const Signal> signals_;
   double plane_;  // of first touch [m]
   ClosingParts parts_;
   Stepping stepping_;
@@ -262,6 +278,7 @@ Trajectory observe_closing(const Switch& model, std::span<const Signal> drives, 
               (model.has_contact() && options.begins_closed.size() == static_cast<std::size_t>(model.modes())),
           fmt::format("begins_closed: {} coordinates for a switch with {} modes and {} contact", options.begins_closed.size(),
                       model.modes(), model.has_contact() ? "a" : "no"));
+  require(options.start == StartState::open || model.has_contact(), "start = closed: the switch has no contact to begin on");
   require(options.restart_at_contact || why_always_restarted(model).empty(),
           fmt::format("restart_at_contact = false: {}", why_always_restarted(model)));
   return Run(model, drives, options, observer).run();

@@ -38,6 +38,9 @@
 
 namespace softland {
 
+/// The equilibrium under what the drives stand at before t = 0 in which a run begins.
+enum class StartState { open, closed };
+
 /// What `automatic` begins with: lawson, or esdirk where a gas film is compressible.
 [[nodiscard]] Integrator automatic_integrator(const Switch& model);
 
@@ -61,6 +64,8 @@ struct ClosingOptions {
   /// Where given, the run begins at rest on the contact, with these modal coordinates [m kg^(1/2)]: those of a closed equilibrium
   /// under what the drives have been before t = 0. The touch that holds then counts as one that began at t = 0 at no speed.
   std::span<const double> begins_closed = {};
+  /// Where begins_closed is empty: `closed` begins in the stable closed equilibrium under what the drives have been before t = 0.
+  StartState start = StartState::open;
   const std::atomic<bool>* stop = nullptr;  ///< set from outside: ends the run as `interrupted`
   /// Called after every step with time [s], q and v, which the states of a compressible film follow; true ends the run (status
   /// done).
@@ -70,9 +75,10 @@ struct ClosingOptions {
 /// Why a closing of this switch cannot be run with restart_at_contact = false; empty when it can.
 [[nodiscard]] std::string why_always_restarted(const Switch& model);
 
-/// Never throws for numerical trouble: see Trajectory::status. Throws InvalidInput unless there is one signal per drive of the
+/// Never throws for numerical trouble: see Trajectory::status, which is collapsed_at_rest where the equilibrium that `start` asks
+/// for does not exist. Throws InvalidInput unless there is one signal per drive of the
 /// switch, duration and tolerance are positive and tolerance <= 0.1; where begins_closed has a coordinate too many or too few, or
-/// the switch no contact; or where restart_at_contact is false and cannot be.
+/// a run is to begin closed and the switch has no contact; or where restart_at_contact is false and cannot be.
 [[nodiscard]] Trajectory simulate_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options);
 
 /// The same for an observer, who alone receives points and touches: those of the result stay empty.

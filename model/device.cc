@@ -171,6 +171,8 @@ void check_piezo(const Piezo& p, const Structure& s) {
   positive(p.thickness, "m", "piezo.thickness");
   positive(p.youngs_modulus, "Pa", "piezo.youngs_modulus");
   positive(p.density, "kg/m^3", "piezo.density");
+  require(std::isnan(p.relative_permittivity) || (p.relative_permittivity >= 1 && std::isfinite(p.relative_permittivity)),
+          [&] { return fmt::format("piezo.relative_permittivity = {}: must be at least 1", p.relative_permittivity); });
   require(p.d31 > -1 && p.d31 < 1,
           [&] { return fmt::format("piezo.d31 = {}: must be between -1 m/V and 1 m/V", engineering(p.d31, "m/V")); });
   require(std::isnan(p.e31) || std::abs(p.e31) < p.youngs_modulus, [&] {

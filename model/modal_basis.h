@@ -44,8 +44,7 @@ class ModalBasis {
   /// Static deflection of the contact point per volt on the piezo, of the beam by itself and small [m/V]; 0 where there is no
   /// layer. Positive towards the electrodes.
   [[nodiscard]] double piezo_deflection() const { return contact_shape_.cwiseQuotient(squares_).dot(piezo_shape_); }
-  /// Charge that the deflection puts on the piezo's electrodes, theta q [C]. The layer's own capacitance is not described by a
-  /// scene.
+  /// Charge that the deflection puts on the piezo's electrodes, theta q [C]. The layer's own capacitance: piezo_layer.h.
   [[nodiscard]] double piezo_charge(const double* q) const { return at(q).dot(piezo_shape_); }
   [[nodiscard]] double kinetic_energy(const double* v) const { return at(v).squaredNorm() / 2; }              ///< [J]
   [[nodiscard]] double bending_energy(const double* q) const { return at(q).cwiseAbs2().dot(squares_) / 2; }  ///< [J]

@@ -47,7 +47,11 @@ struct EnergyBalance {
 
 struct Trajectory {
   Status status = Status::not_run;
-  std::string message;         ///< why, where it is not done
+  std::string message;  ///< why, where it is not done
+  /// The run began in contact (ClosingOptions::start, begins_closed): its first touch is none that the drives have made.
+  bool began_closed = false;
+  /// Contact point in the equilibrium of the other StartState, where the one that was asked for does not exist [m].
+  double other_start = std::numeric_limits<double>::quiet_NaN();
   bool ends_at_touch = false;  ///< the switch has no contact, so the run ended where it first reached the plane
   double contact_gap = 0;      ///< dt: the first-touch plane [m]
   std::vector<TrajectoryPoint> points;
@@ -73,7 +77,8 @@ struct Trajectory {
   /// Of the contact, from its first maximum after the first touch to the end of the run; at the end where it only rises [N].
   /// NaN where nothing touched.
   double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
-  EnergyBalance energy;  ///< at the end
+  EnergyBalance energy;     ///< at the end
+  double layer_energy = 0;  ///< layer_charging_energy() of the piezo, which no balance holds [J]
   /// Largest residual of the energy balance at any make or break of contact and at the end [J].
   double energy_error = 0;
   Work work;

@@ -56,14 +56,20 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   const bool sound = course.sound;
   if (ran_to_the_end && !sound) result.status = Status::numerical_failure;
 
-  result.initial_contact_time = course.first_touch;
-  result.impact_velocity = course.impact_velocity;
-  if (touched_) result.largest_impact_velocity = largest_impact_velocity_;
+  if (!end.began_closed) {
+    result.initial_contact_time = course.first_touch;
+    result.impact_velocity = course.impact_velocity;
+  }
+  if (touched_ && !end.began_closed) result.largest_impact_velocity = largest_impact_velocity_;
   if (!ran_to_the_end || !sound) return result;
 
-  result.drive_energy = end.energy.source_work;
+  result.drive_energy = end.energy.source_work + end.layer_energy;
   result.capacitance = end.hold_capacitance;
   result.end = course.last_time;
+  if (end.began_closed) {
+    if (end.status == Status::done) result.status = Status::not_settled;
+    return result;
+  }
   if (!course.touched) {
     result.closest = course.closest;
     if (end.status == Status::done) result.status = Status::no_contact;

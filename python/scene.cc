@@ -144,6 +144,7 @@ Motion motion_of(const PyClosing& c, const Watch& watch) {
                                          {.duration = c.prepared->duration,
                                           .tolerance = c.closing.tolerance,
                                           .steady_force = hold.steady_force(c.prepared->scene.metrics),
+                                          .start = c.prepared->start(),
                                           .stop = watch.stop},
                                          motion.tape);
   watch.throw_if_stopped();

@@ -59,6 +59,10 @@ bool settles(const FigureValues& figures) {
 
 bool ends_at_touch(const FigureValues& figures) { return touches(figures) && !std::isfinite(figures[&Metrics::bounce_count]); }
 
+bool began_closed(const ResultRun& run) {
+  return run.figures && !touches(*run.figures) && (run.status == "done" || run.status == "not_settled");
+}
+
 bool is_clean(const FigureValues& figures) {
   return touches(figures) && settles(figures) && figures[&Metrics::bounce_count] == 0;
 }
@@ -82,12 +86,23 @@ std::string open_clause(const Actor& actor, const FigureValues& figures) {
       std::isfinite(settling) ? ", and settles after " + quantity(settling, "s") : ", and has not settled when the window ends");
 }
 
+// Of a run that began closed, which lands nowhere.
+std::string opening_clause(const Actor& actor, const FigureValues& figures, const std::string& end) {
+  const double settling = figures[&Metrics::open_settling_time];
+  if (!std::isfinite(settling))
+    return fmt::format("{} begins closed, and is not open and at rest when the window ends{}", actor.subject,
+                       end.empty() ? "" : " at " + end);
+  return fmt::format("{} begins closed, opens, and is at rest from {} on, deflected by {}", actor.subject,
+                     quantity(settling, "s"), quantity(figures[&Metrics::static_deflection], "m"));
+}
+
 }  // namespace
 
 std::string closing_clause(const Actor& actor, const ResultRun& run, double window) {
   if (run.status == "collapsed_at_rest")
     return actor.subject +
-           " has no stable rest position under what its drives stand at before t = 0: it collapses before it is driven";
+           " has no stable equilibrium to begin in under what its drives stand at before t = 0 (an open one, unless before_state "
+           "says otherwise)";
   if (run.status == "collapsed_onto_electrode") {
     const bool through = !run.figures || touches(*run.figures);
     return actor.subject + (through ? " is pulled through the contact onto the electrode"
@@ -98,6 +113,7 @@ std::string closing_clause(const Actor& actor, const ResultRun& run, double wind
   const FigureValues& figures = *run.figures;
   const std::string end = std::isfinite(window) ? quantity(window, "s") : std::string();
   if (run.status == "open") return open_clause(actor, figures);
+  if (began_closed(run)) return opening_clause(actor, figures, end);
   if (!touches(figures)) {
     return fmt::format("{} does not close{}{}", actor.subject, actor.object.empty() ? "" : " " + actor.object,
                        end.empty() ? "" : " within " + end);

@@ -82,8 +82,9 @@ struct Document {
   std::vector<KeyNumber> keys;
   std::vector<ReportSection> sections;
   std::vector<std::string> warnings;
-  std::function<internal::Picture()> draw;  ///< what the page's script draws; may be empty
-  Result made;                              ///< how to make it again
+  std::vector<std::string> page_warnings = {};  ///< these stand beside those on the page alone
+  std::function<internal::Picture()> draw;      ///< what the page's script draws; may be empty
+  Result made;                                  ///< how to make it again
   /// CSS and HTML of pictures that `draw` does not make.
   std::string style = {}, scripts = {};
 };

@@ -51,7 +51,7 @@ std::string error_text(const Figure& figure, double value, double error) {
 
 std::string missing_reason(const ResultRun& run, const Figure& figure) {
   if (!run.figures || std::isfinite((*run.figures)[figure])) return {};
-  if (!touches(*run.figures)) return run.status == "open" ? "open" : "no contact";
+  if (!touches(*run.figures)) return run.status == "open" ? "open" : began_closed(run) ? "an opening" : "no contact";
   if (ends_at_touch(*run.figures)) return "not known";
   return figure.conditioning == Conditioning::last_rebound && !settles(*run.figures) ? "not settled" : "";
 }

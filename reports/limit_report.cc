@@ -15,6 +15,7 @@
 #include "reports/quantity.h"
 #include "reports/result_json.h"
 #include "reports/svg.h"
+#include "studies/closing/summits_at_hold.h"
 
 namespace softland {
 namespace {
@@ -139,6 +140,8 @@ ReportTable touches_table(const Limit& limit) {
 std::vector<std::string> all_warnings(const Limit& limit) {
   std::vector<std::string> all = limit.given.scene.warnings;
   if (!limit.hold_warning.empty()) all.push_back(limit.hold_warning);
+  if (std::string few = few_summits_warning(limit.given.model, limit.given.signals()); !few.empty())
+    all.push_back(std::move(few));
   return all;
 }
 

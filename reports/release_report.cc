@@ -15,6 +15,7 @@
 #include "reports/quantity.h"
 #include "reports/robustness_words.h"
 #include "reports/svg.h"
+#include "studies/closing/summits_at_hold.h"
 #include "waveforms/export.h"
 
 namespace softland {
@@ -206,6 +207,12 @@ ReportTable parameters_table(const OpeningResult& r) {
 
 }  // namespace
 
+std::vector<std::string> warnings(const OpeningResult& r) {
+  std::vector<std::string> all = r.given.scene.warnings;
+  if (std::string few = few_summits_warning(r.given.model, r.given.signals()); !few.empty()) all.push_back(std::move(few));
+  return all;
+}
+
 json release_json(const OpeningResult& r, const Provenance& provenance) {
   json checks = json::array();
   for (const ConfirmingOpening& c : r.checks) checks.push_back({{"name", c.name}, {"figures", figures_json(c.figures)}});
@@ -228,7 +235,8 @@ json release_json(const OpeningResult& r, const Provenance& provenance) {
                       {"confirmed", r.confirmed},
                       {"evaluations", r.search.evaluations},
                       {"seed", r.options.seed},
-                      {"termination", to_string(r.search.termination)}},
+                      {"termination", to_string(r.search.termination)},
+                      {"warnings", warnings(r)}},
                      r.given, provenance.command);
 }
 
@@ -237,7 +245,8 @@ std::string release_text(const OpeningResult& r) {
   if (r.best) opening.parts.emplace_back(parameters_table(r));
   Document document{.headline = finding(r),
                     .doubt = r.interrupted ? "Interrupted: what follows is the best so far." : "",
-                    .sections = {std::move(opening)}};
+                    .sections = {std::move(opening)},
+                    .warnings = warnings(r)};
   if (r.on_devices) document.sections.push_back(devices_section(*r.on_devices));
   document.sections.push_back({.id = "remarks", .heading = "Remarks", .parts = {Paragraph{remarks(r)}}});
   return terminal_text(document);

@@ -3,11 +3,15 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "reports/result_maker.h"
 #include "studies/search/opening.h"
 
 namespace softland {
+
+/// What is to be warned of: the scene, and a contact force at hold that few summits carry.
+[[nodiscard]] std::vector<std::string> warnings(const OpeningResult& result);
 
 [[nodiscard]] nlohmann::json release_json(const OpeningResult& release, const Provenance& provenance);
 [[nodiscard]] std::string release_text(const OpeningResult& release);

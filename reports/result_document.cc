@@ -7,6 +7,8 @@
 #include <cmath>
 #include <span>
 
+#include "base/require.h"
+#include "config/scene.h"
 #include "reports/chart.h"
 #include "reports/closing_words.h"
 #include "reports/devices_report.h"
@@ -18,6 +20,7 @@
 #include "reports/result_words.h"
 #include "reports/seeds_report.h"
 #include "reports/sketch.h"
+#include "studies/closing/summits_at_hold.h"
 
 namespace softland {
 namespace {
@@ -129,6 +132,20 @@ ReportTable figures_table(const Result& result) {
   return table;
 }
 
+// A scene with a piezo layer whose charging is no part of the drive energy.
+std::string uncounted_layer_caption(const Result& result) {
+  const bool told = std::isfinite(figure_of_run(result.best, &Metrics::drive_energy)) ||
+                    std::isfinite(figure_of_run(result.baseline, &Metrics::drive_energy));
+  if (!told || result.scene.text.find("piezo") == std::string::npos) return {};
+  try {
+    const SceneFile scene = SceneFile::parse(result.scene.text, "scene");
+    if (!scene.written("piezo.thickness") || scene.written("piezo.relative_permittivity")) return {};
+  } catch (const InvalidInput&) {  // somebody has edited the result
+    return {};
+  }
+  return "The drive energy does not count the charging of the piezo layer: the scene has no piezo.relative_permittivity.";
+}
+
 ReportSection figures_section(const Result& result) {
   ReportSection section{.id = "figures", .heading = "Figures", .parts = {}};
   if (result.devices)
@@ -137,7 +154,8 @@ ReportSection figures_section(const Result& result) {
   if (result.best.figures || result.baseline.figures) section.parts.emplace_back(figures_table(result));
   if (result.goal_met && !result.devices)
     section.parts.emplace_back(Paragraph{fmt::format("The goal is {}.", *result.goal_met ? "met" : "not met")});
-  for (const std::string& words : {limit_words(result), certificate_caption(result), robust_caption(result)})
+  for (const std::string& words :
+       {uncounted_layer_caption(result), limit_words(result), certificate_caption(result), robust_caption(result)})
     section.parts.emplace_back(Paragraph{words});
   return section;
 }
@@ -331,6 +349,12 @@ Document result_document(const Result& result) {
                     .warnings = result.warnings,
                     .draw = [&result] { return picture(result); },
                     .made = {.command = result.command, .version = result.version}};
+  if (result.is_search) {  // whose terminal has room for what was found alone
+    const auto few = std::stable_partition(document.warnings.begin(), document.warnings.end(),
+                                           [](const std::string& one) { return !is_few_summits_warning(one); });
+    document.page_warnings.assign(few, document.warnings.end());
+    document.warnings.erase(few, document.warnings.end());
+  }
   document.made.seed = result.seed;
   document.made.tolerance = result.tolerance;
   document.made.reproduce = result.reproduce;

@@ -142,9 +142,7 @@ Headline headline(const Result& result) {
     return {capitalised(closing_clause({.subject = "the switch"}, result.best, window)) + "." + rest, ""};
   }
   if (result.status == "collapsed_at_rest")
-    return {
-        "The switch has no stable rest position under what its drives stand at before t = 0: it collapses before it is driven.",
-        ""};
+    return {"The switch has no stable open state to begin in under what its drives stand at before t = 0.", ""};
   Headline line;
   if (result.status == "interrupted") line.main = "The search was interrupted; this is its best so far. ";
   const bool ended = result.status != "interrupted";

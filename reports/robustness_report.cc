@@ -17,6 +17,7 @@
 #include "reports/robustness_words.h"
 #include "studies/closing/closed_state.h"
 #include "studies/closing/simulate.h"
+#include "studies/closing/summits_at_hold.h"
 #include "studies/devices/box_and_chaos.h"
 #include "waveforms/export.h"
 
@@ -158,6 +159,11 @@ void add_details(RobustnessReport& report, bool other_ways_too, const Watch& wat
 std::vector<std::string> warnings(const RobustnessReport& report) {
   std::vector<std::string> all = report.nominal.scene.warnings;
   if (!report.unheld.empty()) all.push_back(report.unheld);
+  if (!report.found.drives.empty()) {
+    const DriveRobustness& last = report.found.drives.back();
+    const std::vector<Signal> signals = report.nominal.driven(report.nominal.in_drive_order(last.waveforms));
+    if (std::string few = few_summits_warning(report.nominal.model, signals); !few.empty()) all.push_back(std::move(few));
+  }
   return all;
 }
 

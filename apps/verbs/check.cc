@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "apps/exit_status.h"
@@ -19,7 +18,6 @@
 #include "base/printable.h"
 #include "base/shortened.h"
 #include "model/constants.h"
-#include "model/contact/contact_law.h"
 #include "model/pull_in.h"
 #include "reports/origin.h"
 #include "reports/pull_in_words.h"
@@ -30,6 +28,7 @@
 #include "studies/closing/closed_state.h"
 #include "studies/closing/sent_signals.h"
 #include "studies/closing/simulate.h"
+#include "studies/closing/summits_at_hold.h"
 
 namespace softland::apps {
 namespace {
@@ -77,20 +76,6 @@ std::string closed_state_words(const ClosedState& state) {
       words += fmt::format(" (more modes move it by {})", shift);
   }
   return words;
-}
-
-// How many of the summits touch under the hold levels; empty where they are not of one height distribution to a closed form.
-std::string summits_words(const PreparedScene& p, const ClosedState& state) {
-  const std::optional<Contact>& contact = p.scene.device.contact;
-  const auto* const rough = contact ? std::get_if<UniformAsperities>(&contact->model) : nullptr;
-  if (rough == nullptr) return {};
-  if (!state.exists || !std::holds_alternative<UniformAsperityContact>(p.model.contact())) return {};
-  const auto& law = std::get<UniformAsperityContact>(p.model.contact());
-  const double all = rough->summits.count({.width = p.scene.device.structure.width, .length = contact->pad_length});
-  const double touching = all * std::min(1.0, law.interference(state.contact_force) / law.height);
-  return fmt::format(
-      "{} of {} summits touch under the hold levels{}", plain_number(touching, 2), plain_number(all, 3),
-      touching < 1 ? ": fewer than one, so that the law, a mean over many of them, says little of one device" : "");
 }
 
 // What is to be said of a key, with its place.
@@ -153,7 +138,7 @@ int check_verb(const Common& c) {
   const std::string title = shortened(printable_line(p.scene.title));
   std::string text = fmt::format("{}: valid{}\n\n", printable_line(c.scene), title.empty() ? "" : " (" + title + ")");
   const auto add = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<20} {}\n", name, value); };
-  std::vector<std::string> frequencies, warnings = p.scene.warnings;
+  std::vector<std::string> frequencies, warnings = p.scene.warnings, few_summits;
   for (const double omega : p.model.basis().angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   if (p.model.has_contact()) add("in-contact period", quantity(p.model.basis().in_contact_period(), "s", 4));
@@ -238,6 +223,9 @@ int check_verb(const Common& c) {
     add("drive " + name, fmt::format("{}hold {}, peak {}, {}", before, given_quantity(signal.hold_level(), "V"),
                                      given_quantity(signal.peak(), "V"), driver));
   }
+  if (const std::string start = start_words(p); !start.empty()) add("start", start);
+  if (!p.start_equilibrium() && (p.scene.begins_closed || p.model.rest()))
+    warnings.push_back("a run does not begin: " + start_words(p));
   if (!p.model.has_contact()) add("contact", "none: a run ends at first touch");
   add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
   const StablePathFound path = stable_path_of(p, work->watch());
@@ -247,12 +235,17 @@ int check_verb(const Common& c) {
     const ClosedState state = closed_state(p, p.signals());
     closed = closed_state_json(state);
     add("closed state", closed_state_words(state));
-    if (const std::string summits = summits_words(p, state); !summits.empty()) add("contact", summits);
-    if (std::string lost = hold_warning(p.model, p.signals(), state); !lost.empty()) warnings.push_back(std::move(lost));
+    const Hold hold = hold_of(p.model, p.signals());
+    if (const auto summits = hold.closed ? summits_at_hold(p.model, *hold.closed) : std::nullopt)
+      add("contact", summits_words(*summits));
+    if (std::string few = few_summits_warning(p.model, p.signals()); !few.empty()) few_summits.push_back(std::move(few));
+    if (std::string lost = hold_warning(p.model, p.signals(), state); !lost.empty() && !p.scene.begins_closed)
+      warnings.push_back(std::move(lost));
   }
   for (const std::string& w : warnings) text += "\n" + wrapped("warning: " + w) + "\n";
   work->watch().throw_if_stopped();
   work.reset();
+  warnings.insert(warnings.end(), few_summits.begin(), few_summits.end());  // told above, by the contact
   nlohmann::json data = check_json(p, pull_in, warnings, c.command);
   data["closed_state"] = std::move(closed);
   data["stable_path"] = path.data;

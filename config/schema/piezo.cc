@@ -6,6 +6,7 @@ namespace {
 
 Piezo& piezo(Scene& scene, std::size_t) { return *scene.device.piezo; }
 using OfPiezo = Of<piezo>;
+constexpr Range at_least_one{.least = 1, .most = 1e6};
 
 std::size_t begin_piezo(Scene& scene, const SectionReader& in, std::string_view) {
   const StructureKind kind = scene.device.structure.kind;
@@ -38,7 +39,11 @@ Section piezo_section() {
                OfPiezo::number<&Piezo::e31>("e31", dimension::charge_density, any,
                                             "the same as a stress per field: d31 youngs_modulus")
                    .needed()
-                   .instead("d31")},
+                   .instead("d31"),
+               OfPiezo::number<&Piezo::relative_permittivity>(
+                   "relative_permittivity", dimension::none, at_least_one,
+                   "of the layer; absent: the drive energy does not count the charging of the layer")
+                   .such_as("1500")},
       .about = "a piezoelectric layer on the face away from the electrode",
       .begin = begin_piezo,
       .check = [](Scene& scene, const SectionReader& in, std::size_t) { in.require_on_beam("span", scene.device.structure); }};

@@ -89,6 +89,8 @@ Section section_of(std::string_view entry, const std::vector<Dimension>& level, 
                         number(before_key, level, any,
                                entry.empty() ? "before t = 0, where a run starts at rest; absent: 0 V"
                                              : "before t = 0, where a run starts at rest; absent: 1")};
+  keys.push_back(one_of(before_state_key, {open_state, closed_state_word},
+                        "equilibrium under the values before t = 0 in which a run begins; default open"));
   for_each_family([&]<class Family>(const Family&) {
     names.push_back(FamilyOf<Family>::name);
     std::vector<Key> own;

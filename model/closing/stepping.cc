@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "model/pull_in.h"
 
 namespace softland {
 namespace {
@@ -24,15 +27,20 @@ Knot at_rest(const ClosingParts& parts) {
   Knot knot{.time = 0,
             .state = std::vector<double>(2 * n + model.film_states(), 0.0),
             .rates = std::vector<double>(n + model.film_states(), 0.0)};
-  if (!parts.options.begins_closed.empty()) {
-    std::copy_n(parts.options.begins_closed.begin(), n, knot.state.begin());
-  } else if (parts.rest) {
-    std::copy_n(parts.rest->data(), n, knot.state.begin());
-  }
+  if (parts.rest) std::copy_n(parts.rest->data(), n, knot.state.begin());
   return knot;
 }
 
 }  // namespace
+
+std::optional<Eigen::VectorXd> start_of(const Switch& model, std::span<const Signal> signals, const ClosingOptions& options) {
+  if (const std::span<const double> given = options.begins_closed; !given.empty())
+    return Eigen::Map<const Eigen::VectorXd>(given.data(), static_cast<Eigen::Index>(given.size()));
+  const std::vector<double> before = values_before(signals);
+  if (options.start == StartState::open) return model.open_equilibrium(before);
+  std::optional<ClosedEquilibrium> closed = closed_equilibrium(model, before);
+  return keeps_closed(model, closed) ? std::optional(std::move(closed->q)) : std::nullopt;
+}
 
 TrajectoryPoint ClosingParts::point(const Knot& knot) const {
   const double *q = knot.state.data(), *v = q + model.modes();

@@ -20,11 +20,19 @@
 
 namespace softland {
 
+[[nodiscard]] inline bool begins_closed(const ClosingOptions& options) {
+  return !options.begins_closed.empty() || options.start == StartState::closed;
+}
+/// The equilibrium in which a run starts, under what the drives have been before t = 0: an open one unless the options say
+/// otherwise. Empty where that does not exist.
+[[nodiscard]] std::optional<Eigen::VectorXd> start_of(const Switch& model, std::span<const Signal> signals,
+                                                      const ClosingOptions& options);
+
 /// What a closing is made of; the parts keep references to each other.
 struct ClosingParts {
   const Switch& model;
   const ClosingOptions& options;
-  std::optional<Eigen::VectorXd> rest;  ///< open equilibrium under what the drives have been before t = 0, if there is one
+  std::optional<Eigen::VectorXd> rest;  ///< where the run starts; none where there is no such equilibrium
   DriveCourse drives;
   ContactPhase phase;
   ClosingEquations equations;
@@ -38,7 +46,7 @@ struct ClosingParts {
                ClosingObserver& closing_observer)
       : model(switch_model),
         options(closing_options),
-        rest(model.open_equilibrium(values_before(signals))),
+        rest(start_of(switch_model, signals, closing_options)),
         drives(signals),
         phase(model),
         equations(model, drives, phase, options.restart_at_contact),
@@ -47,8 +55,8 @@ struct ClosingParts {
         force(model, options.steady_force),
         course(model.device(), closing_observer),
         observer(closing_observer) {
-    if (options.begins_closed.empty()) return;
-    phase.begin_closed(model.contact_deflection(options.begins_closed.data()) - model.device().gap.contact);
+    if (!rest || !begins_closed(options)) return;
+    phase.begin_closed(model.contact_deflection(rest->data()) - model.device().gap.contact);
     if (phase.in_contact()) touches.begin_closed();
   }
   ClosingParts(const ClosingParts&) = delete;

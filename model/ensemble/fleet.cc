@@ -12,6 +12,7 @@
 #include "model/ensemble/lane_drives.h"
 #include "model/forces/casimir.h"
 #include "model/forces/dispersion.h"
+#include "model/piezo_layer.h"
 
 namespace softland {
 namespace {
@@ -285,7 +286,8 @@ double field_energy(const Switch& model, std::span<const double> volts, const do
 double drive_energy(const FleetClosing& c, const LaneClosing& lane) {
   std::vector<double> at_end;
   for (const Signal& drive : c.drives) at_end.push_back(drive.voltage(lane.end));
-  return field_energy(*c.model, at_end, lane.final) - field_energy(*c.model, values_before(c.drives), lane.start) + lane.work;
+  return field_energy(*c.model, at_end, lane.final) - field_energy(*c.model, values_before(c.drives), lane.start) + lane.work +
+         layer_charging_energy(c.model->device(), c.drives, lane.end);
 }
 
 fleet::LaneRunner runner(Vectors vectors) {

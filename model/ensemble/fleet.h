@@ -78,7 +78,8 @@ struct FleetEnd {
   /// As in Trajectory [s], [N]
   double steady_force_time = std::numeric_limits<double>::quiet_NaN(),
          least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
-  double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< as EnergyBalance::source_work, where it is measured [J]
+  double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< EnergyBalance::source_work and Trajectory::layer_energy,
+                                                                   ///< where it is measured [J]
 };
 
 /// Why closings of this switch are not followed in lanes; empty where they are.

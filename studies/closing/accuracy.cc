@@ -322,6 +322,7 @@ double AccuracyStudy::worst_error(const AccuracyRow& row) const {
 }
 
 AccuracyStudy study_accuracy(const PreparedScene& prepared, const AccuracyOptions& options) {
+  require_open_start(prepared.scene, "accuracy closes the switch");
   return Study(prepared, options).run();
 }
 

@@ -52,6 +52,7 @@ Judgement judged(const SceneFile& file, int modes, const Watch& watch) {
                                         {.duration = p.duration,
                                          .tolerance = std::max(run_tolerance, p.tolerance),
                                          .after_contact = 2 * pi / omega,
+                                         .start = p.start(),
                                          .stop = watch.stop,
                                          .observer = observer(watch, fmt::format("closing with {} modes", modes), p.duration)});
   watch.throw_if_stopped();

@@ -144,6 +144,7 @@ Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
   const ClosingOptions options{.duration = prepared.duration,
                                .tolerance = std::min(c.judge->tolerance, c.tolerance),
                                .steady_force = prepared.scene.metrics.steady_force * c.trajectory.hold_force,
+                               .start = prepared.start(),
                                .stop = watch.stop};
   const Metrics& better = c.judge->metrics;
   const std::vector<Metrics> moved = at_other_pull_in(prepared, fine, quadrature, options, watch);

@@ -213,6 +213,7 @@ std::vector<EffectAblation> ablate_effects(const PreparedScene& prepared, const 
 }
 
 EffectsChoice negligible_effects(const PreparedScene& prepared, double tolerance, const Watch& watch) {
+  require_open_start(prepared.scene, "effects = \"auto\" judges a closing");
   EffectsChoice choice;
   const Metrics own = closing(prepared, watch);
   for (EffectAblation& o : ablate_effects(prepared, own, false, watch)) {

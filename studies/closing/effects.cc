@@ -68,6 +68,7 @@ double Effects::spread(const std::string& section, const Figure& figure) const {
 }
 
 Effects compare_effects(const PreparedScene& prepared, const Watch& watch) {
+  require_open_start(prepared.scene, "effects closes the switch");
   const std::optional<Gas>& own = prepared.scene.device.gas;
   Effects found{.window = prepared.duration};
   std::vector<std::optional<Gas>> laws{std::nullopt};

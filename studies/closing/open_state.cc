@@ -10,7 +10,9 @@
 namespace softland {
 
 void set_open_figures(Metrics& metrics, const Trajectory& run, const Switch& model, const std::vector<Signal>& signals) {
-  if (run.status != Status::done || !run.touches.empty() || run.points.empty()) return;
+  if (run.status != Status::done || run.points.empty()) return;
+  const bool is_open = run.touches.empty() || (run.began_closed && std::isfinite(run.touches.back().end));
+  if (!is_open) return;
   const std::optional<Eigen::VectorXd> rest = model.open_equilibrium(hold_levels(signals));
   if (!rest) return;
   const double position = model.contact_deflection(rest->data()), start = run.points.front().position;
@@ -21,6 +23,9 @@ void set_open_figures(Metrics& metrics, const Trajectory& run, const Switch& mod
   metrics.overshoot = start > position ? all.below : all.above;
   const double period = 2 * pi / model.basis().angular_frequencies()[0];
   if (run.points.back().time - settled_from >= period) metrics.open_settling_time = settled_from;
+  if (!run.began_closed || !std::isfinite(metrics.open_settling_time)) return;
+  metrics.status = Status::done;
+  metrics.settled = true;
 }
 
 bool stays_open(const Switch& model, const std::vector<Signal>& signals, double duration, const Watch& watch) {

@@ -14,9 +14,10 @@ namespace softland {
 /// Of the largest distance of the contact point from its static deflection: it has settled where it stays this near.
 inline constexpr double settled_share = 0.02;
 
-/// Sets static_deflection, overshoot and open_settling_time of a run that came to its end without a touch, where the hold levels
-/// of these drives have a stable open equilibrium; leaves them unset elsewhere. It has not settled where it came near less than
-/// a period of the first mode before the end.
+/// Sets static_deflection, overshoot and open_settling_time of a run that came to its end without a touch, or that began closed
+/// and has left its contact, where the hold levels of these drives have a stable open equilibrium; leaves them unset elsewhere.
+/// It has not settled where it came near less than a period of the first mode before the end. A run that began closed is done
+/// where it has settled.
 void set_open_figures(Metrics& metrics, const Trajectory& run, const Switch& model, const std::vector<Signal>& signals);
 
 /// Whether these drives ask for no closing: their hold levels have a stable open equilibrium, and so has the least and the most

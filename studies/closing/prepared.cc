@@ -85,6 +85,59 @@ std::string begins_elsewhere(const DriveWaveforms& waveforms, const std::map<std
   return {};
 }
 
+namespace {
+
+std::optional<Eigen::VectorXd> equilibrium_before(const PreparedScene& scene, StartState state) {
+  if (state == StartState::open) return scene.rest();
+  std::optional<ClosedEquilibrium> closed = closed_equilibrium(scene.model, scene.values_before());
+  return keeps_closed(scene.model, closed) ? std::optional(std::move(closed->q)) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Eigen::VectorXd> PreparedScene::start_equilibrium() const { return equilibrium_before(*this, start()); }
+
+std::string other_start_hint(const PreparedScene& scene) {
+  const std::string key = before_state_path(scene);
+  return scene.start() == StartState::open ? fmt::format("; {} = \"closed\" begins there", key)
+                                           : fmt::format("; without {} = \"closed\" a run begins there", key);
+}
+
+std::string start_words(const PreparedScene& scene) {
+  const auto stands = [](const Drive& drive) { return drive.value_before() != 0; };
+  if (!scene.scene.begins_closed && std::ranges::none_of(scene.drives, stands)) return {};
+  constexpr int digits = 5;
+  const auto place = [&](const Eigen::VectorXd& q) {
+    return fmt::format("its contact point at {}", engineering(scene.model.contact_deflection(q.data()), "m", digits));
+  };
+  const bool is_closed = scene.start() == StartState::closed;
+  const char *own = is_closed ? "closed" : "open", *other = is_closed ? "open" : "closed";
+  if (const auto found = scene.start_equilibrium()) return fmt::format("{}, {}", own, place(*found));
+  const auto there = equilibrium_before(scene, is_closed ? StartState::open : StartState::closed);
+  return fmt::format("none: there is no stable {} state under what the drives stand at before t = 0{}", own,
+                     there ? fmt::format(", but a stable {} one, {}{}", other, place(*there), other_start_hint(scene)) : "");
+}
+
+void require_open_start(const Scene& scene, std::string_view study) {
+  if (!scene.begins_closed) return;
+  for (const std::string& drive : drive_names(scene.device)) {
+    const std::string path = "waveform." + drive + ".before_state";
+    if (scene.file.written(path) == "closed")
+      scene.file.refuse(path,
+                        fmt::format("{} from the open state; simulate, check, export and explore take a closed start", study));
+  }
+}
+
+std::string before_state_path(const PreparedScene& scene) {
+  const Drive* named = nullptr;
+  for (const Drive& drive : scene.drives) {
+    const bool says_so = drive.begins_closed || drive.before;
+    if (says_so || (named == nullptr && drive.waveform)) named = &drive;
+    if (says_so) break;
+  }
+  return fmt::format("waveform.{}.before_state", named != nullptr ? named->name : "NAME");
+}
+
 // The cheapest that deliver on random scenes: results/accuracy.md.
 double tolerance_for(double accuracy, bool stiff) { return std::clamp(accuracy / 10, 1e-12, stiff ? 1e-4 : 1e-3); }
 
@@ -117,6 +170,25 @@ double default_window(const Switch& model, const std::vector<Signal>& signals) {
   const Trajectory closing = simulate_closing(
       model, steps, {.duration = longest * usual, .tolerance = loose, .after_contact = 0, .max_steps = most_steps});
   return closing.touches.empty() ? usual : std::max(usual, closings * closing.touches.front().begin);
+}
+
+/// The window of a scene that names none and begins closed [s]: it shows how the switch comes to rest in its open state, within
+/// ten times six periods of the first mode.
+double default_window_of_opening(const Switch& model, const std::vector<Signal>& signals) {
+  constexpr double periods = 6, longest = 10, loose = 1e-4, settled = 0.02, margin = 2;
+  constexpr long most_steps = 100'000;
+  const double period = 2 * pi / model.basis().angular_frequencies()[0], usual = periods * period;
+  const std::optional<Eigen::VectorXd> open = model.open_equilibrium(hold_levels(signals));
+  if (!open || !(usual <= longest_window)) return usual;
+  const Trajectory opening = simulate_closing(
+      model, signals, {.duration = longest * usual, .tolerance = loose, .max_steps = most_steps, .start = StartState::closed});
+  const double position = model.contact_deflection(open->data());
+  double furthest = 0, since = 0;
+  for (const TrajectoryPoint& p : opening.points) furthest = std::max(furthest, std::abs(p.position - position));
+  for (const TrajectoryPoint& p : opening.points) {
+    if (!(std::abs(p.position - position) <= settled * furthest)) since = p.time;
+  }
+  return std::clamp(since + margin * period, usual, longest * usual);
 }
 
 /// The drives but for what sampling and filters make of them.
@@ -231,6 +303,18 @@ bool take_limits_at_rest(PreparedScene& p, std::size_t electrode, const PullInFi
 
 }  // namespace
 
+PreparedScene prepare_statics(const SceneFile& file) {
+  Scene scene = read_scene(file);
+  const double accuracy = scene.simulate.tolerance > 0 ? SimulateOptions{}.accuracy : scene.simulate.accuracy;
+  ResolvedSwitch resolved = resolved_switch(scene.device, accuracy);
+  return {.scene = std::move(scene),
+          .model = std::move(resolved.model),
+          .pull_in = {},
+          .drives = {},
+          .quadrature = resolved.quadrature,
+          .quadrature_accuracy = accuracy};
+}
+
 PreparedScene prepare(const SceneFile& file, bool default_limits, const Watch& watch, const PullInFinder& find_pull_in) {
   const Scene scene = read_scene(file);
   const double accuracy = scene.simulate.tolerance > 0 ? SimulateOptions{}.accuracy : scene.simulate.accuracy;
@@ -261,7 +345,9 @@ PreparedScene prepare(const SceneFile& file, bool default_limits, const Watch& w
   }
   p.drives = scene.drives(p.voltage_units());
   load_sources(p);
-  p.duration = scene.simulate.duration > 0 ? scene.simulate.duration : default_window(p.model, without_sources(p));
+  p.duration = scene.simulate.duration > 0 ? scene.simulate.duration
+               : scene.begins_closed       ? default_window_of_opening(p.model, without_sources(p))
+                                           : default_window(p.model, without_sources(p));
   check_window(p);
   check_sources(p);
   p.tolerance =

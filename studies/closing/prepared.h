@@ -8,10 +8,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/watch.h"
 #include "config/scene.h"
+#include "model/closing.h"
 #include "model/pull_in.h"
 #include "model/switch.h"
 #include "studies/closing/quadrature.h"
@@ -55,8 +57,13 @@ struct PreparedScene {
   [[nodiscard]] std::vector<Waveform> waveforms(const DriveWaveforms& instead = {}) const;
   /// What every drive stands at before t = 0, in that order [V].
   [[nodiscard]] std::vector<double> values_before() const;
-  /// Where runs start: the open switch at rest under those. None where there is no stable equilibrium.
+  /// The state in which runs start.
+  [[nodiscard]] StartState start() const { return scene.begins_closed ? StartState::closed : StartState::open; }
+  /// The open switch at rest under those. None where there is no stable equilibrium.
   [[nodiscard]] std::optional<Eigen::VectorXd> rest() const { return model.open_equilibrium(values_before()); }
+  /// The equilibrium in which runs start: that, or the stable closed one where the scene begins closed. Empty where it does not
+  /// exist.
+  [[nodiscard]] std::optional<Eigen::VectorXd> start_equilibrium() const;
   /// What the source of drive k is told for a waveform of its own or another: that from t = 0 on, and before what the scene says.
   /// Throws as signal() does.
   [[nodiscard]] Signal told(std::size_t k, const Waveform& waveform) const;
@@ -85,6 +92,20 @@ struct PreparedScene {
 [[nodiscard]] std::string begins_elsewhere(const DriveWaveforms& waveforms, const std::map<std::string, double>& before,
                                            const PreparedScene& scene);
 
+/// Throws InvalidInput about the key of a scene whose runs begin closed, for a study that closes the switch from its open state:
+/// `study` says what it does, in the third person.
+void require_open_start(const Scene& scene, std::string_view study);
+
+/// "waveform.main.before_state": the key that says in which state a run begins, of the first drive that says so or stands at
+/// something before t = 0, else of the first drive that has a waveform.
+[[nodiscard]] std::string before_state_path(const PreparedScene& scene);
+
+/// "; waveform.main.before_state = "closed" begins there": what leads to the state of the other kind than a run asks for.
+[[nodiscard]] std::string other_start_hint(const PreparedScene& scene);
+
+/// Words for the state in which runs begin, or if that does not exist for the other one; empty where a scene says nothing of it.
+[[nodiscard]] std::string start_words(const PreparedScene& scene);
+
 /// Integrator tolerance that delivers a relative `accuracy` of t_i, v_i, B_H and the peak force.
 [[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: with a compressible film
 
@@ -92,6 +113,10 @@ struct PreparedScene {
 /// or who remembers what that has found.
 using PullInFinder = std::function<ElectrodePullIn(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch)>;
 [[nodiscard]] ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch = {});
+
+/// What statics need of a scene: it is read and its switch composed, but no pull-in voltage is found, and no drive, window or
+/// tolerance is known. It has no warnings of the quadrature. Throws as read_scene() does.
+[[nodiscard]] PreparedScene prepare_statics(const SceneFile& file);
 
 /// Reads, composes and resolves a scene; pull-in voltages are computed for the electrodes that need them (and, with
 /// `default_limits`, for all that have no written limit). What the scene leaves to softland is not chosen yet (choices.h):

@@ -13,6 +13,7 @@
 #include "studies/closing/closed_state.h"
 #include "studies/closing/closing_progress.h"
 #include "studies/closing/open_state.h"
+#include "studies/closing/summits_at_hold.h"
 
 namespace softland {
 namespace {
@@ -167,6 +168,7 @@ class ClosingRuns {
                                     .tolerance = tolerance,
                                     .max_steps = max_steps,
                                     .steady_force = hold.steady_force(prepared_.scene.metrics),
+                                    .start = prepared_.start(),
                                     .stop = watch_.stop,
                                     .observer = observer(watch_, what, prepared_.duration)},
                                    recorder);
@@ -264,6 +266,49 @@ void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared,
   }
 }
 
+// Tells whether a run that began closed has left its contact for good.
+bool has_opened(const Trajectory& run) {
+  return run.began_closed && !run.touches.empty() && std::isfinite(run.touches.back().end);
+}
+
+// Of a run that began closed: the state in which it began, and the one in which it ends, where more modes deny them.
+void judge_opening_with_more_modes(Closing& c, const PreparedScene& prepared, const std::vector<Signal>& signals) {
+  const ModeLadder ladder(prepared);
+  if (!ladder.exists()) return;
+  if (stability(ladder, closed_equilibria(ladder, values_before(signals))).stable == false) {
+    c.metrics = {.status = Status::collapsed_at_rest};
+    c.errors = {};
+    c.trajectory.status = Status::collapsed_at_rest;
+    c.trajectory.message =
+        "whether the switch has a stable closed state to begin in depends on the number of modes: more of them have none";
+  } else if (c.metrics.status == Status::done && open_stability(ladder, hold_levels(signals)).flips) {
+    c.metrics.status = Status::not_settled;
+    c.is_pulled_through = true;
+    c.warnings.emplace_back(
+        "whether the switch stays open depends on the number of modes: under its hold levels it has no stable open equilibrium "
+        "with more of them");
+  }
+}
+
+// What is to be said of a run that began closed, or had no state to begin in.
+void warn_of_start(Closing& c, const PreparedScene& prepared) {
+  const Trajectory& t = c.trajectory;
+  if (c.metrics.status == Status::collapsed_at_rest) {
+    if (std::isfinite(t.other_start)) {
+      constexpr int digits = 7;
+      c.trajectory.message += fmt::format("; there is a stable {} one, its contact point at {}{}",
+                                          prepared.start() == StartState::open ? "closed" : "open",
+                                          engineering(t.other_start, "m", digits), other_start_hint(prepared));
+    }
+    c.warnings.push_back(t.message);
+  } else if (t.began_closed && c.metrics.status == Status::not_settled) {
+    c.warnings.emplace_back(
+        has_opened(t) ? "the run begins closed, and the switch is not at rest in its open state when the window ends: a longer "
+                        "simulate.duration, or a slower waveform, shows it there"
+                      : "the run begins closed, and its contact is closed when the window ends");
+  }
+}
+
 // A switch that the modes of its scene hold has not settled where twice or four times as many let it go.
 void judge_with_more_modes(Closing& c, const PreparedScene& prepared, const std::vector<Signal>& signals) {
   Metrics& m = c.metrics;
@@ -358,11 +403,21 @@ Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watc
       c.metrics.status = Status::open;
     }
   }
-  judge_with_more_modes(c, prepared, runs.signals());
-  if (!c.trajectory.is_held && c.metrics.status != Status::open) {
+  if (c.trajectory.began_closed) {
+    c.rebounds.clear();
+    judge_opening_with_more_modes(c, prepared, runs.signals());
+  } else {
+    judge_with_more_modes(c, prepared, runs.signals());
+  }
+  warn_of_start(c, prepared);
+  if (!c.trajectory.began_closed && c.metrics.status != Status::collapsed_at_rest && !c.trajectory.is_held &&
+      c.metrics.status != Status::open) {
     const ClosedState state = closed_state(prepared, runs.signals());
     c.warnings.push_back(hold_warning(prepared.model, runs.signals(), state));
     c.is_pulled_through = !warning(state).empty() || !prepared.model.open_equilibrium(hold_levels(runs.signals()));
+  }
+  if (std::isfinite(c.metrics.hold_force) && !runs.was_interrupted()) {
+    if (std::string few = few_summits_warning(prepared.model, runs.signals()); !few.empty()) c.warnings.push_back(std::move(few));
   }
   if (runs.was_interrupted()) say_interrupted(c);
   c.warnings.insert(c.warnings.begin(), c.trajectory.warnings.begin(), c.trajectory.warnings.end());
@@ -396,7 +451,7 @@ void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Sig
   set_hold(trajectory, hold);
   if (!has_pulling_electrode(model.device())) return;
   std::optional<Eigen::VectorXd> q;
-  if (trajectory.touches.empty()) {
+  if (trajectory.touches.empty() || has_opened(trajectory)) {
     q = model.open_equilibrium(hold_levels(signals));
   } else if (hold.closed) {
     q = hold.closed->q;

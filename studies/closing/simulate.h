@@ -98,6 +98,8 @@ void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const st
 /// helps; the figures are then those of the tightest run. No run is its own judge, and no error is 0. Asked to stop, the status
 /// of the figures is interrupted: they are those of the last run that was complete, without errors, or of the part of the first
 /// one that was run. A switch that is not held (see set_hold()) has not settled, however quiet it is at the end of the window.
+/// A run that began closed (PreparedScene::start()) has no figures of a landing, and is done where it ends open and at rest. The
+/// status is collapsed_at_rest where the state that it is to begin in does not exist, and the message names the other one.
 /// One that has not touched, and was not meant to (see stays_open()), has the status `open`.
 [[nodiscard]] Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watch& watch = {});
 

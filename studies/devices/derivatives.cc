@@ -152,6 +152,7 @@ bool Derivatives::grazes() const { return grazing < grazing_share; }
 
 Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive, const DerivativeOptions& options,
                         const Watch& watch) {
+  require_open_start(scene.scene, "derivatives are those of a closing that begins");
   const DeviceSpread& spread = scene.scene.spread;
   Derivatives found{.variables = variables_of(spread), .figures = {}};
   std::vector<std::size_t> places;  // of what is not drawn for every edge

@@ -133,6 +133,7 @@ bool Evaluator::measured(const Figure& figure) {
 Evaluator::Evaluator(const SceneFile& file, std::vector<std::string> keys, std::vector<Figure> figures,
                      const EvaluatorOptions& options, const Watch& watch)
     : keys_(std::move(keys)), figures_(std::move(figures)), options_(options) {
+  require_open_start(read_scene(file), "evaluator closes the switch");
   require(!keys_.empty(), "evaluator: there is no key to vary");
   require(!figures_.empty(), "evaluator: there is no figure to tell");
   require(options.tolerance > 0 && options.tolerance <= 0.1, "evaluator: the tolerance must be above 0 and at most 0.1");

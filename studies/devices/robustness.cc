@@ -185,6 +185,7 @@ Yield yield_of(std::size_t devices, std::size_t all) {
 Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive>& drives, const RobustnessOptions& options,
                       const Watch& watch) {
   require(nominal.model.has_contact(), "robustness needs a [contact] section: without contact there is nothing to land on");
+  require_open_start(nominal.scene, "robustness closes every device");
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   const EnsembleRun run = internal::run_of(nominal, options);
   Robustness result{.duration = run.duration, .tolerance = run.tolerance};

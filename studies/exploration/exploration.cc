@@ -211,6 +211,8 @@ Exploration::Exploration(Plan plan, const Watch& watch)
                          key.path.starts_with("spread.") || key.path.starts_with("metrics.") || key.path == "simulate.duration";
     }
   }
+  if (study_ == PointStudy::optimize || study_ == PointStudy::robustness)
+    require_open_start(read_scene(plan_.base()), fmt::format("study {} closes the switch", plan_.study()));
   list_figures(watch);
 }
 

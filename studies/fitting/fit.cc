@@ -587,6 +587,7 @@ Setup setup_of(const SceneFile& file, const Bench& bench, const FitOptions& opti
   }
   require(names.size() == 1 || !has(names, ""),
           [&] { return fmt::format("{}: some measurements say of which device they are, and some do not", bench.name); });
+  require_open_start(read_scene(file), "fit closes the switch");
   std::vector<std::string> without_prior;
   std::optional<PreparedScene> plain;
   for (const std::string& name : names) {

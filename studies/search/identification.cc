@@ -304,7 +304,9 @@ IdentificationStudy identify(SceneFile file, const IdentificationOptions& option
     return fmt::format("{} devices: there must be from {} to {}", options.samples, fewest_measured, most_measured);
   });
   const bool spread_assumed = assume_spread(file);
-  const Device device = read_scene(file).device;
+  const Scene scene = read_scene(file);
+  require_open_start(scene, "calibrate closes every device");
+  const Device& device = scene.device;
   require(device.contact.has_value(), "calibrate needs a [contact] section: without contact there is nothing to land on");
   require(has_pulling_electrode(device), "calibrate needs an electrode that pulls in: its voltage is what devices differ in");
   const SearchSetting setting = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", watch);

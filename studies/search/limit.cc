@@ -493,6 +493,7 @@ void refuse_what_pulls_away(const PreparedScene& given, Actuator actuator) {
 
 Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& watch) {
   PreparedScene given = prepare_and_choose(file, true, watch);
+  require_open_start(given.scene, "limit closes the switch");
   require(given.model.has_contact(), "limit needs a [contact] section: without contact there is nothing to land on");
   refuse_what_pulls_away(given, options.actuator);
   const std::vector<std::string> names = given.drive_names();

@@ -103,7 +103,9 @@ class ReleaseSearch {
     }
     SceneFile file = with_waveforms(given_, waveforms);
     for (std::size_t k = 0; k < names_.size(); ++k) {
-      if (waveforms.contains(names_[k])) file.set(fmt::format("waveform.{}.before=\"{} V\"", names_[k], told_holds_[k]));
+      if (!waveforms.contains(names_[k])) continue;
+      file.set(fmt::format("waveform.{}.before=\"{} V\"", names_[k], told_holds_[k]));
+      file.set(fmt::format("waveform.{}.before_state=closed", names_[k]));
     }
     return file;
   }

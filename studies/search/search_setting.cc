@@ -311,6 +311,7 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
       return fmt::format("{} \"{}\": a switch that closes has no such figure", requested("constrain"), one.text);
     });
   PreparedScene given = prepare_and_choose(file, true, watch);
+  require_open_start(given.scene, "optimize closes the switch");
   require(given.model.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
   require_request(!(target.is_about(Target::force) && given.model.rigid_contact() != nullptr), [] {
     return requested("target") + " force: an impact on a rigid contact has an impulse, and no force to lower";

@@ -27,6 +27,7 @@ void require_contact(const PreparedScene& nominal) {
 PreparedScene prepared(SceneFile file) {
   assume_spread(file);
   PreparedScene nominal = prepare_and_choose(file, true);
+  require_open_start(nominal.scene, "a device is closed");
   require_contact(nominal);
   return nominal;
 }

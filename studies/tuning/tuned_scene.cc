@@ -142,6 +142,7 @@ PreparedScene TunedScene::prepared(const SceneFile& given, const Watch& watch) {
   SceneFile file = given;
   spread_is_assumed_ = assume_spread(file);
   const PreparedScene chosen = prepare_and_choose(file, true, watch);
+  require_open_start(chosen.scene, "tune closes the device");
   require(chosen.model.has_contact(),
           [&] { return fmt::format("{}: without [contact] there is no record to tune by", given.name()); });
   PreparedScene p = prepare(with_nuisances(chosen, options_), true, watch);

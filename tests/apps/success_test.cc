@@ -392,6 +392,141 @@ TEST(Check, AcceptsExactlyWhatSimulateRuns_optimized) {
   EXPECT_LT(refused, 22);
 }
 
+// A relay that is closed at 90 V, beyond its pull-in voltage, and switched off (circuitjs1, PR 289).
+const std::string relay = R"(structure = { kind = "plate", mass = "1 ug", stiffness = "100 N/m", area = "0.04 mm^2" }
+gap = { electrode = "4 um", contact = "3 um" }
+electrode.main.fringing = "none"
+gas = { model = "linear", quality_factor = 0.7 }
+contact = { model = "linear", stiffness = "100 kN/m" }
+waveform.main = { family = "step", before = "90 V", level = "0 V" }
+)";
+
+TEST(ClosedStart, IsNamedWhereTheOpenOneDoesNotExistAndTakenWhereItIsAskedFor) {
+  const Workplace here;
+  write(here.path() / "relay.toml", relay);
+  const std::string named = "waveform.main.before_state = \"closed\" begins there";
+  const Outcome without = here.run({"simulate", "relay.toml"});
+  EXPECT_EQ(without.status, 4);
+  EXPECT_THAT(without.out, HasSubstr("no stable equilibrium to begin in"));
+  EXPECT_THAT(without.err, AllOf(HasSubstr("3.011673"), HasSubstr(named), HasSubstr("collapsed_at_rest")));
+  const json other = json::parse(here.run({"simulate", "relay.toml", "--json", "-"}).out);
+  EXPECT_EQ(other["status"], "collapsed_at_rest");
+  EXPECT_THAT(other["warnings"].dump(), HasSubstr("3.011673"));
+  EXPECT_THAT(here.run({"check", "relay.toml"}).out, AllOf(HasSubstr("start                none"), HasSubstr("3.0117")));
+
+  const std::vector<std::string> closed{"--set", "waveform.main.before_state=closed"};
+  const auto with = [&](std::vector<std::string> words) {
+    words.insert(words.end(), closed.begin(), closed.end());
+    return here.run(words);
+  };
+  const Outcome text = with({"simulate", "relay.toml", "--out", "run"});
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("The switch begins closed, opens, and is at rest from"));
+  const json j = json::parse(read(here.path() / "run/result.json"));
+  EXPECT_EQ(j["status"], "done");
+  for (const char* none : {"initial_contact_time_s", "impact_velocity_m_s", "bounce_time_s", "peak_contact_force_N"})
+    EXPECT_TRUE(j["metrics"][none].is_null()) << none;
+  EXPECT_EQ(here.run({"report", "run"}).out, here.run({"report", "run"}).out);
+  EXPECT_THAT(here.run({"report", "run"}).out, HasSubstr("begins closed, opens, and is at rest from"));
+  // Of the trajectory: it begins on the contact, and ends open.
+  std::istringstream rows(read(here.path() / "run/trajectory.csv"));
+  std::string line, first, last;
+  std::getline(rows, line);
+  std::getline(rows, first);
+  while (std::getline(rows, line)) last = line;
+  EXPECT_THAT(first, HasSubstr("-1.167")) << "the gap to the plane [m], 11.67 nm closed";
+  EXPECT_EQ(last.find(",-"), std::string::npos) << last;
+
+  EXPECT_THAT(with({"check", "relay.toml"}).out, HasSubstr("start                closed, its contact point at 3.0117"));
+  write(here.path() / "closed.toml", edited(relay, "before = ", "before_state = \"closed\", before = "));
+  EXPECT_EQ(here.run({"export", "closed.toml"}).status, 0);
+  const Outcome explored = with({"explore", "relay.toml", "--vary", "gas.quality_factor=0.6,0.7", "--out", "x.sqlite"});
+  EXPECT_EQ(explored.status, 0) << explored.err;
+  EXPECT_THAT(here.run({"table", "x.sqlite"}).out, HasSubstr("done"));
+}
+
+TEST(ClosedStart, IsRefusedByNameByEveryVerbThatClosesTheSwitch) {
+  const Workplace here;
+  write(here.path() / "relay.toml", edited(relay, "before = \"90 V\"", "before = \"90 V\", before_state = \"closed\""));
+  write(here.path() / "bench.toml", "[[measurement]]\nquantity = \"frequency\"\nvalue = \"25 kHz\"\nerror = \"1 %\"\n");
+  write(here.path() / "stdin.txt", "{\"done\":true}\n");
+  const std::vector<std::string> limits{"--set", "driver.main={max_voltage=\"120 V\"}"};
+  const std::vector<std::vector<std::string>> verbs{
+      {"optimize", "relay.toml"},
+      {"optimize", "relay.toml", "--robust", "none"},
+      {"limit", "relay.toml"},
+      {"robustness", "relay.toml", "--set", "spread.\"gap.contact\"={distribution=\"normal\",cov=\"1 %\"}"},
+      {"calibrate", "relay.toml"},
+      {"effects", "relay.toml"},
+      {"accuracy", "relay.toml"},
+      {"fit", "relay.toml", "--data", "bench.toml"},
+      {"tune", "relay.toml", "--device", "cat"},
+      {"device", "relay.toml"},
+      {"explore", "relay.toml", "--vary", "gap.contact=2.9 um,3 um", "--study", "optimize"}};
+  for (std::vector<std::string> words : verbs) {
+    words.insert(words.end(), limits.begin(), limits.end());
+    const Outcome o = here.run(words);
+    EXPECT_EQ(o.status, 2) << words[0] << ": " << o.out << o.err;
+    EXPECT_THAT(o.err,
+                AllOf(HasSubstr("relay.toml:6"), HasSubstr("waveform.main.before_state"), HasSubstr("from the open state")))
+        << words[0];
+  }
+}
+
+TEST(SummitsAtHold, AreToldByEveryReportThatTellsAContactForce_optimized) {
+  const Workplace here;
+  const std::vector<std::string> volts{"--set", "waveform.main.level=17 V", "--set", "driver.main.max_voltage=60 V"};
+  const std::string few = "summits touch under the hold levels: fewer than one";
+  const std::vector<std::vector<std::string>> verbs{
+      {"simulate", "gold.toml", "--set", "simulate.duration=60 us"},
+      {"check", "gold.toml"},
+      {"release", "gold.toml", "--budget", "20", "--samples", "0"},
+      {"robustness", "gold.toml", "--samples", "8", "--set", "simulate.duration=60 us"},
+      {"limit", "gold.toml", "--no-curves", "--set", "structure.modes=1"},
+      {"optimize", "gold.toml", "--robust", "none", "--budget", "6", "--set", "simulate.duration=150 us"}};
+  for (std::vector<std::string> words : verbs) {
+    words.insert(words.end(), volts.begin(), volts.end());
+    if (words[0] != "check") words.insert(words.end(), {"--out", "of-" + words[0]});
+    words.insert(words.end(), {"--json", "told.json"});
+    const Outcome o = here.run(words);
+    EXPECT_EQ(o.err.find("internal"), std::string::npos) << o.err;
+    const json told = json::parse(read(here.path() / "told.json"));
+    EXPECT_THAT(told["warnings"].dump(), HasSubstr(few)) << words[0];
+    const std::string page =
+        read(here.path() / ("of-" + words[0]) / (words[0] == "robustness" ? "robustness.html" : "report.html"));
+    if (!page.empty()) EXPECT_THAT(page, HasSubstr(few)) << words[0];
+    std::string text;
+    for (const char one : o.out) text += one == '\n' ? ' ' : one;
+    // The text of a search has no room for it, and that of a limit tells no force.
+    if (words[0] != "optimize" && words[0] != "limit") EXPECT_THAT(text, HasSubstr(few)) << words[0];
+    fs::remove(here.path() / "told.json");
+  }
+}
+
+TEST(PiezoLayer, ThatIsNotCountedIsToldBesideTheDriveEnergy_optimized) {
+  const Workplace here;
+  const std::vector<std::string> words{"simulate", "pzt.toml",
+                                       "--set",    "waveform.main.level=17 V",
+                                       "--set",    "driver.main.max_voltage=60 V",
+                                       "--set",    "simulate.duration=60 us"};
+  const std::vector<std::string> drive{"--set", "waveform.piezo={family=\"step\", level=\"0.9 V\"}"};
+  const auto energy = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), words.begin(), words.end());
+    more.insert(more.end(), drive.begin(), drive.end());
+    more.insert(more.end(), {"--json", "-"});
+    return json::parse(here.run(more).out)["metrics"]["drive_energy_J"].get<double>();
+  };
+  const std::string sentence = "does not count the charging of the piezo layer";
+  const std::vector<std::string> counted{"--set", "piezo.relative_permittivity=1500"};
+  std::vector<std::string> told = words;
+  told.insert(told.end(), counted.begin(), counted.end());
+  EXPECT_THAT(here.run(words).out, HasSubstr(sentence));
+  EXPECT_THAT(here.run(told).out, Not(HasSubstr(sentence)));
+  // C V^2/2 of a layer of 235 x 20 um, 1 um thick.
+  const double charging = 8.8541878128e-12 * 1500 * 235e-6 * 20e-6 / 1e-6 * 0.9 * 0.9 / 2;
+  EXPECT_NEAR(energy(counted) - energy({}), charging, 1e-6 * charging);
+}
+
 TEST(Check, SaysWhereFewerThanOneSummitIsInTouch) {
   const Workplace here;
   const auto said = [&](const std::string& density) {

@@ -87,9 +87,8 @@ TEST(Headline, NamesTheReboundsThatAreTooSmallToCount) {
 }
 
 TEST(Headline, SaysWhyThereIsNoClosing) {
-  EXPECT_EQ(
-      sentence({{"kind", "simulate"}, {"status", "collapsed_at_rest"}}),
-      "The switch has no stable rest position under what its drives stand at before t = 0: it collapses before it is driven.");
+  EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "collapsed_at_rest"}}),
+            "The switch has no stable open state to begin in under what its drives stand at before t = 0.");
   EXPECT_EQ(sentence({{"kind", "simulate"},
                       {"status", "collapsed_onto_electrode"},
                       {"metrics", {{"initial_contact_time_s", nullptr}, {"settled", false}}}}),

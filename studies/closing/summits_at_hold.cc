@@ -1,0 +1,65 @@
+#include "studies/closing/summits_at_hold.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+#include "base/engineering.h"
+#include "model/contact/contact_law.h"
+#include "studies/closing/simulate.h"
+
+namespace softland {
+namespace {
+
+constexpr std::string_view touch_at_hold = "summits touch under the hold levels", too_few = ": fewer than one";
+
+// Share of the summits that a contact touches whose interference is d.
+template <class Law>
+double touching_share(const Law& law, double d) {
+  if constexpr (requires { law.deviation; }) {
+    return std::erfc((GaussianAsperityContact::first_touch - d / law.deviation) / std::numbers::sqrt2) / 2;
+  } else {
+    return std::clamp(d / law.height, 0.0, 1.0);
+  }
+}
+
+}  // namespace
+
+std::optional<SummitsAtHold> summits_at_hold(const Switch& model, const ClosedEquilibrium& closed) {
+  const Device& device = model.device();
+  if (!device.contact || device.touches_along_pad()) return std::nullopt;
+  const double d = model.contact_deflection(closed.q.data()) - device.gap.contact;
+  return std::visit(
+      [&]<class Law>(const Law& law) -> std::optional<SummitsAtHold> {
+        if constexpr (requires { law.summits.density; }) {
+          const double all = law.summits.count({.width = device.structure.width, .length = device.contact->pad_length});
+          return SummitsAtHold{.touching = all * touching_share(law, d), .all = all};
+        } else {
+          return std::nullopt;
+        }
+      },
+      device.contact->model);
+}
+
+std::string summits_words(const SummitsAtHold& summits) {
+  return fmt::format("{} of {} {}{}", engineering(summits.touching, "", 2), engineering(summits.all, "", 3), touch_at_hold,
+                     summits.touching < 1
+                         ? fmt::format("{}, so that the law, a mean over many of them, says little of one device", too_few)
+                         : "");
+}
+
+std::string few_summits_warning(const Switch& model, const std::vector<Signal>& signals) {
+  const Hold hold = hold_of(model, signals);
+  if (!hold.closed || !hold.is_held) return {};
+  const std::optional<SummitsAtHold> summits = summits_at_hold(model, *hold.closed);
+  return summits && summits->touching < 1 ? "contact forces: " + summits_words(*summits) : std::string();
+}
+
+bool is_few_summits_warning(std::string_view warning) {
+  return warning.find(touch_at_hold) != std::string_view::npos && warning.find(too_few) != std::string_view::npos;
+}
+
+}  // namespace softland
