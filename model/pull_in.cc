@@ -586,6 +586,34 @@ double pull_through_by_walk(const Switch& model, std::size_t drive, std::vector<
   return high;
 }
 
+// The end of a window that begins at the release voltage and is narrower than one step of the walk above: looked for in steps
+// that double from a hundred-thousandth on. NaN where nothing holds the switch so near its release.
+double pull_through_of_narrow_window(const Switch& model, std::size_t drive, std::vector<double> levels, double release,
+                                     double precision) {
+  constexpr double first_step = 1e-5;
+  const auto holds = [&](double v) {
+    levels[drive] = v;
+    return keeps_closed(model, closed_equilibrium(model, levels));
+  };
+  double low = nan;
+  for (double step = first_step; step < pull_through_factor - 1; step *= 2) {
+    const double v = release * (1 + step);
+    if (holds(v)) {
+      low = v;
+    } else if (low > 0) {
+      break;
+    }
+  }
+  if (!(low > 0)) return nan;
+  double high = std::min(2 * low - release, pull_through_factor * release);
+  if (holds(high)) return pull_through_by_walk(model, drive, std::move(levels), high, precision);
+  while (high - low > precision * high) {
+    const double middle = low + (high - low) / 2;
+    (holds(middle) ? low : high) = middle;
+  }
+  return high;
+}
+
 // Upwards by Newton's method from a closed equilibrium near that at `start`; none where that ends nowhere.
 std::optional<double> pull_through_from(const Switch& model, std::size_t drive, std::vector<double> levels, double start,
                                         const ClosedEquilibrium& near, double precision) {
@@ -617,14 +645,23 @@ std::optional<double> pull_through_from(const Switch& model, std::size_t drive, 
 
 double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts, double precision) {
   // Below its release voltage nothing holds the switch.
-  const double start = std::fmax(std::abs(volts[drive]), pull_through_factor * release_voltage(model, drive, volts));
+  const double release = release_voltage(model, drive, volts), given = std::abs(volts[drive]);
+  const double start = std::fmax(given, pull_through_factor * release);
   if (!(start > 0)) return nan;
   std::vector<double> levels(volts.begin(), volts.end());
   levels[drive] = start;
   const auto closed = closed_equilibrium(model, levels);
   const auto found =
       keeps_closed(model, closed) ? pull_through_from(model, drive, levels, start, *closed, precision) : std::nullopt;
-  return found ? *found : pull_through_by_walk(model, drive, std::move(levels), start, precision);
+  if (found) return *found;
+  const bool is_above = start > given;  // the given level may yet hold the switch
+  if (is_above && !keeps_closed(model, closed)) {
+    const double narrow = pull_through_of_narrow_window(model, drive, levels, release, precision);
+    if (std::isfinite(narrow)) return narrow;
+  }
+  const double walked = pull_through_by_walk(model, drive, levels, start, precision);
+  if (std::isfinite(walked) || is_above || !(release > start / pull_through_range)) return walked;
+  return pull_through_of_narrow_window(model, drive, std::move(levels), release, precision);
 }
 
 double pull_through_voltage_near(const Switch& model, std::size_t drive, std::span<const double> volts,
@@ -645,11 +682,14 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
   if (static_result.status != Status::done) return {.status = static_result.status};
   StepTrial steps(model, drive, static_result, bias, tolerance);
   if (!steps.has_rest()) return {.status = Status::collapsed_at_rest};
-  const double halvings = std::log2(0.5 / precision);  // of the bracket
-  double done = 0;
+  const double halvings = 1 + std::log2(0.5 / precision);  // trials: the first, and those that halve the bracket
+  double done = 0, shown = 0;
   const auto reaches = [&](double value) {
-    return steps.reaches(value, watch.stop,
-                         [&](double part) { watch.tell("dynamic pull-in voltage", std::min(1.0, (done + part) / halvings)); });
+    return steps.reaches(value, watch.stop, [&](double part) {
+      // A bracket that is looked for further down takes more trials than were expected.
+      shown = std::max(shown, std::min(1.0, (done + part) / halvings));
+      watch.tell("dynamic pull-in voltage", shown);
+    });
   };
 
   double low = 0.5 * static_result.voltage, high = static_result.voltage;
@@ -659,6 +699,7 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
     low /= 2;
     if (low < 1e-9 * static_result.voltage) return {.status = Status::numerical_failure};
   }
+  ++done;
   while (high - low > precision * high && !watch.stopped()) {
     const double middle = (low + high) / 2;
     (reaches(middle) ? high : low) = middle;

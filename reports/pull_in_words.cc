@@ -21,8 +21,8 @@ namespace softland {
 
 using nlohmann::json;
 
-json pull_in_of(const PreparedScene& p, std::size_t k, const Watch& watch) {
-  return pull_in_json(p, k, electrode_pull_in(p.model, k, bias_of(p.scene, k), watch));
+json pull_in_of(const PreparedScene& p, std::size_t k, const Watch& watch, const PullInFinder& find_pull_in) {
+  return pull_in_json(p, k, find_pull_in(p.model, k, bias_of(p.scene, k), watch));
 }
 
 json pull_in_json(const PreparedScene& p, std::size_t k, const ElectrodePullIn& known) {
@@ -39,7 +39,8 @@ json pull_in_json(const PreparedScene& p, std::size_t k, const ElectrodePullIn& 
                {"release_V", number(closed.release)},
                {"pulled_through_V", number(closed.pulled_through)}}}};
   found["pull_in"]["by_modes"] = nullptr;
-  if (const ModeLadder ladder(p); ladder.exists() && std::isfinite(s.voltage)) {
+  const bool was_found = d.status != Status::interrupted;  // who has stopped the search waits for no more modes
+  if (const ModeLadder ladder(p); was_found && ladder.exists() && std::isfinite(s.voltage)) {
     const VoltagesByModes more = voltages_by_modes(ladder, p.scene, k, closed.pulled_through);
     for (const auto& [key, voltage] : {std::pair("static_V", &more.static_pull_in), std::pair("release_V", &more.release),
                                        std::pair("pulled_through_V", &more.pulled_through)}) {

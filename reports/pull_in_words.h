@@ -16,8 +16,9 @@ inline constexpr const char* no_open_state = "no pull-in voltage: the switch has
 /// Pull-in of electrode `k` under the bias of the other drives (bias_of()): {"status", "pull_in": {"static_V", ...}}, and
 /// {"bias_V": {NAME: ...}} of those that do not stand at 0, "bias_factor" of the dispersion force. "pull_in" has
 /// "by_modes", static, release and pull-through voltage by the number of modes (studies/closing/by_modes.h), null where there are
-/// no more modes than the scene has.
-[[nodiscard]] nlohmann::json pull_in_of(const PreparedScene& prepared, std::size_t k, const Watch& watch);
+/// no more modes than the scene has, or where the search was interrupted: then the dynamic voltage is null, too.
+[[nodiscard]] nlohmann::json pull_in_of(const PreparedScene& prepared, std::size_t k, const Watch& watch,
+                                        const PullInFinder& find_pull_in = electrode_pull_in);
 
 /// The same of voltages that are known.
 [[nodiscard]] nlohmann::json pull_in_json(const PreparedScene& prepared, std::size_t k, const ElectrodePullIn& known);

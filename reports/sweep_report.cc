@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "reports/chart.h"
+#include "reports/json_number.h"
 #include "reports/quantity.h"
 #include "reports/svg.h"
 
@@ -16,6 +18,8 @@ namespace {
 using internal::quantity;
 
 std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
+
+std::string_view branch_name(const SweepPoint& p) { return p.is_up ? "up" : "down"; }
 
 // The columns of one branch, in rising order of the voltage.
 internal::CurveTable branch_of(std::vector<SweepPoint> points, bool is_up) {
@@ -49,10 +53,22 @@ internal::Chart sweep_chart(const std::string& column, const std::string& title,
 }  // namespace
 
 std::string sweep_csv(const std::vector<SweepPoint>& points) {
-  std::string text = "voltage_V,deflection_m,capacitance_F,branch\n";
+  std::string text = "voltage_V,deflection_m,capacitance_F,branch,status\n";
   for (const SweepPoint& p : points)
-    text += fmt::format("{},{},{},{}\n", p.voltage, csv_cell(p.deflection), csv_cell(p.capacitance), p.is_up ? "up" : "down");
+    text += fmt::format("{},{},{},{},{}\n", p.voltage, csv_cell(p.deflection), csv_cell(p.capacitance), branch_name(p),
+                        to_string(p.state));
   return text;
+}
+
+nlohmann::json sweep_json(const std::vector<SweepPoint>& points) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const SweepPoint& p : points)
+    rows.push_back({{"voltage_V", p.voltage},
+                    {"deflection_m", internal::json_number(p.deflection)},
+                    {"capacitance_F", internal::json_number(p.capacitance)},
+                    {"branch", branch_name(p)},
+                    {"status", to_string(p.state)}});
+  return rows;
 }
 
 std::string sweep_svg(const std::vector<SweepPoint>& points, const std::string& of, const StaticPullIn& pull_in, double release) {

@@ -27,6 +27,7 @@
 #include "reports/sweep_report.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/sweep.h"
+#include "studies/exploration/pull_in_memory.h"
 #include "studies/search/search_space.h"
 
 namespace softland::apps {
@@ -113,10 +114,13 @@ std::string words_of(const PreparedScene& p, std::size_t k, const nlohmann::json
   if (one["status"] == to_string(Status::no_contact))
     return text + "  pulls away from the contact where the switch rests: no pull-in voltage\n";
   const nlohmann::json& found = one["pull_in"];
-  text += collapsed(one) ? fmt::format("  {}\n", no_open_state)
-                         : fmt::format("  static pull-in   {}{}{}\n  pull-in position {}\n  dynamic pull-in  {}\n",
-                                       volts(found["static_V"]), kind_words(found), shift_clause(found, "static_V"),
-                                       deflection_words(found), dynamic_words(p, k, found));
+  text += collapsed(one)
+              ? fmt::format("  {}\n", no_open_state)
+              : fmt::format("  static pull-in   {}{}{}\n  pull-in position {}\n  dynamic pull-in  {}\n", volts(found["static_V"]),
+                            kind_words(found), shift_clause(found, "static_V"), deflection_words(found),
+                            one["status"] == to_string(Status::interrupted)
+                                ? std::string("not known: the search for it was interrupted")
+                                : dynamic_words(p, k, found));
   if (p.model.has_contact()) {
     text += fmt::format("  release          {}{}\n", volts(found["release_V"]), shift_clause(found, "release_V"));
     if (found["pulled_through_V"].is_number())
@@ -126,16 +130,23 @@ std::string words_of(const PreparedScene& p, std::size_t k, const nlohmann::json
   return text;
 }
 
-// The sweep of the electrode that closes the switch.
-void write_sweep(ResultFolder& folder, const PreparedScene& p, const SweepRange& range, const Watch& watch) {
+// The sweep of the electrode that closes the switch, and its points as JSON.
+nlohmann::json write_sweep(ResultFolder& folder, const PreparedScene& p, const SweepRange& range, const Watch& watch) {
   require(has_pulling_electrode(p.scene.device), "--sweep: there is no electrode that pulls towards the contact");
   const std::size_t drive = searched_drive(p.scene.device);
   const std::vector<double> bias = bias_of(p.scene, drive);
   const std::vector<SweepPoint> points = static_sweep(p.model, drive, bias, range, watch);
+  if (points.empty()) return nullptr;  // it was asked to stop before the first one
   std::string of = fmt::format("Electrode {}, swept up and down", p.scene.device.electrodes[drive].name);
   if (const std::string others = bias_words(p, drive); !others.empty()) of += ", under " + others;
   folder.write("sweep.csv", sweep_csv(points));
   folder.write("sweep.svg", sweep_svg(points, of, static_pull_in(p.model, drive, bias), release_voltage(p.model, drive, bias)));
+  return sweep_json(points);
+}
+
+// The sentence that names what was not found because the verb was asked to stop.
+std::string left_out_words(const std::vector<std::string>& left_out) {
+  return wrapped(fmt::format("interrupted: not found yet: {}.", fmt::join(left_out, "; "))) + "\n";
 }
 
 int pull_in_verb(const Common& c, const PullInRequest& request) {
@@ -143,7 +154,12 @@ int pull_in_verb(const Common& c, const PullInRequest& request) {
   require(range.has_value() == !c.out.empty(), "--sweep and --out belong together: the sweep is written into that folder");
   const SceneFile file = load_scene_or_result(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  PreparedScene prepared = prepare_and_choose(file, false, work->watch());
+  PullInMemory remembered;
+  const PullInFinder find_pull_in = remembered.finder(file);
+  // The voltages come before what a waveform in Vdp needs, so that they are told where the search for more is stopped.
+  const Scene scene = read_scene(file);
+  const bool leaves_choices = scene.auto_modes || scene.simulate.automatic_effects;
+  PreparedScene prepared = leaves_choices ? prepare_and_choose(file, false, work->watch()) : prepare_statics(file);
   for (const std::string& assignment : request.bias) set_bias(prepared, assignment);
   std::optional<ResultFolder> folder = claim_places(c, {"sweep.csv", "sweep.svg"});
   const auto& electrodes = prepared.scene.device.electrodes;
@@ -153,7 +169,7 @@ int pull_in_verb(const Common& c, const PullInRequest& request) {
   bool failed = false, none = false;
   std::string status(to_string(Status::done));  // of the first electrode that pulls and has no voltage
   for (std::size_t k = 0; k < electrodes.size() && !work->watch().stopped(); ++k) {
-    nlohmann::json one = pull_in_of(prepared, k, work->watch());
+    nlohmann::json one = pull_in_of(prepared, k, work->watch(), find_pull_in);
     text += words_of(prepared, k, one);
     if (pulls_in(prepared.scene.device, k)) {
       const bool has_none = collapsed(one) || one["status"] == to_string(Status::no_contact);
@@ -163,17 +179,47 @@ int pull_in_verb(const Common& c, const PullInRequest& request) {
     }
     by_name[electrodes[k].name] = std::move(one);
   }
-  const StablePathFound path = work->watch().stopped() ? StablePathFound() : stable_path_of(prepared, work->watch());
+  std::vector<std::string> left_out;
+  for (const Electrode& electrode : electrodes) {
+    const auto found = by_name.find(electrode.name);
+    if (found == by_name.end()) {
+      left_out.push_back("electrode " + electrode.name);
+    } else if (found->second["status"] == to_string(Status::interrupted)) {
+      left_out.push_back("dynamic pull-in of electrode " + electrode.name);
+    }
+  }
+  StablePathFound path;
+  try {
+    work->watch().throw_if_stopped();
+    if (!leaves_choices) {
+      const std::vector<double> standing = prepared.scene.standing;  // with --bias
+      prepared = prepare(file, false, work->watch(), find_pull_in);
+      prepared.scene.standing = standing;
+    }
+    path = stable_path_of(prepared, work->watch());
+  } catch (const Interrupted&) {
+    path = {};
+  }
+  if (work->watch().stopped() && prepared.model.has_contact()) {
+    left_out.emplace_back("the stable path");
+    path = {};
+  }
   if (!path.words.empty()) text += wrapped("Stable path: " + path.words + ".") + "\n";
+  nlohmann::json sweep = nullptr;
+  if (folder && !work->watch().stopped()) sweep = write_sweep(*folder, prepared, *range, work->watch());
   const bool interrupted = work->watch().stopped();
-  if (folder && !interrupted) {
-    write_sweep(*folder, prepared, *range, work->watch());
-    text += left_in(folder->destination(false), {"sweep.csv", "sweep.svg"});
-    folder->publish(false);
+  if (folder && interrupted)
+    left_out.push_back(sweep.is_null() ? "the sweep" : fmt::format("the sweep beyond its first {} points", sweep.size()));
+  if (folder && !sweep.is_null()) {
+    text += left_in(folder->destination(interrupted), {"sweep.csv", "sweep.svg"});
+    folder->publish(interrupted);
   }
   work.reset();
+  if (interrupted) text += left_out_words(left_out);
   nlohmann::json data = pull_in_json(by_name, interrupted ? std::string(to_string(Status::interrupted)) : status);
   data["stable_path"] = path.data;
+  if (interrupted) data["status"] = to_string(Status::interrupted), data["left_out"] = left_out;
+  if (range) data["sweep"] = std::move(sweep);
   print_json_or(c, data, text);
   return interrupted ? exit_interrupted : failed ? exit_numerical_failure : none ? exit_no_success : exit_done;
 }

@@ -55,6 +55,18 @@ class SlowSwitch {
 
 }  // namespace
 
+std::string_view to_string(SweepState state) {
+  switch (state) {
+    case SweepState::open:
+      return "open";
+    case SweepState::closed:
+      return "closed";
+    case SweepState::none:
+      break;
+  }
+  return softland::to_string(Status::collapsed_onto_electrode);
+}
+
 std::vector<SweepPoint> static_sweep(const Switch& model, std::size_t drive, Bias bias, const SweepRange& range,
                                      const Watch& watch) {
   require(range.points >= 2, "a sweep has at least 2 points");
@@ -62,7 +74,7 @@ std::vector<SweepPoint> static_sweep(const Switch& model, std::size_t drive, Bia
   std::vector<SweepPoint> points;
   const int last = range.points - 1;
   const auto pass = [&](int k, bool is_up) {
-    watch.throw_if_stopped();
+    if (watch.stopped()) return;
     watch.tell("static sweep", static_cast<double>(points.size()) / (2 * range.points));
     const double share = static_cast<double>(k) / last;
     points.push_back(slow.follow((1 - share) * range.first + share * range.last, is_up));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "base/watch.h"
@@ -16,6 +17,9 @@ enum class SweepState {
   closed,  ///< on the contact
   none     ///< no stable equilibrium that a scene describes: the beam is pulled onto the electrode, or there is no contact
 };
+
+/// "open", "closed" or "collapsed_onto_electrode".
+[[nodiscard]] std::string_view to_string(SweepState state);
 
 struct SweepPoint {
   double voltage = 0;                                             ///< of the swept electrode [V]
@@ -32,8 +36,8 @@ struct SweepRange {
 
 /// As many points on the way to the last voltage as on the way back, in order; the last of the first is the first of the second.
 /// The switch stays open while it has a stable open equilibrium, and closed while it has a closed one that it does not leave; it
-/// begins open where it can. Of an electrode that pulls towards the contact. Throws InvalidInput for fewer than 2 points and as
-/// static_pull_in() does, Interrupted where `watch` asks to stop.
+/// begins open where it can. The electrode is to pull towards the contact. A sweep that `watch` asks to stop gives its points so
+/// far. Throws InvalidInput for fewer than 2 points and as static_pull_in() does.
 [[nodiscard]] std::vector<SweepPoint> static_sweep(const Switch& model, std::size_t drive, Bias bias, const SweepRange& range,
                                                    const Watch& watch = {});
 

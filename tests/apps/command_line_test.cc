@@ -305,10 +305,65 @@ TEST(PullIn, WritesASweepAndDrawsIt) {
   EXPECT_THAT(o.out, HasSubstr("sweep.csv, sweep.svg"));
   EXPECT_THAT(o.out, HasSubstr("  pull-in position 1.653"));
   const std::string csv = read(here.path() / "swept/sweep.csv"), svg = read(here.path() / "swept/sweep.svg");
-  EXPECT_TRUE(csv.starts_with("voltage_V,deflection_m,capacitance_F,branch\n0,0,")) << csv.substr(0, 80);
+  EXPECT_TRUE(csv.starts_with("voltage_V,deflection_m,capacitance_F,branch,status\n0,0,")) << csv.substr(0, 80);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 41);
   EXPECT_THAT(svg, HasSubstr("Pull-in at 15.23"));
   EXPECT_THAT(svg, HasSubstr(">down<"));
+}
+
+TEST(PullIn, SaysInEveryRowOfASweepHowTheSwitchStands) {
+  const Workplace here;
+  const auto swept = [&](const std::string& range) {
+    const Outcome o = here.run({"pull-in", "gold.toml", "--sweep", range, "--out", "swept", "--json", "-"});
+    EXPECT_EQ(o.status, 0) << o.err;
+    return json::parse(o.out)["sweep"];
+  };
+  std::set<std::string> states;
+  for (const char* range : {"0 V:20 V:11", "0 V:200 V:6"}) {
+    const json rows = swept(range);
+    std::istringstream csv(read(here.path() / "swept/sweep.csv"));
+    std::string line;
+    std::getline(csv, line);
+    for (const json& row : rows) {
+      const std::string status = row["status"];
+      states.insert(status);
+      ASSERT_TRUE(std::getline(csv, line));
+      EXPECT_TRUE(line.ends_with("," + row["branch"].get<std::string>() + "," + status)) << line;
+      const bool is_through = status == "collapsed_onto_electrode";
+      EXPECT_EQ(row["deflection_m"].is_null(), is_through) << row;
+      EXPECT_EQ(row["capacitance_F"].is_null(), is_through) << row;
+      EXPECT_EQ(line.find(",,,") != std::string::npos, is_through) << line;
+    }
+  }
+  EXPECT_EQ(states, (std::set<std::string>{"open", "closed", "collapsed_onto_electrode"}));
+}
+
+TEST(PullIn, GivesWhatItHasWhereItIsInterrupted_optimized) {
+  const Workplace here;
+  // The static voltage is known at once, the dynamic one after minutes.
+  const std::vector<std::string> slow{"pull-in", "gold.toml", "--set", "structure.modes=20", "--set", "gas.model=reynolds"};
+  for (const bool as_json : {false, true}) {
+    std::vector<std::string> words = slow;
+    if (as_json) words.insert(words.end(), {"--json", "-"});
+    const pid_t child = here.start(words);
+    wait_until_it_computes(child);
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    kill(child, SIGINT);
+    const Outcome o = here.finish(child);
+    EXPECT_EQ(o.status, 130) << o.err;
+    if (!as_json) {
+      EXPECT_THAT(o.out, HasSubstr("  static pull-in   "));
+      EXPECT_THAT(o.out, HasSubstr("  dynamic pull-in  not known: the search for it was interrupted"));
+      EXPECT_THAT(o.out, HasSubstr("interrupted: not found yet: dynamic pull-in of electrode main; the stable path."));
+      continue;
+    }
+    const json j = json::parse(o.out);
+    EXPECT_EQ(j["status"], "interrupted");
+    EXPECT_TRUE(j["pull_in"]["static_V"].is_number()) << j;
+    EXPECT_TRUE(j["pull_in"]["release_V"].is_number()) << j;
+    EXPECT_TRUE(j["pull_in"]["dynamic_V"].is_null()) << j;
+    EXPECT_EQ(j["left_out"], (json{"dynamic pull-in of electrode main", "the stable path"}));
+  }
 }
 
 TEST(PullIn, SaysWhenTheDynamicOneEqualsTheStaticOne_optimized) {

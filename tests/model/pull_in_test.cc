@@ -181,6 +181,28 @@ TEST(DynamicPullIn, PassesOnWhatStaticPullInSaid) {
   EXPECT_TRUE(std::isnan(found.voltage));
 }
 
+TEST(DynamicPullIn, TellsProgressThatNeverRunsBack) {
+  // The stiff film makes the switch creep, the undamped switch closes at the first trial: brackets of both kinds.
+  for (const double viscosity : {0.0, 1.86e-5, 1e-2}) {
+    Device device = test::gold_cantilever();
+    if (viscosity == 0) device.gas.reset();
+    if (viscosity > 0) device.gas = StripGas{.film = {.viscosity = viscosity}};
+    const Switch model(device);
+    double last = 0;
+    int told = 0;
+    const Watch watch{.progress = [&](std::string_view what, double part) {
+      EXPECT_EQ(what, "dynamic pull-in voltage");
+      EXPECT_TRUE(part >= last && part <= 1) << part << " after " << last;
+      last = part;
+      ++told;
+    }};
+    const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0), {}, watch);
+    EXPECT_EQ(found.status, Status::done);
+    EXPECT_GT(told, 10);
+    EXPECT_GT(last, 0.9);
+  }
+}
+
 TEST(PullIn, IsNotForAnElectrodeOnTheFarSide) {
   const Switch model(test::plate_between_electrodes());
   EXPECT_TRUE(pulls_in(model.device(), 0));

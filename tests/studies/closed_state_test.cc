@@ -282,5 +282,41 @@ duration = "1 ms"
   }
 }
 
+// An independent scan of what holds a switch: voltages ever further above its release voltage, 2 % of that distance apart.
+double last_held(const Switch& model, double release) {
+  double last = std::nan("");
+  for (double above = 1e-6; above < 1; above *= 1.02) {
+    const std::vector<double> volts{release * (1 + above)};
+    if (!keeps_closed(model, closed_equilibrium(model, volts))) {
+      if (std::isfinite(last)) return last;
+      continue;
+    }
+    last = volts[0];
+  }
+  return std::nan("");
+}
+
+TEST(PullThrough, IsFoundHoweverNarrowTheWindowAboveTheReleaseVoltage) {
+  // A plate on a contact of stiffness kc: V^2 = 2 (d - y)^2 (k y + kc (y - dt)) / (eps0 A), largest at y = d/3 + 2 kc dt/(3 (k +
+  // kc)).
+  constexpr double k = 42, area = 1e-8, d = 3.8e-6, dt = 2.6e-6;
+  for (const double kc : {200.0, 240.0, 270.0, 280.0, 300.0, 500.0, 2000.0}) {
+    const double y = d / 3 + 2 * kc * dt / (3 * (k + kc));
+    const double end = (d - y) * std::sqrt(2 * (k * y + kc * (y - dt)) / (vacuum_permittivity * area));
+    const SceneFile file = spring_plate({fmt::format("contact.stiffness={} N/m", kc)});
+    const Switch model(read_scene(file).device);
+    const ClosedRange range = closed_range(model, 0, {0});
+    constexpr double precision = 2e-6;  // that of pull_through_voltage(), and as much again
+    EXPECT_NEAR(range.pulled_through, end, precision * end) << kc;
+    constexpr double step = 0.02;  // of the distance to the release voltage, in the scan
+    const double scanned = last_held(model, range.release);
+    EXPECT_GE(range.pulled_through, scanned * (1 - precision)) << kc;
+    EXPECT_LE(range.pulled_through, (range.release + (scanned - range.release) * (1 + step)) * (1 + precision)) << kc;
+    // From a hold level beyond the window, too.
+    const std::vector<double> beyond{1.2 * end};
+    EXPECT_NEAR(pull_through_voltage(model, 0, beyond), end, precision * end) << kc;
+  }
+}
+
 }  // namespace
 }  // namespace softland::closed_state_test

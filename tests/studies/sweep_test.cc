@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <string_view>
+#include <vector>
 
 #include "biased.h"
 #include "scenes.h"
@@ -73,10 +76,27 @@ TEST(StaticSweep, HasNoStateWhereASceneDescribesNone) {
   EXPECT_EQ(points[12].state, SweepState::none);
   EXPECT_TRUE(std::isnan(points[12].deflection));
   EXPECT_EQ(points.back().state, SweepState::none) << "how it comes off is not described";
+  EXPECT_EQ(to_string(points.back().state), "collapsed_onto_electrode");
   const auto falling = static_sweep(model, 0, {}, {.first = 50, .last = 0, .points = 6});
   EXPECT_FALSE(falling.front().is_up);
   EXPECT_TRUE(falling.back().is_up);
   EXPECT_THROW((void)static_sweep(model, 0, {}, {.first = 0, .last = 1, .points = 1}), InvalidInput);
+}
+
+TEST(StaticSweep, GivesThePointsUntilItIsAskedToStop) {
+  const Switch model(read_scene(spring_plate()).device);
+  std::atomic<bool> stop = false;
+  std::vector<double> parts;
+  const Watch watch{.stop = &stop, .progress = [&](std::string_view, double part) {
+                      parts.push_back(part);
+                      stop = part > 0.25;
+                    }};
+  const SweepRange range{.first = 0, .last = 80, .points = 33};
+  const auto cut = static_sweep(model, 0, {}, range, watch);
+  EXPECT_EQ(cut.size(), parts.size());
+  EXPECT_LT(cut.size(), 66U);
+  const auto whole = static_sweep(model, 0, {}, range);
+  for (std::size_t k = 0; k < cut.size(); ++k) EXPECT_EQ(cut[k].deflection, whole[k].deflection);
 }
 
 }  // namespace
