@@ -27,6 +27,7 @@ LaboratoryErrors laboratory_errors(const LaboratoryRequest& request, const Scene
   take(known.unseen, "--unseen", request.unseen, dimension::time);
   take(known.gain_error, "--gain-error", request.gain_error, dimension::none);
   take(known.shot_error, "--shot-error", request.shot_error, dimension::none);
+  take(known.trigger_delay, "--trigger-delay", request.trigger_delay, dimension::time);
   return known;
 }
 

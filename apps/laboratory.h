@@ -13,9 +13,10 @@ namespace softland::apps {
 
 struct LaboratoryRequest {
   std::optional<std::string> edge_error, unseen, gain_error, shot_error;
+  std::optional<std::string> trigger_delay;  ///< expected by `tune`, which alone has the option
 };
 
-/// --edge-error, --unseen, --gain-error and --shot-error.
+/// Adds --edge-error, --unseen, --gain-error and --shot-error.
 void with_laboratory(Verb& verb, LaboratoryRequest& request);
 
 /// Of instruments for this scene: those of time follow it, where it is quick and nobody says them. Throws InvalidInput for a

@@ -1,12 +1,12 @@
 #include "apps/tuning_lab.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -23,7 +23,7 @@
 #include "base/trimmed.h"
 #include "reports/files.h"
 #include "reports/quantity.h"
-#include "waveforms/export.h"
+#include "reports/scene_export.h"
 
 namespace softland::apps {
 namespace {
@@ -76,31 +76,32 @@ struct Stopped {};
 class HandLab final : public TuningLab {
  public:
   // Shots that an earlier tuning has left are none of this one.
-  HandLab(std::filesystem::path folder, bool goes_on, std::optional<ContactTraceKeys> contact)
-      : folder_(std::move(folder)), contact_(std::move(contact)) {
-    if (goes_on) return;
+  HandLab(HandLabRequest request, const PreparedScene& scene) : request_(std::move(request)), scene_(scene) {
+    if (request_.goes_on) return;
+    const std::vector<std::string> endings = sent_endings(scene_);
     std::vector<std::filesystem::path> left;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
-      if (is_shot(entry.path().filename().string())) left.push_back(entry.path());
+    for (const auto& entry : std::filesystem::directory_iterator(request_.folder)) {
+      if (is_shot(entry.path().filename().string(), endings)) left.push_back(entry.path());
     }
     for (const std::filesystem::path& file : left) std::filesystem::remove(file);
   }
 
   std::optional<ContactRecord> fire(const ToldShot& shot, const SentSignals& sent) override {
-    const std::filesystem::path file = folder_ / fmt::format("shot-{}.csv", shot.number);
-    // The file is for the generator, before the amplifier.
-    std::map<std::string, Signal> signals = sent.signals;
+    std::vector<std::string> files;
+    for (const SentFile& file : sent_files(request_.format, scene_, sent, shot.duration())) {
+      const std::filesystem::path path = request_.folder / fmt::format("shot-{}{}", shot.number, file.ending);
+      write_whole(path, file.text);
+      files.push_back(path.string());
+    }
     std::string before;
     for (const auto& [drive, amplifier] : sent.amplifiers) {
-      Signal& signal = signals.at(drive);
-      signal = scaled(signal, 1 / amplifier);
-      before += fmt::format(", {} in volts before an amplifier of {}", drive, plain_number(amplifier, 6));
+      if (request_.format != "codes")
+        before += fmt::format(", {} in volts before an amplifier of {}", drive, plain_number(amplifier, 6));
     }
-    write_whole(file, csv(signals, shot.duration(), sent.sample_rates));
     say(
         fmt::format("shot {}: load {} into the generator{}, close the switch by it once, and record the contact for {} from the "
                     "start of the waveform",
-                    shot.number, file.string(), before, quantity(shot.duration(), "s")));
+                    shot.number, fmt::join(files, " and "), before, quantity(shot.duration(), "s")));
     try {
       return asked(shot);
     } catch (const Stopped&) {
@@ -109,12 +110,13 @@ class HandLab final : public TuningLab {
   }
 
  private:
-  // "shot-12.csv"
-  [[nodiscard]] static bool is_shot(std::string_view name) {
-    constexpr std::string_view before = "shot-", after = ".csv";
-    if (!name.starts_with(before) || !name.ends_with(after) || name.size() <= before.size() + after.size()) return false;
-    const std::string_view number = name.substr(before.size(), name.size() - before.size() - after.size());
-    return std::ranges::all_of(number, [](char c) { return c >= '0' && c <= '9'; });
+  // "shot-12.csv", "shot-12-main.arb"
+  [[nodiscard]] static bool is_shot(std::string_view name, const std::vector<std::string>& endings) {
+    constexpr std::string_view before = "shot-";
+    if (!name.starts_with(before)) return false;
+    name.remove_prefix(before.size());
+    const std::size_t digits = std::min(name.size(), name.find_first_not_of("0123456789"));
+    return digits > 0 && std::ranges::find(endings, name.substr(digits)) != endings.end();
   }
   [[nodiscard]] ContactRecord asked(const ToldShot& shot) {
     ContactRecord record = answer<ContactRecord>(
@@ -133,7 +135,7 @@ class HandLab final : public TuningLab {
     if (text == "failed") return {.error = "the shot failed"};
     if (text.starts_with("file ")) {
       const std::string file(trimmed(std::string_view(text).substr(5)));
-      return contact_ ? read_contact_trace(file, *contact_) : read_edges_file(file);
+      return request_.contact ? read_contact_trace(file, *request_.contact) : read_edges_file(file);
     }
     const Quantity time = parse_quantity(text);
     if (time.dimension != dimension::time || !(time.value > 0))
@@ -164,8 +166,8 @@ class HandLab final : public TuningLab {
     }
   }
 
-  std::filesystem::path folder_;
-  std::optional<ContactTraceKeys> contact_;
+  HandLabRequest request_;
+  const PreparedScene& scene_;
   LineReader lines_{STDIN_FILENO, std::size_t{1} << 12};
 };
 
@@ -175,8 +177,8 @@ std::unique_ptr<TuningLab> command_lab(const std::string& command, milliseconds 
   return std::make_unique<CommandLab>(command, patience);
 }
 
-std::unique_ptr<TuningLab> hand_lab(const std::filesystem::path& folder, bool goes_on, std::optional<ContactTraceKeys> contact) {
-  return std::make_unique<HandLab>(folder, goes_on, std::move(contact));
+std::unique_ptr<TuningLab> hand_lab(HandLabRequest request, const PreparedScene& scene) {
+  return std::make_unique<HandLab>(std::move(request), scene);
 }
 
 ContactRecord read_edges_file(const std::string& file) {

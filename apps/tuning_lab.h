@@ -32,11 +32,15 @@ class TuningLab {
 /// A command that the shell runs, which speaks the lines of reports/tuning_lines.h. It is given `patience` for each.
 [[nodiscard]] std::unique_ptr<TuningLab> command_lab(const std::string& command, std::chrono::milliseconds patience);
 
-/// Writes the voltages of each shot to FOLDER/shot-N.csv, and asks on standard error for what was seen, until the answer on
-/// standard input can be one. Such files of an earlier tuning are removed unless this one `goes_on` with it. `contact` says how
-/// records of the contact's voltage are read, where there are any.
-[[nodiscard]] std::unique_ptr<TuningLab> hand_lab(const std::filesystem::path& folder, bool goes_on,
-                                                  std::optional<ContactTraceKeys> contact = {});
+struct HandLabRequest {
+  std::filesystem::path folder;
+  bool goes_on = false;  ///< an earlier tuning there is gone on with: its files of shots stay
+  std::string format = "csv";
+  std::optional<ContactTraceKeys> contact = {};  ///< how records of the contact's voltage are read, where there are any
+};
+/// Writes the voltages of each shot to FOLDER/shot-N.csv, or to files of another format of `export` (scene_export.h). Asks on
+/// standard error for what was seen, until the answer on standard input can be one. Keeps a reference to the scene.
+[[nodiscard]] std::unique_ptr<TuningLab> hand_lab(HandLabRequest request, const PreparedScene& scene);
 
 /// Closing and opening of a contact in a CSV file: a header time_s,closed and a row for each edge, 1 where it closes and 0 where
 /// it opens. Throws InvalidInput with file, line and rule.

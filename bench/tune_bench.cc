@@ -37,7 +37,7 @@ constexpr std::array marks{1, 2, 3, 4, 6, 8, 12};
 struct Arguments {
   std::string scene = "mem-gold.toml", actuator = "electrostatic", method = "belief", gas;
   int devices = 20, closings = 12, jobs = 2, modes = 1, recipes = 1;
-  double first_device = 1, stiffness = 1;
+  double first_device = 1, stiffness = 1, late = 0;  // late: by which records begin, of the device [s]
   LaboratoryErrors laboratory = {};
   double effort = 1;
   std::string touch;  // condition on the first touch
@@ -75,6 +75,8 @@ Arguments read(std::span<char*> words) {
       {"--unseen", [&](const std::string& v) { a.laboratory.unseen = std::stod(v); }},
       {"--shot-error", [&](const std::string& v) { a.laboratory.shot_error = std::stod(v); }},
       {"--gain-error", [&](const std::string& v) { a.laboratory.gain_error = std::stod(v); }},
+      {"--trigger-delay", [&](const std::string& v) { a.laboratory.trigger_delay = std::stod(v); }},
+      {"--late", [&](const std::string& v) { a.late = std::stod(v); }},
       {"--stiffness", [&](const std::string& v) { a.stiffness = std::stod(v); }},
       {"--drift-of-1000", [&](const std::string& v) { a.drift_of_1000 = std::stod(v); }},
       {"--repeats", [&](const std::string& v) { a.repeats = std::stoi(v); }},
@@ -103,7 +105,9 @@ struct Course {
   std::vector<double> surprises;     // Tuner::surprises()
   int unexpected_bounces = 0;
   std::string broken;
-  std::optional<BelievedQuantity> gap_ratio;
+  std::optional<BelievedQuantity> gap_ratio, delay;
+  double gaps = 1;               // factor of the contact gap that is believed
+  TouchMisfit misfit;            // the largest over its bound
   std::vector<double> repeated;  // highest rebound of each repetition [m]
   int learned = 0;               // of these
 };
@@ -160,6 +164,9 @@ Course by_belief(const Arguments& a, const Tuner& fresh, Laboratory& lab) {
     ContactRecord record = closing.record;
     if (!record.error.empty()) record = {};  // pulled through: a lab sees no contact that it can use
     tuner.learn(record);
+    if (const TouchMisfit now = tuner.belief().touch_misfit;
+        k == 1 || now.least * course.misfit.bound > course.misfit.least * now.bound)
+      course.misfit = now;
     course.seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     course.expected.push_back(tuner.next().expected_cost);
     mark(course, lab, k, tuner.kept().waveforms);
@@ -167,7 +174,12 @@ Course by_belief(const Arguments& a, const Tuner& fresh, Laboratory& lab) {
   course.surprises = tuner.surprises();
   course.unexpected_bounces = tuner.unexpected_bounces();
   course.broken = tuner.broken_assumption().value_or("");
-  course.gap_ratio = tuner.belief().gap_ratio;
+  const BeliefSummary believed = tuner.belief();
+  course.gap_ratio = believed.gap_ratio;
+  for (const BelievedQuantity& one : believed.quantities) {
+    if (one.name == "trigger delay") course.delay = one;
+    if (one.name == "gap.contact") course.gaps = one.mean;
+  }
   for (int k = 0; a.drift_of_1000 != 0 && k < a.repeats; ++k) {
     const PracticeClosing closing = lab.fire(tuner.next().waveforms);
     course.repeated.push_back(Laboratory::height(closing));
@@ -389,6 +401,7 @@ int main(int count, char** words) try {
                                 {.seed = static_cast<std::uint64_t>(a.first_device) + static_cast<std::uint64_t>(n),
                                  .laboratory = a.laboratory,
                                  .drift = (n % 2 == 0 ? 1 : -1) * a.drift_of_1000 / 1000,
+                                 .trigger_delay = a.late,
                                  .model = {.more_modes = a.modes, .gas = a.gas, .stiffness = a.stiffness, .set = a.model_sets}});
     const PreparedScene& p = fresh.scene();
     const auto volts = [](const Switch& model, std::size_t drive) { return static_pull_in(model, drive).voltage; };
@@ -416,6 +429,8 @@ int main(int count, char** words) try {
     }
     fmt::print(" surprises {:.1f}, {} bounces", fmt::join(c.surprises, " "), c.unexpected_bounces);
     if (c.gap_ratio) fmt::print(", gap ratio {:.4f} +- {:.4f}", c.gap_ratio->mean, c.gap_ratio->deviation);
+    if (c.delay) fmt::print(", gap {:.4f}, late {:.3f} +- {:.3f} us", c.gaps, 1e6 * c.delay->mean, 1e6 * c.delay->deviation);
+    fmt::print(", misfit {:.2f} of {:.2f}", c.misfit.least, c.misfit.bound);
     fmt::print("{}\n", c.broken.empty() ? "" : " BROKEN " + c.broken);
     std::fflush(stdout);
     broken += !c.broken.empty();

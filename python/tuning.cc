@@ -20,7 +20,10 @@ namespace py = pybind11;
 
 namespace {
 
-LaboratoryErrors errors_of(const SceneFile& file, const py::dict& given) {
+// A simulated laboratory has a trigger delay of its own, and expects none.
+enum class Laboratory { expected, simulated };
+
+LaboratoryErrors errors_of(const SceneFile& file, const py::dict& given, Laboratory which) {
   LaboratoryErrors errors = usual_errors(file);
   const auto take = [&](double& value, const char* name) {
     const auto told = given[name].cast<std::optional<double>>();
@@ -32,6 +35,7 @@ LaboratoryErrors errors_of(const SceneFile& file, const py::dict& given) {
   take(errors.unseen, "unseen");
   take(errors.gain_error, "gain_error");
   take(errors.shot_error, "shot_error");
+  if (which == Laboratory::expected) take(errors.trigger_delay, "trigger_delay");
   return errors;
 }
 
@@ -50,7 +54,7 @@ TunerOptions options_of(const SceneFile& file, const py::dict& given) {
   TunerOptions options{.actuator = actuator->value,
                        .seed = given["seed"].cast<std::uint64_t>(),
                        .jobs = given["jobs"].cast<int>(),
-                       .laboratory = errors_of(file, given)};
+                       .laboratory = errors_of(file, given, Laboratory::expected)};
   if (const auto touch = given["constrain"].cast<std::string>(); !touch.empty()) {
     try {
       options.touch = parse_criterion(touch, all_figures);
@@ -108,8 +112,9 @@ Outcome outcome_of(const PyTuning& tuning, const std::string& name) {
 std::unique_ptr<PracticeDevice> practice(const PyScene& scene, const py::dict& given) {
   const SceneFile file = scene.file;
   PracticeOptions options{.seed = given["seed"].cast<std::uint64_t>(),
-                          .laboratory = errors_of(file, given),
+                          .laboratory = errors_of(file, given, Laboratory::simulated),
                           .drift = given["drift"].cast<double>(),
+                          .trigger_delay = given["trigger_delay"].cast<double>(),
                           .model = {.more_modes = given["more_modes"].cast<int>(),
                                     .gas = given["gas"].cast<std::string>(),
                                     .stiffness = given["stiffness"].cast<double>(),
@@ -141,6 +146,11 @@ void bind_tuning(py::module_& m) {
       .def_property_readonly("is_done", [](const PyTuning& t) { return t.session.tuner().is_done(); })
       .def_property_readonly("closings", [](const PyTuning& t) { return t.session.tuner().closings(); })
       .def_property_readonly("words", [](const PyTuning& t) { return closing_words(t.session.report(TuningEnd::under_way)); })
+      .def("ends",
+           [](PyTuning& t, int closings) {
+             const std::optional<TuningEnd> end = t.session.ends(closings);
+             return end ? std::optional(std::string(name_of(*end))) : std::nullopt;
+           })
       .def("throw_if_failing", [](const PyTuning& t) { t.session.throw_if_failing(); })
       .def("outcome", &outcome_of);
   py::class_<PracticeDevice>(m, "PracticeDevice").def(py::init(&practice)).def("answer", &answered);

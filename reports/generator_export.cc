@@ -76,13 +76,17 @@ void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const
   }
 }
 
-std::string generator_text(const GeneratorFormat& format, const PreparedScene& p, const std::string& drive, const Signal& told,
-                           const Sampling& sampling) {
-  const DriverModel& source = p.drives.at(drive).source;
-  require_field(source.sample_rate.has_value(), "format", format.name, [&] {
+void require_samples(std::string_view format, const std::string& drive, const DriverModel& source) {
+  require_field(source.sample_rate.has_value(), "format", format, [&] {
     return fmt::format("drive '{}' takes no samples: give {}, or [driver.{}] a sample_rate", drive, requested("sample-rate"),
                        drive);
   });
+}
+
+std::string generator_text(const GeneratorFormat& format, const PreparedScene& p, const std::string& drive, const Signal& told,
+                           const Sampling& sampling) {
+  const DriverModel& source = p.drives.at(drive).source;
+  require_samples(format.name, drive, source);
   const double rate = *source.sample_rate;
   const double factor = amplification(p.drives.at(drive), sampling);
   GeneratorSamples samples{.name = drive, .rate = rate};

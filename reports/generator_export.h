@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/watch.h"
@@ -34,6 +35,9 @@ struct Sampling {
 
 /// Puts sample rate and bits into [driver] of these drives.
 void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling);
+
+/// Throws InvalidRequest where this source takes no samples, which a file of this format holds.
+void require_samples(std::string_view format, const std::string& drive, const DriverModel& source);
 
 /// The samples of a drive, `told` by its source from t = 0 on, as a file of this format. Throws InvalidInput where the source
 /// takes no samples, and what generator_file() throws.

@@ -230,13 +230,24 @@ Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_i
   return {prepare_and_choose(file, need_pull_in, watch), std::move(drawn), std::move(drives)};
 }
 
-std::string for_generator(const GeneratorFormat& format, const Exported& what, const SentSignals& sent,
-                          const Sampling& sampling) {
-  require_field(what.drives.size() == 1, "format", format.name, [&] {
-    return fmt::format("a file holds one drive: choose it by {}, one of {}", requested("drive"), fmt::join(what.drives, ", "));
+// These drives, one alone of the file of a generator, as a file of that format.
+std::string sent_text(const std::string& format, const PreparedScene& p, const std::vector<std::string>& drives,
+                      const SentSignals& sent, double end, const Sampling& sampling, const Say& say) {
+  if (format == "csv") return csv(sent.signals, end, sent.sample_rates);
+  if (format == "spice-pwl") return spice_pwl(sent.signals, end);
+  const GeneratorFormat* const generator = generator_format(format);
+  if (generator == nullptr) return codes(coded(p, sent, say));
+  require_field(drives.size() == 1, "format", format, [&] {
+    return fmt::format("a file holds one drive: choose it by {}, one of {}", requested("drive"), fmt::join(drives, ", "));
   });
-  const std::string& drive = what.drives.front();
-  return generator_text(format, what.sampled, drive, sent.signals.at(drive), sampling);
+  return generator_text(*generator, p, drives.front(), sent.signals.at(drives.front()), sampling);
+}
+
+constexpr std::array<std::string_view, 3> circuits{"spice-model", "spice-bench", "verilog-a"};
+
+// ".arb"
+std::string_view ending_of(const std::string& format) {
+  return format == "spice-pwl" ? ".cir" : format == "keysight-arb" ? ".arb" : ".csv";
 }
 
 // The switch itself, where that is asked for. Throws InvalidInput for what has no such model.
@@ -286,16 +297,55 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
     }
   }
   const double end = std::max(p.duration, last_breakpoint(sent.signals));  // the hold level belongs to the waveform
-  if (request.format == "csv") return csv(sent.signals, end, sent.sample_rates);
-  if (request.format == "spice-pwl") return spice_pwl(sent.signals, end);
-  if (generator == nullptr) return codes(coded(p, sent, say));
-  std::string text = for_generator(*generator, what, sent, request.sampling);
+  std::string text = sent_text(request.format, p, what.drives, sent, end, request.sampling, say);
+  if (generator == nullptr) return text;
   const Drive& drive = p.drives.at(what.drives.front());
   if (const std::string words = amplifier_words(drive, amplification(drive, request.sampling)); !words.empty()) say(words);
   if (measured.are_none()) {
     for (const std::string& line : sampled_words(p, what.drawn ? &*what.drawn : nullptr, what.drives.front(), watch)) say(line);
   }
   return text;
+}
+
+std::vector<SentFile> sent_files(const std::string& format, const PreparedScene& p, const SentSignals& sent, double end) {
+  const auto text = [&](const std::vector<std::string>& drives, const SentSignals& signals) {
+    return sent_text(format, p, drives, signals, end, {}, [](const std::string&) {});
+  };
+  const std::string ending(ending_of(format));
+  if (generator_format(format) == nullptr) {
+    SentSignals before = sent;
+    for (const auto& [drive, amplifier] : sent.amplifiers) {
+      Signal& signal = before.signals.at(drive);
+      if (format != "codes") signal = scaled(signal, 1 / amplifier);
+    }
+    return {{.ending = ending, .text = text({}, before)}};
+  }
+  std::vector<SentFile> files;
+  for (const auto& [drive, signal] : sent.signals) {
+    if (!signal.is_zero()) files.push_back({.ending = "-" + drive + ending, .text = text({drive}, sent)});
+  }
+  return files;
+}
+
+std::vector<std::string> sent_endings(const PreparedScene& p) {
+  std::vector<std::string> all{".csv", ".cir"};
+  for (const std::string& drive : p.drive_names()) {
+    for (const char* ending : {".csv", ".arb"}) all.push_back("-" + drive + ending);
+  }
+  return all;
+}
+
+void require_shots(const std::string& format, const PreparedScene& p, const std::vector<std::string>& drives) {
+  const bool is_for_generator = generator_format(format) != nullptr;
+  require_field(std::ranges::find(circuits, format) == circuits.end(), "format", format,
+                [] { return "is the switch itself, and no waveform that a generator takes"; });
+  for (const std::string& drive : drives) {
+    const DriverModel& source = p.drives.at(drive).source;
+    if (is_for_generator || format == "codes") require_samples(format, drive, source);
+    require_field(format != "codes" || source.bits.has_value(), "format", format, [&] {
+      return fmt::format("drive '{}' has no integers: give {}, or [driver.{}] bits", drive, requested("bits"), drive);
+    });
+  }
 }
 
 }  // namespace softland

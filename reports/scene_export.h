@@ -5,10 +5,12 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/watch.h"
 #include "config/scene.h"
 #include "reports/generator_export.h"
+#include "studies/closing/sent_signals.h"
 
 namespace softland {
 
@@ -25,5 +27,20 @@ struct ExportRequest {
 /// they name fields as requested() does. Throws InvalidRequest, Interrupted.
 [[nodiscard]] std::string exported_text(const SceneFile& scene, const ExportRequest& request, const Watch& watch = {},
                                         const std::function<void(const std::string&)>& say = {});
+
+/// A file that a generator loads.
+struct SentFile {
+  std::string ending;  ///< the end of its name: ".csv" of all drives, "-main.arb" of one
+  std::string text;
+};
+/// Writes the signals of a shot in a format of `export`, in volts before the amplifiers of [driver], up to `end` [s]. A file
+/// holds all drives, or one of those that are not at 0 V at all times, as the format has it. Throws what exported_text() throws.
+[[nodiscard]] std::vector<SentFile> sent_files(const std::string& format, const PreparedScene& scene, const SentSignals& sent,
+                                               double end);
+/// All endings that files of the drives of this scene may have.
+[[nodiscard]] std::vector<std::string> sent_endings(const PreparedScene& scene);
+/// Throws InvalidRequest where sent_files() cannot write these drives in this format, whatever their waveforms are: it is none,
+/// is the switch itself, or needs samples that their [driver] does not take.
+void require_shots(const std::string& format, const PreparedScene& scene, const std::vector<std::string>& drives);
 
 }  // namespace softland

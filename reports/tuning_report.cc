@@ -100,6 +100,10 @@ json belief_json(const BeliefSummary& belief) {
   return {{"quantities", quantities},
           {"gap_ratio", belief.gap_ratio ? quantity_json(*belief.gap_ratio) : json()},
           {"effective_devices", json_number(belief.effective_devices)},
+          {"touch_misfit",
+           {{"least", json_number(belief.touch_misfit.least)},
+            {"bound", json_number(belief.touch_misfit.bound)},
+            {"records", belief.touch_misfit.records}}},
           {"correlated", belief.correlated},
           {"coordinates", belief_json(belief.coordinates)}};
 }
@@ -288,6 +292,19 @@ TableRow record_row(const TunedClosing& one, const Shown& shown) {
                      "picture")};
 }
 
+// Empty where the records may begin with the drives, as far as is known.
+std::string delay_words(const BeliefSummary& belief) {
+  constexpr double certain = 2;  // standard errors
+  const auto delay = std::find_if(belief.quantities.begin(), belief.quantities.end(),
+                                  [](const BelievedQuantity& one) { return one.name == trigger_delay_name; });
+  if (delay == belief.quantities.end() || !(std::abs(delay->mean) > certain * delay->deviation)) return {};
+  return fmt::format(
+      "The records begin {} {} the drives, with a standard error of {}: the trigger is {}. Touches are told as they were "
+      "recorded.",
+      quantity(std::abs(delay->mean), "s", 2), delay->mean > 0 ? "after" : "before", quantity(delay->deviation, "s", 2),
+      delay->mean > 0 ? "late" : "early");
+}
+
 ReportSection records_section(const TuningReport& report) {
   constexpr std::size_t most = 24;
   const std::size_t first = report.closings.size() > most ? report.closings.size() - most : 0;
@@ -305,6 +322,7 @@ ReportSection records_section(const TuningReport& report) {
           drawing_of(fmt::format("<p class=\"below\">Grey: where the touch was expected before it was seen, with 95 %. Blue: "
                                  "where the contact was closed. The pictures show {}.</p>\n",
                                  escaped(range_words(shown.from, shown.to)))),
+          Paragraph{.text = delay_words(report.belief), .is_note = true},
           Paragraph{.text = first > 0 ? fmt::format("The first {} closings are not shown.", first) : "", .is_note = true},
           Paragraph{.text = "Expected of the waveform kept: " + expected_words(report.kept.predicted) + ".", .is_note = true}}};
 }
@@ -378,6 +396,22 @@ bool TuningReport::ever_bounce_free() const {
   return std::any_of(closings.begin(), closings.end(), [](const TunedClosing& one) { return is_bounce_free(one.record); });
 }
 
+namespace {
+
+// The last one that gave a record; null where none did.
+const TunedClosing* last_record(const std::vector<TunedClosing>& closings) {
+  const auto last =
+      std::find_if(closings.rbegin(), closings.rend(), [](const TunedClosing& one) { return one.record.error.empty(); });
+  return last == closings.rend() ? nullptr : &*last;
+}
+
+}  // namespace
+
+bool TuningReport::lands() const {
+  const TunedClosing* const last = last_record(closings);
+  return last != nullptr && last->shot.number == kept.number && is_bounce_free(last->record);
+}
+
 std::string_view name_of(TuningEnd end) { return end_names.at(static_cast<std::size_t>(end)); }
 
 TuningEnd tuning_end(std::string_view name) {
@@ -388,10 +422,14 @@ TuningEnd tuning_end(std::string_view name) {
 }
 
 TuningReport tuning_report(const Tuner& tuner, std::vector<TunedClosing> closings, const TunerOptions& options, TuningEnd end) {
+  TunerShot kept = tuner.kept();
+  if (const TunedClosing* const last = last_record(closings);
+      end != TuningEnd::under_way && last != nullptr && is_bounce_free(last->record) && !tuner.was_kept_last())
+    kept = last->shot;
   return {.scene = tuner.scene(),
           .closings = std::move(closings),
           .next = tuner.next(),
-          .kept = tuner.kept(),
+          .kept = std::move(kept),
           .belief = tuner.belief(),
           .broken_assumption = tuner.broken_assumption(),
           .step_closing_time = tuner.step_closing_time(),
@@ -408,6 +446,7 @@ json tuning_json(const TuningReport& report, const Provenance& provenance) {
   for (const TunedClosing& one : report.closings) closings.push_back(closing_json(report.scene, one));
   json best = shot_report(report.scene, report.kept);
   best["bounce_free"] = report.was_bounce_free(report.kept.number);
+  best["landed_last"] = report.lands();
   const PreparedScene& scene = report.scene;
   return with_origin({{"kind", "tune"},
                       {"status", name_of(report.end)},

@@ -44,7 +44,10 @@ struct TuningReport {
   [[nodiscard]] bool was_bounce_free(int shot) const;
   /// Whether any was.
   [[nodiscard]] bool ever_bounce_free() const;
+  /// Tells whether the last closing was of the waveform kept, and without a bounce.
+  [[nodiscard]] bool lands() const;
 };
+/// A tuning that has ended keeps the waveform of its last closing where that did not bounce.
 [[nodiscard]] TuningReport tuning_report(const Tuner& tuner, std::vector<TunedClosing> closings, const TunerOptions& options,
                                          TuningEnd end);
 

@@ -33,6 +33,7 @@ Json origin_of(const SceneFile& file, const TunerOptions& options) {
           {"unseen_s", options.laboratory.unseen},
           {"gain_error", options.laboratory.gain_error},
           {"shot_error", options.laboratory.shot_error},
+          {"trigger_delay_s", options.laboratory.trigger_delay},
           {"constrain", options.touch ? Json(options.touch->text) : Json()}};
 }
 
@@ -41,7 +42,7 @@ TunedBelief tuned_in(const std::string& folder, const Json& origin) {
   const std::string path = (std::filesystem::path(folder) / "tune.json").string();
   try {
     const Json written = read_line(read_file(path));
-    for (const char* key : {"scene", "actuator", "gain_error"})
+    for (const char* key : {"scene", "actuator", "gain_error", "trigger_delay_s"})
       require(written.value(origin_key, Json::object()).value(key, Json()) == origin.at(key),
               [&] { return fmt::format("is a tuning of another {}", key); });
     return tuned_belief(written);
@@ -107,11 +108,12 @@ void TuningSession::begin(const Watch& watch) {
   if (s.log && s.log->recipes().empty()) s.log->append(s.tuner->recipes());
 }
 
-// What was proposed then is proposed again, or these closings are of something else.
+// What was proposed then is proposed again, or the waveform kept was fired once more, or these closings are of something else.
 bool TuningSession::learn_kept(const Watch& watch) {
   State& s = *state_;
   if (!s.log || s.behind == s.log->closings().size()) return false;
   const TuningLog::Closing& closing = s.log->closings()[s.behind];
+  if (shot_json(told()) != closing.shot) s.tuner->fire_kept_again();
   require(shot_json(told()) == closing.shot, [&] {
     return fmt::format("{}: this program proposes another shot after the closings before it; name another folder with --out",
                        s.log->place(closing));
@@ -136,6 +138,14 @@ void TuningSession::learn(const ContactRecord& record, const Watch& watch) {
   state_->is_on_record = true;
   state_->learn(record, watch);
   state_->is_on_record = false;
+}
+
+std::optional<TuningEnd> TuningSession::ends(int most) {
+  Tuner& tuner = *state_->tuner;
+  if (tuner.is_done() && tuner.was_kept_last()) return TuningEnd::done;
+  if (tuner.closings() >= most) return TuningEnd::closings_used;
+  if (tuner.is_done() || tuner.closings() + 1 == most) tuner.fire_kept_again();
+  return {};
 }
 
 void TuningSession::throw_if_failing() const {

@@ -5,13 +5,14 @@
 //   tuning.keep("closings.jsonl", false);                  // each closing is on the disk before the next is fired
 //   tuning.begin();
 //   while (tuning.learn_kept()) {}                         // of a tuning that goes on
-//   while (!tuning.tuner().is_done()) tuning.learn(fired(tuning.told()));
+//   while (!tuning.ends(usual_closings)) tuning.learn(fired(tuning.told()));
 #pragma once
 
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -50,6 +51,9 @@ class TuningSession {
   /// Puts what came of the next shot on the disk, and learns it. Throws InvalidInput for a record that cannot be one, OutputLost,
   /// and Interrupted: then the record is on the disk, and is to be given again.
   void learn(const ContactRecord& record, const Watch& watch = {});
+  /// How the tuning ends here: done, or `most` closings are used; none where it goes on. Where the next shot is the last one, or
+  /// the switch has landed often enough by others than the waveform kept, the next shot is that one.
+  [[nodiscard]] std::optional<TuningEnd> ends(int most);
   /// Throws InvalidInput where the last three shots gave no record.
   void throw_if_failing() const;
 

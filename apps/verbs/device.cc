@@ -27,7 +27,7 @@ using nlohmann::json;
 
 struct DeviceRequest {
   LaboratoryRequest laboratory;
-  std::string drift, model;
+  std::string drift, model, trigger_delay;
   std::optional<std::string> seed;
 };
 
@@ -38,6 +38,14 @@ double drift_of(const std::string& text) {
   const double share = quantity_of("--drift", text.substr(0, stroke).substr(sign), dimension::none);
   const int shots = stroke == std::string::npos ? 1 : whole_number("--drift SHARE/", text.substr(stroke + 1), 1);
   return (sign == 1 ? -share : share) / shots;
+}
+
+// "1 us" or "-1 us".
+double trigger_delay_of(const std::string& text) {
+  if (text.empty()) return 0;
+  const bool is_early = text.starts_with('-');
+  const double time = quantity_of("--trigger-delay", text.substr(is_early ? 1 : 0), dimension::time);
+  return is_early ? -time : time;
 }
 
 void read_model_part(PracticeModel& model, const std::string& part, const std::string& given) {
@@ -85,6 +93,7 @@ int device_verb(const Common& c, const DeviceRequest& request) {
   const SceneFile file = load_scene_or_result(c);
   PracticeOptions options{.laboratory = laboratory_errors(request.laboratory, file),
                           .drift = drift_of(request.drift),
+                          .trigger_delay = trigger_delay_of(request.trigger_delay),
                           .model = model_of(request.model)};
   options.seed = seed_of(request.seed, options.seed);
   const PracticeDevice device(file, options);
@@ -110,6 +119,8 @@ void add_device(Verb& verb) {
   verb.with_seed(request->seed, "same device and same errors; the device differs from the scene as [spread] says");
   with_laboratory(verb, request->laboratory);
   verb.option("--drift", request->drift, "SHARE/N", "change of all volts in N shots, such as \"1 %/1000\" (default: none)");
+  verb.option("--trigger-delay", request->trigger_delay, "TIME",
+              "by how much its records begin later than the drives, \"-1 us\": earlier (default: 0 s)");
   verb.option("--model", request->model, "CHANGES",
               "what the device has beside its scene: modes=+1, gas=NAME, stiffness=1.1 of the contact, or a key of the scene, "
               "gap.contact=\"2.05 um\"; several are joined by |");

@@ -1,5 +1,6 @@
 // Tunes a waveform on a device, closing after closing.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -24,8 +25,11 @@
 #include "base/shell_word.h"
 #include "config/assumed_spread.h"
 #include "config/bench.h"
+#include "reports/scene_export.h"
 #include "reports/tuning_report.h"
 #include "reports/tuning_session.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/plain_step.h"
 #include "studies/search/search_setting.h"
 #include "studies/tuning/tuner.h"
 
@@ -39,8 +43,10 @@ constexpr const char* log_file = "closings.jsonl";
 struct TuneRequest {
   std::string device, actuator = "electrostatic";
   bool by_hand = false, resume = false;
-  std::vector<std::string> wafer;    ///< folders of earlier tunings
-  std::vector<std::string> contact;  ///< how recorded voltages of the contact are read
+  std::vector<std::string> wafer;     ///< folders of earlier tunings
+  std::vector<std::string> contact;   ///< how recorded voltages of the contact are read
+  std::optional<std::string> format;  ///< the format of the files of shots
+  Sampling sampling;                  ///< how the sources take samples
   std::optional<std::string> touch, closings, recipes, effort, timeout, seed, jobs;
   LaboratoryRequest laboratory;
 };
@@ -72,6 +78,25 @@ std::chrono::milliseconds patience_of(const std::optional<std::string>& timeout)
   return std::chrono::milliseconds(std::max<long>(1, std::lround(1000 * seconds)));
 }
 
+// Puts what is said of the sources into [driver], and refuses a format that cannot hold their shots before anything is searched.
+void set_sources(SceneFile& file, const TuneRequest& request, Actuator actuator) {
+  const PreparedScene drawn = prepare_and_choose(file, true);
+  std::vector<std::string> shaped;
+  for (const auto& [drive, waveform] : plain_step(drawn, actuator)) {
+    if (drawn.drives.at(drive).limits) shaped.push_back(drive);
+  }
+  if (request.sampling.amplifier) {
+    require(shaped.size() == 1, [&] {
+      return fmt::format("--amplifier {}: several drives are shaped, {}: give each [driver.NAME] its amplifier",
+                         *request.sampling.amplifier, fmt::join(shaped, ", "));
+    });
+    file.assign(fmt::format("driver.{}.amplifier", shaped.front()),
+                amplification(drawn.drives.at(shaped.front()), request.sampling));
+  }
+  set_sampling(file, shaped, request.sampling);
+  require_shots(request.format.value_or("csv"), prepare_and_choose(file, true), shaped);
+}
+
 /// A tuning, and the files that tell of it.
 class Tuning {
  public:
@@ -86,6 +111,7 @@ class Tuning {
   [[nodiscard]] json told_json(TuningEnd end) const { return session_.json(end, {.command = common_.command}); }
   [[nodiscard]] TuningReport report(TuningEnd end) const { return session_.report(end); }
   [[nodiscard]] const ResultFolder& folder() const { return *folder_; }
+  [[nodiscard]] const PreparedScene& scene() const { return session_.tuner().scene(); }
 
  private:
   Common common_;
@@ -110,8 +136,8 @@ void Tuning::learn_log() {
 }
 
 TuningEnd Tuning::run(TuningLab& lab, int closings) {
-  while (!session_.tuner().is_done()) {
-    if (session_.tuner().closings() >= closings) return TuningEnd::closings_used;
+  for (;;) {
+    if (const std::optional<TuningEnd> end = session_.ends(closings)) return *end;
     const SentSignals sent = sent_signals(session_.tuner().scene(), session_.tuner().next().waveforms);
     const std::optional<ContactRecord> record = lab.fire(session_.told(), sent);
     if (!record) return TuningEnd::stopped;
@@ -123,7 +149,6 @@ TuningEnd Tuning::run(TuningLab& lab, int closings) {
     if (!common_.quiet) say(closing_words(report(TuningEnd::under_way)));
     session_.throw_if_failing();
   }
-  return TuningEnd::done;
 }
 
 void Tuning::write(TuningEnd end) {
@@ -141,14 +166,23 @@ int tune_verb(const Common& given, const TuneRequest& request) {
   std::optional<ContactTraceKeys> contact;
   if (!request.contact.empty()) contact = contact_trace_keys(request.contact);
   const int closings = request.closings ? whole_number("--closings", *request.closings, 1) : usual_closings;
-  const SceneFile file = load_scene_or_result(c);
-  Tuning tuning(c, file, tuner_options(request, file), request);
+  const bool says_sources = request.format || request.sampling.rate || request.sampling.bits || request.sampling.amplifier;
+  require(request.by_hand || !says_sources,
+          "--format, --sample-rate, --bits and --amplifier are of the files that --by-hand writes; a command is told volts");
+  SceneFile file = load_scene_or_result(c);
+  const TunerOptions options = tuner_options(request, file);
+  if (says_sources) set_sources(file, request, options.actuator);
+  Tuning tuning(c, file, options, request);
   if (tuning.report(TuningEnd::under_way).spread_assumed && !c.quiet) say(std::string(assumed_words));
 
   TuningEnd end = TuningEnd::interrupted;
   try {
-    const std::unique_ptr<TuningLab> lab =
-        request.by_hand ? hand_lab(tuning.folder().path(), request.resume, contact) : command_lab(request.device, patience);
+    const std::unique_ptr<TuningLab> lab = request.by_hand ? hand_lab({.folder = tuning.folder().path(),
+                                                                       .goes_on = request.resume,
+                                                                       .format = request.format.value_or("csv"),
+                                                                       .contact = contact},
+                                                                      tuning.scene())
+                                                           : command_lab(request.device, patience);
     tuning.learn_log();
     try {
       end = tuning.run(*lab, closings);
@@ -166,7 +200,7 @@ int tune_verb(const Common& given, const TuneRequest& request) {
                 terminal_text(tuning_document(report, {})) +
                     left_in(tuning.folder().path(), {"tune.html", "tune.json", "best.toml", "best.csv", log_file}));
   if (end == TuningEnd::interrupted) return exit_interrupted;
-  return report.ever_bounce_free() ? exit_done : exit_no_success;
+  return report.lands() ? exit_done : exit_no_success;
 }
 
 }  // namespace
@@ -178,6 +212,18 @@ void add_tune(Verb& verb) {
   verb.option("--device", request->device, "COMMAND",
               "what fires the shots: the shell runs it, it reads one JSON object a line and answers each by one");
   verb.flag("--by-hand", request->by_hand, "write each waveform to a file, and ask what the oscilloscope showed");
+  verb.optional("--format", request->format, "NAME",
+                "of these files: csv (default), spice-pwl, codes, keysight-arb, siglent-csv, tektronix-csv, rigol-csv or "
+                "digilent-csv, as export writes them; a file for a generator holds one drive, shot-1-main.arb");
+  verb.optional(
+      "--sample-rate", request->sampling.rate, "RATE",
+      "samples at this rate, by hand, instead of what [driver] says: \"27 MHz\"; they are what the belief expects, too");
+  verb.optional("--bits", request->sampling.bits, "N",
+                "by hand, rounded to 2^N voltages between the limits of [driver], instead of what it says");
+  verb.optional(
+      "--amplifier", request->sampling.amplifier, "K",
+      "by hand, an amplifier between generator and switch, instead of the amplifier of [driver]: volts of the files are "
+      "those at the switch over K");
   verb.repeated(
       "--contact", request->contact, "KEY=VALUE",
       "how the voltage of the contact is read from files of an oscilloscope, by hand: threshold=\"1.5 V\", closed=below, "
@@ -195,6 +241,9 @@ void add_tune(Verb& verb) {
                 "when the contact is to touch, such as \"initial_contact_time < 33 us\", or beside a plain step on the drawing, "
                 "\"initial_contact_time < 1.1 step\"");
   with_laboratory(verb, request->laboratory);
+  verb.optional("--trigger-delay", request->laboratory.trigger_delay, "TIME",
+                "by how much records may begin later or earlier than the drives, constant but unknown, one standard deviation "
+                "(default: 2 us, at most a 48th of that period); \"0 s\": t = 0 of a record is that of the drives");
   verb.optional(
       "--recipes", request->recipes, "N",
       fmt::format("waveforms that are searched before the first closing, each for devices of another pull-in voltage, 1 to 5 "
@@ -209,11 +258,13 @@ void add_tune(Verb& verb) {
   verb.footer(
       "Every closing is open loop, and what is seen of it is when the contact was closed. After each the device is known "
       "better,\n"
-      "and the waveform that lands it best is proposed next. No shot leaves the limits of [driver.*]. Status 4: no closing was\n"
-      "without a bounce. docs/tune.md says how to practise, what a command reads and writes, and has one for instruments.\n"
+      "and the waveform that lands it best is proposed next. No shot leaves the limits of [driver.*]. The last one is of the\n"
+      "waveform kept; status 4: it did not land then. docs/tune.md says how to practise, what a command reads and writes, and\n"
+      "has one for instruments.\n"
       "Examples:\n  softland tune scenes/mem-gold.toml --device \"softland device scenes/mem-gold.toml --seed 7\"\n"
       "  softland tune my.toml --device \"python3 scpi_device.py --generator 192.168.1.10 --oscilloscope 192.168.1.11\"\n"
       "  softland tune my.toml --by-hand --closings 12 --out device-17\n"
+      "  softland tune my.toml --by-hand --format keysight-arb --sample-rate \"25 MHz\" --bits 14 --amplifier 20\n"
       "  softland tune my.toml --by-hand --contact threshold=\"1.5 V\" --contact closed=below --contact column=CH2\n"
       "  softland tune my.toml --by-hand --resume --out device-17\n"
       "  softland tune my.toml --by-hand --wafer device-17 --wafer device-18 --out device-19");

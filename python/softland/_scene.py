@@ -476,7 +476,8 @@ class Scene(MutableMapping[str, Any]):
         """A tuning on one device that is ready for its first shot: the waveform for the drawing is searched, which takes half a minute or so.
 
         actuator: which drives are shaped. constrain: "initial_contact_time < 33 us", or "< 1.1 step".
-        errors: of the instruments, one standard deviation: edge_error [s], unseen [s], gain_error, shot_error; default: the usual ones (docs/tune.md).
+        errors: of the instruments, one standard deviation: edge_error [s], unseen [s], gain_error, shot_error, and trigger_delay [s], by which records may
+            begin later or earlier than the drives; default: the usual ones (docs/tune.md).
         recipes: waveforms searched before the first closing, 1 to 5. effort: evaluations of every search, over the usual.
         wafer: folders of tunings of devices of the same wafer that have ended.
         out: folder for closings.jsonl, where each closing is before the next is fired, and for the files of the program. resume: goes on with the
@@ -484,7 +485,7 @@ class Scene(MutableMapping[str, Any]):
         Same answers, same proposals, whatever `jobs` is. Raises InvalidInput.
         """
         request = {
-            "actuator": actuator, "constrain": constrain, **laboratory(errors), "recipes": recipes, "effort": effort,
+            "actuator": actuator, "constrain": constrain, **laboratory(errors, "trigger_delay"), "recipes": recipes, "effort": effort,
             "wafer": [os.fspath(one) for one in wafer], "seed": seed, "jobs": _jobs(jobs), "command": _command(),
         }  # fmt: skip
         return tuning_of(self._native, request, out, resume, progress)
@@ -521,6 +522,7 @@ class Scene(MutableMapping[str, Any]):
         seed: int = 1,
         errors: Mapping[str, float | str] | None = None,
         drift: float = 0.0,
+        trigger_delay: float | str = 0.0,
         more_modes: int = 0,
         gas: str = "",
         stiffness: float = 1.0,
@@ -528,12 +530,13 @@ class Scene(MutableMapping[str, Any]):
     ) -> PracticeDevice:
         """A simulated device to practise on, as `softland device`: one of the scene's [spread], or of the usual one, chosen by `seed`.
 
-        errors: of its instruments, as in `tuning`. drift: share by which all volts change from one shot to the next.
+        errors: of its instruments, as in `tuning`, but for trigger_delay. drift: share by which all volts change from one shot to the next.
+        trigger_delay: by how much its records begin later than the drives [s]; earlier where it is below 0.
         more_modes, gas, stiffness (a factor, of the contact) and set ({"gap.contact": "2.05 um"}): a physics that the scene does not know.
         """
         request = {
-            **laboratory(errors), "seed": seed, "drift": drift, "more_modes": more_modes, "gas": gas, "stiffness": stiffness,
-            "set": [f"{key}={value}" for key, value in (set or {}).items()],
+            **laboratory(errors), "seed": seed, "drift": drift, "trigger_delay": float(number(trigger_delay)), "more_modes": more_modes, "gas": gas,
+            "stiffness": stiffness, "set": [f"{key}={value}" for key, value in (set or {}).items()],
         }  # fmt: skip
         return PracticeDevice(_softland.PracticeDevice(self._native, request))
 

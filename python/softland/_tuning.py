@@ -112,7 +112,7 @@ class Tuning:
         callback: Callable[[str], Any] | None = None,
         progress: bool | Progress | None = None,
     ) -> Outcome:
-        """Fires shots until five closings in a row are without a bounce, or `closings` are used.
+        """Fires shots until five closings in a row are without a bounce, or `closings` are used. The last one is of the waveform kept.
 
         device: called with each `Shot`, returns an answer as `learn` takes it. What it raises comes through.
         callback: called with a line about each closing; one that returns True ends the tuning.
@@ -121,8 +121,9 @@ class Tuning:
         try:
             self._learn_pending(progress)
             while True:
-                if self.is_done or self.closings >= closings:
-                    end = "done" if self.is_done else "closings_used"
+                ended = self._native.ends(closings)
+                if ended is not None:
+                    end = ended
                     break
                 words = self.learn(device(self.shot()), progress)
                 self._write("under_way")
@@ -189,11 +190,11 @@ def tuning_of(
     return Tuning(native, folder)
 
 
-def laboratory(errors: Mapping[str, float | str] | None) -> dict[str, Any]:
-    """Errors of instruments by name, None where they are the usual ones."""
+def laboratory(errors: Mapping[str, float | str] | None, *expected: str) -> dict[str, Any]:
+    """Errors of instruments by name, and those that are only `expected` of them, None where they are the usual ones."""
     from ._units import number
 
-    names = ("edge_error", "unseen", "gain_error", "shot_error")
+    names = ("edge_error", "unseen", "gain_error", "shot_error", *expected)
     given = dict(errors or {})
     unknown = [name for name in given if name not in names]
     if unknown:

@@ -51,7 +51,7 @@ double Likelihood::touch_residual(const ImaginedClosing& closing, const ContactR
   constexpr double one_alone = 30;
   const std::optional<double> seen = first_touch(record);
   if (!closing.closes() || !seen) return closing.closes() == seen.has_value() ? 0 : one_alone;
-  return (closing.touch - *seen) / touch_deviation(closing.speed);
+  return (closing.recorded_touch() - *seen) / touch_deviation(closing.speed);
 }
 
 double Likelihood::of_record(const ImaginedClosing& closing, const ContactRecord& record) const {
@@ -138,6 +138,15 @@ class Learner {
     find_mode(last);
     return sampled();
   }
+  /// From now on the ratio of the gaps is that of the scene.
+  void pin_gap_ratio() { pins_ratio_ = true; }
+  /// |z|^2 + sum of r^2 of the best device that is found from there.
+  [[nodiscard]] double misfit_from(const VectorXd& start) const {
+    return misfits(std::vector<VectorXd>{fitted(start).first}).front();
+  }
+  [[nodiscard]] double misfit_of(const VectorXd& z) const { return misfits(std::vector<VectorXd>{z}).front(); }
+  /// The least of it that is found; the search ends where it is at most `enough`.
+  [[nodiscard]] double least_misfit(const Belief& belief, double enough);
 
  private:
   // Closings of every point under every shot: those of a point stand together.
@@ -170,6 +179,12 @@ class Learner {
   void find_mode(const Belief& last);
   void climb_from(const std::vector<VectorXd>& starts, std::size_t most, double enough);
   [[nodiscard]] std::pair<VectorXd, MatrixXd> fitted(VectorXd z) const;
+  [[nodiscard]] std::vector<double> misfits(std::span<const VectorXd> points) const;
+  // A ratio of the gaps that is pinned is worth one where it is off by a thousandth of its standard deviation.
+  [[nodiscard]] double ratio_residual(const VectorXd& z) const {
+    constexpr double stiff = 1000;
+    return pins_ratio_ ? stiff * scene_.gap_ratio_coordinate(z).value_or(0) : 0;
+  }
   [[nodiscard]] Belief sampled();
   [[nodiscard]] std::vector<VectorXd> fresh(std::size_t count, double width) {
     std::vector<VectorXd> all;
@@ -184,6 +199,7 @@ class Learner {
   const Watch& watch_;
   VectorXd mode_;
   MatrixXd curvature_;
+  bool pins_ratio_ = false;
   double best_ = -std::numeric_limits<double>::infinity();
 };
 
@@ -192,7 +208,7 @@ class Learner {
 std::pair<VectorXd, MatrixXd> Learner::fitted(VectorXd z) const {
   constexpr double apart = 0.01, steepest = 3000, longest = 1.5, enough = 0.02, hopeless = 1e4;
   constexpr int most_rounds = 14;
-  const auto m = static_cast<Eigen::Index>(shots_.size()), n = scene_.size();
+  const auto touches = static_cast<Eigen::Index>(shots_.size()), m = touches + (pins_ratio_ ? 1 : 0), n = scene_.size();
   const auto compressed = [](double r) {
     constexpr double from = 4;
     return std::abs(r) < from ? r : std::copysign(from * (1 + std::log1p(std::abs(r) / from - 1)), r);
@@ -205,7 +221,8 @@ std::pair<VectorXd, MatrixXd> Learner::fitted(VectorXd z) const {
     for (Eigen::Index k = 0; k < n; ++k) points.push_back(z + apart * VectorXd::Unit(n, k));
     const std::vector<ImaginedClosing> closings = close(points);
     const auto residual = [&](Eigen::Index point, Eigen::Index i) {
-      return compressed(likelihood_.touch_residual(closings[static_cast<std::size_t>(point * m + i)],
+      if (i == touches) return ratio_residual(points[static_cast<std::size_t>(point)]);
+      return compressed(likelihood_.touch_residual(closings[static_cast<std::size_t>(point * touches + i)],
                                                    shots_[static_cast<std::size_t>(i)].record));
     };
     VectorXd own(m);
@@ -261,6 +278,55 @@ void Learner::find_mode(const Belief& last) {
   if (best_ < -12 - 4 * shots) climb_from(fresh(many, 1.6), 6, -12 - 4 * shots);
 }
 
+// |z|^2 + sum of r^2 of every point.
+std::vector<double> Learner::misfits(std::span<const VectorXd> points) const {
+  const std::vector<ImaginedClosing> closings = close(points);
+  std::vector<double> all;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    double sum = points[k].squaredNorm() + std::pow(ratio_residual(points[k]), 2);
+    for (std::size_t i = 0; i < shots_.size(); ++i) {
+      const double r = likelihood_.touch_residual(closings[k * shots_.size() + i], shots_[i].record);
+      sum += r * r;
+    }
+    all.push_back(sum);
+  }
+  return all;
+}
+
+double Learner::least_misfit(const Belief& belief, double enough) {
+  constexpr std::size_t of_belief = 16, of_prior = 240, most_fits = 10;
+  constexpr std::array nearer{0.9, 0.8, 0.7, 0.6, 0.5, 0.4};
+  const auto own = [&](const VectorXd& z) { return pins_ratio_ ? scene_.with_gap_ratio_of_scene(z) : z; };
+  const VectorXd mode = own(belief.mode);
+  double least = misfit_of(mode);
+  if (least > enough) least = std::min(least, misfit_from(mode));
+  if (least <= enough) return least;
+  std::vector<VectorXd> starts = belief.resampled(of_belief, draws_);
+  std::ranges::move(fresh(of_prior, 1.6), std::back_inserter(starts));
+  for (VectorXd& start : starts) start = own(start);
+  const auto rank = [&] {
+    const std::vector<double> values = misfits(starts);
+    std::vector<std::size_t> order(starts.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, [&](std::size_t i, std::size_t j) { return values[i] < values[j]; });
+    least = std::min(least, values[order.front()]);
+    std::vector<VectorXd> ranked;
+    for (std::size_t q = 0; q < std::min(most_fits, order.size()); ++q) ranked.push_back(starts[order[q]]);
+    starts = std::move(ranked);
+  };
+  rank();
+  // A contact that stayed open tells no slope, and the least of its devices is between such a one and the nominal device.
+  for (std::size_t q = 0, count = starts.size(); q < count; ++q) {
+    for (const double share : nearer) starts.push_back(own(share * starts[q]));
+  }
+  rank();
+  for (std::size_t q = 0; q < starts.size() && least > enough; ++q) {
+    if (q > 0 && starts[q] == starts[q - 1]) continue;  // its end is known
+    least = std::min(least, misfit_from(starts[q]));
+  }
+  return least;
+}
+
 // Adaptive importance sampling from normal distributions, with all of the records.
 Belief Learner::sampled() {
   constexpr int most_rounds = 4;
@@ -307,6 +373,29 @@ Belief Learner::sampled() {
 }
 
 }  // namespace
+
+TouchMisfit touch_misfit(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& belief, Draws& draws,
+                         const Watch& watch) {
+  constexpr double one_in_a_thousand = 3.0902;  // deviations of the normal distribution
+  const auto stayed_open = [](const LearnedShot& shot) { return !first_touch(shot.record).has_value(); };
+  std::vector<LearnedShot> counted(shots.begin(), shots.end());
+  if (std::ranges::count_if(counted, stayed_open) == 1) std::erase_if(counted, stayed_open);
+  TouchMisfit misfit{.records = counted.size()};
+  if (counted.empty()) return misfit;
+  const double m = static_cast<double>(counted.size()), ninth = 2 / (9 * m);
+  misfit.bound = m * std::pow(1 - ninth + one_in_a_thousand * std::sqrt(ninth), 3);
+  misfit.least = Learner(scene, counted, draws, watch).least_misfit(belief, misfit.bound);
+  return misfit;
+}
+
+double gap_ratio_misfit(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& belief, double enough,
+                        Draws& draws, const Watch& watch) {
+  if (!scene.gap_ratio_coordinate(belief.mode)) return 0;
+  Learner learner(scene, shots, draws, watch);
+  const double least = std::min(learner.misfit_of(belief.mode), learner.misfit_from(belief.mode));
+  learner.pin_gap_ratio();
+  return learner.least_misfit(belief, least + enough) - least;
+}
 
 Belief learned(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& last, Draws& draws,
                const Watch& watch) {

@@ -75,6 +75,22 @@ struct Belief {
   [[nodiscard]] std::vector<Eigen::VectorXd> resampled(std::size_t count, Draws& draws) const;
 };
 
+/// Fits the first touches of these shots alone, from the belief and from devices all over the spread, until one of them is within
+/// the bound. One record whose contact stayed open is left out: a wire that comes off once is no device.
+///
+/// Closings that are linear in z give touches y that are normal, with the covariance J J^T + I in units of their errors. The
+/// least |z|^2 + |r|^2 is then y^T (J J^T + I)^-1 y, chi-square with as many degrees of freedom as records. No deviation of one
+/// peak enters: it is the least over all peaks of what the records tell. The bound is its quantile by E. B. Wilson & M. M.
+/// Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684. Throws Interrupted.
+[[nodiscard]] TouchMisfit touch_misfit(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& belief,
+                                       Draws& draws, const Watch& watch = {});
+
+/// Returns by how much the least |z|^2 + sum of r^2 rises where the gaps have the ratio of the scene; 0 where the spread has no
+/// such ratio. The rise is chi-square with one degree of freedom on devices of the spread. The search for the least over all
+/// peaks ends where it rises by less than `enough`. Throws Interrupted.
+[[nodiscard]] double gap_ratio_misfit(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& belief,
+                                      double enough, Draws& draws, const Watch& watch = {});
+
 /// What is believed after these shots; `last` is where some of the searches begin. At least one shot. Throws Interrupted.
 [[nodiscard]] Belief learned(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& last, Draws& draws,
                              const Watch& watch = {});

@@ -13,11 +13,12 @@
 namespace softland {
 
 LaboratoryErrors usual_errors(const SceneFile& file) {
-  constexpr double of_edge = 1.0 / 200, of_opening = 1.0 / 100;
+  constexpr double of_edge = 1.0 / 200, of_opening = 1.0 / 100, of_trigger = 1.0 / 48;
   const double period = 2 * pi / Switch(read_scene(file).device).basis().angular_frequencies()[0];
   LaboratoryErrors usual;
   usual.edge_error = std::min(usual.edge_error, of_edge * period);
   usual.unseen = std::min(usual.unseen, of_opening * period);
+  usual.trigger_delay = std::min(usual.trigger_delay, of_trigger * period);
   return usual;
 }
 

@@ -8,19 +8,22 @@
 
 namespace softland {
 
-/// How the instruments of a laboratory err: a simulated one has these errors, a belief expects them. Standard deviations, but for
-/// `unseen`.
+/// How the instruments of a laboratory err: a simulated one has these errors, but for the last, and a belief expects them.
+/// Standard deviations, but for `unseen`.
 struct LaboratoryErrors {
   double edge_error = 50e-9;  ///< of the time of an edge [s]
   double unseen = 100e-9;     ///< openings shorter than this are not seen [s]
   double gain_error = 0.005;  ///< of the gain of a source, constant but unknown, relative
   double shot_error = 2e-4;   ///< of the gain from shot to shot, relative
+  /// Standard deviation of the time by which records begin late, constant but unknown [s]; 0: they begin with the drives. A
+  /// simulated laboratory has its own (PracticeOptions).
+  double trigger_delay = 2e-6;
 };
 
 class SceneFile;
 
-/// Of instruments for this scene: those of time are at most a 200th and a 100th of the period of the first mode. Throws
-/// InvalidInput for a scene that cannot be read.
+/// Returns the errors of instruments for this scene: those of time are at most a 200th, a 100th and, of the trigger, a 48th of
+/// the period of the first mode. Throws InvalidInput for a scene that cannot be read.
 [[nodiscard]] LaboratoryErrors usual_errors(const SceneFile& file);
 
 /// An edge of the contact's state.

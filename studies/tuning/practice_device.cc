@@ -159,7 +159,11 @@ PracticeClosing PracticeDevice::close(std::uint64_t shot, const std::vector<Wave
   for (const Touch& touch : closing.touches)
     seen.largest_impact_velocity = std::fmax(seen.largest_impact_velocity, touch.impact_velocity);
   seen.record.error = seen_failure(closing);
-  if (seen.record.error.empty()) seen.record.edges = seen_edges(closing, shot);
+  if (!seen.record.error.empty()) return seen;
+  seen.record.edges = seen_edges(closing, shot);
+  for (ContactEdge& edge : seen.record.edges) edge.time -= options_.trigger_delay;
+  if (const std::string fault = record_fault(seen.record); !fault.empty())
+    seen.record = {.error = "the record begins after the contact has closed"};
   return seen;
 }
 

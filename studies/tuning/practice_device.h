@@ -6,8 +6,9 @@
 //   g    error of the gain of a drive, constant and unknown       s_n  its scatter in shot n
 //   d    drift of all volts from one shot to the next
 //
-// The record holds the edges of the contact, closed or open, each late by an error of its own. An opening that is shorter than
-// what the instrument resolves is not seen, nor is a touch that the errors turn around.
+// The record begins late by the trigger's delay, the same in all shots. It holds the edges of the contact, closed or open, each
+// late by an error of its own. An opening that is shorter than what the instrument resolves is not seen, nor is a touch that the
+// errors turn around.
 //
 // The device differs from the scene as [spread] says, or the assumed one (config/assumed_spread.h), and beyond that as its model
 // does: what a belief over the scene cannot know. Its random numbers have streams of their own, which no ensemble draws from.
@@ -36,7 +37,8 @@ struct PracticeModel {
 struct PracticeOptions {
   std::uint64_t seed = 1;  ///< which device, and which errors
   LaboratoryErrors laboratory = {};
-  double drift = 0;  ///< of all volts from one shot to the next, relative
+  double drift = 0;          ///< of all volts from one shot to the next, relative
+  double trigger_delay = 0;  ///< the time by which records begin late; early where it is below 0 [s]
   PracticeModel model = {};
 };
 

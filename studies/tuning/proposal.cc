@@ -196,7 +196,7 @@ PredictedRecord Outlook::predicted(const std::vector<Waveform>& waveforms) const
   double bouncing = 0;
   for (const ImaginedClosing& closing : close(waveforms, 0, size())) {
     if (!closing.closes()) continue;
-    touches.push_back(closing.touch);
+    touches.push_back(closing.recorded_touch());
     speeds.push_back(closing.speed);
     heights.push_back(closing.highest);
     bouncing += std::ranges::any_of(

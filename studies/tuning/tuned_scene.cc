@@ -24,7 +24,8 @@ namespace {
 
 constexpr double belief_accuracy = 1e-4;  // of closings
 constexpr double viscosity_deviation = 0.05, contact_deviation = 0.1;
-constexpr double delay_share = 0.003;  // of the closing time of the plain step
+// An error of the model that is a constant time, over the closing time of the plain step.
+constexpr double delay_share = 0.003;
 
 // Of a closing, in closing times of the plain step: after the first touch, without a touch, and after the last breakpoint.
 constexpr double after_touch = 1.8, longest_wait = 7.4, tail = 0.75;
@@ -197,7 +198,9 @@ void TunedScene::choose(Approach approach) {
   scales_.permanent_contact = approach == Approach::quasi_static ? step_stays_from_ : Metrics::unset;
 }
 
-double TunedScene::delay_deviation() const { return delay_share * scales_.closing_time; }
+double TunedScene::delay_deviation() const {
+  return std::hypot(delay_share * scales_.closing_time, options_.laboratory.trigger_delay);
+}
 double TunedScene::hold_time() const { return (longest_wait + after_touch) * scales_.closing_time; }
 
 void TunedScene::begin_with(const NormalBelief& prior) {
@@ -224,6 +227,19 @@ std::optional<double> TunedScene::gap_ratio(std::span<const double> values) cons
   if (!gap_ratio_) return {};
   const double contact = values[gap_ratio_->contact];
   return gap_ratio_->shared ? contact / values[*gap_ratio_->shared] : contact;
+}
+
+std::optional<double> TunedScene::gap_ratio_coordinate(const Eigen::VectorXd& z) const {
+  if (!gap_ratio_) return {};
+  return spread_point(z)[static_cast<Eigen::Index>(gap_ratio_->contact)];
+}
+
+Eigen::VectorXd TunedScene::with_gap_ratio_of_scene(const Eigen::VectorXd& z) const {
+  const std::optional<double> off = gap_ratio_coordinate(z);
+  if (!off) return z;
+  const auto k = static_cast<Eigen::Index>(gap_ratio_->contact);
+  const Eigen::VectorXd slope = prior_ ? Eigen::VectorXd(prior_factor_.row(k)) : Eigen::VectorXd::Unit(size(), k);
+  return z - *off / slope.squaredNorm() * slope;
 }
 
 std::vector<ImaginedDevice> TunedScene::devices(std::span<const Eigen::VectorXd> points, const Watch& watch) const {
@@ -295,11 +311,9 @@ std::vector<ImaginedClosing> TunedScene::close(std::span<const ImaginedShot> sho
                                                single);
         closing = single.ended(run);
       }
-      const double delay = shots[begin + places[k]].device->delay;
-      closing.touch += delay;
+      closing.delay = shots[begin + places[k]].device->delay;
       for (ContactOpening& opening : closing.openings) {
-        opening.begin += delay;
-        opening.end = std::isnan(opening.end) ? std::numeric_limits<double>::infinity() : opening.end + delay;
+        if (std::isnan(opening.end)) opening.end = std::numeric_limits<double>::infinity();
       }
     }
   };

@@ -7,7 +7,7 @@
 //   gas.viscosity                          lognormal, 5 %
 //   stiffness or modulus of the contact    lognormal, 10 %
 //   contact gap over electrode gap         normal, 3 %, beside the factor that both may share
-//   delay of all edges                     normal, 0.3 % of the closing time of the plain step
+//   trigger delay                          normal, as told, and beside that 0.3 % of the closing time of the plain step
 //
 // Where devices of the same wafer were tuned before, coordinates are those of what they tell of the next (wafer.h).
 //
@@ -47,18 +47,21 @@ struct TuningScales {
 struct ImaginedDevice {
   Eigen::VectorXd z;
   SampledDevice sampled;
-  double delay = 0;  ///< of its edges [s]
+  double delay = 0;  ///< the time by which its records begin late [s]
 };
 
 /// A closing of an imagined device, as exact as its model.
 struct ImaginedClosing {
   bool followed = false;                                      ///< to the end of its window
-  double touch = std::numeric_limits<double>::quiet_NaN();    ///< first touch, with the delay of the edges [s]; NaN: none
+  double touch = std::numeric_limits<double>::quiet_NaN();    ///< first touch since the drives began [s]; NaN: none
   double speed = std::numeric_limits<double>::quiet_NaN();    ///< of the first touch [m/s]
   double fastest = std::numeric_limits<double>::quiet_NaN();  ///< of all touches [m/s]
   double highest = 0;                                         ///< rebound [m]
-  std::vector<ContactOpening> openings = {};                  ///< with the delay [s]
+  std::vector<ContactOpening> openings = {};                  ///< since the drives began [s]
+  double delay = 0;                                           ///< the time by which its record begins late [s]
   [[nodiscard]] bool closes() const { return followed && touch == touch; }
+  /// When a record shows the first touch [s]; NaN: none.
+  [[nodiscard]] double recorded_touch() const { return touch - delay; }
   /// From when on the contact stays [s]; infinite where it is open at last.
   [[nodiscard]] double stays_from() const { return openings.empty() ? touch : std::max(touch, openings.back().end); }
 };
@@ -78,7 +81,7 @@ class TunedScene {
   TunedScene& operator=(const TunedScene&) = delete;
 
   [[nodiscard]] const TunerOptions& options() const { return options_; }
-  /// With the spread of all quantities but the delay of the edges, prepared for closings of an accuracy of 1e-4.
+  /// With the spread of all quantities but the trigger delay, prepared for closings of an accuracy of 1e-4.
   [[nodiscard]] const PreparedScene& nominal() const { return nominal_; }
   [[nodiscard]] const TuningScales& scales() const { return scales_; }
   /// How its waveforms close the switch: fast, unless another approach is chosen.
@@ -90,13 +93,13 @@ class TunedScene {
   [[nodiscard]] bool spread_is_assumed() const { return spread_is_assumed_; }
   /// Whether closings go in lanes.
   [[nodiscard]] bool is_in_lanes() const { return why_not_in_lanes(nominal_.model).empty() && options_.vectors != Vectors::none; }
-  /// Number of coordinates, of which the delay of the edges is the last.
+  /// Number of coordinates, of which the trigger delay is the last.
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(nominal_.scene.spread.variables.size()) + 1; }
   /// Which coordinates are of [spread] or the gain of a source: what moves the units of volts and time.
   [[nodiscard]] bool is_nuisance(Eigen::Index k) const { return nuisances_[static_cast<std::size_t>(k)]; }
-  /// One standard deviation of the delay over all devices of the spread [s].
+  /// One standard deviation of the trigger delay before anything is recorded [s].
   [[nodiscard]] double delay_deviation() const;
-  /// Of the edges of a device at z [s].
+  /// The trigger delay of a device at z: its records begin late by so much [s].
   [[nodiscard]] double delay(const Eigen::VectorXd& z) const { return delay_deviation() * spread_point(z)[size() - 1]; }
 
   /// From now on coordinates are those of this belief about z: standard normal where it is.
@@ -110,6 +113,10 @@ class TunedScene {
   /// Contact gap over electrode gap of a device with these values, over that of the scene; none where [spread] has the contact
   /// gap as a quantity of its own.
   [[nodiscard]] std::optional<double> gap_ratio(std::span<const double> values) const;
+  /// The deviations that the ratio of z is from the scene's; none as above.
+  [[nodiscard]] std::optional<double> gap_ratio_coordinate(const Eigen::VectorXd& z) const;
+  /// The nearest point whose ratio is that of the scene; z where there is no such ratio.
+  [[nodiscard]] Eigen::VectorXd with_gap_ratio_of_scene(const Eigen::VectorXd& z) const;
   /// One standard deviation of that ratio, of which a device of the spread has none.
   static constexpr double gap_ratio_deviation = 0.03;
   [[nodiscard]] std::vector<ImaginedDevice> devices(std::span<const Eigen::VectorXd> points, const Watch& watch = {}) const;

@@ -21,6 +21,8 @@ void check(const TunerOptions& options) {
           "the error of edges must be above 0 s");
   require(options.laboratory.unseen >= 0 && std::isfinite(options.laboratory.unseen),
           "the shortest opening that is seen must be at least 0 s");
+  require(options.laboratory.trigger_delay >= 0 && std::isfinite(options.laboratory.trigger_delay),
+          "the trigger delay must be at least 0 s");
   require(share(options.laboratory.gain_error), "the error of the gain must be at least 0 and below 1");
   require(share(options.laboratory.shot_error), "the error from shot to shot must be at least 0 and below 1");
   require(options.jobs >= 1, "jobs must be at least 1");
@@ -36,6 +38,7 @@ namespace {
 
 constexpr std::size_t proposal_devices = 32;
 constexpr double enough_devices = 8;                  // effective ones, for a belief to predict
+constexpr double certain = 3.5;                       // standard errors, of another ratio of the gaps
 constexpr std::size_t first_ones = 4, last_ones = 8;  // records that are learned from
 
 double weighted_mean(const std::vector<double>& weights, const std::vector<double>& values) {
@@ -86,10 +89,12 @@ struct Tuner::State {
     LearnedShot shot;
     std::vector<double> x;  // of its shape
     TunerShot as_proposed;
+    int waveform = 0;  // number of the shot that fired it first
   };
   // Volts that follow the touch time of a shot that is repeated.
   struct Steering {
     std::vector<Waveform> waveforms;  // at s = 1
+    int waveform = 0;                 // number of the shot that fired it first
     double slope = Metrics::unset, most = 1, s = 1;
     std::vector<double> touches;  // the first ones, which say where it ought to touch [s]
     [[nodiscard]] std::vector<Waveform> steered() const {
@@ -114,10 +119,12 @@ struct Tuner::State {
     std::optional<Steering> steering;
     std::vector<double> x;  // of the next shot
     TunerShot next, kept;
+    int next_waveform = 0;                           // number of the shot that fired the next waveform first; 0: none did
     std::vector<double> surprises;                   // of touch times that the belief had predicted, in standard deviations
     int unexpected_bounces = 0;                      // closings that bounced, where hardly a device of the belief did
-    std::optional<BelievedQuantity> gap_ratio = {};  // of the last belief of enough devices
-    int unexpected_states = 0;  // closings without a touch where hardly one stays open, or with one where hardly one closes
+    int unexplained_bounces = 0;                     // long ones that were learned from, and that the best device does not have
+    std::optional<BelievedQuantity> gap_ratio = {};  // believed last by enough devices, unless the scene's explains the records
+    TouchMisfit misfit = {};                         // of the records that were learned from last
   };
 
   State(std::shared_ptr<const Setting> of_scene, const Watch& watch)
@@ -156,6 +163,7 @@ struct Tuner::State {
   void propose_next(Learned& known, const Watch& watch) const;
   void keep_best(Learned& known, const Outlook& outlook, double expected) const;
   void repeat(Learned& known, const Outlook& outlook) const;
+  void fire_kept_again();
 
   std::shared_ptr<const Setting> setting;
   const TunedScene& scene;
@@ -175,12 +183,6 @@ double surprise(const PredictedRecord& predicted, const ContactRecord& record, d
   return both_sides * (*seen - predicted.touch_median) / (edge - predicted.touch_median);
 }
 
-// Whether the contact closed where hardly a device of the belief does, or stayed open where hardly one does.
-bool is_in_unexpected_state(const PredictedRecord& predicted, const ContactRecord& record) {
-  constexpr double sure = 0.97;
-  return (first_touch(record) ? 1 - predicted.touches : predicted.touches) >= sure;
-}
-
 // Whether the contact opened for longer than an error of the model explains: a mode that it does not have opens it by a
 // nanometre.
 bool has_long_bounce(const TunedScene& scene, const ContactRecord& record) {
@@ -190,17 +192,43 @@ bool has_long_bounce(const TunedScene& scene, const ContactRecord& record) {
   return std::ranges::any_of(openings(record), [&](const ContactOpening& one) { return one.end - one.begin >= least; });
 }
 
+// Counts the records with a long bounce that the best device of the belief does not have.
+int unexplained_bounces(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& belief, const Watch& watch) {
+  const std::vector<Eigen::VectorXd> best{belief.mode};
+  const std::vector<ImaginedDevice> device = scene.devices(best, watch);
+  std::vector<ImaginedShot> fired;
+  for (const LearnedShot& shot : shots) fired.push_back({.device = device.data(), .waveforms = &shot.waveforms});
+  const std::vector<ImaginedClosing> closings = scene.close(fired, watch);
+  int count = 0;
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    const bool bounces = std::ranges::any_of(closings[i].openings, [&](const ContactOpening& one) {
+      return one.end - one.begin >= scene.options().laboratory.unseen;
+    });
+    count += has_long_bounce(scene, shots[i].record) && !bounces;
+  }
+  return count;
+}
+
+// The ratio must be off by one deviation of what was thought possible, too.
+bool is_off(const std::optional<BelievedQuantity>& ratio) {
+  return ratio && std::abs(ratio->mean - 1) >= std::max(certain * ratio->deviation, ratio->prior_deviation);
+}
+
 }  // namespace
 
 Tuner::State::Learned Tuner::State::learned(Learned known, const ContactRecord& record, const Watch& watch) const {
   const PredictedRecord predicted = known.next.predicted;
-  known.fired.push_back({.shot = {.waveforms = known.next.waveforms, .record = record}, .x = known.x, .as_proposed = known.next});
+  if (known.steering) known.next_waveform = known.steering->waveform;
+  known.fired.push_back({.shot = {.waveforms = known.next.waveforms, .record = record},
+                         .x = known.x,
+                         .as_proposed = known.next,
+                         .waveform = known.next_waveform > 0 ? known.next_waveform : known.next.number});
+  known.next_waveform = 0;
   ++known.closings;
   const bool quiet = is_bounce_free(record), bounced_long = has_long_bounce(scene, record);
   const bool repeats = known.steering && first_touch(record) && !bounced_long;
   known.in_a_row = quiet ? known.in_a_row + 1 : 0;
   if (!repeats) known.surprises.push_back(surprise(predicted, record, known.belief.effective_devices));
-  known.unexpected_states += is_in_unexpected_state(predicted, record);
   constexpr double rarely = 0.05;
   if (bounced_long && predicted.bounces <= rarely) ++known.unexpected_bounces;
   if (repeats) {
@@ -225,7 +253,15 @@ void Tuner::State::propose_next(Learned& known, const Watch& watch) const {
     if (k < known.forgotten + first_ones || k + last_ones >= known.fired.size()) shots.push_back(known.fired[k].shot);
   }
   known.belief = softland::learned(scene, shots, known.belief, draws, watch);
-  if (known.belief.effective_devices >= enough_devices) known.gap_ratio = believed_gap_ratio(scene, known.belief);
+  Draws of_misfit(scene.options().seed, first_draw(known.closings) + (std::uint64_t{1} << 19));
+  known.misfit = touch_misfit(scene, shots, known.belief, of_misfit, watch);
+  known.unexplained_bounces = unexplained_bounces(scene, shots, known.belief, watch);
+  if (known.belief.effective_devices >= enough_devices) {
+    known.gap_ratio = believed_gap_ratio(scene, known.belief);
+    if (is_off(known.gap_ratio) &&
+        gap_ratio_misfit(scene, shots, known.belief, certain * certain, of_misfit, watch) < certain * certain)
+      known.gap_ratio.reset();
+  }
   const TunedScene::Units units = scene.units(known.belief.mean);
   if (known.closings <= hold_is_fixed) known.hold = believed_hold(units);
   const Outlook outlook(scene, known.belief.resampled(proposal_devices, draws), draws, watch);
@@ -243,13 +279,16 @@ void Tuner::State::propose_next(Learned& known, const Watch& watch) const {
   if (known.in_a_row >= 2 && proposal.cost.landing < calm) repeat(known, outlook);
 }
 
-// Of the waveforms without a bounce the one that the belief likes best, unless the next is clearly better.
+// The belief chooses among the waveforms that did not bounce when they were fired last, unless the next is clearly better.
 void Tuner::State::keep_best(Learned& known, const Outlook& outlook, double expected) const {
   constexpr double clearly = 0.15;
   known.kept = known.next;
   double least = expected + clearly;
-  for (const Fired& fired : known.fired) {
-    if (!is_bounce_free(fired.shot.record)) continue;
+  for (auto one = known.fired.begin(); one != known.fired.end(); ++one) {
+    const Fired& fired = *one;
+    const bool is_last =
+        std::none_of(one + 1, known.fired.end(), [&](const Fired& later) { return later.waveform == fired.waveform; });
+    if (!is_last || !is_bounce_free(fired.shot.record)) continue;
     const double cost = outlook.expected(fired.shot.waveforms, outlook.size()).total();
     if (!(cost < least)) continue;
     least = cost;
@@ -263,12 +302,23 @@ void Tuner::State::repeat(Learned& known, const Outlook& outlook) const {
   const auto fired = std::ranges::find(known.fired, known.kept.number, [](const Fired& one) { return one.as_proposed.number; });
   if (fired == known.fired.end()) return;
   known.steering = Steering{.waveforms = fired->shot.waveforms,
+                            .waveform = fired->waveform,
                             .slope = outlook.touch_slope(fired->shot.waveforms),
                             .most = std::max(1.0, shapes_for(known).room(fired->shot.waveforms))};
   known.x = fired->x;
   const int number = known.next.number;
   known.next = known.kept;
   known.next.number = number;
+}
+
+void Tuner::State::fire_kept_again() {
+  const auto fired = std::ranges::find(now.fired, now.kept.number, [](const Fired& one) { return one.as_proposed.number; });
+  if (fired == now.fired.end() || now.steering) return;  // the waveform that is steered is the one kept
+  now.x = fired->x;
+  now.next_waveform = fired->waveform;
+  const int number = now.next.number;
+  now.next = now.kept;
+  now.next.number = number;
 }
 
 Tuner::Tuner(const SceneFile& file, const TunerOptions& options, const Watch& watch) {
@@ -292,6 +342,10 @@ bool Tuner::spread_is_assumed() const { return state_->scene.spread_is_assumed()
 const TunerShot& Tuner::next() const { return state_->now.next; }
 int Tuner::closings() const { return state_->now.closings; }
 const TunerShot& Tuner::kept() const { return state_->now.kept; }
+void Tuner::fire_kept_again() { state_->fire_kept_again(); }
+bool Tuner::was_kept_last() const {
+  return !state_->now.fired.empty() && state_->now.fired.back().as_proposed.number == state_->now.kept.number;
+}
 const std::vector<double>& Tuner::surprises() const { return state_->now.surprises; }
 int Tuner::unexpected_bounces() const { return state_->now.unexpected_bounces; }
 int Tuner::bounce_free_in_a_row() const { return state_->now.in_a_row; }
@@ -319,7 +373,7 @@ BeliefSummary Tuner::belief() const {
   BeliefSummary summary{.quantities = {}, .effective_devices = belief.effective_devices, .correlated = {}};
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const bool is_delay = i == variables.size();
-    BelievedQuantity one{.name = is_delay ? "edges.delay" : variables[i].name,
+    BelievedQuantity one{.name = is_delay ? trigger_delay_name : variables[i].name,
                          .unit = is_delay ? "s" : (variables[i].is_factor ? std::string() : variables[i].keys.front().unit),
                          .prior_mean = is_delay ? 0 : variables[i].distribution.mean(),
                          .prior_deviation = is_delay ? scene.delay_deviation() : variables[i].distribution.standard_deviation()};
@@ -327,6 +381,7 @@ BeliefSummary Tuner::belief() const {
     one.deviation = weighted_deviation(belief.weights, columns[i], one.mean);
     summary.quantities.push_back(one);
   }
+  summary.touch_misfit = state_->now.misfit;
   summary.gap_ratio = believed_gap_ratio(scene, belief);
   const NormalBelief standard{.mean = Eigen::VectorXd::Zero(scene.size()),
                               .covariance = Eigen::MatrixXd::Identity(scene.size(), scene.size())};
@@ -362,30 +417,20 @@ std::string gap_ratio_words(const BelievedQuantity& ratio) {
 
 }  // namespace
 
-// Of 92 devices that were like their scenes the furthest touch was 5.7, and the most unexpected bounces 2.
 std::optional<std::string> Tuner::broken_assumption() const {
-  constexpr double far_off = 6;  // standard deviations
-  constexpr int too_many = 3, too_many_states = 2;
+  constexpr int too_many = 3;
   const State::Learned& now = state_->now;
-  const double largest = now.surprises.empty() ? 0 : *std::ranges::max_element(now.surprises);
-  if (largest >= far_off)
+  if (now.misfit.is_beyond())
     return fmt::format(
-        "The device does not behave like the scene: a first touch came {} standard deviations from what was predicted before it.",
-        engineering(largest, "", 2));
-  if (now.unexpected_bounces >= too_many)
+        "The device does not behave like the scene: no device of its spread touches as was recorded. The squares of what the "
+        "best "
+        "one is off by add up to {}, and one device in a thousand exceeds {}.",
+        engineering(now.misfit.least, "", 3), engineering(now.misfit.bound, "", 3));
+  if (std::min(now.unexpected_bounces, now.unexplained_bounces) >= too_many)
     return fmt::format(
         "The device does not behave like the scene: it bounced in {} closings that were predicted to be free of bounces.",
         now.unexpected_bounces);
-  if (now.unexpected_states >= too_many_states)
-    return fmt::format(
-        "The device does not behave like the scene: in {} closings it closed or stayed open as hardly a device of it does.",
-        now.unexpected_states);
-  // Standard errors, and at least one deviation of what was thought possible: of 40 right devices none is further than 2.7.
-  constexpr double certain = 3.5;
-  const std::optional<BelievedQuantity>& ratio = now.gap_ratio;
-  if (ratio && std::abs(ratio->mean - 1) >= std::max(certain * ratio->deviation, ratio->prior_deviation))
-    return gap_ratio_words(*ratio);
-  return {};
+  return is_off(now.gap_ratio) ? std::optional(gap_ratio_words(*now.gap_ratio)) : std::nullopt;
 }
 
 }  // namespace softland

@@ -2,7 +2,7 @@
 //
 // What is known of the device is a belief: weighted devices of the scene's spread (or the assumed one, config/assumed_spread.h),
 // which also differ in gain of the sources, viscosity of the film, stiffness of the contact, the ratio of contact to electrode
-// gap, and a constant delay of the edges, where a scene has such a thing. After every closing
+// gap, and in the time by which their records begin late, where a scene has such a thing. After every closing
 //
 //   1. the belief is learned anew from all records: Levenberg-Marquardt on the touch times from many starts, then rounds of
 //      weighted samples with the likelihood of the whole record (belief.h);
@@ -106,12 +106,23 @@ struct TunerShot {
   PredictedRecord predicted = {};
 };
 
+/// The quantity by which records begin late, where it is above 0 [s].
+inline constexpr const char* trigger_delay_name = "trigger delay";
+
 /// A quantity of the device and what is known of it.
 struct BelievedQuantity {
-  std::string name;                            ///< of its entry in the spread; "edges.delay" [s]
+  std::string name;                            ///< the name of its entry in the spread, or trigger_delay_name
   std::string unit;                            ///< SI unit; empty of a factor
   double prior_mean = 0, prior_deviation = 0;  ///< factors of the scene's value, or in the unit
   double mean = 0, deviation = 0;
+};
+
+/// How far recorded first touches are from those of all devices of the spread.
+struct TouchMisfit {
+  double least = 0;         ///< |z|^2 + the sum of r^2 over the records (belief.h), of the device z that fits them best
+  double bound = 0;         ///< one device of the spread in a thousand has a larger `least`
+  std::size_t records = 0;  ///< how many records are counted
+  [[nodiscard]] bool is_beyond() const { return least > bound; }
 };
 
 struct BeliefSummary {
@@ -119,6 +130,7 @@ struct BeliefSummary {
   /// Contact gap over electrode gap, over that of the scene, where devices of the spread have that of the scene.
   std::optional<BelievedQuantity> gap_ratio = {};
   double effective_devices = 0;         ///< of the weighted samples: 1 over the sum of the squares of the weights
+  TouchMisfit touch_misfit = {};        ///< the misfit of the records that are learned from
   std::vector<std::string> correlated;  ///< sentences about quantities that the records do not tell apart
   /// For a tuning of another device of the wafer: in standard normal coordinates of the spread, of which the delay is the last.
   TunedBelief coordinates = {};
@@ -159,9 +171,13 @@ class Tuner {
   /// Closings that were learned.
   [[nodiscard]] int closings() const;
   [[nodiscard]] BeliefSummary belief() const;
-  /// The waveform that is best known so far, with what is expected of it: one that was recorded without a bounce, unless the next
-  /// one is expected to be clearly better. Of shots that are repeated it is the last one that did not bounce.
+  /// The waveform that is best known so far, with what is expected of it: one that did not bounce when it was fired last, unless
+  /// the next one is expected to be clearly better. Of shots that are repeated it is the last one that did not bounce.
   [[nodiscard]] const TunerShot& kept() const;
+  /// Tells whether the last closing was of the waveform kept.
+  [[nodiscard]] bool was_kept_last() const;
+  /// Proposes the waveform kept, where it was fired before: what landed some closings ago need not land under sources that drift.
+  void fire_kept_again();
   /// Closings without a bounce up to the last one, in a row.
   [[nodiscard]] int bounce_free_in_a_row() const;
   static constexpr int enough_in_a_row = 5;
@@ -170,10 +186,11 @@ class Tuner {
   /// belief was of too few devices to predict, or the contact closed or stayed open as it ought not to. Shots that are repeated
   /// are left out as long as they do not bounce.
   [[nodiscard]] const std::vector<double>& surprises() const;
-  /// Closings that bounced for longer than an error of the model explains, where at most one in twenty devices of the belief did.
+  /// Closings that bounced for longer than an error of the model explains, where at most one in twenty devices of the belief did
+  /// before it was seen.
   [[nodiscard]] int unexpected_bounces() const;
-  /// In words, where records were not what the belief predicted before it saw them, or where the belief is that the gaps are in
-  /// another ratio than in the scene: the device does not behave like the scene.
+  /// Says why the device does not behave like the scene; none where it may. No device of the spread touches as was recorded, or
+  /// records bounced that were predicted not to, or the gaps are in another ratio than in the scene.
   [[nodiscard]] std::optional<std::string> broken_assumption() const;
 
  private:

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <csignal>
 #include <nlohmann/json.hpp>
@@ -92,11 +94,25 @@ TEST_F(DeviceVerb, RefusesWhatItCannotDoAndGoesOn) {
   EXPECT_TRUE(answers.back().contains("edges_s")) << "the shot after them";
 }
 
+TEST_F(DeviceVerb, BeginsItsRecordsLateByItsTriggerDelay) {
+  const auto edges = [&](const std::vector<std::string>& more) { return lines_of(told(shot(1), more).out)[0]["edges_s"]; };
+  const json exact = edges({}), late = edges({"--trigger-delay", "1 us"}), early = edges({"--trigger-delay", "-1 us"});
+  ASSERT_EQ(late.size(), exact.size());
+  constexpr double rounding = 1e-12;
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    EXPECT_NEAR(late[k][0].get<double>(), exact[k][0].get<double>() - 1e-6, rounding);
+    EXPECT_NEAR(early[k][0].get<double>(), exact[k][0].get<double>() + 1e-6, rounding);
+  }
+  EXPECT_THAT(lines_of(told(shot(1), {"--trigger-delay", "1 ms"}).out)[0]["error"].get<std::string>(),
+              HasSubstr("the record begins after the contact has closed"));
+}
+
 TEST_F(DeviceVerb, NamesTheOptionThatItCannotTake) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused{
       {{"--edge-error", "50"}, "--edge-error 50: must be a time [s], at least 0, such as "},
       {{"--unseen", "-1 ns"}, "--unseen -1 ns: must be a time [s], at least 0"},
       {{"--gain-error", "x"}, "--gain-error x: "},
+      {{"--trigger-delay", "1 V"}, "--trigger-delay 1 V: must be a time [s]"},
       {{"--drift", "1 %/0"}, "--drift SHARE/ 0: must be a whole number from 1 on"},
       {{"--model", "modes=5"}, "--model modes=5: 'modes=5' must be modes=+N, gas=NAME, stiffness=FACTOR or a key"},
       {{"--model", "gas=air"}, "gas=air: must be "},
@@ -309,6 +325,102 @@ TEST_F(TuneVerb, AsksAPersonWhatTheOscilloscopeShowed_optimized) {
   EXPECT_TRUE(fs::exists(here.path() / "out/shot-of-mine.csv"));
 }
 
+// The formats that export knows, each loaded by a generator before an amplifier of 20, and read back.
+TEST_F(TuneVerb, WritesItsShotsInEveryFormatOfExport_optimized) {
+  const std::vector<std::string> sources{"--sample-rate", "25 MHz", "--bits", "14", "--amplifier", "20"};
+  const auto shot_in = [&](const std::string& format, const std::vector<std::string>& more) {
+    write(here.path() / "stdin.txt", "stop\n");
+    return here.run(std::vector<std::string>{"tune", "plate.toml", "--by-hand", "--format", format, "--effort", "0.02", "--jobs",
+                                             "1", "--out", "out", "--quiet"} +
+                    more);
+  };
+  const std::string known = here.run({"export", "plate.toml", "--format", "none"}).err;
+  std::istringstream names(known.substr(known.find("one of ") + 7));
+  int written = 0;
+  for (std::string format; std::getline(names, format, ',');) {
+    format.erase(std::remove_if(format.begin(), format.end(), [](unsigned char c) { return std::isspace(c) != 0; }),
+                 format.end());
+    const Outcome o = shot_in(format, sources);
+    if (format == "spice-model" || format == "spice-bench" || format == "verilog-a") {
+      EXPECT_EQ(o.status, 2) << format;
+      EXPECT_THAT(o.err, HasSubstr("--format " + format + ": is the switch itself"));
+      continue;
+    }
+    ++written;
+    ASSERT_EQ(o.status, 4) << format << ": " << o.err;
+    const bool is_of_all = format == "csv" || format == "spice-pwl" || format == "codes";
+    const std::string file = std::string("out/shot-1") + (is_of_all ? "" : "-main") +
+                             (format == "keysight-arb" ? ".arb"
+                              : format == "spice-pwl"  ? ".cir"
+                                                       : ".csv");
+    EXPECT_THAT(o.err, HasSubstr("load " + file + " into the generator")) << format;
+    std::vector<std::string> words{"read", file, "--json", "-"};
+    if (format == "codes") words = words + std::vector<std::string>{"--set", "interval=40 ns"};
+    const Outcome back = here.run(words);
+    ASSERT_EQ(back.status, 0) << format << ": " << back.err;
+    const json channel = json::parse(back.out)["channels"][0];
+    const double held = tune_json()["next"]["waveforms"]["main"].back()[1].get<double>();
+    const json limits =
+        json::parse(here.run({"check", "out/best.toml", "--json", "-", "--quiet"}).out)["scene"]["driver"]["main"];
+    constexpr double highest_code = 16383, of_samples = 2e-4;  // of the range, 14 bit
+    const double highest = std::stod(limits["max_voltage"].get<std::string>());
+    const double last = channel["last"].get<double>() * (format == "codes" ? highest / highest_code : 20);
+    EXPECT_NEAR(last, held, of_samples * highest) << format;
+    if (format != "csv" && format != "spice-pwl") {
+      EXPECT_GT(channel["samples"].get<int>(), 100) << format;
+    }
+  }
+  EXPECT_EQ(written, 8);
+  // The scene says the same of its source, and nothing of it.
+  ASSERT_EQ(shot_in("rigol-csv", sources).status, 4);
+  const std::string by_options = read(here.path() / "out/shot-1-main.csv");
+  ASSERT_EQ(shot_in("rigol-csv", {"--set", "driver.main.sample_rate=25 MHz", "--set", "driver.main.bits=14", "--set",
+                                  "driver.main.amplifier=20"})
+                .status,
+            4);
+  EXPECT_EQ(read(here.path() / "out/shot-1-main.csv"), by_options);
+  EXPECT_THAT(shot_in("rigol-csv", {}).err, HasSubstr("drive 'main' takes no samples: give --sample-rate"));
+  EXPECT_THAT(shot_in("codes", {"--sample-rate", "25 MHz"}).err, HasSubstr("drive 'main' has no integers: give --bits"));
+  EXPECT_THAT(shot_in("rigol", sources).err, HasSubstr("--format rigol: must be one of csv"));
+}
+
+// What landed once and bounces when it is fired again is no success, and what lands then is one. Touches are answered as they are
+// expected, so that one that landed stays the best known.
+TEST_F(TuneVerb, FiresTheWaveformKeptOnceMoreBeforeItEnds_optimized) {
+  constexpr int most = 6;
+  const auto answered = [&](int shot, const json& touch, int bounces, const std::vector<std::string>& more) {
+    const json answer{{"shot", shot}, {"closing_time_s", touch}, {"bounce_count", bounces}};
+    return here.run(words("read -r line; echo '" + answer.dump() + "'; read -r line",
+                          std::vector<std::string>{"--quiet", "--closings", std::to_string(shot)} + more));
+  };
+  ASSERT_EQ(answered(1, 2.15e-5, 0, {}).status, 0);
+  ASSERT_EQ(answered(1, tune_json()["closings"][0]["predicted"]["touch_median_s"], 0, {}).status, 0);
+  const auto was_fired_before = [](const json& closings) {
+    for (std::size_t k = 0; k + 1 < closings.size(); ++k) {
+      if (closings[k]["waveforms"] == closings.back()["waveforms"]) return true;
+    }
+    return false;
+  };
+  for (int shot = 2; shot <= most; ++shot) {
+    const json touch = tune_json()["next"]["predicted"]["touch_median_s"];
+    fs::remove_all(here.path() / "before");
+    fs::copy(here.path() / "out", here.path() / "before", fs::copy_options::recursive);
+    const Outcome lands = answered(shot, touch, 0, {"--resume"});
+    ASSERT_EQ(lands.status, 0) << lands.err;
+    EXPECT_EQ(tune_json()["best"]["landed_last"], true);
+    EXPECT_EQ(tune_json()["best"]["shot"], shot);
+    if (!was_fired_before(tune_json()["closings"])) continue;
+    fs::remove_all(here.path() / "out");
+    fs::copy(here.path() / "before", here.path() / "out", fs::copy_options::recursive);
+    const Outcome bounces = answered(shot, touch, 3, {"--resume"});
+    EXPECT_EQ(bounces.status, 4) << "it landed before, and not when it was fired last: " << bounces.err;
+    EXPECT_TRUE(was_fired_before(tune_json()["closings"]));
+    EXPECT_EQ(tune_json()["best"]["landed_last"], false);
+    return;
+  }
+  FAIL() << "no waveform that landed is kept";
+}
+
 // The voltage of the contact, as an oscilloscope has saved it.
 TEST_F(TuneVerb, TakesTheFileOfAnOscilloscope_optimized) {
   write(here.path() / "scope.csv", "time (us),CH1 (V)\n0,3.3\n20,3.3\n22,0.1\n24,0.1\n26,3.3\n28,0.1\n30,0.1\n");
@@ -352,6 +464,10 @@ TEST_F(TuneVerb, NamesTheOptionThatItCannotTake) {
       {{"--device", "x", "--constrain", "initial_contact_time < 33"}, "--constrain: "},
       {{"--device", "x", "--constrain", "impact_velocity < 1 mm/s"},
        "a condition must be that initial_contact_time is below a time"},
+      {{"--device", "x", "--trigger-delay", "1 V"}, "--trigger-delay 1 V: must be a time [s]"},
+      {{"--device", "x", "--format", "csv"},
+       "--format, --sample-rate, --bits and --amplifier are of the files that --by-hand writes"},
+      {{"--by-hand", "--amplifier", "0"}, "--amplifier"},
       {{"--device", "x", "--actuator", "hand"}, "--actuator hand: must be electrostatic"},
       {{"--device", "x", "--resume"}, "closings.jsonl: there is no such file"}};
   for (const auto& [words, rule] : refused) {

@@ -88,6 +88,15 @@ class Tunings(unittest.TestCase):
         self.assertEqual(amplified.line["drives"]["main"], {**plain.line["drives"]["main"], "amplifier": 20})
         self.assertTrue(self.scene.device(seed=7)(amplified).items() == self.scene.device(seed=7)(plain).items())
 
+    def test_records_begin_late_by_a_trigger_delay(self):
+        shot = self.scene.tuning(**QUICK).shot()
+        exact, late = self.scene.device(seed=7)(shot)["edges_s"], self.scene.device(seed=7, trigger_delay="1 us")(shot)["edges_s"]
+        np.testing.assert_allclose([edge[0] for edge in late], [edge[0] - 1e-6 for edge in exact], rtol=0, atol=1e-12)
+        known = {one.name: one for one in self.scene.tuning(errors={"trigger_delay": "3 us"}, **QUICK).result().belief.quantities}
+        self.assertAlmostEqual(known["trigger delay"].prior_deviation / 3e-6, 1, places=2)
+        with self.assertRaisesRegex(ValueError, "trigger_delay"):
+            self.scene.device(errors={"trigger_delay": 1e-6})
+
     def test_what_a_device_raises_comes_out_and_nothing_is_lost(self):
         simulated = self.scene.device(seed=7)
         fired = []
@@ -142,6 +151,7 @@ class Tunings(unittest.TestCase):
             ({"constrain": "initial_contact_tim < 3 us"}, "constrain"),
             ({"effort": -1.0}, "effort"),
             ({"errors": {"edge_error": -1.0}}, "edge_error"),
+            ({"errors": {"trigger_delay": -1.0}}, "trigger_delay"),
             ({"wafer": [self.folder]}, "tune.json"),
         ):
             with self.assertRaisesRegex(softland.InvalidInput, words):

@@ -47,7 +47,7 @@ TuningReport tuned_sample() {
   TuningReport report{.scene = prepare(scene), .next = tuned_shot(7, 38e-6, 39e-6), .kept = tuned_shot(5, 38e-6, 39e-6)};
   for (const ContactRecord& record : records)
     report.closings.push_back({.shot = tuned_shot(static_cast<int>(report.closings.size()) + 1), .record = record});
-  report.belief = {.quantities = {{"gaps", "", 1, 0.02, 1.013, 0.004}, {"edges.delay", "s", 0, 1e-7, -2e-8, 4e-8}},
+  report.belief = {.quantities = {{"gaps", "", 1, 0.02, 1.013, 0.004}, {"trigger delay", "s", 0, 1e-7, -2e-8, 4e-8}},
                    .effective_devices = 21,
                    .correlated = {"The records do not tell gaps from thickness."}};
   report.broken_assumption = "The device is not like its scene: <u>two records</u> were not what was expected.";
@@ -102,6 +102,32 @@ TEST(TuningReport, SaysInWordsWhatWasSeenAndWhatIsExpected) {
   EXPECT_THAT(closing_words(bounced), HasSubstr("touched at 40.00\u00a0µs with 2 bounces"));
   bounced.next.predicted.touch_low = bounced.next.predicted.rebound_high = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(closing_words(bounced), HasSubstr("expected of the next: touch at —, rebounds not known"));
+}
+
+TEST(TuningReport, SaysHowLateRecordsBegin) {
+  TuningReport report = tuned_sample();
+  EXPECT_THAT(page_html(tuning_document(report, {})), Not(HasSubstr("The records begin")));
+  report.belief.quantities.back() = {trigger_delay_name, "s", 0, 2e-6, 0.95e-6, 0.12e-6};
+  const std::string words =
+      "The records begin 950\u00a0ns after the drives, with a standard error of 120\u00a0ns: the trigger is late.";
+  EXPECT_THAT(page_html(tuning_document(report, {})), HasSubstr(words));
+  EXPECT_THAT(terminal_text(tuning_document(report, {})), HasSubstr("The records begin 950"));
+  report.belief.quantities.back().mean = -0.95e-6;
+  EXPECT_THAT(page_html(tuning_document(report, {})), HasSubstr("before the drives"));
+}
+
+TEST(TuningReport, LandsWhereTheLastClosingWasOfTheWaveformKept) {
+  TuningReport report = tuned_sample();
+  EXPECT_FALSE(report.lands()) << "shot 5 is kept, and 6 was the last";
+  report.kept = tuned_shot(6);
+  EXPECT_TRUE(report.lands());
+  EXPECT_EQ(tuning_json(report, {})["best"]["landed_last"], true);
+  report.closings.back().record.bounce_count = 1;
+  EXPECT_FALSE(report.lands());
+  report.closings.pop_back();
+  report.closings.push_back({.shot = tuned_shot(6), .record = {.error = "no trigger"}});
+  report.kept = tuned_shot(5);
+  EXPECT_TRUE(report.lands()) << "a shot without a record is no closing";
 }
 
 TEST(TuningReport, BringsNothingIntoItsPageButText) {

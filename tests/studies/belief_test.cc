@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -25,11 +26,11 @@ class Beliefs : public testing::Test {
       shots.push_back({.waveforms = step(share), .record = {}});
       const std::vector<ImaginedShot> one{{.device = &device[0], .waveforms = &shots.back().waveforms}};
       const ImaginedClosing closing = scene_.close(one)[0];
-      shots.back().record.edges.push_back({closing.touch, true});
+      shots.back().record.edges.push_back({closing.recorded_touch(), true});
       for (const ContactOpening& o : closing.openings) {
         if (!std::isfinite(o.end) || o.end - o.begin < scene_.options().laboratory.unseen) continue;
-        shots.back().record.edges.push_back({o.begin, false});
-        shots.back().record.edges.push_back({o.end, true});
+        shots.back().record.edges.push_back({o.begin - closing.delay, false});
+        shots.back().record.edges.push_back({o.end - closing.delay, true});
       }
     }
     return shots;
@@ -112,6 +113,120 @@ TEST_F(Beliefs, ADeviceIsFoundBackFromItsRecords_optimized) {
   // The whole of z lies within what is believed.
   const VectorXd off = z - belief.mean;
   for (Eigen::Index k = 0; k < z.size(); ++k) EXPECT_LT(std::abs(off[k]), 4 * std::sqrt(belief.covariance(k, k)) + 0.05) << k;
+}
+
+// Records that begin 1 us late are those of such a trigger, and of no other device.
+TEST_F(Beliefs, ALateTriggerIsLearnedAsOne_optimized) {
+  constexpr double late = 1e-6;
+  VectorXd z = VectorXd::Zero(scene_.size());
+  z[scene_.size() - 1] = late / scene_.delay_deviation();
+  const std::vector<LearnedShot> shots = records_of(z);
+  const auto gaps_and_delay = [&](const TunedScene& scene) {
+    Draws draws(7, 0);
+    const Belief belief = learned(scene, shots, Belief::prior(scene.size(), draws), draws);
+    return std::pair{scene.devices(std::vector<VectorXd>{belief.mean})[0].sampled.model->device().gap.contact /
+                         scene.nominal().scene.device.gap.contact,
+                     scene.delay(belief.mean)};
+  };
+  constexpr double one_percent = 0.01;
+  const auto [gap, delay] = gaps_and_delay(scene_);
+  EXPECT_FALSE(!(std::abs(delay - late) <= late / 2)) << delay;
+  EXPECT_FALSE(!(std::abs(gap - 1) <= one_percent)) << gap;
+  LaboratoryErrors sure;
+  sure.trigger_delay = 0;
+  const auto [other_gap, none] = gaps_and_delay(TunedScene(gold_with_two_modes(), {.laboratory = sure}, {}));
+  EXPECT_LT(std::abs(none), late / 4) << "the user says that there is none";
+}
+
+// Right devices, those three deviations away included, and records of none.
+class Misfits : public Beliefs {
+ protected:
+  // Closings of a device under steps, with the errors of a laboratory.
+  [[nodiscard]] std::vector<LearnedShot> recorded(const VectorXd& z, Draws& draws) const {
+    std::vector<LearnedShot> shots = records_of(z);
+    const std::vector<VectorXd> points{z};
+    const std::vector<ImaginedDevice> device = scene_.devices(points);
+    const Likelihood likelihood(scene_, {});
+    for (LearnedShot& shot : shots) {
+      const std::vector<ImaginedShot> one{{.device = &device[0], .waveforms = &shot.waveforms}};
+      const ImaginedClosing closing = scene_.close(one)[0];
+      shot.record = {};
+      if (closing.closes())
+        shot.record.closing_time = closing.recorded_touch() + likelihood.touch_deviation(closing.speed) * draws.normal();
+    }
+    return shots;
+  }
+  [[nodiscard]] TouchMisfit misfit(const std::vector<LearnedShot>& shots, Draws& draws) const {
+    return touch_misfit(scene_, shots, Belief::prior(scene_.size(), draws), draws);
+  }
+  // How many of so many right devices are called wrong, every tenth of which is three deviations away or further.
+  [[nodiscard]] int wrongly_called(int devices) const {
+    Draws draws(11, 0);
+    int wrong = 0;
+    for (int n = 0; n < devices; ++n) {
+      VectorXd z = draws.normals(scene_.size());
+      if (n % 10 == 0) z *= std::max(1.0, 3 / z.norm());
+      wrong += misfit(recorded(z, draws), draws).is_beyond();
+    }
+    return wrong;
+  }
+};
+
+TEST_F(Misfits, RightDevicesOfTheSpreadAreWithinTheBound_optimized) { EXPECT_EQ(wrongly_called(30), 0); }
+
+TEST_F(Misfits, AtMostOneInAHundredOfAThousandRightDevicesIsBeyondTheBound_slow) {
+  constexpr int devices = 1000;
+  const int wrong = wrongly_called(devices);
+  RecordProperty("wrongly_called", wrong);
+  EXPECT_LE(wrong, devices / 100);
+}
+
+TEST_F(Misfits, AKnownDeviceInTheTailIsWithinTheBound_optimized) {
+  // Along every quantity three and a half deviations to either side: a device in 2000.
+  for (Eigen::Index k = 0; k < scene_.size(); ++k) {
+    for (const double side : {-3.5, 3.5}) {
+      Draws draws(5, 0);
+      const TouchMisfit found = misfit(recorded(side * VectorXd::Unit(scene_.size(), k), draws), draws);
+      EXPECT_FALSE(found.is_beyond()) << k << " " << side << " " << found.least << " " << found.bound;
+      EXPECT_EQ(found.records, 3U);
+    }
+  }
+}
+
+TEST_F(Misfits, RecordsThatNoDeviceHasAreBeyondTheBound_optimized) {
+  Draws draws(5, 0);
+  std::vector<LearnedShot> same = records_of(VectorXd::Zero(scene_.size()));
+  for (LearnedShot& shot : same) shot.record = {.closing_time = 36.1e-6};  // whatever the volts are
+  EXPECT_TRUE(misfit(same, draws).is_beyond());
+  std::vector<LearnedShot> late = records_of(VectorXd::Zero(scene_.size()));
+  for (LearnedShot& shot : late) shot.record = {.closing_time = 150e-6};
+  EXPECT_TRUE(misfit(late, draws).is_beyond());
+  std::vector<LearnedShot> open = records_of(VectorXd::Zero(scene_.size()));
+  open[1].record = {};
+  const TouchMisfit once = misfit(open, draws);
+  EXPECT_FALSE(once.is_beyond()) << "a wire that came off once";
+  EXPECT_EQ(once.records, 2U);
+  open[0].record = {};
+  EXPECT_TRUE(misfit(open, draws).is_beyond());
+}
+
+// Chi-square of one degree of freedom where the ratio is the scene's, and the square of its deviations where it is not.
+TEST_F(Misfits, ARatioOfTheGapsIsOffByWhatItsRecordsTell_optimized) {
+  const auto& all = scene_.nominal().scene.spread.variables;
+  const Eigen::Index ratio = std::ranges::find(all, "gap.contact", &SpreadVariable::name) - all.begin();
+  VectorXd wide = VectorXd::Zero(scene_.size());
+  wide[ratio] = 4;
+  EXPECT_EQ(*scene_.gap_ratio_coordinate(wide), 4);
+  EXPECT_EQ(scene_.with_gap_ratio_of_scene(wide), VectorXd::Zero(scene_.size()));
+  Draws draws(5, 0);
+  const auto rise = [&](const VectorXd& z) {
+    const std::vector<LearnedShot> shots = recorded(z, draws);
+    Belief belief = Belief::prior(scene_.size(), draws);
+    belief.mode = z;
+    return gap_ratio_misfit(scene_, shots, belief, 0, draws);
+  };
+  constexpr double one_in_two_thousand = 12.1;
+  EXPECT_LT(rise(VectorXd::Zero(scene_.size())), one_in_two_thousand);
 }
 
 TEST_F(Beliefs, ResamplingKeepsShares) {

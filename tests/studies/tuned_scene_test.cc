@@ -97,14 +97,15 @@ TEST(TunedScenes, AClosingInLanesIsThatOfTheDeviceAlone) {
   }
 }
 
-TEST(TunedScenes, ADelayMovesEveryEdgeAndNothingElse) {
+TEST(TunedScenes, ADelayMovesTheRecordAndNothingElse) {
   const TunedScene scene(gold_with_two_modes(), {}, {});
   const std::vector<VectorXd> points{VectorXd::Zero(scene.size()), VectorXd::Unit(scene.size(), scene.size() - 1)};
   const std::vector<Waveform> step{Step{.level = scene.nominal().signals()[0].hold_level()}};
   const std::vector<ImaginedDevice> devices = scene.devices(points);
   const std::vector<ImaginedShot> shots{{.device = &devices[0], .waveforms = &step}, {.device = &devices[1], .waveforms = &step}};
   const std::vector<ImaginedClosing> closings = scene.close(shots);
-  EXPECT_DOUBLE_EQ(closings[1].touch, closings[0].touch + scene.delay_deviation());
+  EXPECT_EQ(closings[1].touch, closings[0].touch);
+  EXPECT_DOUBLE_EQ(closings[1].recorded_touch(), closings[0].touch - scene.delay_deviation());
   EXPECT_EQ(closings[1].highest, closings[0].highest);
   EXPECT_EQ(closings[1].openings.size(), closings[0].openings.size());
 }

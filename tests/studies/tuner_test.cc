@@ -152,16 +152,85 @@ TEST(Tuners, OptionsOutOfRangeAreRefused) {
   EXPECT_THROW(Tuner(gold_with_two_modes(), {.actuator = Actuator::pzt}), InvalidInput);
 }
 
+// What one touch tells may be told by a rare device, too: two records are a proof.
 TEST(Tuners, ADeviceUnlikeTheSceneIsCalledSo_optimized) {
-  Tuner tuner(gold_with_two_modes(), cheap());
-  const PracticeDevice stiff(gold_with_two_modes(), {.seed = 8, .model = {.set = {"structure.youngs_modulus=40 GPa"}}});
-  tuner.learn(fired(stiff, tuner.next(), 1).record);
-  ASSERT_TRUE(tuner.broken_assumption()) << tuner.surprises().front();
-  EXPECT_THAT(*tuner.broken_assumption(), testing::HasSubstr("does not behave like the scene"));
-  Tuner other = tuner.restarted();
-  const PracticeDevice right(gold_with_two_modes(), {.seed = 8});
-  other.learn(fired(right, other.next(), 1).record);
-  EXPECT_FALSE(other.broken_assumption());
+  constexpr int closings = 2;
+  const Tuner fresh(gold_with_two_modes(), cheap());
+  const auto tuned = [&](const PracticeModel& model) {
+    const PracticeDevice device(gold_with_two_modes(), {.seed = 8, .model = model});
+    Tuner tuner = fresh.restarted();
+    for (std::uint64_t k = 1; k <= closings; ++k) tuner.learn(fired(device, tuner.next(), k).record);
+    return tuner;
+  };
+  const Tuner soft = tuned({.set = {"structure.youngs_modulus=30 GPa"}});
+  const TouchMisfit misfit = soft.belief().touch_misfit;
+  ASSERT_TRUE(soft.broken_assumption()) << misfit.least << " of " << misfit.bound;
+  EXPECT_TRUE(misfit.is_beyond());
+  EXPECT_THAT(*soft.broken_assumption(), testing::HasSubstr("does not behave like the scene"));
+  EXPECT_FALSE(tuned({}).broken_assumption());
+}
+
+// A device of the spread is one wherever it lies, and however many peaks the belief has that its records leave.
+TEST(Tuners, RightDevicesInTheTailOfTheSpreadAreNotCalledWrong_optimized) {
+  const Tuner fresh(gold_with_two_modes(), cheap());
+  SceneFile alike = gold_with_two_modes();
+  for (const char* cov : {"spread.\"structure.thickness\".cov=\"0.01 %\"", "spread.\"structure.youngs_modulus\".cov=\"0.01 %\"",
+                          "spread.gaps.cov=\"0.01 %\""})
+    alike.set(cov);
+  // Three deviations of the thickness and of the gaps, to either side, and of the modulus.
+  const std::vector<std::vector<std::string>> tails{
+      {"structure.thickness=2.12 um"},
+      {"structure.thickness=1.88 um"},
+      {"gap.electrode=3.71 um", "gap.contact=2.12 um"},
+      {"structure.thickness=2.06 um", "structure.youngs_modulus=83 GPa", "gap.electrode=3.57 um", "gap.contact=2.04 um"}};
+  for (const std::vector<std::string>& tail : tails) {
+    const PracticeDevice device(alike, {.seed = 3, .model = {.set = tail}});
+    Tuner tuner = fresh.restarted();
+    for (std::uint64_t k = 1; k <= 2; ++k) {
+      tuner.learn(fired(device, tuner.next(), k).record);
+      EXPECT_FALSE(tuner.broken_assumption()) << tail.front() << " " << k << " " << tuner.broken_assumption().value_or("");
+    }
+  }
+}
+
+// A trigger that is late by 1 us: before it was an unknown, the device was learned as one of other gaps.
+TEST(Tuners, ALateTriggerIsNoOtherDevice_slow) {
+  constexpr int devices = 3, closings = 4;
+  constexpr double late = 1e-6, soft = 10e-9, few_percent = 0.05;
+  const Tuner fresh(gold_with_two_modes(), {.jobs = 2, .effort = 0.3});
+  for (int n = 0; n < devices; ++n) {
+    const PracticeDevice device(gold_with_two_modes(), {.seed = 51 + static_cast<std::uint64_t>(n), .trigger_delay = late});
+    Tuner tuner = fresh.restarted();
+    for (std::uint64_t k = 1; k <= closings; ++k) tuner.learn(fired(device, tuner.next(), k).record);
+    EXPECT_FALSE(tuner.broken_assumption()) << n << " " << tuner.broken_assumption().value_or("");
+    EXPECT_FALSE(!(fired(device, tuner.kept(), 100).motion.major_bounce_height <= soft)) << n;
+    EXPECT_FALSE(!(std::abs(tuner.belief().gap_ratio->mean - 1) <= few_percent)) << n;
+  }
+}
+
+// What landed some closings ago need not land under volts that drift: it is fired again, and counts as it lands then.
+TEST(Tuners, TheWaveformKeptIsFiredAgainAndCountsAsItLandsThen_optimized) {
+  constexpr int most = 8;
+  const PracticeDevice device(gold_with_two_modes(), {.seed = 5});
+  Tuner tuner(gold_with_two_modes(), {.effort = 0.1});
+  const std::vector<std::uint64_t> first = bits(tuner.next().waveforms);
+  tuner.fire_kept_again();
+  EXPECT_EQ(bits(tuner.next().waveforms), first) << "nothing was fired before";
+  const auto keeps_one_that_was_fired = [&] { return tuner.closings() > 0 && tuner.kept().number < tuner.next().number; };
+  while (!keeps_one_that_was_fired() && tuner.closings() < most)
+    tuner.learn(fired(device, tuner.next(), static_cast<std::uint64_t>(tuner.closings()) + 1).record);
+  ASSERT_TRUE(keeps_one_that_was_fired());
+  const std::vector<std::uint64_t> kept = bits(tuner.kept().waveforms);
+  const int before = tuner.closings();
+  tuner.fire_kept_again();
+  ASSERT_EQ(bits(tuner.next().waveforms), kept);
+  ContactRecord bounced = fired(device, tuner.next(), 100).record;
+  const double touch = *first_touch(bounced);
+  bounced.edges = {{.time = touch, .closed = true}, {.time = touch + 2e-6}, {.time = touch + 9e-6, .closed = true}};
+  tuner.learn(bounced);
+  EXPECT_EQ(tuner.closings(), before + 1);
+  EXPECT_NE(bits(tuner.kept().waveforms), kept) << "it bounced when it was fired last";
+  EXPECT_FALSE(tuner.was_kept_last());
 }
 
 // The belief has the ratio of the gaps as a quantity, predicts such records, and lands the device: it knows all the same.
@@ -249,13 +318,9 @@ TEST(Tuners, ContactsThatTwiceStayOpenAreUnexpected_optimized) {
   tuner.learn({});
   EXPECT_FALSE(tuner.broken_assumption());
   EXPECT_EQ(tuner.surprises(), std::vector<double>{0});
-  while (!tuner.broken_assumption() && tuner.closings() < 4) {
-    const bool is_sure = tuner.next().predicted.touches >= 0.97;
-    tuner.learn({});
-    if (is_sure) break;
-  }
+  tuner.learn({});
   ASSERT_TRUE(tuner.broken_assumption());
-  EXPECT_THAT(*tuner.broken_assumption(), testing::HasSubstr("closed or stayed open"));
+  EXPECT_THAT(*tuner.broken_assumption(), testing::HasSubstr("no device of its spread touches as was recorded"));
 }
 
 // Devices of a wafer that is 4 % too thick, and differ by 0.1 %: closings up to the second of two in a row without a bounce.
