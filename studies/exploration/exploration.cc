@@ -184,6 +184,8 @@ void complete(PlanRequest& request) {
       throw InvalidInput(fmt::format("belongs to study {}, not to {}", name_of(point_studies, option.study), request.study));
     });
   }
+  if (study->value == PointStudy::optimize || study->value == PointStudy::robustness)
+    require_open_start(read_scene(request.scene), fmt::format("study {} closes the switch", request.study));
   switch (study->value) {
     case PointStudy::simulate:
       if (const auto certify = request.options.find("certify"); certify != request.options.end()) {
@@ -211,8 +213,6 @@ Exploration::Exploration(Plan plan, const Watch& watch)
                          key.path.starts_with("spread.") || key.path.starts_with("metrics.") || key.path == "simulate.duration";
     }
   }
-  if (study_ == PointStudy::optimize || study_ == PointStudy::robustness)
-    require_open_start(read_scene(plan_.base()), fmt::format("study {} closes the switch", plan_.study()));
   list_figures(watch);
 }
 
