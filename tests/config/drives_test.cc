@@ -201,10 +201,8 @@ TEST(Drives, SourcesThatMakeNoSenseAreRefused) {
             "x.toml:42: driver.main.bits = 10: needs a sample_rate: samples are what is rounded");
   EXPECT_EQ(message("main", "sample_rate = \"1 MHz\"\nbits = 10\n"),
             "x.toml:42: driver.main.bits = 10: needs max_voltage: it divides the voltages from min_voltage to max_voltage");
-  EXPECT_EQ(
-      message("piezo", "source_resistance = \"1 kohm\"\n"),
-      "x.toml:36: driver.piezo.source_resistance = \"1 kohm\": charges an electrode; the capacitance of the piezo layer is not "
-      "described by a scene");
+  EXPECT_EQ(message("piezo", "source_resistance = \"1 kohm\"\n"),
+            "x.toml:36: driver.piezo.source_resistance = \"1 kohm\": charges an electrode; a piezo layer is driven without one");
   EXPECT_EQ(
       message("main", "parallel_capacitance = \"1 pF\"\n"),
       "x.toml:41: driver.main.parallel_capacitance = \"1 pF\": needs a source_resistance: a source without one charges it at "
