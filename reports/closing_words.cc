@@ -60,7 +60,8 @@ bool settles(const FigureValues& figures) {
 bool ends_at_touch(const FigureValues& figures) { return touches(figures) && !std::isfinite(figures[&Metrics::bounce_count]); }
 
 bool began_closed(const ResultRun& run) {
-  return run.figures && !touches(*run.figures) && (run.status == "done" || run.status == "not_settled");
+  if (!run.figures || touches(*run.figures)) return false;
+  return run.status == "not_settled" || (run.status == "done" && std::isfinite((*run.figures)[&Metrics::open_settling_time]));
 }
 
 bool is_clean(const FigureValues& figures) {

@@ -88,7 +88,8 @@ TEST(Headline, NamesTheReboundsThatAreTooSmallToCount) {
 
 TEST(Headline, SaysWhyThereIsNoClosing) {
   EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "collapsed_at_rest"}}),
-            "The switch has no stable open state to begin in under what its drives stand at before t = 0.");
+            "The switch has no stable equilibrium to begin in under what its drives stand at before t = 0 (an open one, unless "
+            "before_state says otherwise).");
   EXPECT_EQ(sentence({{"kind", "simulate"},
                       {"status", "collapsed_onto_electrode"},
                       {"metrics", {{"initial_contact_time_s", nullptr}, {"settled", false}}}}),
