@@ -100,6 +100,16 @@ SignalPiece piece_of(double begin, const std::vector<Exponential>& parts) {
   return piece;
 }
 
+/// Whether a piece is one voltage, as a sample that is held.
+bool is_held_level(const SignalPiece& piece) { return piece.slope == 0 && !piece.oscillates() && piece.terms.empty(); }
+
+/// The answer of the filter to a level, with what is left of the output before it [V].
+SignalPiece answer_to_level(const SignalPiece& level, double time_constant, double left) {
+  SignalPiece piece{.begin = level.begin, .value = level.value};
+  if (left != 0) piece.terms.push_back({.cosine = {left}, .decay = 1 / time_constant});
+  return piece;
+}
+
 /// Pieces with a sweep as cubics that meet them with their rates.
 std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) {
   constexpr double tolerance = 1e-6;  // of what the terms are at the most
@@ -191,6 +201,15 @@ Signal filtered(const Signal& input, double time_constant) {
   double output = input.before();
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double begin = pieces[i].begin, end = i + 1 < pieces.size() ? pieces[i + 1].begin : infinite;
+    // A sampled waveform is thousands of these.
+    if (is_held_level(pieces[i])) {
+      const double left = begin + over * time_constant;
+      const bool settles = output != pieces[i].value;
+      all.push_back(answer_to_level(pieces[i], time_constant, output - pieces[i].value));
+      if (settles && left < end && left > begin) all.push_back({.begin = left, .value = pieces[i].value});
+      if (std::isfinite(end)) output = all.back().voltage(end);
+      continue;
+    }
     std::vector<Exponential> parts;
     double steady = 0;
     for (const Exponential& e : exponentials_of(pieces[i])) {

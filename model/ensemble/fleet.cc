@@ -67,6 +67,7 @@ struct ElasticContact {
   fleet::LaneContact law = fleet::LaneContact::linear;
   double strength = 0, height = 0;  // linear: its stiffness [N/m]
   double damping = 0;
+  double unloading = 0;  // stiffness of a contact with a memory; 0: has none [N/m]
 };
 std::optional<ElasticContact> lane_contact(const Switch& model) {
   if (!model.has_contact() || model.has_pad_contact()) return std::nullopt;
@@ -80,6 +81,8 @@ std::optional<ElasticContact> lane_contact(const Switch& model) {
   if (const auto* c = std::get_if<LinearContact>(&law)) return ElasticContact{.strength = c->stiffness};
   if (const auto* c = std::get_if<HuntCrossley<LinearContact>>(&law))
     return ElasticContact{.strength = c->elastic.stiffness, .damping = c->damping};
+  if (const auto* c = std::get_if<HystereticContact>(&law))
+    return ElasticContact{.strength = c->loading.stiffness, .unloading = c->elastic.stiffness};
   return std::nullopt;
 }
 
@@ -156,6 +159,7 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
                     .dispersion = *lane_dispersion(device.dispersion),
                     .contact = contact.law,
                     .damped_contact = contact.damping > 0,
+                    .remembers = contact.unloading > 0,
                     .measures_work = measures_work};
   if (!device.electrodes.empty()) layout.fringing = *lane_fringing(device.electrodes.front().fringing);
   const std::vector<Segment> segments = layout.usual ? segments_between(model) : faces_of(model);
@@ -220,6 +224,7 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
                .strength = contact.strength,
                .height = contact.height,
                .contact_damping = contact.damping,
+               .unloading_stiffness = contact.unloading,
                .negligible_depth = depth_of_energy(contact, tolerance * model.bending_energy())};
   if (model.gas()) set_film(s, *model.gas());
   if (device.dispersion) set_dispersion(s, *device.dispersion);
@@ -253,11 +258,12 @@ class Teller final : public fleet::LaneObserver {
  public:
   explicit Teller(const FleetClosing& closing) : law_(&closing.model->contact()), observer_(closing.observer) {}
   void touch(double begin, double end, double speed, double depth, double force) override {
-    observer_->touch({.begin = begin,
-                      .end = end,
-                      .impact_velocity = speed,
-                      .peak_force = std::max(contact_force(*law_, depth), force),
-                      .peak_energy = contact_energy(*law_, depth)});
+    observer_->touch(
+        {.begin = begin,
+         .end = end,
+         .impact_velocity = speed,
+         .peak_force = std::max(contact_force(*law_, depth), force),
+         .peak_energy = has_memory(*law_) ? stored_energy(*law_, depth, ContactState(true)) : contact_energy(*law_, depth)});
   }
   void rebound(double begin, double end, double height) override { observer_->rebound(begin, end, height); }
 
@@ -285,9 +291,11 @@ double field_energy(const Switch& model, std::span<const double> volts, const do
 /// V dQ is what the field gains and what it does to the modes. A piezo's charge follows the modes alone.
 double drive_energy(const FleetClosing& c, const LaneClosing& lane) {
   std::vector<double> at_end;
-  for (const Signal& drive : c.drives) at_end.push_back(drive.voltage(lane.end));
+  for (std::size_t k = 0; k < c.drives.size(); ++k) at_end.push_back(lane.gain[k] * c.drives[k].voltage(lane.end));
+  const double of_layer =
+      std::pow(lane.gain[c.drives.size() - 1], 2) * layer_charging_energy(c.model->device(), c.drives, lane.end);
   return field_energy(*c.model, at_end, lane.final) - field_energy(*c.model, values_before(c.drives), lane.start) + lane.work +
-         layer_charging_energy(c.model->device(), c.drives, lane.end);
+         of_layer;
 }
 
 fleet::LaneRunner runner(Vectors vectors) {
@@ -342,7 +350,7 @@ std::string why_not_in_lanes(const Switch& model) {
   if (model.quadrature().points() > fleet::most_points) return fmt::format("more than {} quadrature points", fleet::most_points);
   if (model.drives() > fleet::most_drives) return fmt::format("more than {} drives", fleet::most_drives);
   if (!lane_dispersion(device.dispersion)) return "a dispersion force between gold";
-  if (!lane_contact(model)) return "a contact other than linear or asperity-uniform at the contact point";
+  if (!lane_contact(model)) return "a contact other than linear, hysteretic or asperity-uniform at the contact point";
   if (!lane_film(device.gas))
     return model.film_states() > 0 ? "a compressible gas film" : fmt::format("the gas film {}", name_of(*device.gas));
   for (const Electrode& e : device.electrodes) {
@@ -395,6 +403,7 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
       const std::vector<LanePiece>& own = drives.of(c.drives[k], c.model->basis().angular_frequencies().maxCoeff());
       lane.pieces[k] = own.data();
       lane.piece_count[k] = to_int(own.size());
+      lane.gain[k] = c.gains.empty() ? 1 : c.gains[k];
     }
   }
   run(*layout, followed.data(), followed.size());

@@ -62,7 +62,8 @@ class LandingObserver {
 struct FleetClosing {
   const Switch* model = nullptr;
   std::span<const Signal> drives;
-  double duration = 0;  ///< [s]
+  std::span<const double> gains = {};  ///< of these drives; none: 1
+  double duration = 0;                 ///< [s]
   double after_contact = std::numeric_limits<double>::infinity(), no_end_before = 0;
   double no_contact_before = std::numeric_limits<double>::infinity();
   double steady_force = std::numeric_limits<double>::quiet_NaN();  ///< [N]

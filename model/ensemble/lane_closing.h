@@ -34,6 +34,7 @@ struct LaneLayout {
   LaneDispersion dispersion = LaneDispersion::none;
   LaneContact contact = LaneContact::asperity_uniform;
   bool damped_contact = false;
+  bool remembers = false;      // a contact of stiffnesses of loading and of unloading
   bool measures_work = false;  ///< of the drives; not by UsualLaws
   Segment segment[most_segments];
   [[nodiscard]] bool operator==(const LaneLayout&) const = default;
@@ -59,7 +60,8 @@ struct LaneSwitch {
   double slopes[most_modes][most_modes] = {};                            // and its matrix [1/(kg m)]
   double strength = 0, height = 0;                                       // of the contact law; linear: its stiffness [N/m]
   double contact_damping = 0;                                            // [s/m]
-  double negligible_depth = 0;                                           // [m]
+  double unloading_stiffness = 0;  // of a contact with a memory, whose other is `strength` [N/m]
+  double negligible_depth = 0;     // [m]
 };
 
 /// Where a lane tells what it sees.
@@ -96,6 +98,7 @@ struct LaneClosing {
   double work = 0;                            // of the forces of the drives on the modes, where it is measured [J]
   const LanePiece* pieces[most_drives] = {};  // by drive
   int piece_count[most_drives] = {};
+  double gain[most_drives] = {};  // of what the pieces say
   double duration = 0, after_contact = 0, no_end_before = 0, no_contact_before = 0;
   double steady_depth = 0;  // that carries the steady force; infinite: none was asked for [m]
   LaneObserver* observer = nullptr;

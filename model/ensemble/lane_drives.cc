@@ -28,7 +28,8 @@ class Run {
     const LanePiece& p = pieces_[piece_at(time)];
     const double s = time - p.begin;
     double sum = p.value + s * (p.slope + s * (p.square + s * p.cube));
-    for (int i = 0; i < LanePiece::most_tails; ++i) sum += p.tail[i] * std::exp(-p.decay[i] * s);
+    for (int i = 0; i < LanePiece::most_tails; ++i)
+      if (p.tail[i] != 0) sum += p.tail[i] * std::exp(-p.decay[i] * s);
     return sum;
   }
   /// [V/s]
@@ -53,8 +54,9 @@ class Run {
 
  private:
   [[nodiscard]] std::size_t piece_at(double time) const {
-    const auto after = std::ranges::upper_bound(pieces_, time, {}, &LanePiece::begin);
-    return after == pieces_.begin() ? 0 : static_cast<std::size_t>(after - pieces_.begin()) - 1;
+    while (near_ + 1 < pieces_.size() && pieces_[near_ + 1].begin <= time) ++near_;
+    while (near_ > 0 && pieces_[near_].begin > time) --near_;
+    return near_;
   }
   [[nodiscard]] double integral_to(double time, std::size_t piece) const {
     const LanePiece& p = pieces_[piece];
@@ -68,6 +70,7 @@ class Run {
   std::span<const LanePiece> pieces_;
   double end_;
   std::vector<double> integrals_;
+  mutable std::size_t near_ = 0;  // the piece that was asked for last: times are asked for in succession
 };
 
 struct Knot {
@@ -97,19 +100,21 @@ LanePiece between(const Knot& a, const Knot& b) {
           .longest_step = infinite};
 }
 
-/// What is missing in the integral of the cubic between two knots [V s].
-double missing(const Knot& a, const Knot& b, const Run& run) {
+/// What is missing in the integral of the cubic between two knots; `integral`: of the run between them [V s].
+double missing(const Knot& a, const Knot& b, double integral) {
   const double h = b.time - a.time;
-  return run.integral(b.time) - run.integral(a.time) - h * ((a.value + b.value) / 2 + h * (a.rate - b.rate) / 12);
+  return integral - h * ((a.value + b.value) / 2 + h * (a.rate - b.rate) / 12);
 }
 
 /// A mean cuts corners: gives back to the knots between the ends what that takes from the integral about them, all of it.
 void restore_integral(std::vector<Knot>& knots, const Run& run) {
   const std::size_t last = knots.size() - 1;
-  std::vector<double> more(knots.size(), 0);  // [V]
+  double until = run.integral(knots.front().time);  // the knot [V s]
+  std::vector<double> more(knots.size(), 0);        // [V]
   const double step = (run.end() - run.begin()) / static_cast<double>(last);
   for (std::size_t k = 0; k < last; ++k) {
-    const double lost = missing(knots[k], knots[k + 1], run) / step;
+    const double next = run.integral(knots[k + 1].time), lost = missing(knots[k], knots[k + 1], next - until) / step;
+    until = next;
     const bool is_first = k == 0, is_last = k + 1 == last;
     if (!is_first) more[k] += is_last ? lost : lost / 2;
     if (!is_last) more[k + 1] += is_first ? lost : lost / 2;
@@ -141,6 +146,20 @@ bool goes_in_lanes(const Signal& drive) {
   });
 }
 
+namespace {
+
+/// Signal::resolving_step() of a piece that goes in lanes, which need not be looked for where it does not oscillate.
+double longest_step(const Signal& drive, const SignalPiece& piece) {
+  if (piece.oscillates()) return drive.resolving_step(piece.begin);
+  double step = infinite;
+  for (const SignalTerm& term : piece.terms) {
+    if (term.decay > 0) step = std::min(step, 1 / term.decay);
+  }
+  return step;
+}
+
+}  // namespace
+
 std::vector<LanePiece> pieces_of(const Signal& drive) {
   std::vector<LanePiece> all;
   all.reserve(drive.pieces().size());
@@ -152,7 +171,7 @@ std::vector<LanePiece> pieces_of(const Signal& drive) {
                                                   .amplitude_slope = p.amplitude_slope,
                                                   .angular_frequency = p.angular_frequency,
                                                   .phase = p.phase,
-                                                  .longest_step = drive.resolving_step(p.begin)});
+                                                  .longest_step = longest_step(drive, p)});
     int tails = 0;
     for (const SignalTerm& term : p.terms) {
       if (is_tail(term)) {

@@ -57,6 +57,12 @@ class Lanes {
     double begin = 0, left = 0, speed = 0;  // of the touch: begin, end [s], speed [m/s]
     double extreme = 0;                     // deepest or highest since the last event [m]
     double hardest = 0;                     // force of a damped contact since then [N]
+    double gain[most_drives] = {};          // factors of its drives
+    // A contact with a memory: see model/closing/contact_phase.h.
+    bool unloading = false, in_dent = false;
+    bool to_turn = false;                   // it aims at its deepest point
+    double level = 0;                       // where another event is that it aims at [m]
+    double low = 0, high = 0, deepest = 0;  // edges of its phase, and the deepest place of this touch [m]
     double steady = nothing;                // since when it has been at the steady depth [s]
     double least = infinite;                // depth after the first maximum [m]
   };
@@ -77,15 +83,15 @@ class Lanes {
     for (std::size_t l = 0; l < width; ++l) {
       const Lane& lane = lane_[l];
       if (!lane.curves[k]) continue;
-      const double t = time[l];
+      const double t = time[l], gain = lane.gain[k];
       if (lane.runs[k]) {
-        volts_[k][l] = running(k, l, t);
+        volts_[k][l] = gain * running(k, l, t);
         continue;
       }
       const LanePiece& piece = lane.drive[k][lane.piece[k]];
-      if (piece.tail[0] != 0) volts_[k][l] = volts_[k][l] + tails_of(piece, t - piece.begin);
+      if (piece.tail[0] != 0) volts_[k][l] = volts_[k][l] + gain * tails_of(piece, t - piece.begin);
       if (piece.amplitude == 0 && piece.amplitude_slope == 0) continue;
-      const double envelope = piece.amplitude + piece.amplitude_slope * (t - piece.begin);
+      const double envelope = gain * (piece.amplitude + piece.amplitude_slope * (t - piece.begin));
       volts_[k][l] = volts_[k][l] + envelope * std::sin(piece.angular_frequency * t + piece.phase);
     }
   }
@@ -134,10 +140,20 @@ class Lanes {
         for (int i = 0; i < modes; ++i) rate += at_contact_[i] * v[i];
         return rate;
       });
+      if constexpr (Laws::has_memory) {
+        if (layout_.remembers) push = remembered(push, d);
+      }
       where(!touching_, push) = V(0);
       for (int i = 0; i < modes; ++i) sum[i] -= push * at_contact_[i];
     }
     for (int i = 0; i < modes; ++i) a[i] = sum[i];
+  }
+
+  // The force of a contact with a memory [N]; `loading`: its force where it is loaded.
+  [[nodiscard]] V remembered(V loading, V depth) const {
+    where(unloading_, loading) = laws_.pull_back(depth - shift_);
+    where(in_dent_, loading) = V(0);
+    return loading;
   }
 
   // --- a step ------------------------------------------------------------------------------------------------------------------
@@ -277,8 +293,28 @@ class Lanes {
       suspect = suspect || (!touching_ && most > plane_) || (touching_ && least < plane_);
       turns = turns || (knot_s_[k] * knot_s_[k + 1] < V(0));
     }
+    if constexpr (Laws::has_memory) {
+      if (layout_.remembers) suspect = leaves_phase(h);
+    }
     suspect_ = suspect;
     turns_ = turns;
+  }
+
+  // Lanes whose point may leave the phase of a contact with a memory, by the control points as above; loading ends where it
+  // turns.
+  [[nodiscard]] M leaves_phase(V h) const {
+    constexpr double share = 1.0 / pieces;
+    const V g = h * share;
+    M suspect(false);
+    for (int k = 0; k < pieces; ++k) {
+      const V b0 = knot_p_[k], b5 = knot_p_[k + 1], s0 = g * knot_s_[k], s1 = g * knot_s_[k + 1];
+      const V c0 = g * g * knot_c_[k], c1 = g * g * knot_c_[k + 1];
+      const V b1 = b0 + 0.2 * s0, b2 = b0 + 0.4 * s0 + 0.05 * c0, b4 = b5 - 0.2 * s1, b3 = b5 - 0.4 * s1 + 0.05 * c1;
+      const V most = max(max(max(b0, b1), max(b2, b3)), max(b4, b5));
+      const V least = min(min(min(b0, b1), min(b2, b3)), min(b4, b5));
+      suspect = suspect || most > high_ || least < low_ || (loading_ && knot_s_[k + 1] < V(0));
+    }
+    return suspect;
   }
 
   // The quintic of one lane in one piece, over its share of the piece.
@@ -323,7 +359,10 @@ class Lanes {
 
   // Share of the step at which a lane leaves its side of the plane; above 1 where it does not.
   [[nodiscard]] double crossing(std::size_t l, double length) const {
-    const double side = lane_[l].touching ? 1 : -1, level = plane_[l];
+    return crossing(l, length, lane_[l].touching ? 1 : -1, plane_[l]);
+  }
+  // The same of a level, inside of which is side * (position - level) > 0.
+  [[nodiscard]] double crossing(std::size_t l, double length, double side, double level) const {
     bool inside = side * (position_[l] - level) > 0;
     for (int k = 0; k < pieces; ++k) {
       const double p1 = knot_p_[k + 1][l], v0 = knot_s_[k][l], v1 = knot_s_[k + 1][l];
@@ -346,6 +385,26 @@ class Lanes {
     return 2;
   }
 
+  // Share of the step at which a lane leaves its phase of a contact with a memory, and where to; above 1 where it does not.
+  [[nodiscard]] double phase_end(std::size_t l, double length) {
+    Lane& lane = lane_[l];
+    const double by_low = lane.low > -infinite ? crossing(l, length, 1, lane.low) : 2;
+    const double by_high = lane.high < infinite ? crossing(l, length, -1, lane.high) : 2;
+    const double by_turn = loading_[l] ? turning(l, length) : 2;
+    lane.to_turn = by_turn < by_low && by_turn < by_high;
+    lane.level = by_low <= by_high ? lane.low : lane.high;
+    const double edge = by_low < by_high ? by_low : by_high;
+    return edge < by_turn ? edge : by_turn;
+  }
+  // Share of the step at which a lane turns back; above 1 where it does not.
+  [[nodiscard]] double turning(std::size_t l, double length) const {
+    for (int k = 0; k < pieces; ++k) {
+      if (!(knot_s_[k + 1][l] < 0)) continue;
+      return knot_s_[k][l] > 0 ? (k + curve(k, l, length).turn()) / pieces : static_cast<double>(k) / pieces;
+    }
+    return 2;
+  }
+
   // The deepest, or highest, place of a lane in the step.
   void deepen(std::size_t l, double length) {
     Lane& lane = lane_[l];
@@ -358,11 +417,25 @@ class Lanes {
         if (far > lane.extreme) lane.extreme = far;
       } else if (lane.touching && begin < 0 && end > 0) {
         const Curve c = curve(k, l, length);
-        const double depth = c.position(c.turn()) - plane_[l];
-        if (depth < lane.least) lane.least = depth;
+        const double depth = c.position(c.turn()) - plane_[l], carried = depth_of_force(l, depth);
+        if (carried < lane.least) lane.least = carried;
         if (depth < steady_[l] - plane_[l]) rise(l, length);
       }
     }
+  }
+
+  // The depth at which a contact that is loaded carries what this one carries at its depth.
+  [[nodiscard]] double depth_of_force(std::size_t l, double depth) const {
+    if constexpr (Laws::has_memory) {
+      const Lane& lane = lane_[l];
+      if (!layout_.remembers || !lane.touching) return depth;
+      if (lane.in_dent) return 0;
+      if (lane.unloading) {
+        const LaneSwitch& s = *lane.closing->numbers;
+        return (depth - shift_[l]) * (s.unloading_stiffness / s.strength);
+      }
+    }
+    return depth;
   }
 
   // Where a lane has come to the steady depth in the step that ends here, the last time.
@@ -502,7 +575,7 @@ class Lanes {
     }
     if (to_event_[l]) return h < limit_[l] || arrives(l, h);
     if (suspect_[l]) {
-      const double at = crossing(l, h);
+      const double at = event(l, h);
       if (at <= 1) {
         to_event_[l] = special_[l] = true;
         lane.corrections = 0;
@@ -515,12 +588,32 @@ class Lanes {
     return true;
   }
 
+  // Share of the step at which something changes; above 1 where nothing does.
+  [[nodiscard]] double event(std::size_t l, double length) {
+    if constexpr (Laws::has_memory) {
+      if (layout_.remembers) return phase_end(l, length);
+    }
+    return crossing(l, length);
+  }
+  // Where the event that a lane aims at is [m].
+  [[nodiscard]] double event_level(std::size_t l) const {
+    if constexpr (Laws::has_memory) {
+      if (layout_.remembers) return lane_[l].level;
+    }
+    return plane_[l];
+  }
+  [[nodiscard]] bool goes_to_turn(std::size_t l) const {
+    if constexpr (Laws::has_memory) return layout_.remembers && lane_[l].to_turn;
+    return false;
+  }
+
   // Whether a step that was to end on the plane does: moves its end there where that is near, else the target.
   [[gnu::always_inline]] bool arrives(std::size_t l, double h) {
     constexpr double short_of_a_radian = 1e-3;
     constexpr int most_corrections = 8;
     Lane& lane = lane_[l];
-    const double off = plane_[l] - knot_p_[pieces][l], speed = knot_s_[pieces][l];
+    if (goes_to_turn(l)) return true;
+    const double off = event_level(l) - knot_p_[pieces][l], speed = knot_s_[pieces][l];
     double later = off / speed;
     const double turned = later * fastest_[l];
     if (turned < short_of_a_radian && turned > -short_of_a_radian) {
@@ -560,7 +653,7 @@ class Lanes {
     } else if (to_event_[l]) {
       t_[l] = double(t_[l]) + moved_[l];
       moved_[l] = 0;
-      position_[l] = double(plane_[l]);
+      if (!goes_to_turn(l)) position_[l] = event_level(l);
       pass(l);
     }
     if (t_[l] >= until_[l]) {
@@ -574,8 +667,65 @@ class Lanes {
     }
   }
 
-  // At a crossing of the plane.
+  // At an event.
   void pass(std::size_t l) {
+    if constexpr (Laws::has_memory) {
+      if (layout_.remembers && pass_within_touch(l)) return go_on_after_event(l);
+    }
+    pass_plane(l);
+    if constexpr (Laws::has_memory) {
+      if (layout_.remembers) enter_phase(l, false, false);
+    }
+    go_on_after_event(l);
+  }
+
+  // At an event between two phases of a touch; false at the plane.
+  bool pass_within_touch(std::size_t l) {
+    Lane& lane = lane_[l];
+    if (!lane.touching) return false;
+    if (lane.to_turn) {
+      const double speed = speed_[l], acceleration = acceleration_[l];
+      const double left = acceleration < 0 ? speed * speed / (2 * acceleration) : 0;  // that the velocity still carries it
+      const LaneSwitch& s = *lane.closing->numbers;
+      const double depth = position_[l] - plane_[l] - left;
+      lane.deepest = depth;
+      if (depth > lane.extreme) lane.extreme = depth;
+      shift_[l] = depth * (1 - s.strength / s.unloading_stiffness);
+      enter_phase(l, true, false);
+      return true;
+    }
+    if (lane.unloading) {
+      const bool empties = lane.level == lane.low;
+      if (empties) lane.least = 0;
+      enter_phase(l, false, empties);
+      return true;
+    }
+    if (!lane.in_dent || lane.level == lane.low) return false;
+    enter_phase(l, true, false);
+    return true;
+  }
+
+  // The edges of a phase, and the depth at which it carries the steady force.
+  void enter_phase(std::size_t l, bool unloading, bool in_dent) {
+    Lane& lane = lane_[l];
+    const LaneSwitch& s = *lane.closing->numbers;
+    const double plane = plane_[l], shifted = plane + shift_[l];
+    lane.unloading = unloading, lane.in_dent = in_dent, lane.to_turn = false;
+    if (unloading) {
+      lane.low = shifted, lane.high = plane + lane.deepest;
+    } else if (in_dent) {
+      lane.low = plane, lane.high = shifted;
+    } else {
+      lane.low = lane.touching ? plane : -infinite, lane.high = lane.touching ? infinite : plane;
+    }
+    low_[l] = lane.low, high_[l] = lane.high;
+    unloading_[l] = unloading, in_dent_[l] = in_dent, loading_[l] = lane.touching && !unloading && !in_dent;
+    const double depth = lane.closing->steady_depth;
+    steady_[l] = unloading || in_dent ? shifted + depth * (s.strength / s.unloading_stiffness) : plane + depth;
+  }
+
+  // At a crossing of the plane.
+  void pass_plane(std::size_t l) {
     Lane& lane = lane_[l];
     const double t = t_[l], speed = speed_[l];
     if (!lane.touching) {
@@ -596,8 +746,12 @@ class Lanes {
     }
     lane.extreme = lane.hardest = 0;
     lane.touching = !lane.touching;
-    to_event_[l] = special_[l] = false;
     touching_[l] = lane.touching;
+  }
+
+  void go_on_after_event(std::size_t l) {
+    Lane& lane = lane_[l];
+    to_event_[l] = special_[l] = false;
     weigh(l);
     begin_anew(l);
     set_step(l);
@@ -633,8 +787,9 @@ class Lanes {
       find_piece(lane, k, t);
       const int at = lane.piece[k];
       const LanePiece& piece = lane.drive[k][at];
-      begin_[k][l] = piece.begin, value_[k][l] = piece.value, slope_[k][l] = piece.slope;
-      bend_[k][l] = piece.square, twist_[k][l] = piece.cube;
+      const double gain = lane.gain[k];
+      begin_[k][l] = piece.begin, value_[k][l] = gain * piece.value, slope_[k][l] = gain * piece.slope;
+      bend_[k][l] = gain * piece.square, twist_[k][l] = gain * piece.cube;
       int next = at + 1;
       while (next < lane.count[k] && lane.drive[k][next].joins) ++next;
       lane.runs[k] = next > at + 1;
@@ -669,7 +824,7 @@ class Lanes {
         tell_rebound(lane, nothing);
       }
     }
-    const double depth = lane.touching ? position_[l] - plane_[l] : 0;
+    const double depth = lane.touching ? depth_of_force(l, position_[l] - plane_[l]) : 0;
     lane.closing->steady_from = position_[l] < steady_[l] ? nothing : lane.steady;
     lane.closing->least_depth = !lane.touched ? nothing : depth < lane.least ? depth : lane.least;
     for (int i = 0; i < modes; ++i) lane.closing->final[i] = q_[i][l];
@@ -694,7 +849,10 @@ class Lanes {
     const LaneSwitch& s = *closing->numbers;
     lane = Lane{};
     lane.closing = closing;
-    for (int k = 0; k < layout_.drives; ++k) lane.drive[k] = closing->pieces[k], lane.count[k] = closing->piece_count[k];
+    for (int k = 0; k < layout_.drives; ++k) {
+      lane.drive[k] = closing->pieces[k], lane.count[k] = closing->piece_count[k];
+      lane.gain[k] = closing->gain[k];
+    }
     if (!idle) ++busy_;
     laws_.take(s, l);
     plane_[l] = s.plane;
@@ -719,6 +877,10 @@ class Lanes {
     work_[l] = 0;
     until_[l] = closing->no_contact_before;
     last_step_[l] = 0.01 / fastest;
+    if constexpr (Laws::has_memory) {
+      shift_[l] = 0;
+      if (layout_.remembers) enter_phase(l, false, false);
+    }
     enter_stretch(l);
     if (idle) lane.closing = nullptr;  // and stays special
   }
@@ -750,8 +912,11 @@ class Lanes {
   M starting_{false};  // spends a round to find its accelerations
   M to_event_{false};  // its target is a crossing of the plane
   M special_{false};   // either of both, or idle
-  V until_;            // ends with the first step beyond [s]
-  V last_step_;        // that no stop cut short [s]
+  // Of a contact with a memory.
+  M loading_{false}, unloading_{false}, in_dent_{false};
+  V low_, high_, shift_;  // edges of the phase, and the depth of the dent [m]
+  V until_;               // ends with the first step beyond [s]
+  V last_step_;           // that no stop cut short [s]
   V growth_, most_growth_, rounds_;
   V power_, powers_[7], work_{0};  // of the drives on the modes [W], at the stages of a step [W], until now [J]
   float log_error_[width] = {}, last_error_[width] = {};  // binary logarithms

@@ -40,7 +40,7 @@ class UsualLaws {
   using Modes = std::integral_constant<int, usual_modes>;
   static Modes modes(const LaneLayout&) { return {}; }
   static constexpr int capacity = usual_modes;
-  static constexpr bool has_damped_contact = false;
+  static constexpr bool has_damped_contact = false, has_memory = false;
 
   explicit UsualLaws(const LaneLayout& layout) : layout_(layout) {}
 
@@ -138,7 +138,7 @@ class AnyLaws {
   using Modes = int;
   static Modes modes(const LaneLayout& layout) { return layout.modes; }
   static constexpr int capacity = most_modes;
-  static constexpr bool has_damped_contact = true;  // where the layout says so
+  static constexpr bool has_damped_contact = true, has_memory = true;  // where the layout says so
 
   explicit AnyLaws(const LaneLayout& layout) : layout_(layout), modes_(layout.modes) {}
 
@@ -159,6 +159,7 @@ class AnyLaws {
     for (int i = 0; i < modes_; ++i)
       for (int j = 0; j < modes_; ++j) slopes_[i * modes_ + j][l] = s.slopes[i][j];
     strength_[l] = s.strength, height_[l] = s.height, contact_damping_[l] = s.contact_damping;
+    unloading_[l] = s.unloading_stiffness;
   }
 
   [[nodiscard]] const V& floor() const { return floor_; }
@@ -186,6 +187,8 @@ class AnyLaws {
     if (layout_.contact == LaneContact::linear) return push_of(LinearContactOf<V>{.stiffness = strength_}, depth, rate);
     return push_of(UniformAsperityContactOf<V>{.strength = strength_, .height = height_}, depth, rate);
   }
+  /// Force of a contact with a memory that is unloaded, this far from where it carries nothing [N]
+  V pull_back(V depth) const { return LinearContactOf<V>{.stiffness = unloading_}.force(depth); }
 
  private:
   template <class Law, class Rate>
@@ -342,7 +345,7 @@ class AnyLaws {
   V electrode_gaps_[most_drives], electrode_floor_[most_drives], film_gaps_, film_floor_;
   V hamaker_, distance_, crossover_;
   V tension_, slopes_[capacity * capacity];
-  V strength_, height_, contact_damping_;
+  V strength_, height_, contact_damping_, unloading_;
   V power_;
 };
 

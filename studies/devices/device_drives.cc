@@ -176,6 +176,31 @@ std::vector<Signal> DeviceDrives::signals(const std::vector<Waveform>& nominal, 
   return own;
 }
 
+std::optional<std::vector<double>> DeviceDrives::gains(const DeviceUnits& units, const std::vector<double>& values) const {
+  if (units.volts != 1 || units.piezo != 1 || units.time != 1) return std::nullopt;
+  std::vector<double> all;
+  for (std::size_t k = 0; k < sources_.size(); ++k) {
+    const SourceErrors own = errors(k, values);
+    all.push_back(own.gain);
+    if (own.delay < 0) return std::nullopt;  // the clock of all drives begins with it
+    if (sources_[k].empty() && own.gain == 1) continue;
+    const bool is_gain = std::ranges::all_of(sources_[k], [](const Source& one) { return one.error == DriveError::gain; });
+    // The voltage before t = 0 and an offset have no gain.
+    if (!is_gain || own.offset != 0 || nominal_->values_before()[k] != 0) return std::nullopt;
+  }
+  return all;
+}
+
+std::vector<Signal> DeviceDrives::without_gains(const std::vector<Waveform>& nominal) const {
+  std::vector<Signal> own = nominal_->told(nominal);
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    SourceErrors errors = nominal_->drives[k].errors;
+    errors.gain = 1;
+    own[k] = nominal_->driven(k, own[k], errors);
+  }
+  return own;
+}
+
 std::vector<DeviceDrives::Written> DeviceDrives::written(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                                                          const std::vector<double>& values) const {
   const Driven all = driven(nominal, units, values);

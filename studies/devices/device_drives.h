@@ -43,6 +43,11 @@ class DeviceDrives {
   /// device, in the order of Switch::drives() [V].
   [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                                             const std::vector<double>& values) const;
+  /// The factors by which the drives of a device, as signals() has them, differ from those of one whose sources have a gain of 1,
+  /// as without_gains() has them; none where more than factors differ, as measured units, offsets, delays and jitter make it.
+  [[nodiscard]] std::optional<std::vector<double>> gains(const DeviceUnits& units, const std::vector<double>& values) const;
+  /// The drives of a device in the units of the nominal one from sources with a gain of 1; `nominal` as for signals().
+  [[nodiscard]] std::vector<Signal> without_gains(const std::vector<Waveform>& nominal) const;
   /// What the source of drive k does wrong where the varying quantities have these values, but for its jitter.
   [[nodiscard]] SourceErrors errors(std::size_t k, const std::vector<double>& values) const;
   /// The derivatives of these errors by varying quantity i: those of gain, offset [V] and delay [s].

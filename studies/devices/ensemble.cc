@@ -369,11 +369,12 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
   std::vector<std::size_t> places;
   std::vector<LaneFigures> figures(closings.size(), LaneFigures(options));
   for (std::size_t i = 0; i < closings.size(); ++i) {
-    const auto& [device, signals, run, measures_drive_energy] = closings[i];
+    const auto& [device, signals, gains, run, measures_drive_energy] = closings[i];
     if (vectors == Vectors::none || !device->model) continue;
     places.push_back(i);
     in_lanes.push_back({.model = &*device->model,
                         .drives = *signals,
+                        .gains = gains,
                         .duration = run.duration,
                         .after_contact = run.after_contact,
                         .no_end_before = run.no_end_before,
@@ -392,7 +393,11 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
     }
   }
   for (std::size_t i = 0; i < closings.size(); ++i) {
-    if (!done[i]) outcomes[i] = close_device(*closings[i].device, *closings[i].signals, options, closings[i].run);
+    if (done[i]) continue;
+    const auto& [device, signals, gains, run, measures_drive_energy] = closings[i];
+    std::vector<Signal> own;
+    for (std::size_t k = 0; k < gains.size(); ++k) own.push_back(scaled((*signals)[k], gains[k]));
+    outcomes[i] = close_device(*device, gains.empty() ? *signals : own, options, run);
   }
   return outcomes;
 }

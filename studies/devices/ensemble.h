@@ -214,6 +214,7 @@ struct EnsembleRun {
 struct DeviceClosing {
   const SampledDevice* device = nullptr;
   const std::vector<Signal>* signals = nullptr;
+  std::vector<double> gains = {};  ///< of these signals; none: 1
   ClosingOptions run;
   bool measures_drive_energy = false;  ///< in lanes, too; of closings one by one it is known anyway
 };

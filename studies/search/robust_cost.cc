@@ -134,6 +134,7 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
     : setting_(setting), aim_(aim), ensemble_(std::move(ensemble)), drives_(setting.given), vectors_(vectors) {
   const Switch& model = setting.given.model;
   const double period = 2 * pi / model.basis().angular_frequencies()[0], in_contact = model.basis().in_contact_period();
+  find_gains();
   window_ = std::max(0.6 * period, 2.5 * in_contact);
   tail_ = in_contact;
   wait_ = std::max(setting.run.no_contact_before, period);
@@ -164,6 +165,20 @@ std::vector<Signal> RobustCost::signals(const std::vector<Waveform>& waveforms, 
                                : setting_.given.driven(waveforms);
 }
 
+// A sampled drive has a breakpoint at each sample: those that differ by a gain alone are prepared once.
+void RobustCost::find_gains() {
+  if (std::ranges::none_of(ensemble_.units, [&](const DeviceUnits& units) { return drives_.differ(units); })) return;
+  ungained_levels_ = hold_levels(drives_.without_gains(setting_.drives({})));
+  gains_.emplace();
+  for (std::size_t k = 0; k < devices(); ++k) {
+    const SampledDevice& device = ensemble_.devices[k];
+    std::optional<std::vector<double>> own =
+        device.model ? drives_.gains(ensemble_.units[k], device.values) : std::vector<double>();
+    if (!own) return gains_.reset();
+    gains_->push_back(*std::move(own));
+  }
+}
+
 // Nothing is asked of the other devices where the nominal one is not kept closed.
 RobustCost::Kept RobustCost::kept(std::size_t k, const std::vector<Signal>& signals) const {
   const Hold hold = hold_of(*ensemble_.devices[k].model, signals, nominal_closed_);
@@ -178,8 +193,9 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
 std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
                                              double after_contact, int jobs) const {
   constexpr std::size_t together = 64;  // devices of one task
-  const std::vector<Signal> nominal = setting_.given.driven(waveforms);
-  const bool same_levels = hold_levels(nominal) == levels_;
+  std::vector<Signal> nominal = gains_ ? drives_.without_gains(waveforms) : setting_.given.driven(waveforms);
+  const bool same_levels = hold_levels(nominal) == (gains_ ? ungained_levels_ : levels_), by_gains = gains_ && same_levels;
+  if (gains_ && !by_gains) nominal = setting_.given.driven(waveforms);
   std::vector<DeviceOutcome> outcomes(last - first);
   run_tasks((outcomes.size() + together - 1) / together, jobs, [&](std::size_t task) {
     const std::size_t begin = task * together, end = std::min(outcomes.size(), begin + together);
@@ -191,7 +207,7 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
       const SampledDevice& device = ensemble_.devices[k];
       const DeviceUnits& units = ensemble_.units[k];
       std::vector<Signal>& of_device = own[i - begin];
-      if (device.model && drives_.differ(units)) of_device = drives_.signals(waveforms, units, device.values);
+      if (device.model && drives_.differ(units) && !by_gains) of_device = drives_.signals(waveforms, units, device.values);
       const std::vector<Signal>& signals = of_device.empty() ? nominal : of_device;
       kept_here.push_back(same_levels || !device.model ? kept_[k] : kept(k, signals));
       ClosingOptions own_run = run(signals, kept_here.back().steady_force);
@@ -199,6 +215,7 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
       own_run.duration += after_contact - window_;
       closings.push_back({.device = &device,
                           .signals = &signals,
+                          .gains = by_gains ? (*gains_)[k] : std::vector<double>(),
                           .run = own_run,
                           .measures_drive_energy = setting_.target.measures_drive_energy()});
     }

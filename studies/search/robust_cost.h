@@ -127,6 +127,7 @@ class RobustCost {
     bool is_held = true;
     double steady_force = Metrics::unset;  // [N]
   };
+  void find_gains();
   [[nodiscard]] Kept kept(std::size_t k, const std::vector<Signal>& signals) const;
   [[nodiscard]] ClosingOptions run(const std::vector<Signal>& signals, double steady_force) const;
   [[nodiscard]] std::vector<double> scores(std::span<const DeviceOutcome> outcomes) const;
@@ -144,6 +145,8 @@ class RobustCost {
   const RobustAim& aim_;
   BuiltEnsemble ensemble_;
   DeviceDrives drives_;
+  std::optional<std::vector<std::vector<double>>> gains_;  // of every device; none where drives differ by more
+  std::vector<double> ungained_levels_;                    // hold levels of the plain step from sources with a gain of 1
   Vectors vectors_;
   DeviceOutcome step_;                               // of the nominal device
   std::optional<ClosedEquilibrium> nominal_closed_;  // under the hold levels; none where they do not keep it closed

@@ -59,6 +59,33 @@ TEST(DeviceDrives, AGainMultipliesTheLevels) {
   EXPECT_NE(found[0].metrics.initial_contact_time, found[1].metrics.initial_contact_time);
 }
 
+// Sources that differ by a gain alone share what their samples and filters make of a waveform.
+TEST(DeviceDrives, ThatDifferByAGainAreFactorsOfOneSignal) {
+  constexpr double rounding = 1e-12;  // of the largest voltage
+  for (const char* source : {"driver.main={max_voltage=\"25 V\", sample_rate=\"5 MHz\", bits=12, bandwidth=\"1 MHz\"}",
+                             "driver.main={max_voltage=\"25 V\", bandwidth=\"300 kHz\", delay=\"1 us\"}"}) {
+    SCOPED_TRACE(source);
+    const PreparedScene nominal = prepare(gold_at_17_volts({throw_and_catch, source, normal("gain", "2 %")}));
+    const DeviceDrives drives(nominal);
+    const Ensemble ensemble(nominal, 4);
+    const std::vector<Signal> one = drives.without_gains(nominal.waveforms());
+    for (std::uint64_t k = 0; k < ensemble.size(); ++k) {
+      const std::optional<std::vector<double>> gains = drives.gains({}, ensemble.values(k));
+      ASSERT_TRUE(gains);
+      const std::vector<Signal> own = drives.signals(nominal.waveforms(), {}, ensemble.values(k));
+      for (double t = 0; t < 60e-6; t += 0.37e-6)
+        EXPECT_NEAR((*gains)[0] * one[0].voltage(t), own[0].voltage(t), rounding * 25) << k << " " << t;
+    }
+    EXPECT_FALSE(drives.gains({.volts = 1.01}, ensemble.values(0))) << "samples of other volts round otherwise";
+    EXPECT_FALSE(drives.gains({.time = 1.01}, ensemble.values(0)));
+  }
+  for (const std::string& other : {normal("delay", "200 ns"), normal("offset", "0.1 V"), normal("jitter", "50 ns")}) {
+    const PreparedScene nominal = prepare(gold_at_17_volts({throw_and_catch, other}));
+    const Ensemble ensemble(nominal, 1);
+    EXPECT_FALSE(DeviceDrives(nominal).gains({}, ensemble.values(0))) << other;
+  }
+}
+
 TEST(DeviceDrives, ADelayMovesTheClosingAndNothingElse) {
   const PreparedScene nominal = prepare(gold_at_17_volts({throw_and_catch, normal("delay", "200 ns")}));
   const Ensemble ensemble(nominal, 8);

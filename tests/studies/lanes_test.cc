@@ -132,6 +132,9 @@ SceneFile nano_with_casimir() {
                {"dispersion={model=\"casimir\"}", "waveform.dispersion={family=\"step\", level=1.05, rise_time=\"0.4 ns\"}"});
 }
 
+const char* const hysteretic =
+    "contact={model=\"hysteretic\", pad_length=\"5 um\", stiffness=\"4 kN/m\", unloading_stiffness=\"8 kN/m\"}";
+
 std::vector<Case> cases() {
   const std::string pulse =
       "waveform.main={family=\"pulse\", levels=[\"21 V\", \"0 V\", \"17 V\"], times=[\"20 us\", \"33 us\"], edge=\"0.5 us\"}";
@@ -188,6 +191,14 @@ std::vector<Case> cases() {
        scene("two-electrodes.toml", {"electrode.main.area=5e-9 m^2", "electrode.upper={area=\"4e-9 m^2\", fringing=\"none\"}"})});
   all.push_back({"an electrode with two faces, two films over slits, linear contact", scene("gap-closing-actuator.toml")});
   all.push_back({"damped asperities", gold_at_17_volts({"contact.damping=1 s/m"})});
+  all.push_back({"hysteretic contact", gold_at_17_volts({hysteretic})});
+  all.push_back({"hysteretic contact that loses little",
+                 gold_at_17_volts({pulse,
+                                   "contact={model=\"hysteretic\", pad_length=\"5 um\", stiffness=\"4 kN/m\", "
+                                   "unloading_stiffness=\"4.1 kN/m\"}"})});
+  all.push_back({"electrodes on either side, hysteretic contact",
+                 scene("two-electrodes.toml", {"contact={model=\"hysteretic\", stiffness=\"20 kN/m\", "
+                                               "unloading_stiffness=\"60 kN/m\"}"})});
   all.push_back({"electrodes of different fringing", gold_at_17_volts({"electrode.tip={span=[\"240 um\", \"250 um\"], "
                                                                        "fringing=\"linear\"}",
                                                                        "electrode.main.fringing=none"})});
@@ -235,10 +246,12 @@ TEST(Lanes, MeasureTheForceAsOneAtATimeDoes) {
   const std::string soft =
       "waveform.main={family=\"pulse\", levels=[\"21 V\", \"0 V\", \"14.5 V\"], times=[\"20 us\", \"33 us\"], edge=\"0.5 us\"}";
   int steady = 0, lost = 0, opened = 0, kept = 0;
-  for (const std::string& waveform : {std::string("waveform.main.level=\"17 V\""), soft}) {
+  for (const auto& [waveform, contact] :
+       {std::pair(std::string("waveform.main.level=\"17 V\""), "contact.model=asperity-uniform"),
+        std::pair(soft, "contact.model=asperity-uniform"), std::pair(soft, hysteretic)}) {
     for (const char* window : {"38 us", "45 us", "70 us"}) {
-      SCOPED_TRACE(waveform + " " + window);
-      const Fleet fleet(gold_at_17_volts({waveform, std::string("simulate.duration=") + window}), 60);
+      SCOPED_TRACE(waveform + " " + contact + " " + window);
+      const Fleet fleet(gold_at_17_volts({waveform, contact, std::string("simulate.duration=") + window}), 60);
       const std::vector<Signal> signals = fleet.nominal.signals();
       const std::vector<DeviceOutcome> one_by_one = fleet.close(signals, Vectors::none, 1e-7);
       for (const Vectors vectors : vectors_here()) {
@@ -317,6 +330,31 @@ TEST(LaneDrives, SmoothRunsOfSamplesAndKeepTheirIntegral) {
   EXPECT_LT(std::abs(difference), 1e-5 * ripple * end) << "but for the sum over points";
 }
 
+// Factors of two round nothing: drives that are told half as much and have a gain of two are those that are told all of it.
+TEST(Lanes, GiveDrivesWithAGainTheBitsOfTheirOwnSignals) {
+  for (const auto& [name, file, looser] : cases()) {
+    SCOPED_TRACE(name);
+    const Fleet fleet(file, 9);
+    const std::vector<Signal> signals = fleet.nominal.signals();
+    std::vector<Signal> halves;
+    for (const Signal& one : signals) halves.push_back(scaled(one, 0.5));
+    if (std::ranges::any_of(values_before(signals), [](double volts) { return volts != 0; })) continue;
+    std::vector<DeviceClosing> by_gains;
+    for (const SampledDevice& device : fleet.devices) {
+      const double steady = hold_of(*device.model, signals).steady_force(fleet.nominal.scene.metrics);
+      by_gains.push_back({.device = &device,
+                          .signals = &halves,
+                          .gains = std::vector<double>(signals.size(), 2),
+                          .run = {.duration = fleet.nominal.duration, .tolerance = 1e-5, .steady_force = steady}});
+    }
+    std::vector<Vectors> all = vectors_here();
+    all.push_back(Vectors::none);
+    for (const Vectors vectors : all)
+      EXPECT_EQ(digits(close_devices(by_gains, fleet.nominal.scene.metrics, vectors)),
+                digits(fleet.close(signals, vectors, 1e-5)));
+  }
+}
+
 // Sines and cubics are worked out in all lanes once one has them.
 TEST(Lanes, GiveTheSameBitsBesideOtherDrives) {
   const std::vector<Case> all = cases();
@@ -344,13 +382,13 @@ TEST(Lanes, GiveTheSameBitsBesideOtherDrives) {
 
 // What lanes cannot follow, one at a time does: other laws, other points, devices that no switch is, and those in trouble.
 TEST(Lanes, LeaveTheRestToOneAtATime) {
+  constexpr const char* other_contact = "a contact other than linear, hysteretic or asperity-uniform at the contact point";
   const std::vector<std::pair<SceneFile, const char*>> others{
       {gold_at_17_volts({"structure.modes=9"}), "more than 8 modes"},
       {scene("nem-casimir.toml"), "a dispersion force between gold"},
-      {without(gold_at_17_volts(), "contact"), "a contact other than linear or asperity-uniform at the contact point"},
-      {gold_at_17_volts({"contact.model=adhesive", "contact.adhesion_energy=0.05 J/m^2"}),
-       "a contact other than linear or asperity-uniform at the contact point"},
-      {gold_at_17_volts({"contact.distribution=pad"}), "a contact other than linear or asperity-uniform at the contact point"},
+      {without(gold_at_17_volts(), "contact"), other_contact},
+      {gold_at_17_volts({"contact.model=adhesive", "contact.adhesion_energy=0.05 J/m^2"}), other_contact},
+      {gold_at_17_volts({"contact.distribution=pad"}), other_contact},
       {gold_at_17_volts({"gas.model=reynolds"}), "a compressible gas film"},
       {gold_at_17_volts({"electrode.main.fringing=bao-2001"}), "fringing by bao-2001"},
       {gold_at_17_volts({"simulate.accuracy=1e-12"}), "more than 48 quadrature points"}};
