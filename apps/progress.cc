@@ -70,6 +70,7 @@ SearchProgress::SearchProgress(bool quiet, const OptimizeOptions& options, std::
 
 void SearchProgress::show(const OptimizeProgress& progress) {
   progress_ = progress;
+  if (progress.planned > 0) budget_ = progress.planned;
   bar_.show([this](double elapsed) { return state(elapsed); });
 }
 

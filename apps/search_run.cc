@@ -85,9 +85,11 @@ SearchRun::SearchRun(const Common& c, StoredSearch& search, const std::optional<
     preparation_.emplace(common_.quiet, common_.stop);
     session_.begin(columns);
     if (is_told)
-      say(search_words(common_, search) +
-          fmt::format("; it shapes {}; results go to {}", fmt::join(shaped_in(columns.names()), " and "), common_.out));
+      say(search_words(common_, search) + fmt::format("; it shapes {}; results go to {}{}",
+                                                      fmt::join(shaped_in(columns.names()), " and "), common_.out,
+                                                      duration_words(search.options.jobs, search.options.max_seconds)));
   };
+  options.on_estimate = [this](const SearchEstimate& estimate) { estimate_ = estimate; };
   options.on_evaluation = [this](const Evaluation& e, const OptimizeProgress& p) {
     session_.evaluated(e);
     progress_.show(p);
@@ -100,6 +102,24 @@ SearchRun::SearchRun(const Common& c, StoredSearch& search, const std::optional<
       if (!common_.quiet) tell(leading);
     };
   }
+}
+
+// How long the search is going to take, and of how many closings.
+std::string SearchRun::duration_words(int jobs, double max_seconds) const {
+  if (!estimate_) return {};
+  const SearchEstimate& e = *estimate_;
+  std::string text = "; a closing takes " + internal::quantity(e.closing, "s");
+  if (std::isfinite(max_seconds)) return text;
+  const double seconds = e.seconds / std::max(1, jobs), minute = 60, hour = 3600;
+  text += seconds < 2 * minute ? fmt::format(", all about {:.0f} s", std::max(1.0, seconds))
+          : seconds < 2 * hour ? fmt::format(", all about {:.0f} min", seconds / minute)
+                               : fmt::format(", all about {:.0f} h", seconds / hour);
+  if (!e.has_fewer) return text;
+  text += e.closings > 0 && e.evaluations > 0
+              ? fmt::format(": {} evaluations and {} closings of devices", e.evaluations, e.closings)
+          : e.closings > 0 ? fmt::format(": {} closings of devices", e.closings)
+                           : fmt::format(": {} evaluations", e.evaluations);
+  return text + ", fewer than usual, since its closings are slow";
 }
 
 // The first table, of which every better waveform becomes a row.

@@ -42,12 +42,14 @@ class SearchRun {
 
  private:
   void tell(const Leading& leading);
+  [[nodiscard]] std::string duration_words(int jobs, double max_seconds) const;
 
   const Common& common_;
   std::optional<WatchedWork> preparation_;
   SearchProgress progress_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   bool has_table_ = false;
+  std::optional<SearchEstimate> estimate_;
   SearchSession session_;
 };
 

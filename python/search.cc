@@ -88,7 +88,8 @@ void listen(PlannedSearch& search, const Request& request, Run& run, SearchSessi
                         std::any_of(request.own_waveforms.begin(), request.own_waveforms.end(),
                                     [](const auto& one) { return one->first_error().is_there(); });
     if (failed) run.keep(std::make_exception_ptr(Interrupted()));
-    run.watch().tell("search", static_cast<double>(progress.evaluations) / static_cast<double>(std::max(1L, budget)));
+    const long planned = std::max(1L, progress.planned > 0 ? progress.planned : budget);
+    run.watch().tell("search", static_cast<double>(progress.evaluations) / static_cast<double>(planned));
     if (request.callback.is_none()) return;
     run.call([&] {
       const py::object wish =

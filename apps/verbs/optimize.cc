@@ -346,11 +346,13 @@ void add_optimize(Verb& verb) {
                 "found, and without --robust the search never ends worse; may be repeated");
   verb.optional(
       "--budget", request->budget, "N|TIME",
-      fmt::format("evaluations, or time (\"90 s\"); default: {} for an electrode, {} for several drives, {} for a "
-                  "piezo, half as much again for {}; and {} closings of devices, up to twice as many where many land; with "
-                  "--robust auto all closings together, with a measure closings of devices, {}",
-                  default_budget(Target::bounce, Shaped::electrode), default_budget(Target::bounce, Shaped::several),
-                  default_budget(Target::bounce, Shaped::piezo), targets_with_own_cost(), race_closings, default_closings));
+      fmt::format(
+          "evaluations, or time (\"90 s\"); default: {} for an electrode, {} for several drives, {} for a "
+          "piezo, half as much again for {}; and {} closings of devices, up to twice as many where many land, fewer where "
+          "closings take more work than usual, which the first line says; with --robust auto all closings together, with a "
+          "measure closings of devices, {}",
+          default_budget(Target::bounce, Shaped::electrode), default_budget(Target::bounce, Shaped::several),
+          default_budget(Target::bounce, Shaped::piezo), targets_with_own_cost(), race_closings, default_closings));
   verb.with_seed(request->seed, "same result, whatever --jobs is");
   verb.optional("--seeds", request->seeds, "N",
                 "search from N seeds, --seed and those after it, as one study: the best is reported, and how the others spread");

@@ -14,6 +14,7 @@
 #include "sampling/statistics.h"
 #include "studies/search/family_search.h"
 #include "studies/search/modes_of_search.h"
+#include "studies/search/search_work.h"
 #include "studies/search/worse_than_step.h"
 
 namespace softland {
@@ -128,6 +129,29 @@ DevicesSearch::DevicesSearch(const SceneFile& file, const OptimizeOptions& optio
   while (raced_ < names_.size() && !is_quasi_static(names_[raced_])) ++raced_;
   if (raced_ < names_.size()) approach_ = settings_[raced_].space.quasi_static()->approach();
   known_ = known_units(first().given, std::array{first().given.scene.calibration}, options.jobs, watch_).front();
+  fit_budget();
+}
+
+// Of usual closings a race has as many as its work allows, and so many that its searches tell something.
+void DevicesSearch::fit_budget() {
+  race_length_ = devices_.closings;
+  if (!devices_.counts_work) return;
+  const double usual = usual_work(shaped_drives(first().given.scene.file, options_.actuator));
+  const bool in_lanes = why_not_in_lanes(first().given.model).empty();
+  const double work = closing_work(first()).counted * (in_lanes ? 1 : usual_lanes);
+  const auto shortest = static_cast<long>(std::ceil(least_length_of_race * static_cast<double>(race_closings)));
+  race_length_ = std::min(devices_.closings, std::max(within_work(devices_.closings, work, usual), shortest));
+}
+
+SearchEstimate DevicesSearch::estimate(SearchEstimate nominal) const {
+  // Rows of the verdict over the whole window count as several closings of a search.
+  constexpr double rows = 20, searches = 1.5;
+  const double one = device_seconds(first());
+  const double closings = searches * static_cast<double>(race_length_) + rows * static_cast<double>(devices_.verdict);
+  nominal.closings = race_length_;
+  nominal.has_fewer = nominal.has_fewer || race_length_ < devices_.closings;
+  nominal.seconds = std::min(nominal.seconds + closings * one, options_.max_seconds * options_.jobs);
+  return nominal;
 }
 
 FamilyColumns DevicesSearch::columns() const {
@@ -261,7 +285,7 @@ void DevicesSearch::reserve_for_verdict(double closing, double reserved) {
 }
 
 RaceOptions DevicesSearch::race_options() {
-  return {.closings = devices_.closings,
+  return {.closings = race_length_,
           .are_a_budget = devices_.are_a_budget,
           .seed = options_.seed,
           .jobs = options_.jobs,

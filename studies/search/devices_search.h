@@ -38,6 +38,7 @@ struct ForDevicesOptions {
   bool is_of_before = false;        ///< as versions did that priced the first touch and knew of no quasi-static approach
   long closings = race_closings;    ///< of the race
   bool are_a_budget = false;        ///< it takes no more of them where many devices land
+  bool counts_work = false;         ///< they are usual closings: where closings take more work there are fewer (search_work.h)
   /// Told of what leads, whenever that is better than what was told before; from any thread, one call at a time.
   std::function<void(const Leading&)> on_leading = {};
 };
@@ -112,6 +113,8 @@ class DevicesSearch {
   [[nodiscard]] FamilyColumns columns() const;
   /// Since it was made.
   [[nodiscard]] double seconds() const;
+  /// What the search is going to take, besides what `nominal` tells of the one on the nominal device.
+  [[nodiscard]] SearchEstimate estimate(SearchEstimate nominal) const;
 
   /// Races, places what the race came to, and measures the devices of the verdict. `before`: families in front of those of the
   /// race, among those that share the memory. `looked` is called once a first candidate was looked at on the devices of the
@@ -173,6 +176,7 @@ class DevicesSearch {
   };
   using Found = std::optional<DriveWaveforms>;
 
+  void fit_budget();
   void race_families(double reserved);
   [[nodiscard]] std::vector<Pace> paces_of_search() const;
   void search_paces();
@@ -211,7 +215,8 @@ class DevicesSearch {
   double share_with_path_ = Metrics::unset;
   std::optional<KnownUnits> known_;
   std::atomic<bool> gave_up_ = false;
-  double race_end_ = 0;                // since the beginning [s]
+  double race_end_ = 0;  // since the beginning [s]
+  long race_length_ = race_closings;
   std::vector<Criterion> conditions_;  // with limits of their own
   RobustAim tail_aim_;
   RaceAims aims_;

@@ -89,6 +89,9 @@ class DevicesStudy {
     if (std::isfinite(own.max_seconds)) own.max_seconds = end_of_drawing * own.max_seconds - searched_.seconds();
     own.max_seconds = std::max(own.max_seconds, 1e-3);
     own.on_improvement = {};  // best.toml is for devices
+    own.on_estimate = [this](const SearchEstimate& of_drawing) {
+      if (options_.on_estimate) options_.on_estimate(searched_.estimate(of_drawing));
+    };
     own.on_start = [this](const FamilyColumns& of_drawing) {
       FamilyColumns all = of_drawing;
       std::ranges::copy(searched_.columns().families, std::back_inserter(all.families));

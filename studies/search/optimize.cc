@@ -16,6 +16,7 @@
 #include "studies/search/limit.h"
 #include "studies/search/modes_of_search.h"
 #include "studies/search/search_setting.h"
+#include "studies/search/search_work.h"
 #include "studies/search/verification.h"
 
 namespace softland {
@@ -70,7 +71,7 @@ class Search {
         options_(options),
         max_seconds_(max_seconds),
         names_(families_of(options.family)),
-        progress_{.baseline_cost = settings.front().baseline_cost} {
+        progress_{.baseline_cost = settings.front().baseline_cost, .planned = options.counts_work ? options.max_evaluations : 0} {
     for (const SearchSetting& setting : settings)
       families_.emplace_back(setting, options, [this](const Evaluation& e) { evaluated(e); });
     if (options.on_start) options.on_start(searched_columns(settings, options.family));
@@ -459,6 +460,7 @@ OptimizeOptions usual_options(const SceneFile& scene, const Aim& target, Actuato
   OptimizeOptions options{.target = target, .actuator = actuator, .family = std::string(default_families(drives))};
   options.max_evaluations = default_budget(target, drives);
   options.more_evaluations = options.max_evaluations / 2;
+  options.counts_work = true;
   return options;
 }
 
@@ -469,7 +471,31 @@ double OptimizeResult::parameter(std::string_view name) const {
   return found == parameters.end() ? none : found->second;
 }
 
-OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
+namespace {
+
+// The options of a search on the nominal device, whose budget is that of closings of its scene; tells what it is going to take.
+void fit_nominal_budget(const SearchSetting& setting, OptimizeOptions& options) {
+  if (!options.counts_work && !options.on_estimate) return;
+  constexpr double by_evaluation = 1.5;  // closings, with the gradients of some and the runs that verify the winner
+  const ClosingWork one = closing_work(setting);
+  const long asked = options.max_evaluations;
+  if (options.counts_work) {
+    const double usual = usual_work(shaped_drives(setting.given.scene.file, options.actuator));
+    options.max_evaluations = within_work(asked, one.counted, usual);
+    options.more_evaluations = options.more_evaluations > 0 ? within_work(options.more_evaluations, one.counted, usual) : 0;
+  }
+  if (!options.on_estimate) return;
+  const double seconds = by_evaluation * static_cast<double>(options.max_evaluations) * one.seconds;
+  options.on_estimate({.closing = one.seconds,
+                       .evaluations = options.max_evaluations,
+                       .has_fewer = options.max_evaluations < asked,
+                       .seconds = std::min(seconds, options.max_seconds * options.jobs)});
+}
+
+}  // namespace
+
+OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
+  OptimizeOptions options = asked;
   static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
   auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&begin] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
@@ -478,6 +504,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
                       {.stop = options.stop, .progress = options.on_preparation}, options.conditions, options.own_waveforms);
   const SearchSetting& setting = settings.front();
   setting.check_starts(options.starts);
+  fit_nominal_budget(setting, options);
   const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, options.family, options.own_waveforms);
   const bool is_gentle = begins_gently(gentle, options.starts);
   const bool may_go_on = !with_more_modes(setting.given.scene.device).empty();

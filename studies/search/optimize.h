@@ -30,6 +30,16 @@ struct OptimizeProgress {
   long evaluations = 0;
   double best_cost = std::numeric_limits<double>::quiet_NaN();  ///< NaN before a waveform was feasible
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
+  long planned = 0;  ///< evaluations of the whole search, where its budget counts work; 0: OptimizeOptions::max_evaluations
+};
+
+/// The work that a search is going to be.
+struct SearchEstimate {
+  double closing = 0;      ///< time of one closing of the nominal device on this machine [s]
+  long evaluations = 0;    ///< evaluations of the nominal device
+  long closings = 0;       ///< closings of devices; 0: none
+  bool has_fewer = false;  ///< than a scene of usual closings
+  double seconds = 0;      ///< processor time of the whole search [s]
 };
 
 /// Evaluations that found bounce-free waveforms from every seed tried, on the shipped scenes and their variants: the landscape of
@@ -52,6 +62,8 @@ struct OptimizeOptions {
   long max_evaluations = 2500;  ///< see default_budget()
   /// Evaluations on top of those, from the best points so far, where they have found no landing without a significant rebound.
   long more_evaluations = 0;
+  /// These numbers are of usual closings: where closings take more work there are fewer (search_work.h).
+  bool counts_work = false;
   /// The search begins with that of half the budget, to the bit, and goes on from there: it ends nowhere worse. For budgets that
   /// are compared; an undivided one finds more. Of a number of evaluations, not of seconds.
   bool begins_with_half = false;
@@ -73,6 +85,8 @@ struct OptimizeOptions {
   /// Called once, when scene and options have been found valid and before the first evaluation, with the searched
   /// parameters of every family, whose number is Evaluation::problem. A budget of time does not count what it takes.
   std::function<void(const FamilyColumns&)> on_start = {};
+  /// Called once before on_start; may be null.
+  std::function<void(const SearchEstimate&)> on_estimate = {};
   /// Called under a lock after every evaluation.
   std::function<void(const Evaluation&, const OptimizeProgress&)> on_evaluation = {};
   /// Called under the same lock where a search is at work that is not on record, as on a part of the devices.

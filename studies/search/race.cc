@@ -31,7 +31,6 @@ constexpr double worth_going_on = 0.01;                // of the devices
 constexpr double population_by_share = 2, longer_where_many_land = 1.7;
 constexpr std::size_t scouting_devices = 16;
 constexpr std::uint64_t box_points = 32;
-constexpr double least_length = 0.25;  // of the default: below it searches end before they tell anything
 
 // A search of the race on its way.
 struct Runner {
@@ -52,7 +51,7 @@ class Race {
   RaceResult run(std::vector<Runner> runners, const std::vector<DriveWaveforms>& begun, bool all_rungs) {
     const double length = static_cast<double>(options_.closings) / static_cast<double>(race_closings);
     RaceResult result;
-    if (length < least_length) return result;
+    if (length < least_length_of_race) return result;
     long planned = 0;
     for (const Rung& rung : rungs) planned += rung.closings;
     alone_ = all_rungs;

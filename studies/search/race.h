@@ -37,6 +37,8 @@ namespace softland {
 inline constexpr std::string_view raced_families = "knots:6+catch+dual-pulse+bspline:6+staircase:5";
 /// Closings of a race of five families by two measures.
 inline constexpr long race_closings = 86'000;
+/// The least length of a race, over the default one: shorter searches end before they tell anything.
+inline constexpr double least_length_of_race = 0.25;
 /// Devices that a race looks at, at the most.
 inline constexpr std::uint64_t raced_devices = 256;
 

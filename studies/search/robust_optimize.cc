@@ -15,6 +15,7 @@
 #include "optimizers/sobol.h"
 #include "studies/closing/plain_step.h"
 #include "studies/search/device_chain.h"
+#include "studies/search/search_work.h"
 
 namespace softland {
 namespace {
@@ -324,6 +325,24 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
   }
 }
 
+// Its budget becomes one of closings of these devices; tells what the search is going to take.
+void fit_robust_budget(const SearchSetting& setting, OptimizeOptions& options, std::uint64_t verdict) {
+  if (!options.counts_work && !options.on_estimate) return;
+  constexpr double rows = 4;  // of the verdict, over the whole window
+  const ClosingWork one = closing_work(setting);
+  const long asked = options.max_evaluations;
+  const bool in_lanes = why_not_in_lanes(setting.given.model).empty();
+  if (options.counts_work)
+    options.max_evaluations = within_work(asked, one.counted * (in_lanes ? 1 : usual_lanes),
+                                          usual_work(shaped_drives(setting.given.scene.file, options.actuator)));
+  if (!options.on_estimate) return;
+  const double closings = static_cast<double>(options.max_evaluations) + rows * static_cast<double>(verdict);
+  options.on_estimate({.closing = one.seconds,
+                       .closings = options.max_evaluations,
+                       .has_fewer = options.max_evaluations < asked,
+                       .seconds = std::min(closings * device_seconds(setting), options.max_seconds * options.jobs)});
+}
+
 void require_one_family(const OptimizeOptions& options) {
   require_request(families_of(options.family).size() == 1, [&] {
     return fmt::format("{} {}: a search over devices takes one family", requested("waveform"), options.family);
@@ -332,12 +351,14 @@ void require_one_family(const OptimizeOptions& options) {
 
 }  // namespace
 
-RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& asked) {
+RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given, const RobustOptions& asked) {
+  OptimizeOptions options = given;
   require_one_family(options);
   const Watch watch{.stop = options.stop, .progress = options.on_preparation};
   const SearchSetting setting =
       search_setting(file, options.target, options.actuator, options.family, watch, {}, options.own_waveforms);
   setting.check_starts(options.starts);
+  fit_robust_budget(setting, options, asked.verdict);
   const KnownUnits known = known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch).front();
   RobustOptions robust = asked;
   const RobustCost cost(setting, robust.aim, own_devices(setting, known, robust.samples, options.seed, 0, options.jobs, watch));

@@ -103,6 +103,7 @@ OptimizeOptions options_of(const SearchRequest& request, const SceneFile& scene,
   if (request.seed) options.seed = whole_number("seed", *request.seed, 0);
   if (request.is_by_measure()) options.max_evaluations = default_closings;
   if (request.is_by_measure() || request.budget) options.more_evaluations = 0;
+  options.counts_work = !request.budget;
   if (request.robust == nominal_alone) options.conditions = conditions_of(request, conditioned_figures);
   if (request.budget) read_budget(*request.budget, options);
   // Other methods go on where they were; the plan of a search of one seed holds that number.
@@ -127,6 +128,7 @@ ForDevicesOptions race_of(const SearchRequest& request, const SceneFile& scene, 
   options.family = families_of_drawing(options.family, scene, options.actuator);
   read_shared_conditions(request, options.conditions, race.conditions);
   race.verdict = devices_of(request, race.verdict, 100);
+  race.counts_work = !request.budget;
   if (!request.budget) return race;
   if (std::isfinite(options.max_seconds)) {
     constexpr double usual_seconds = 60, most_lengths = 10;

@@ -1,0 +1,38 @@
+// The work of a search: how many closings a budget has that nobody gave.
+//
+// A usual budget counts work, so that a scene whose closings are slow gets fewer of them. Work is counted in right-hand sides of
+// the equations of motion, which are the same on every machine and for every number of threads:
+//
+//   w   right-hand sides of a closing of the nominal device, the larger number of those under the plain step and under the first
+//       waveform of the search. One at p quadrature points counts as (8 + p) / 32; that of a compressible gas film counts as many
+//       times more as it has pressures, whose equations are solved beside it
+//   N   closings of the usual budget, n = N min(1, u / w),  u = usual_work()
+//
+// A closing of a device that lanes do not follow (why_not_in_lanes()) counts as many times as there are lanes.
+#pragma once
+
+#include "studies/search/search_setting.h"
+
+namespace softland {
+
+/// The work of one closing.
+struct ClosingWork {
+  double counted = 0;  ///< w
+  double seconds = 0;  ///< it takes on this machine, now [s]
+};
+/// Runs the closings under the plain step and under the first starting waveform of the family, as a search runs them; the slower
+/// one. Throws nothing: what cannot be followed has taken what it took until then.
+[[nodiscard]] ClosingWork closing_work(const SearchSetting& setting);
+
+/// u; the shipped scenes whose closings are quick stay below it.
+[[nodiscard]] double usual_work(Shaped drives);
+/// Closings of devices that lanes follow in the time of one.
+inline constexpr double usual_lanes = 8;
+
+/// Time of one closing of the nominal device among others like it, as a search over devices runs them [s].
+[[nodiscard]] double device_seconds(const SearchSetting& setting);
+
+/// n, at least 1.
+[[nodiscard]] long within_work(long closings, double counted, double usual);
+
+}  // namespace softland
