@@ -146,7 +146,7 @@ void DevicesSearch::fit_budget() {
 SearchEstimate DevicesSearch::estimate(SearchEstimate nominal) const {
   // Rows of the verdict over the whole window count as several closings of a search.
   constexpr double rows = 20, searches = 1.5;
-  const double one = device_seconds(first());
+  const double one = device_share * (approach_ ? slow_approach : 1) * nominal.closing;
   const double closings = searches * static_cast<double>(race_length_) + rows * static_cast<double>(devices_.verdict);
   nominal.closings = race_length_;
   nominal.has_fewer = nominal.has_fewer || race_length_ < devices_.closings;

@@ -496,6 +496,11 @@ void fit_nominal_budget(const SearchSetting& setting, OptimizeOptions& options) 
 
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   OptimizeOptions options = asked;
+  // The memory of whoever asks may be there from now on only.
+  options.on_start = [&](const FamilyColumns& columns) {
+    if (asked.on_start) asked.on_start(columns);
+    options.memory = asked.memory;
+  };
   static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
   auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&begin] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };

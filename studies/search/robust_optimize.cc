@@ -340,7 +340,7 @@ void fit_robust_budget(const SearchSetting& setting, OptimizeOptions& options, s
   options.on_estimate({.closing = one.seconds,
                        .closings = options.max_evaluations,
                        .has_fewer = options.max_evaluations < asked,
-                       .seconds = std::min(closings * device_seconds(setting), options.max_seconds * options.jobs)});
+                       .seconds = std::min(closings * device_share * one.seconds, options.max_seconds * options.jobs)});
 }
 
 void require_one_family(const OptimizeOptions& options) {
@@ -369,6 +369,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given
   std::vector<std::string> names;
   for (const Variable& v : out.variables) names.push_back(v.name);
   if (options.on_start) options.on_start({.families = {names}});
+  options.memory = given.memory;  // which may be there from now on only
   const std::vector<DeviceOutcome> of_step = cost.close(setting.drives({}), 0, cost.devices(), options.jobs);
   robust.aim.conditions = beside_step(std::move(robust.aim.conditions), of_step);
   out.baseline_cost = cost.value(of_step);

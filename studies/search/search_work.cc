@@ -1,12 +1,10 @@
 #include "studies/search/search_work.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <vector>
 
 #include "model/closing.h"
-#include "studies/devices/ensemble.h"
 
 namespace softland {
 namespace {
@@ -35,20 +33,6 @@ ClosingWork closing_work(const SearchSetting& setting) {
     if (counted > most.counted) most = {.counted = counted, .seconds = work.wall};
   }
   return most;
-}
-
-double device_seconds(const SearchSetting& setting) {
-  const SampledDevice nominal{.values = {}, .model = setting.given.model, .refusal = {}};
-  const std::vector<Signal> signals = setting.given.driven(setting.drives(first_waveforms(setting)));
-  const bool in_lanes = why_not_in_lanes(setting.given.model).empty() && vectors_in_use() != Vectors::none;
-  ClosingOptions run = setting.run_of(signals);
-  run.tolerance = EnsembleRun{}.tolerance;
-  const std::size_t count = in_lanes ? 32 : 1;
-  const std::vector<DeviceClosing> closings(count, {.device = &nominal, .signals = &signals, .run = run});
-  const auto begin = std::chrono::steady_clock::now();
-  (void)close_devices(closings, setting.given.scene.metrics, vectors_in_use());
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-  return elapsed.count() / static_cast<double>(count);
 }
 
 double usual_work(Shaped drives) { return drives == Shaped::piezo ? 8000 : 4000; }

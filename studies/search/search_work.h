@@ -29,8 +29,9 @@ struct ClosingWork {
 /// Closings of devices that lanes follow in the time of one.
 inline constexpr double usual_lanes = 8;
 
-/// Time of one closing of the nominal device among others like it, as a search over devices runs them [s].
-[[nodiscard]] double device_seconds(const SearchSetting& setting);
+/// Time of a closing in a search over devices, over that of one closing: 0.6 to 1.3 where it was measured. A slow approach takes
+/// several times as long.
+inline constexpr double device_share = 0.8, slow_approach = 3;
 
 /// n, at least 1.
 [[nodiscard]] long within_work(long closings, double counted, double usual);

@@ -261,6 +261,8 @@ TEST_F(Search, PrintsItsResultAsJsonAndNothingElse) {
                                                   "goal_met",
                                                   "actuator",
                                                   "better_than_baseline",
+                                                  "plain_step_wins",
+                                                  "harder_than_step",
                                                   "checks",
                                                   "command",
                                                   "families",

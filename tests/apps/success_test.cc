@@ -493,11 +493,15 @@ TEST(SummitsAtHold, AreToldByEveryReportThatTellsAContactForce_optimized) {
     EXPECT_THAT(told["warnings"].dump(), HasSubstr(few)) << words[0];
     const std::string page =
         read(here.path() / ("of-" + words[0]) / (words[0] == "robustness" ? "robustness.html" : "report.html"));
-    if (!page.empty()) EXPECT_THAT(page, HasSubstr(few)) << words[0];
+    if (!page.empty()) {
+      EXPECT_THAT(page, HasSubstr(few)) << words[0];
+    }
     std::string text;
     for (const char one : o.out) text += one == '\n' ? ' ' : one;
     // The text of a search has no room for it, and that of a limit tells no force.
-    if (words[0] != "optimize" && words[0] != "limit") EXPECT_THAT(text, HasSubstr(few)) << words[0];
+    if (words[0] != "optimize" && words[0] != "limit") {
+      EXPECT_THAT(text, HasSubstr(few)) << words[0];
+    }
     fs::remove(here.path() / "told.json");
   }
 }

@@ -82,9 +82,9 @@ TEST(BSpline, IsContinuousWithItsFirstTwoDerivatives) {
 TEST(BSpline, OfManyLevelsHasNoJumps) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(0, 1);
-  for (const std::size_t n : {20, 100, 1000}) {
-    for (int draw = 0; draw < 200'000 / static_cast<int>(n); ++draw) {
-      std::vector<double> levels(n);
+  for (const int n : {20, 100, 1000}) {
+    for (int draw = 0; draw < 200'000 / n; ++draw) {
+      std::vector<double> levels(static_cast<std::size_t>(n));
       for (double& level : levels) level = 40 * uniform(random) - 5;
       levels.front() = 0;
       ASSERT_TRUE(std::isfinite(signal(BSpline{.levels = levels, .duration = 1e-4 * (1 + uniform(random))}).peak_slew())) << n;
