@@ -120,7 +120,7 @@ struct Piezo {
   double density = 0;                                     ///< [kg/m^3]
   double d31 = 0;                                         ///< [m/V], negative for the usual ceramics
   double e31 = std::numeric_limits<double>::quiet_NaN();  ///< [C/m^2], instead of d31
-  /// Of the layer between its electrodes; NaN: not known, and the charging of the layer is not counted.
+  /// That of the layer between its electrodes; NaN: it is not known, and the charging of the layer is not counted.
   double relative_permittivity = std::numeric_limits<double>::quiet_NaN();
 };
 

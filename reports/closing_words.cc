@@ -87,7 +87,7 @@ std::string open_clause(const Actor& actor, const FigureValues& figures) {
       std::isfinite(settling) ? ", and settles after " + quantity(settling, "s") : ", and has not settled when the window ends");
 }
 
-// Of a run that began closed, which lands nowhere.
+// A run that began closed lands nowhere.
 std::string opening_clause(const Actor& actor, const FigureValues& figures, const std::string& end) {
   const double settling = figures[&Metrics::open_settling_time];
   if (!std::isfinite(settling))

@@ -667,7 +667,7 @@ class Lanes {
     }
   }
 
-  // At an event.
+  // An event begins or ends a phase of a touch, or crosses the plane.
   void pass(std::size_t l) {
     if constexpr (Laws::has_memory) {
       if (layout_.remembers && pass_within_touch(l)) return go_on_after_event(l);
@@ -679,7 +679,7 @@ class Lanes {
     go_on_after_event(l);
   }
 
-  // At an event between two phases of a touch; false at the plane.
+  // The event may lie between two phases of a touch; false: it lies at the plane.
   bool pass_within_touch(std::size_t l) {
     Lane& lane = lane_[l];
     if (!lane.touching) return false;
@@ -724,7 +724,7 @@ class Lanes {
     steady_[l] = unloading || in_dent ? shifted + depth * (s.strength / s.unloading_stiffness) : plane + depth;
   }
 
-  // At a crossing of the plane.
+  // The contact point crosses the plane.
   void pass_plane(std::size_t l) {
     Lane& lane = lane_[l];
     const double t = t_[l], speed = speed_[l];
@@ -912,7 +912,7 @@ class Lanes {
   M starting_{false};  // spends a round to find its accelerations
   M to_event_{false};  // its target is a crossing of the plane
   M special_{false};   // either of both, or idle
-  // Of a contact with a memory.
+  // A contact with a memory has phases.
   M loading_{false}, unloading_{false}, in_dent_{false};
   V low_, high_, shift_;  // edges of the phase, and the depth of the dent [m]
   V until_;               // ends with the first step beyond [s]

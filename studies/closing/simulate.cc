@@ -271,7 +271,7 @@ bool has_opened(const Trajectory& run) {
   return run.began_closed && !run.touches.empty() && std::isfinite(run.touches.back().end);
 }
 
-// Of a run that began closed: the state in which it began, and the one in which it ends, where more modes deny them.
+// A run that began closed loses the state in which it began, or the one in which it ends, where more modes deny them.
 void judge_opening_with_more_modes(Closing& c, const PreparedScene& prepared, const std::vector<Signal>& signals) {
   const ModeLadder ladder(prepared);
   if (!ladder.exists()) return;

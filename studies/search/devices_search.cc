@@ -132,7 +132,7 @@ DevicesSearch::DevicesSearch(const SceneFile& file, const OptimizeOptions& optio
   fit_budget();
 }
 
-// Of usual closings a race has as many as its work allows, and so many that its searches tell something.
+// A race has as many of the usual closings as its work allows, and so many that its searches tell something.
 void DevicesSearch::fit_budget() {
   race_length_ = devices_.closings;
   if (!devices_.counts_work) return;

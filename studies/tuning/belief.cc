@@ -138,7 +138,7 @@ class Learner {
     find_mode(last);
     return sampled();
   }
-  /// From now on the ratio of the gaps is that of the scene.
+  /// The ratio of the gaps is that of the scene from now on.
   void pin_gap_ratio() { pins_ratio_ = true; }
   /// |z|^2 + sum of r^2 of the best device that is found from there.
   [[nodiscard]] double misfit_from(const VectorXd& start) const {

@@ -427,7 +427,7 @@ TEST(ClosedStart, IsNamedWhereTheOpenOneDoesNotExistAndTakenWhereItIsAskedFor) {
   for (const char* none : {"initial_contact_time_s", "impact_velocity_m_s", "bounce_time_s", "peak_contact_force_N"})
     EXPECT_TRUE(j["metrics"][none].is_null()) << none;
   EXPECT_THAT(here.run({"report", "run"}).out, HasSubstr("begins closed, opens, and is at rest from"));
-  // Of the trajectory: it begins on the contact, and ends open.
+  // The trajectory begins on the contact, and ends open.
   std::istringstream rows(read(here.path() / "run/trajectory.csv"));
   std::string line, first, last;
   std::getline(rows, line);

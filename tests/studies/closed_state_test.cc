@@ -312,7 +312,7 @@ TEST(PullThrough, IsFoundHoweverNarrowTheWindowAboveTheReleaseVoltage) {
     const double scanned = last_held(model, range.release);
     EXPECT_GE(range.pulled_through, scanned * (1 - precision)) << kc;
     EXPECT_LE(range.pulled_through, (range.release + (scanned - range.release) * (1 + step)) * (1 + precision)) << kc;
-    // From a hold level beyond the window, too.
+    // A hold level beyond the window leads there, too.
     const std::vector<double> beyond{1.2 * end};
     EXPECT_NEAR(pull_through_voltage(model, 0, beyond), end, precision * end) << kc;
   }
