@@ -270,8 +270,8 @@ TEST(Lanes, MeasureTheForceAsOneAtATimeDoes) {
       }
     }
   }
-  if (vectors_here().empty()) return;
-  for (const int count : {steady, lost, opened, kept}) EXPECT_GT(count, 5);
+  const auto ways = static_cast<int>(vectors_here().size());
+  for (const int count : {steady, lost, opened, kept}) EXPECT_GE(count, 3 * ways);
 }
 
 TEST(Lanes, GiveTheSameBitsWhateverTheirNumberAndCompany) {
