@@ -121,9 +121,13 @@ std::string summary(const Recording& recording) {
     names.push_back(printable_line(channel.name));
     if (!channel.unit.empty()) names.back() += " [" + channel.unit + "]";
   }
-  std::string text = fmt::format("{}: {}, {} samples", recording.format, fmt::join(names, ", "), recording.rows());
+  const bool is_one = recording.rows() == 1;
+  std::string text =
+      fmt::format("{}: {}, {} {}", recording.format, fmt::join(names, ", "), recording.rows(), is_one ? "sample" : "samples");
   if (recording.times.empty()) {
     text += ", no times";
+  } else if (is_one) {
+    text += fmt::format(", at {}", engineering(axis.first, "s", digits));
   } else {
     text += fmt::format(", every {}, from {} to {}", engineering(axis.interval, "s", digits),
                         engineering(axis.first, "s", digits), engineering(axis.last, "s", digits));

@@ -224,6 +224,7 @@ TEST(Recording, NoiseIsRefusedAtOnce) {
 TEST(Recording, ASummaryIsOneLine) {
   const std::string line = summary(read("Time (us),A (V),B (mV)\n-1,0,1\n0,1,2\n1,2,3\n"));
   EXPECT_EQ(line, "columns: A [V], B [mV], 3 samples, every 1 us, from -1 us to 1 us");
+  EXPECT_EQ(summary(read("Time (us),A (V)\n22,17.5\n")), "columns: A [V], 1 sample, at 22 us") << "it has no interval";
 }
 
 }  // namespace
