@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import math
+import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -141,7 +142,7 @@ class Closing:
         """The whole result, a `Record` of the JSON that `softland simulate` writes, with its files."""
         return Outcome(self._native.outcome())
 
-    def save(self, folder: str) -> Any:
+    def save(self, folder: str | os.PathLike[str]) -> Any:
         """Writes result.json, report.html, gap.svg and trajectory.csv into a folder, as `softland simulate --out` does."""
         return self.result().save(folder)
 

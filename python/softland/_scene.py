@@ -542,8 +542,8 @@ class Scene(MutableMapping[str, Any]):
 
     def evaluator(
         self,
-        keys: Sequence[str],
-        figures: Sequence[str],
+        keys: str | Sequence[str],
+        figures: str | Sequence[str],
         *,
         vdp: Literal["nominal", "each"] = "nominal",
         jobs: int | None = None,
