@@ -281,15 +281,10 @@ class Lanes {
       knot_s_[k] = s[k] + per * (x * x * (3.0 * f0 + x * (4.0 * f1 + x * 5.0 * f2)));
       knot_c_[k] = c[k] + per * per * (x * (6.0 * f0 + x * (12.0 * f1 + x * 20.0 * f2)));
     }
-    // A curve stays among the control points of its Bernstein form.
     M suspect(false), turns(false);
     const V g = h * share;
     for (int k = 0; k < pieces; ++k) {
-      const V b0 = knot_p_[k], b5 = knot_p_[k + 1], s0 = g * knot_s_[k], s1 = g * knot_s_[k + 1];
-      const V c0 = g * g * knot_c_[k], c1 = g * g * knot_c_[k + 1];
-      const V b1 = b0 + 0.2 * s0, b2 = b0 + 0.4 * s0 + 0.05 * c0, b4 = b5 - 0.2 * s1, b3 = b5 - 0.4 * s1 + 0.05 * c1;
-      const V most = max(max(max(b0, b1), max(b2, b3)), max(b4, b5));
-      const V least = min(min(min(b0, b1), min(b2, b3)), min(b4, b5));
+      const auto [least, most] = reach(k, g);
       suspect = suspect || (!touching_ && most > plane_) || (touching_ && least < plane_);
       turns = turns || (knot_s_[k] * knot_s_[k + 1] < V(0));
     }
@@ -300,18 +295,24 @@ class Lanes {
     turns_ = turns;
   }
 
-  // Lanes whose point may leave the phase of a contact with a memory, by the control points as above; loading ends where it
-  // turns.
+  struct Reach {
+    V least, most;
+  };
+  // Places that the curve of a piece stays between: its control points in Bernstein form; `g`: what the piece lasts.
+  [[nodiscard]] [[gnu::always_inline]] Reach reach(int k, V g) const {
+    const V b0 = knot_p_[k], b5 = knot_p_[k + 1], s0 = g * knot_s_[k], s1 = g * knot_s_[k + 1];
+    const V c0 = g * g * knot_c_[k], c1 = g * g * knot_c_[k + 1];
+    const V b1 = b0 + 0.2 * s0, b2 = b0 + 0.4 * s0 + 0.05 * c0, b4 = b5 - 0.2 * s1, b3 = b5 - 0.4 * s1 + 0.05 * c1;
+    return {.least = min(min(min(b0, b1), min(b2, b3)), min(b4, b5)), .most = max(max(max(b0, b1), max(b2, b3)), max(b4, b5))};
+  }
+
+  // Lanes whose point may leave the phase of a contact with a memory; loading ends where it turns.
   [[nodiscard]] M leaves_phase(V h) const {
     constexpr double share = 1.0 / pieces;
     const V g = h * share;
     M suspect(false);
     for (int k = 0; k < pieces; ++k) {
-      const V b0 = knot_p_[k], b5 = knot_p_[k + 1], s0 = g * knot_s_[k], s1 = g * knot_s_[k + 1];
-      const V c0 = g * g * knot_c_[k], c1 = g * g * knot_c_[k + 1];
-      const V b1 = b0 + 0.2 * s0, b2 = b0 + 0.4 * s0 + 0.05 * c0, b4 = b5 - 0.2 * s1, b3 = b5 - 0.4 * s1 + 0.05 * c1;
-      const V most = max(max(max(b0, b1), max(b2, b3)), max(b4, b5));
-      const V least = min(min(min(b0, b1), min(b2, b3)), min(b4, b5));
+      const auto [least, most] = reach(k, g);
       suspect = suspect || most > high_ || least < low_ || (loading_ && knot_s_[k + 1] < V(0));
     }
     return suspect;

@@ -61,15 +61,6 @@ double pressed_to(double volts) {
   return y;
 }
 
-std::string refusal(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return {};
-}
-
 TEST(ClosedStart, NamesTheOtherStateAndTheKeyWhereTheOneAskedForDoesNotExist) {
   const Closing open = simulate(prepare(relay()), true);
   EXPECT_EQ(open.metrics.status, Status::collapsed_at_rest);

@@ -62,15 +62,6 @@ class Ramp final : public OwnWaveform {
   OwnParameter rise_;
 };
 
-std::string refusal(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return {};
-}
-
 SceneFile quick_gold() { return gold_at_17_volts({"structure.modes=2"}); }
 
 // The search of a built-in step, and an own one of the same bounds.

@@ -25,15 +25,6 @@ const std::vector<Waveform>& plain_step() {
   return drives;
 }
 
-std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return {};
-}
-
 TEST(PracticeDevice, MovesAsTheSwitchOfItsOwnScene) {
   const PracticeDevice device(gold_at_17_volts(), exact_instruments());
   const PracticeClosing closing = device.close(1, plain_step(), window);
