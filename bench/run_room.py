@@ -17,6 +17,7 @@ ONE, THREE, TEN = ([f"driver.piezo.min_voltage=-{v} V", f"driver.piezo.max_volta
 LADDERS = [
     ("limit of the piezo", [("1 V", PZT, "pzt", ONE), ("3 V", PZT, "pzt", THREE), ("10 V", PZT, "pzt", TEN)]),
     ("limit of the electrode", [("1.5 Vdp", GOLD, "electrostatic", ["driver.main.max_voltage=1.5 Vdp"]),
+                                ("1.5 Vsp", GOLD, "electrostatic", ["driver.main.max_voltage=1.5 Vsp"]),
                                 ("3 Vdp", GOLD, "electrostatic", ["driver.main.max_voltage=3 Vdp"]),
                                 ("6 Vdp", GOLD, "electrostatic", ["driver.main.max_voltage=6 Vdp"])]),
     ("window", [("600 us", GOLD, "electrostatic", []), ("1800 us", GOLD, "electrostatic", ["simulate.duration=1800 us"])]),

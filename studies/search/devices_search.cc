@@ -15,6 +15,7 @@
 #include "studies/search/family_search.h"
 #include "studies/search/modes_of_search.h"
 #include "studies/search/search_work.h"
+#include "studies/search/usual_room.h"
 #include "studies/search/worse_than_step.h"
 
 namespace softland {
@@ -128,6 +129,7 @@ DevicesSearch::DevicesSearch(const SceneFile& file, const OptimizeOptions& optio
   // Those of the race first: the others are searched at paces of their own.
   while (raced_ < names_.size() && !is_quasi_static(names_[raced_])) ++raced_;
   if (raced_ < names_.size()) approach_ = settings_[raced_].space.quasi_static()->approach();
+  if (!devices_.is_of_before) usual_room_ = within_usual_room(raced_settings(), options_.actuator, names_);
   known_ = known_units(first().given, std::array{first().given.scene.calibration}, options.jobs, watch_).front();
   fit_budget();
 }
@@ -145,8 +147,9 @@ void DevicesSearch::fit_budget() {
 
 SearchEstimate DevicesSearch::estimate(SearchEstimate nominal) const {
   // Rows of the verdict over the whole window count as several closings of a search.
-  constexpr double rows = 20, searches = 1.5;
+  constexpr double rows = 20;
   const double one = device_share * (approach_ ? slow_approach : 1) * nominal.closing;
+  const double searches = usual_room_.empty() || devices_.are_a_budget ? 1.5 : 2.25;
   const double closings = searches * static_cast<double>(race_length_) + rows * static_cast<double>(devices_.verdict);
   nominal.closings = race_length_;
   nominal.has_fewer = nominal.has_fewer || race_length_ < devices_.closings;
@@ -195,15 +198,32 @@ void DevicesSearch::race_families(double reserved) {
   bounds_.emplace(closed(*others_, {}));
   watch_.tell("searching for the devices", 0);
   search_paces();
-  const std::vector<SearchSetting> raced(settings_.begin(), settings_.begin() + static_cast<std::ptrdiff_t>(raced_));
-  if (!raced.empty()) {
-    RaceOptions own = race_options();
-    if (!approach_) own.on_stage = [this](const Racer& leader) { look(leader); };
-    RaceResult found = race(raced, *cost_, aims_, own);
-    closings_ += found.closings;
-    std::ranges::move(found.racers, std::back_inserter(race_.racers));
-  }
+  if (raced_ > 0) race_all();
   watch_.throw_if_stopped();
+}
+
+std::vector<SearchSetting> DevicesSearch::raced_settings() const {
+  return {settings_.begin(), settings_.begin() + static_cast<std::ptrdiff_t>(raced_)};
+}
+
+// More volts make a search begin with what usual ones give: it would miss that in a wider box.
+void DevicesSearch::race_all() {
+  const std::vector<SearchSetting> raced = raced_settings();
+  RaceOptions own = race_options();
+  if (!approach_) own.on_stage = [this](const Racer& leader) { look(leader); };
+  std::vector<DriveWaveforms> begun;
+  if (!usual_room_.empty()) {
+    RaceOptions first = own;
+    first.memory = nullptr;  // whose keys do not tell limits
+    first.out_of_time = [this] { return gave_up_ || seconds() > race_end_ / 2; };
+    if (devices_.are_a_budget) first.closings /= 2;
+    own.closings /= 2;
+    race_in_usual_room_ = race(usual_room_, *cost_, aims_, first);
+    closings_ += race_in_usual_room_.closings;
+    if (!race_in_usual_room_.racers.empty()) begun.push_back(race_in_usual_room_.racers.front().waveforms);
+  }
+  race_ = race(raced, *cost_, aims_, own, begun);
+  closings_ += race_.closings;
 }
 
 std::vector<Pace> DevicesSearch::paces_of_search() const {
@@ -316,19 +336,26 @@ ChosenFrom DevicesSearch::candidate_of(const Racer& racer) const {
   return c;
 }
 
+// The best of a race by either measure.
+void DevicesSearch::take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool is_in_usual_room) const {
+  for (const bool by_share : {false, true}) {
+    std::ranges::stable_sort(raced.racers, {}, [&](const Racer& r) { return by_share ? r.share : r.tail; });
+    for (std::size_t i = 0; i < std::min(most_of_race, raced.racers.size()); ++i) {
+      ChosenFrom one = candidate_of(raced.racers[i]);
+      one.is_in_usual_room = is_in_usual_room;
+      if (std::ranges::none_of(pool, [&](const ChosenFrom& other) { return same_candidate(one, other); }))
+        pool.push_back(std::move(one));
+    }
+  }
+}
+
 // What the race came to, on other devices, beside the plain step.
 void DevicesSearch::choose() {
   watch_.tell("choosing on other devices", 0);
   std::vector<ChosenFrom> pool;
   for (const Racer& one : paced_) pool.push_back(candidate_of(one));
-  for (const bool by_share : {false, true}) {
-    std::ranges::stable_sort(race_.racers, {}, [&](const Racer& r) { return by_share ? r.share : r.tail; });
-    for (std::size_t i = 0; i < std::min(most_of_race, race_.racers.size()); ++i) {
-      ChosenFrom one = candidate_of(race_.racers[i]);
-      if (std::ranges::none_of(pool, [&](const ChosenFrom& other) { return same_candidate(one, other); }))
-        pool.push_back(std::move(one));
-    }
-  }
+  take(pool, race_in_usual_room_, true);
+  take(pool, race_, false);
   for (ChosenFrom& one : pool) place(std::move(one));
 }
 
@@ -370,6 +397,7 @@ void DevicesSearch::place(ChosenFrom one) {
   }
   Placed again = *known;
   again.candidate.measure = one.measure;
+  again.candidate.is_in_usual_room = one.is_in_usual_room;
   again.candidate.closings = one.closings;
   placed_.push_back(std::move(again));
 }
@@ -403,18 +431,33 @@ bool DevicesSearch::Placed::is_before(const Placed& other) const {
   return rank < other.rank;
 }
 
+// Of candidates that cost a little more than the least the soonest comes first. Volts beyond the usual ones find sooner ones that
+// cost as much: none goes before what usual volts give that costs more than that.
+void DevicesSearch::prefer_sooner(std::vector<Placed>& sorted) {
+  const auto soonest = [&](double most, bool in_usual_room) {
+    double least = std::numeric_limits<double>::infinity();
+    auto found = sorted.end();
+    for (auto one = sorted.begin(); one != sorted.end(); ++one) {
+      const ChosenFrom& c = one->candidate;
+      if (!c.is_good_enough || (in_usual_room && !c.is_in_usual_room)) continue;
+      least = std::min(least, one->rank);
+      if (!(one->rank <= std::min(most, little_more * least))) continue;
+      if (found == sorted.end() || c.median_touch < found->candidate.median_touch) found = one;
+    }
+    return found;
+  };
+  const auto usual = soonest(std::numeric_limits<double>::infinity(), true);
+  const double most = usual == sorted.end() ? std::numeric_limits<double>::infinity() : usual->rank;
+  const auto first = soonest(most, false);
+  std::rotate(sorted.begin(), first, first + 1);
+}
+
 std::vector<ChosenFrom> DevicesSearch::placed() const {
   std::vector<Placed> sorted = placed_;
   std::ranges::stable_sort(sorted, [](const Placed& a, const Placed& b) { return a.is_before(b); });
   // Without a stable path the fall from the fold is the limit: waiting longer gains little there.
-  if (!approach_ && free_.until > 0 && !sorted.empty() && sorted.front().candidate.is_good_enough && !sorted.front().lands_half) {
-    auto soonest = sorted.begin();
-    for (auto one = sorted.begin(); one != sorted.end(); ++one) {
-      const bool is_near = one->candidate.is_good_enough && one->rank <= little_more * sorted.front().rank;
-      if (is_near && one->candidate.median_touch < soonest->candidate.median_touch) soonest = one;
-    }
-    std::rotate(sorted.begin(), soonest, soonest + 1);
-  }
+  if (!approach_ && free_.until > 0 && !sorted.empty() && sorted.front().candidate.is_good_enough && !sorted.front().lands_half)
+    prefer_sooner(sorted);
   // A few devices without a path make costs alike: of what they do not tell apart the softest for 95 % is preferred.
   if (approach_ && !sorted.empty() && sorted.front().candidate.is_good_enough) {
     auto softest = sorted.begin();

@@ -76,6 +76,7 @@ struct ChosenFrom {
   double median_touch = Metrics::unset;                                ///< [s]
   double waited = Metrics::unset;                                      ///< 95 % quantile of what DevicesSearch::free() counts [s]
   bool is_good_enough = false;                                         ///< as the choice asks
+  bool is_in_usual_room = false;  ///< of the race within usual limits, where the scene's are wider
 };
 
 /// The share of devices of which most land, which decides where it is as much.
@@ -174,10 +175,14 @@ class DevicesSearch {
 
     [[nodiscard]] bool is_before(const Placed& other) const;
   };
+  static void prefer_sooner(std::vector<Placed>& sorted);
   using Found = std::optional<DriveWaveforms>;
 
   void fit_budget();
   void race_families(double reserved);
+  [[nodiscard]] std::vector<SearchSetting> raced_settings() const;
+  void race_all();
+  void take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool is_in_usual_room) const;
   [[nodiscard]] std::vector<Pace> paces_of_search() const;
   void search_paces();
   void make_aims(const std::vector<DeviceOutcome>& step, const FreeTime& free);
@@ -209,8 +214,9 @@ class DevicesSearch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   bool spread_assumed_ = false;
   std::vector<SearchSetting> settings_;
-  std::size_t raced_ = 0;           // of the settings, those of families that are raced
-  std::vector<std::string> names_;  // of the families
+  std::size_t raced_ = 0;                  // of the settings, those of families that are raced
+  std::vector<SearchSetting> usual_room_;  // those within the usual limits; none where the scene's are no wider
+  std::vector<std::string> names_;         // of the families
   std::optional<StableApproach> approach_;
   double share_with_path_ = Metrics::unset;
   std::optional<KnownUnits> known_;
@@ -224,7 +230,7 @@ class DevicesSearch {
   std::optional<RobustCost> cost_, others_;     // of the race, and of the choice
   FreeTime free_;
   std::vector<Racer> paced_;
-  RaceResult race_;
+  RaceResult race_, race_in_usual_room_;
   std::optional<Bounds> bounds_;
   std::vector<DeviceOutcome> step_on_others_;  // closings under the plain step, until they are steady
   std::function<void()> looked_;

@@ -252,12 +252,12 @@ class Race {
 }  // namespace
 
 RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims,
-                const RaceOptions& options) {
+                const RaceOptions& options, const std::vector<DriveWaveforms>& begun) {
   std::vector<Runner> runners;
   for (std::size_t family = 0; family < settings.size(); ++family) {
     for (const bool by_share : {false, true}) runners.push_back({.family = family, .by_share = by_share, .x = {}});
   }
-  return Race(settings, 0, cost, aims, options).run(std::move(runners), {}, false);
+  return Race(settings, 0, cost, aims, options).run(std::move(runners), begun, false);
 }
 
 RaceResult race_alone(const SearchSetting& setting, std::size_t family, const RobustCost& cost, const RaceAims& aims,

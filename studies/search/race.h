@@ -78,8 +78,9 @@ struct RaceResult {
 };
 
 /// `settings` differ in SearchSetting::family and space alone; `cost` is on raced_devices of them.
+/// `begun`: waveforms to begin with as well.
 [[nodiscard]] RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims,
-                              const RaceOptions& options);
+                              const RaceOptions& options, const std::vector<DriveWaveforms>& begun = {});
 
 /// One search through all rungs, of one family by one measure. `begun`: waveforms to begin with as well.
 [[nodiscard]] RaceResult race_alone(const SearchSetting& setting, std::size_t family, const RobustCost& cost,

@@ -126,6 +126,37 @@ TEST(ForDevices, RanksTheDrawingsCandidatesAgainWhereThereIsNoRace_optimized) {
   EXPECT_LE(cost_of(found, "for the devices"), 1.02 * cost_of(found, "plain step"));
 }
 
+// What the winner costs on the devices of the choice.
+double least_cost(const SceneFile& file, std::uint64_t seed) {
+  const ForDevicesResult found = searched(file, race_closings / 2, seed);
+  EXPECT_FALSE(found.candidates.empty());
+  return found.candidates.front().tail;
+}
+
+TEST(ForDevices, EndNoWorseWithMoreRoom_slow) {
+  constexpr double most = 1.03;
+  const char* const limit = "driver.main.max_voltage=";
+  struct Ladder {
+    const char* of;
+    std::vector<std::string> steps;
+  };
+  const std::vector<Ladder> ladders{
+      {"volts", {std::string(limit) + "1.5 Vsp", std::string(limit) + "2 Vsp", std::string(limit) + "5 Vsp"}},
+      {"window", {"simulate.duration=200 us", "simulate.duration=600 us"}}};
+  for (const char* const scene : {"gap.contact=2 um", "gas.pressure=\"10 kPa\"", "gap.contact=1.8 um"}) {
+    for (const std::uint64_t seed : {1, 2}) {
+      for (const Ladder& ladder : ladders) {
+        double narrowest = 0;
+        for (const std::string& step : ladder.steps) {
+          const double cost = least_cost(quick_gold({scene, step}), seed);
+          if (narrowest == 0) narrowest = cost;
+          EXPECT_LE(cost, most * narrowest) << scene << ", seed " << seed << ", " << step;
+        }
+      }
+    }
+  }
+}
+
 TEST(ForDevices, AssumesASpreadWhereTheSceneHasNone_optimized) {
   SceneFile file = quick_gold();
   file.erase("spread");
