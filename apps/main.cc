@@ -13,6 +13,7 @@
 #include "apps/interrupt.h"
 #include "apps/output.h"
 #include "apps/streams.h"
+#include "apps/studies.h"
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
 #include "base/shell_word.h"
@@ -51,8 +52,8 @@ void describe(CLI::App& app) {
 
 // What the words of the command line ask for goes into the options of `app`; where they ask only for help or the version, that
 // is printed and there is no verb to run.
-bool parse(CLI::App& app, std::vector<std::string> words) {
-  if (!words.empty() && !words.front().starts_with("-") && find_named(all_verbs, words.front()) == nullptr)
+bool parse(CLI::App& app, std::vector<std::string> words, const std::vector<std::string>& names) {
+  if (!words.empty() && !words.front().starts_with("-") && std::ranges::find(names, words.front()) == names.end())
     throw InvalidInput("there is no verb '" + words.front() + "' (see softland --help)");
   try {
     std::reverse(words.begin(), words.end());  // CLI11 takes the words from the back
@@ -65,7 +66,7 @@ bool parse(CLI::App& app, std::vector<std::string> words) {
   } catch (const CLI::ParseError& error) {
     const auto chosen = app.get_subcommands();
     if (chosen.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
-      throw InvalidInput("a verb is required: " + listed(all_verbs) + " (see softland --help)");
+      throw InvalidInput("a verb is required: " + in_words(names, " or ") + " (see softland --help)");
     throw InvalidInput(std::string(error.what()) + " (see softland " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
                        "--help)");
   }
@@ -82,12 +83,18 @@ int run(int argc, char** argv) {
       "softland lands MEMS switches softly: it simulates the closing of a described switch and searches the open-loop drive\n"
       "waveform that closes it fast and without bounce.\n"};
   describe(app);
-  std::deque<Verb> verbs;
-  for (const VerbRow& row : all_verbs)
-    row.add(verbs.emplace_back(*app.add_subcommand(row.name, row.about)->group("Verbs"), common));
-  if (!parse(app, words)) return exit_done;
+  std::deque<Verb> declared;
+  std::vector<std::string> names;
+  const auto add = [&](const char* name, const char* about) -> Verb& {
+    names.emplace_back(name);
+    return declared.emplace_back(*app.add_subcommand(name, about)->group("Verbs"), common);
+  };
+  for (const VerbRow& row : first_verbs) row.add(add(row.name, row.about));
+  for (const verbs::Study& study : verbs::all_studies()) add_study(add(study.name, study.about), study);
+  for (const VerbRow& row : other_verbs) row.add(add(row.name, row.about));
+  if (!parse(app, words, names)) return exit_done;
 
-  const auto chosen = std::find_if(verbs.begin(), verbs.end(), [](const Verb& verb) { return verb.chosen(); });
+  const auto chosen = std::find_if(declared.begin(), declared.end(), [](const Verb& verb) { return verb.chosen(); });
   try {
     return chosen->run();
   } catch (const OutputInterrupted&) {

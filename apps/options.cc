@@ -2,8 +2,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "sampling/points.h"
-
 namespace softland::apps {
 
 void Verb::positional(const char* name, std::string& value, const std::string& about, bool required) {
@@ -16,8 +14,10 @@ void Verb::more(const char* name, std::vector<std::string>& values, const std::s
 }
 
 void Verb::option(const char* name, std::string& value, const char* word, const std::string& about) {
-  options_.add_option(name, value, about)->type_name(word)->check([](const std::string& text) {
-    return text.empty() ? "must not be empty" : "";
+  options_.add_option(name, value, about)->type_name(word)->check([](const std::string& text) -> std::string {
+    if (text.empty()) return "must not be empty";
+    // CLI11 takes the next word whatever it is.
+    return text.starts_with("--") ? "a value is missing: " + text + " is an option" : "";
   });
 }
 
@@ -43,9 +43,7 @@ void Verb::with_scene(bool required, bool or_result) {
   with_quiet();
 }
 
-void Verb::with_scene_or_result() {
-  positional("SCENE", common_.scene, "scene file with [spread], folder that --out named, or result.json");
-}
+void Verb::with_scene(const char* what) { positional("SCENE", common_.scene, what); }
 
 void Verb::with_set(const std::string& about) { repeated("--set", common_.set, "KEY=VALUE", about + "; may be repeated"); }
 
@@ -66,10 +64,6 @@ void Verb::with_seed(std::optional<std::string>& value, const std::string& same)
 }
 
 void Verb::with_jobs(std::optional<std::string>& value, const std::string& about) { optional("--jobs", value, "N", about); }
-
-void Verb::with_points(std::string& value) {
-  option("--points", value, "NAME", "how they are chosen: " + first_is_default(listed(point_sets)));
-}
 
 bool Verb::chosen() const { return options_.parsed(); }
 

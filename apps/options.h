@@ -48,8 +48,8 @@ class Verb {
 
   /// SCENE, --set and --quiet.
   void with_scene(bool required = true, bool or_result = false);
-  /// SCENE, which may be a result that holds one: scene_of_result() in apps/scenes.h.
-  void with_scene_or_result();
+  /// SCENE alone; `what` it may be.
+  void with_scene(const char* what);
   void with_set(const std::string& about);
   void with_quiet();
   void with_json();
@@ -60,8 +60,6 @@ class Verb {
   void with_seed(std::optional<std::string>& value, const std::string& same);
   void with_jobs(std::optional<std::string>& value,
                  const std::string& about = "threads (default: one per core); the result does not depend on them");
-  /// --points, one of `point_sets` (sampling/points.h).
-  void with_points(std::string& value);
 
   /// What the verb does; the number is the exit status (apps/exit_status.h). What keeps it from its end is an exception: see
   /// apps/failure.h.

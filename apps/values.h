@@ -13,7 +13,6 @@
 #include "base/require.h"
 #include "base/shortened.h"
 #include "config/units.h"
-#include "sampling/points.h"
 
 namespace softland::apps {
 
@@ -31,14 +30,8 @@ template <class Number>
 /// Threads, one per core unless --jobs says how many.
 [[nodiscard]] int job_count(const std::optional<std::string>& option);
 
-/// `samples`, unless --samples says how many, of `least` to `most`.
-[[nodiscard]] std::uint64_t sample_count(const std::optional<std::string>& option, std::uint64_t samples, std::uint64_t least,
-                                         std::uint64_t most);
-
 /// `seed`, unless --seed says which.
 [[nodiscard]] std::uint64_t seed_of(const std::optional<std::string>& option, std::uint64_t seed);
-
-[[nodiscard]] PointSet point_set(const std::string& option);
 
 /// A quantity of this dimension, at least 0 [SI unit].
 [[nodiscard]] double quantity_of(const char* option, const std::string& text, const Dimension& due);

@@ -97,10 +97,10 @@ template <class Row, std::size_t n>
 
 /// "bounce, count and energy", of a list of texts.
 template <class Texts>
-[[nodiscard]] std::string in_words(const Texts& texts) {
+[[nodiscard]] std::string in_words(const Texts& texts, const std::string& last = " and ") {
   std::string words;
   std::size_t i = 0;
-  for (const auto& text : texts) words += (i == 0 ? "" : i + 1 == texts.size() ? " and " : ", ") + std::string(text), ++i;
+  for (const auto& text : texts) words += (i == 0 ? "" : i + 1 == texts.size() ? last : ", ") + std::string(text), ++i;
   return words;
 }
 

@@ -11,34 +11,16 @@
 #include <utility>
 #include <variant>
 
-#include "config/assumed_spread.h"
-#include "config/bench.h"
 #include "config/units.h"
 #include "model/mode_shapes.h"
 #include "model/recorded_motion.h"
-#include "reports/accuracy_report.h"
-#include "reports/effects_report.h"
 #include "reports/files.h"
-#include "reports/fit_report.h"
-#include "reports/limit_report.h"
-#include "reports/measurement_report.h"
-#include "reports/pull_in_words.h"
-#include "reports/release_report.h"
 #include "reports/result_document.h"
 #include "reports/result_json.h"
 #include "reports/result_maker.h"
-#include "reports/robustness_report.h"
 #include "reports/svg.h"
-#include "studies/closing/accuracy.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/certify.h"
-#include "studies/closing/effects.h"
-#include "studies/closing/sent_signals.h"
-#include "studies/devices/robustness.h"
-#include "studies/fitting/fit.h"
-#include "studies/search/identification.h"
-#include "studies/search/limit.h"
-#include "studies/search/opening.h"
 #include "waveforms/export.h"
 
 namespace softland::python {
@@ -207,185 +189,6 @@ PyClosing simulate(PyScene& scene, bool errors, bool certified, int jobs, const 
   });
 }
 
-template <class Named>
-auto named(const Named& all, const std::string& option, const std::string& name) {
-  const auto* found = find_named(all, name);
-  require(found != nullptr, [&] { return fmt::format("{} {}: must be {}", option, name, listed(all)); });
-  return found->value;
-}
-
-Outcome pull_in(PyScene& scene, const py::object& progress) {
-  Run run(progress);
-  const auto p = scene.ready(false, run);
-  return {.json = run([&](const Watch& watch) { return json_text(pull_in_json(*p, watch)); })};
-}
-
-Outcome effects(PyScene& scene, std::string command, const py::object& progress) {
-  Run run(progress);
-  const auto p = scene.ready(false, run);
-  return {.json = run([&](const Watch& watch) {
-            const Effects found = compare_effects(*p, watch);
-            watch.throw_if_stopped();
-            return json_text(effects_json(*p, found, {.command = command}));
-          })};
-}
-
-Outcome accuracy(PyScene& scene, std::string command, const py::object& progress) {
-  Run run(progress);
-  const auto p = scene.ready(false, run);
-  return run([&](const Watch& watch) {
-    AccuracyOptions options{.on_progress =
-                                [&](std::size_t done, std::size_t of) {
-                                  watch.tell("settings",
-                                             static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, of)));
-                                },
-                            .stop = watch.stop};
-    const auto found = std::make_shared<const AccuracyStudy>(study_accuracy(*p, options));
-    watch.throw_if_stopped();
-    Outcome outcome{.json = json_text(accuracy_json(*p, *found, {.command = command}))};
-    if (!found->rows.empty())
-      outcome.files = {
-          {"accuracy.json", [p, found, command] { return json_text(accuracy_json(*p, *found, {.command = command}), 2); }},
-          {"accuracy.svg", [p, found] { return accuracy_svg(p->scene.title, *found); }},
-          {"report.html", [p, found, command] { return page_html(accuracy_document(*p, *found, {.command = command})); }}};
-    return outcome;
-  });
-}
-
-Outcome limit(PyScene& scene, const std::string& actuator, std::optional<double> impact_velocity, bool curves,
-              std::string command, const py::object& progress) {
-  LimitOptions options{.actuator = named(actuators, "actuator", actuator), .impact_velocity = impact_velocity, .curves = curves};
-  require(!impact_velocity || *impact_velocity > 0, "impact_velocity: must be a speed above 0 m/s");
-  Run run(progress);
-  const SceneFile file = scene.file;
-  return run([&](const Watch& watch) {
-    const auto found = std::make_shared<const Limit>(softland::limit(file, options, watch));
-    watch.throw_if_stopped();
-    Outcome outcome{.json = json_text(limit_json(*found, {.command = command}))};
-    outcome.files = {{"limit.json", [found, command] { return json_text(limit_json(*found, {.command = command}), 1) + "\n"; }},
-                     {"limit.svg", [found] { return limit_svg(*found); }}};
-    if (found->landing) {
-      outcome.files["best.toml"] = [found] { return found->landing->scene.scene.file.text(); };
-      outcome.files["best.csv"] = [found] { return told_csv(found->landing->scene); };
-    }
-    return outcome;
-  });
-}
-
-Outcome opening(PyScene& scene, const std::string& actuator, double band, long budget, std::uint64_t samples, std::uint64_t seed,
-                int jobs, std::string command, const py::object& progress) {
-  require(band > 0 && band < 1, "band: must be a share of the contact gap above 0 and below 1");
-  require(budget >= 1, "budget: must be at least 1 evaluation");
-  const OpeningOptions options{.actuator = named(actuators, "actuator", actuator),
-                               .band = band,
-                               .max_evaluations = budget,
-                               .seed = seed,
-                               .jobs = jobs,
-                               .devices = samples};
-  Run run(progress);
-  const SceneFile file = scene.file;
-  return run([&](const Watch& watch) {
-    const auto found = std::make_shared<const OpeningResult>(search_opening(file, options, watch));
-    watch.throw_if_stopped();
-    return Outcome{
-        .json = json_text(release_json(*found, {.command = command})),
-        .files = {{"release.json", [found, command] { return json_text(release_json(*found, {.command = command}), 1) + "\n"; }},
-                  {"release.svg", [found] { return release_svg(*found); }},
-                  {"release.csv", [found] { return release_csv(*found); }},
-                  {"release.toml", [found] { return found->scene->text(); }}}};
-  });
-}
-
-struct KeptRobustness {
-  std::shared_ptr<const PreparedScene> nominal;
-  Robustness found;
-  std::unique_ptr<RobustnessReport> report;
-};
-
-Outcome judged(PyScene& scene, std::string name, const py::dict& others, std::uint64_t samples, std::uint64_t seed,
-               const std::string& points, bool other_ways_too, int jobs, std::string command, const py::object& progress) {
-  require(samples >= 1 && samples <= SamplePoints::largest_size,
-          [&] { return fmt::format("samples {}: must be from 1 to {}", samples, SamplePoints::largest_size); });
-  const RobustnessOptions options{
-      .samples = samples, .seed = seed, .points = named(point_sets, "points", points), .jobs = jobs, .worth_of_measuring = true};
-  PyScene spread{.file = scene.file, .directory = scene.directory};
-  const bool assumed = assume_spread(spread.file);
-  Run run(progress);
-  const auto kept = std::make_shared<KeptRobustness>();
-  kept->nominal = assumed ? spread.ready(true, run) : scene.ready(true, run);
-  const PreparedScene& nominal = *kept->nominal;
-  const Calibration& calibration = nominal.scene.calibration;
-  std::vector<NamedDrive> drives{{.name = std::move(name), .waveforms = nominal.drives.waveforms(), .calibration = calibration}};
-  for (const auto& [other, given] : others) {
-    NamedDrive drive{.name = other.cast<std::string>(), .waveforms = nominal.drives.waveforms(), .calibration = calibration};
-    for (auto& [of, waveform] : driven_by(kept->nominal, waveforms_of(given.cast<py::dict>(), run))->drives.waveforms())
-      drive.waveforms[of] = waveform;
-    drives.push_back(std::move(drive));
-  }
-  return run([&](const Watch& watch) {
-    kept->found = robustness(nominal, drives, options, watch);
-    watch.throw_if_stopped();
-    kept->report = std::make_unique<RobustnessReport>(RobustnessReport{
-        .nominal = nominal, .found = kept->found, .options = options, .command = command, .spread_assumed = assumed});
-    add_details(*kept->report, other_ways_too, watch);
-    watch.throw_if_stopped();
-    return Outcome{.json = json_text(robustness_json(*kept->report)),
-                   .files = {{"robustness.json", [kept] { return json_text(robustness_json(*kept->report), 2); }},
-                             {"devices.csv", [kept] { return robustness_csv(*kept->report); }},
-                             {"robustness.html", [kept] { return page_html(robustness_document(*kept->report)); }}}};
-  });
-}
-
-Outcome calibrated(PyScene& scene, const std::map<std::string, double>& errors, const std::vector<double>& steps,
-                   std::uint64_t samples, std::uint64_t seed, int jobs, std::string command, const py::object& progress) {
-  IdentificationOptions options{.samples = samples, .seed = seed, .jobs = jobs};
-  if (!steps.empty()) options.steps = steps;
-  const std::map<std::string, double*> all{{"Vdp", &options.pull_in_error},     {"Vsp", &options.static_pull_in_error},
-                                           {"release", &options.release_error}, {"frequency", &options.frequency_error},
-                                           {"piezo", &options.piezo_error},     {"time", &options.time_error}};
-  for (const auto& [what, error] : errors) {
-    const auto found = all.find(what);
-    require(found != all.end() && error >= 0 && error <= 0.5, [&] {
-      return fmt::format("errors {}: must be Vdp, Vsp, release, frequency, piezo or time with an error from 0 to 0.5", what);
-    });
-    *found->second = error;
-  }
-  Run run(progress);
-  return {.json = run([&](const Watch& watch) {
-            const IdentificationStudy found = identify(scene.file, options, watch);
-            watch.throw_if_stopped();
-            return json_text(measurements_json(found, options, command));
-          })};
-}
-
-Outcome fitted(PyScene& scene, const std::string& data, const std::vector<std::string>& unknowns,
-               const std::vector<std::string>& shared, const std::string& loss, std::optional<std::size_t> starts,
-               std::uint64_t seed, int jobs, std::string command, const py::object& progress) {
-  FitOptions options{.unknowns = unknowns, .shared = shared, .loss = named(losses, "loss", loss)};
-  if (starts) {
-    require(*starts >= 1, "starts: must be at least 1");
-    options.starts = *starts;
-  }
-  options.seed = seed;
-  options.jobs = jobs;
-  const Bench bench = load_bench(data);
-  const SceneFile file = scene.file;
-  Run run(progress);
-  return run([&](const Watch& watch) {
-    const auto found = std::make_shared<const Fit>(fit(file, bench, options, watch));
-    watch.throw_if_stopped();
-    Outcome outcome{
-        .json = json_text(fit_json(*found, {.command = command})),
-        .files = {{"fit.json", [found, command] { return json_text(fit_json(*found, {.command = command}), 1) + "\n"; }},
-                  {"fit.html", [found, command] { return page_html(fit_document(*found, {.command = command})); }}}};
-    if (found->found)
-      outcome.files["fitted.toml"] = [found, text = file.text(), name = file.name()] {
-        return fitted_text(*found, text, name, found->devices.front());
-      };
-    return outcome;
-  });
-}
-
 }  // namespace
 
 void bind_scene(py::module_& m) {
@@ -483,14 +286,7 @@ void bind_scene(py::module_& m) {
       .def("frequencies", [](PyScene& s) { return Eigen::VectorXd(s.ready()->model.basis().angular_frequencies()); })
       .def("shapes", [](PyScene& s, int places) { return shapes_of(*s.ready(), places); })
       .def("simulate", &simulate)
-      .def("pull_in", &pull_in)
-      .def("effects", &effects)
-      .def("accuracy", &accuracy)
-      .def("limit", &limit)
-      .def("opening", &opening)
-      .def("robustness", &judged)
-      .def("calibrate", &calibrated)
-      .def("fit", &fitted);
+      .def("study", &study);
 }
 
 }  // namespace softland::python

@@ -14,6 +14,7 @@
 #include "python/run.h"
 #include "studies/closing/prepared.h"
 #include "studies/closing/simulate.h"
+#include "verbs/options.h"
 
 namespace softland::python {
 
@@ -60,6 +61,10 @@ struct PyWaveform {
 /// What stands in the place of a scene's waveforms, by drive.
 /// From a Python dict of softland._softland.Waveform.
 [[nodiscard]] DriveWaveforms waveforms_of(const pybind11::dict& given, Run& run);
+
+/// Asks a study (verbs/study.h) of a scene. `waveforms` are those of others, by name and drive.
+[[nodiscard]] Outcome study(PyScene& scene, const std::string& verb, const verbs::Told& told, const pybind11::dict& waveforms,
+                            std::string command, const pybind11::object& progress);
 
 /// A scene like this one under other waveforms. Throws InvalidInput for a drive that it has not, and beyond its limits.
 [[nodiscard]] std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const PreparedScene>& prepared,

@@ -22,6 +22,7 @@ class Built(build_ext):
         target = Path(self.get_ext_fullpath(ext.name))
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(module, target)
+        shutil.copy2(folder / "softland" / "_studies.py", target.with_name("_studies.py"))
 
 
 setup(

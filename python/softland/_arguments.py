@@ -185,7 +185,9 @@ def check_arguments(namespace: Mapping[str, Any], names: list[str]) -> None:
     for name in names:
         one = namespace[name]
         if inspect.isclass(one) and not issubclass(one, Exception):
-            for key, function in list(vars(one).items()):
+            package = one.__module__.partition(".")[0]
+            own = [base for base in reversed(one.__mro__) if base is one or (base.__module__.startswith(package) and base.__name__ not in names)]
+            for key, function in [row for base in own for row in vars(base).items()]:
                 if key.startswith("_") and key not in _SPECIAL:
                     continue
                 called = name if key == "__init__" else f"{name}.{key}"

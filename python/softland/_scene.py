@@ -15,13 +15,14 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _softland
-from ._bench import bench_of
 from ._closing import Closing
 from ._evaluator import Evaluator
 from ._files import write_whole
 from ._outcome import Outcome
 from ._progress import Progress, shown
 from ._records import Quantity, read
+from ._studies import Studies
+from ._studying import command, natives
 from ._tuning import Device, PracticeDevice, Tuning, laboratory, tuning_of
 from ._units import number, units
 from ._waveform import OwnWaveform, Waveform
@@ -69,10 +70,6 @@ def _holds_quantity(native: _softland.Scene, key: str) -> bool:
         return False
 
 
-def _command() -> str:
-    return f"python3 {sys.argv[0]}".strip() if sys.argv and sys.argv[0] not in ("", "-c") else "python3"
-
-
 def _told(value: float | str | None, unit: str) -> str | None:
     """As an option of the program is told it."""
     return value if value is None or isinstance(value, str) else f"{float(value)!r} {unit}"
@@ -104,7 +101,7 @@ class Waveforms(Mapping[str, Waveform]):
         return len(self._all())
 
 
-class Scene(MutableMapping[str, Any]):
+class Scene(Studies, MutableMapping[str, Any]):
     """A scene: a mapping of the keys of its file, "gap.contact", to what is written there.
 
     >>> scene = softland.load("my.toml")
@@ -194,7 +191,7 @@ class Scene(MutableMapping[str, Any]):
         """The waveforms by drive, in volts; assigning one changes the scene."""
         return Waveforms(self)
 
-    # What the verbs of the program tell.
+    # The verbs of the program; Studies has the others.
 
     def simulate(
         self,
@@ -214,116 +211,11 @@ class Scene(MutableMapping[str, Any]):
         Numerical trouble is the status of the closing. Raises InvalidInput.
         """
         with shown(progress) as tell:
-            return Closing(self._native.simulate(errors, certify, _jobs(jobs), _natives(waveforms), _command(), tell))
-
-    def pull_in(self, *, progress: bool | Progress | None = False) -> Any:
-        """Static and dynamic pull-in voltage, release voltage [V] of the electrodes: `found.pull_in.dynamic`, of several `found.electrodes.main`."""
-        with shown(progress) as tell:
-            return Outcome(self._native.pull_in(tell))
+            return Closing(self._native.simulate(errors, certify, _jobs(jobs), natives(waveforms), command(), tell))
 
     def modes(self, places: int = 101) -> Modes:
         """Natural frequencies and mode shapes."""
         return Modes(self._native.frequencies(), *self._native.shapes(places))
-
-    def effects(self, *, progress: bool | Progress | None = None) -> Outcome:
-        """Which effects matter here, and what each costs: the closing without each of them, and under every gas law."""
-        with shown(progress) as tell:
-            return Outcome(self._native.effects(_command(), tell))
-
-    def accuracy(self, *, progress: bool | Progress | None = None) -> Outcome:
-        """What accuracy costs in time on this scene, by integrator, tolerance and quadrature."""
-        with shown(progress) as tell:
-            return Outcome(self._native.accuracy(_command(), tell))
-
-    def limit(
-        self,
-        *,
-        actuator: Actuator = "electrostatic",
-        impact_velocity: float | str | None = None,
-        curves: bool = True,
-        progress: bool | Progress | None = None,
-    ) -> Outcome:
-        """The least time in which any waveform within the limits of the drivers touches at no more than `impact_velocity` [m/s] (default: a hundredth
-        of the plain step's), by direct collocation. curves: also over the peak voltage and over the speed."""
-        speed = None if impact_velocity is None else float(number(impact_velocity))
-        with shown(progress) as tell:
-            return Outcome(self._native.limit(actuator, speed, curves, _command(), tell))
-
-    def opening(
-        self,
-        *,
-        actuator: Actuator = "electrostatic",
-        band: float | str = 0.05,
-        budget: int = 3000,
-        samples: int = 200,
-        seed: int = 1,
-        jobs: int | None = None,
-        progress: bool | Progress | None = None,
-    ) -> Outcome:
-        """The waveform that opens the closed switch without leaving it to swing, as `softland release`. band: share of the contact gap in which the
-        switch counts as open; budget: evaluations; samples: devices that both openings are judged on."""
-        with shown(progress) as tell:
-            return Outcome(self._native.opening(actuator, float(number(band)), budget, samples, seed, _jobs(jobs), _command(), tell))
-
-    def robustness(
-        self,
-        waveforms: Mapping[str, Mapping[str, Waveform]] | None = None,
-        *,
-        samples: int = 2000,
-        seed: int = 1,
-        points: Literal["sobol", "latin_hypercube", "monte_carlo"] = "sobol",
-        other_ways: bool = False,
-        jobs: int | None = None,
-        progress: bool | Progress | None = None,
-    ) -> Outcome:
-        """How the plain step, the scene's waveforms and others do on devices that differ as [spread] says (without one, a usual one is assumed).
-
-        waveforms: {name: {drive: waveform}}, judged on the same devices. samples: devices. `found.table()` has a row for every device.
-        """
-        others = {name: _natives(one) for name, one in (waveforms or {}).items()}
-        with shown(progress) as tell:
-            return Outcome(self._native.robustness(self.name, others, samples, seed, points, other_ways, _jobs(jobs), _command(), tell))
-
-    def calibrate(
-        self,
-        *,
-        errors: Mapping[str, float | str] | None = None,
-        steps: Sequence[float] = (),
-        samples: int = 256,
-        seed: int = 1,
-        jobs: int | None = None,
-        progress: bool | Progress | None = None,
-    ) -> Outcome:
-        """Which measurable figures of a device pin its waveform best: `errors` of measuring Vdp, Vsp, release, frequency, piezo and time, one standard
-        deviation ({"Vdp": "1 %"}); steps: multiples of Vdp whose closing times are measured."""
-        given = {key: float(number(value)) for key, value in (errors or {}).items()}
-        with shown(progress) as tell:
-            return Outcome(self._native.calibrate(given, list(steps), samples, seed, _jobs(jobs), _command(), tell))
-
-    def fit(
-        self,
-        data: str | os.PathLike[str] | Sequence[Mapping[str, Any]],
-        unknowns: Sequence[str] = (),
-        *,
-        shared: Sequence[str] = (),
-        loss: str = "huber",
-        starts: int | None = None,
-        seed: int = 1,
-        jobs: int | None = None,
-        progress: bool | Progress | None = None,
-    ) -> Outcome:
-        """The scene fitted to measurements: values with standard errors and correlations.
-
-        data: a bench file, or measurements with the keys of one (docs/fit.md): {"quantity": "frequency", "value": 10.39e3, "error": "0.5 %"}; numbers in SI
-            units. Rows are arrays: "times" [s] or "levels" [V] with "values", {"quantity": "velocity", "times": t, "values": v, "error": 1e-3}; of a
-            "contact" the voltage at it, with its "threshold".
-        unknowns: entries of [spread], which are their priors, or keys of the scene; default: all of [spread]. shared: what all devices of the file have in
-        common. loss: how data that do not agree count. `found.file("fitted.toml")` is the scene found. Needs the Debian package libceres-dev.
-        """
-        with bench_of(data) as path, shown(progress) as tell:
-            return Outcome(
-                self._native.fit(path, list(unknowns), list(shared), loss, starts, seed, _jobs(jobs), _command(), tell)
-            )
 
     def optimize(
         self,
@@ -371,8 +263,8 @@ class Scene(MutableMapping[str, Any]):
         request = {
             "target": target, "actuator": actuator, "robust": robust, "waveform": waveform,
             "objective": None if objective is None else _softland.PythonObjective(getattr(objective, "__name__", "own"), objective, lands_first),
-            "own_waveforms": [one._function for one in own_waveforms], "constrain": list(constrain), "starts": [_natives(one) for one in start],
-            "optimizer": optimizer, "hold-step": hold_step, "calibrate": calibrate, "budget": budget, "samples": samples, "seed": seed, "jobs": _jobs(jobs), "callback": callback, "command": _command(),
+            "own_waveforms": [one._function for one in own_waveforms], "constrain": list(constrain), "starts": [natives(one) for one in start],
+            "optimizer": optimizer, "hold-step": hold_step, "calibrate": calibrate, "budget": budget, "samples": samples, "seed": seed, "jobs": _jobs(jobs), "callback": callback, "command": command(),
             "out": "" if out is None else os.fspath(out), "resume": resume,
         }  # fmt: skip
         with shown(progress) as tell:
@@ -409,7 +301,7 @@ class Scene(MutableMapping[str, Any]):
         given = {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in (options or {}).items()}
         request = {
             "vary": words, "out": os.fspath(out), "study": study, "sample": sample, "pareto": ",".join(pareto), "options": given,
-            "resume": resume, "shard": shard, "seed": seed, "jobs": _jobs(jobs), "command": _command(),
+            "resume": resume, "shard": shard, "seed": seed, "jobs": _jobs(jobs), "command": command(),
         }  # fmt: skip
         with shown(progress) as tell:
             _softland.explore(self._native, {**request, "progress": tell})
@@ -486,7 +378,7 @@ class Scene(MutableMapping[str, Any]):
         """
         request = {
             "actuator": actuator, "constrain": constrain, **laboratory(errors, "trigger_delay"), "recipes": recipes, "effort": effort,
-            "wafer": [os.fspath(one) for one in wafer], "seed": seed, "jobs": _jobs(jobs), "command": _command(),
+            "wafer": [os.fspath(one) for one in wafer], "seed": seed, "jobs": _jobs(jobs), "command": command(),
         }  # fmt: skip
         return tuning_of(self._native, request, out, resume, progress)
 
@@ -591,10 +483,6 @@ class Modes:
 
     def __repr__(self) -> str:
         return "Modes: " + ", ".join(f"{one:.6g} Hz" for one in self.frequencies)
-
-
-def _natives(waveforms: Mapping[str, Waveform] | None) -> dict[str, Any]:
-    return {drive: waveform._native for drive, waveform in (waveforms or {}).items()}
 
 
 def _rebuilt(text: str, name: str, directory: str) -> Scene:

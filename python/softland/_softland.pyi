@@ -118,37 +118,11 @@ class Scene:
     def simulate(
         self, errors: bool, certified: bool, jobs: int, waveforms: Mapping[str, Waveform], command: str, progress: _Progress
     ) -> Closing: ...
-    def pull_in(self, progress: _Progress) -> Outcome: ...
-    def effects(self, command: str, progress: _Progress) -> Outcome: ...
-    def accuracy(self, command: str, progress: _Progress) -> Outcome: ...
-    def limit(self, actuator: str, impact_velocity: float | None, curves: bool, command: str, progress: _Progress) -> Outcome: ...
-    def opening(
-        self, actuator: str, band: float, budget: int, samples: int, seed: int, jobs: int, command: str, progress: _Progress
-    ) -> Outcome: ...
-    def robustness(
+    def study(
         self,
-        name: str,
-        others: Mapping[str, Mapping[str, Waveform]],
-        samples: int,
-        seed: int,
-        points: str,
-        other_ways: bool,
-        jobs: int,
-        command: str,
-        progress: _Progress,
-    ) -> Outcome: ...
-    def calibrate(
-        self, errors: Mapping[str, float], steps: Sequence[float], samples: int, seed: int, jobs: int, command: str, progress: _Progress
-    ) -> Outcome: ...
-    def fit(
-        self,
-        data: str,
-        unknowns: Sequence[str],
-        shared: Sequence[str],
-        loss: str,
-        starts: int | None,
-        seed: int,
-        jobs: int,
+        verb: str,
+        told: Mapping[str, Sequence[str]],
+        waveforms: Mapping[str, Mapping[str, Waveform]],
         command: str,
         progress: _Progress,
     ) -> Outcome: ...

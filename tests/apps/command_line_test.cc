@@ -574,7 +574,46 @@ TEST(Export, RefusesAForceFactorBecauseItIsNoVoltage) {
   const Workplace here;
   const Outcome bad = here.run({"export", std::string(SOFTLAND_SOURCE_DIR) + "/scenes/nem-casimir.toml"});
   EXPECT_EQ(bad.status, 2);
-  EXPECT_THAT(bad.err, HasSubstr("there is no waveform to export"));
+  EXPECT_THAT(bad.err, HasSubstr("nem-casimir.toml:"));
+  EXPECT_THAT(bad.err, HasSubstr("there is no waveform to export: 'dispersion' is a factor of the model"));
+}
+
+TEST(Export, SaysOfAnOptionWhatTheSceneSaysOfItsKey) {
+  const Workplace here;
+  const std::string scene = std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml";
+  const Outcome bad = here.run({"export", scene, "--format", "siglent-csv", "--sample-rate", "1 MHz", "--bits", "99"});
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_THAT(bad.err, HasSubstr("--bits 99: [driver.main]"));
+  EXPECT_THAT(bad.err, Not(HasSubstr("--set")));
+}
+
+TEST(Export, SaysHowFarAMeasuredTimeIsFromTheNominalOne) {
+  const Workplace here;
+  const std::string scene = std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml";
+  // 3 us of 36.83 us.
+  EXPECT_THAT(here.run({"export", scene, "--measured", "time=3 us"}).err, HasSubstr("91.9 % from the nominal device"));
+}
+
+TEST(Check, WarnsOfAGasBeyondTheLimitsOfItsLaw) {
+  const Workplace here;
+  const std::string scene = std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml";
+  const Outcome text = here.run({"check", scene, "--quiet", "--set", "gas.pressure=10 Pa"});
+  EXPECT_THAT(text.out, HasSubstr("warning: gas law strip: Knudsen number 456 exceeds"));
+  EXPECT_THAT(here.run({"check", scene, "--quiet"}).out, Not(HasSubstr("Knudsen number 0")));
+}
+
+TEST(CommandLine, AnOptionIsNotTakenForTheValueOfAnother) {
+  const Workplace here;
+  const std::string scene = std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml";
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"simulate", scene, "--json", "--quiet"},
+                                                {"optimize", "--json", "--bogus"},
+                                                {"limit", scene, "--out", "--no-curves"},
+                                                {"limit", scene, "--actuator", "--quiet"}}) {
+    const Outcome bad = here.run(words);
+    EXPECT_EQ(bad.status, 2);
+    EXPECT_THAT(bad.err, HasSubstr("a value is missing: " + words.back() + " is an option"));
+    EXPECT_FALSE(std::filesystem::exists(here.path() / words.back()));
+  }
 }
 
 TEST(Read, ShowsWhatAFileHolds) {

@@ -6,7 +6,10 @@ import subprocess
 import sys
 import tempfile
 
+import softland
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+PACKAGES = pathlib.Path(softland.__file__).parents[1]
 
 if importlib.util.find_spec("mypy") is None:
     print("skipped: no mypy; needs: mypy")
@@ -14,5 +17,5 @@ if importlib.util.find_spec("mypy") is None:
 with tempfile.TemporaryDirectory() as cache:
     command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", cache, "--ignore-missing-imports"]
     runs = [["-p", "softland"], *([str(path)] for path in sorted((ROOT / "examples" / "python").glob("[0-9]*.py")))]
-    failed = [run for run in runs if subprocess.run([*command, *run], cwd=ROOT / "python").returncode != 0]
+    failed = [run for run in runs if subprocess.run([*command, *run], cwd=PACKAGES).returncode != 0]
 sys.exit(1 if failed else 0)

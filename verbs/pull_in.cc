@@ -12,12 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/exit_status.h"
-#include "apps/output.h"
-#include "apps/progress.h"
-#include "apps/scenes.h"
-#include "apps/values.h"
-#include "apps/verbs/verbs.h"
 #include "base/engineering.h"
 #include "base/require.h"
 #include "config/schema.h"
@@ -29,8 +23,9 @@
 #include "studies/closing/sweep.h"
 #include "studies/exploration/pull_in_memory.h"
 #include "studies/search/search_space.h"
+#include "verbs/study.h"
 
-namespace softland::apps {
+namespace softland::verbs {
 namespace {
 
 constexpr double most_bias = 1e6;  // [V]
@@ -41,15 +36,10 @@ std::string voltage_rule() {
                      engineering(most_bias, "V"), example(dimension::voltage));
 }
 
-struct PullInRequest {
-  std::vector<std::string> bias;     ///< NAME=V
-  std::optional<std::string> sweep;  ///< V1:V2:N
-};
-
-// --sweep V1:V2:N
-SweepRange sweep_range(const std::string& text) {
+// "V1:V2:N"
+void read_sweep(const std::string& option, const std::string& text, std::optional<SweepRange>& asked) {
   constexpr int most_points = 100'000;
-  const auto refuse = [&](std::string_view rule) { throw InvalidInput(fmt::format("--sweep {}: {}", visible(text), rule)); };
+  const auto refuse = [&](std::string_view rule) { throw InvalidRequest(fmt::format("{} {}: {}", option, visible(text), rule)); };
   const std::size_t first = text.find(':'), second = first == std::string::npos ? first : text.find(':', first + 1);
   if (second == std::string::npos) refuse("not of the form FIRST:LAST:N, such as \"0 V:40 V:81\"");
   const auto voltage = [&](const std::string& part) {
@@ -64,15 +54,17 @@ SweepRange sweep_range(const std::string& text) {
   };
   const SweepRange range{.first = voltage(text.substr(0, first)),
                          .last = voltage(text.substr(first + 1, second - first - 1)),
-                         .points = whole_number("--sweep", text.substr(second + 1), 2)};
+                         .points = whole_number<int>(option, text.substr(second + 1), {.least = 2})};
   if (range.points > most_points) refuse(fmt::format("there may be {} points each way", most_points));
   if (range.first == range.last) refuse("begins where it ends");
-  return range;
+  asked = range;
 }
 
 // --bias NAME=V: takes the place of what the drive stands at in the scene.
 void set_bias(PreparedScene& p, const std::string& assignment) {
-  const auto refuse = [&](std::string_view rule) { throw InvalidInput(fmt::format("--bias {}: {}", visible(assignment), rule)); };
+  const auto refuse = [&](std::string_view rule) {
+    throw InvalidRequest(fmt::format("{} {}: {}", requested("bias"), visible(assignment), rule));
+  };
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos) refuse("not of the form NAME=VOLTAGE, such as \"piezo=-1.5 V\"");
   const std::vector<std::string> names = p.drive_names();
@@ -130,17 +122,19 @@ std::string words_of(const PreparedScene& p, std::size_t k, const nlohmann::json
   return text;
 }
 
-// The sweep of the electrode that closes the switch, and its points as JSON.
-nlohmann::json write_sweep(ResultFolder& folder, const PreparedScene& p, const SweepRange& range, const Watch& watch) {
-  require(has_pulling_electrode(p.scene.device), "--sweep: there is no electrode that pulls towards the contact");
+// The sweep of the electrode that closes the switch: its files and its points as JSON.
+nlohmann::json add_sweep(std::vector<Outcome::File>& files, const PreparedScene& p, const SweepRange& range, const Watch& watch) {
+  require_request(has_pulling_electrode(p.scene.device),
+                  [] { return requested("sweep") + ": there is no electrode that pulls towards the contact"; });
   const std::size_t drive = searched_drive(p.scene.device);
   const std::vector<double> bias = bias_of(p.scene, drive);
   const std::vector<SweepPoint> points = static_sweep(p.model, drive, bias, range, watch);
   if (points.empty()) return nullptr;  // it was asked to stop before the first one
   std::string of = fmt::format("Electrode {}, swept up and down", p.scene.device.electrodes[drive].name);
   if (const std::string others = bias_words(p, drive); !others.empty()) of += ", under " + others;
-  folder.write("sweep.csv", sweep_csv(points));
-  folder.write("sweep.svg", sweep_svg(points, of, static_pull_in(p.model, drive, bias), release_voltage(p.model, drive, bias)));
+  std::string svg = sweep_svg(points, of, static_pull_in(p.model, drive, bias), release_voltage(p.model, drive, bias));
+  files = {{"sweep.csv", [points] { return sweep_csv(points); }, "sweep.csv"},
+           {"sweep.svg", [svg = std::move(svg)] { return svg; }, "sweep.svg"}};
   return sweep_json(points);
 }
 
@@ -149,101 +143,123 @@ std::string left_out_words(const std::vector<std::string>& left_out) {
   return wrapped(fmt::format("interrupted: not found yet: {}.", fmt::join(left_out, "; "))) + "\n";
 }
 
-int pull_in_verb(const Common& c, const PullInRequest& request) {
-  const std::optional<SweepRange> range = request.sweep ? std::optional(sweep_range(*request.sweep)) : std::nullopt;
-  require(range.has_value() == !c.out.empty(), "--sweep and --out belong together: the sweep is written into that folder");
-  const SceneFile file = load_scene_or_result(c);
-  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  PullInMemory remembered;
-  const PullInFinder find_pull_in = remembered.finder(file);
-  // The voltages come before what a waveform in Vdp needs, so that they are told where the search for more is stopped.
-  const Scene scene = read_scene(file);
-  const bool leaves_choices = scene.auto_modes || scene.simulate.automatic_effects;
-  PreparedScene prepared = leaves_choices ? prepare_and_choose(file, false, work->watch()) : prepare_statics(file);
-  for (const std::string& assignment : request.bias) set_bias(prepared, assignment);
-  std::optional<ResultFolder> folder = claim_places(c, {"sweep.csv", "sweep.svg"});
-  const auto& electrodes = prepared.scene.device.electrodes;
-  require(!electrodes.empty(), fmt::format("{}: there is no electrode to pull in", c.scene));
-  std::map<std::string, nlohmann::json> by_name;
-  std::string text;
-  bool failed = false, none = false;
-  std::string status(to_string(Status::done));  // of the first electrode that pulls and has no voltage
-  for (std::size_t k = 0; k < electrodes.size() && !work->watch().stopped(); ++k) {
-    nlohmann::json one = pull_in_of(prepared, k, work->watch(), find_pull_in);
-    text += words_of(prepared, k, one);
-    if (pulls_in(prepared.scene.device, k)) {
-      const bool has_none = collapsed(one) || one["status"] == to_string(Status::no_contact);
-      none = none || has_none;
-      failed = failed || (!has_none && one["status"] != to_string(Status::done));
-      if (status == to_string(Status::done)) status = one["status"];
-    }
-    by_name[electrodes[k].name] = std::move(one);
-  }
-  std::vector<std::string> left_out;
-  for (const Electrode& electrode : electrodes) {
-    const auto found = by_name.find(electrode.name);
-    if (found == by_name.end()) {
-      left_out.push_back("electrode " + electrode.name);
-    } else if (found->second["status"] == to_string(Status::interrupted)) {
-      left_out.push_back("dynamic pull-in of electrode " + electrode.name);
-    }
-  }
-  StablePathFound path;
-  try {
-    work->watch().throw_if_stopped();
-    if (!leaves_choices) {
-      const std::vector<double> standing = prepared.scene.standing;  // with --bias
-      prepared = prepare(file, false, work->watch(), find_pull_in);
-      prepared.scene.standing = standing;
-    }
-    path = stable_path_of(prepared, work->watch());
-  } catch (const Interrupted&) {
-    path = {};
-  }
-  if (work->watch().stopped() && prepared.model.has_contact()) {
-    left_out.emplace_back("the stable path");
-    path = {};
-  }
-  if (!path.words.empty()) text += wrapped("Stable path: " + path.words + ".") + "\n";
-  nlohmann::json sweep = nullptr;
-  if (folder && !work->watch().stopped()) sweep = write_sweep(*folder, prepared, *range, work->watch());
-  const bool interrupted = work->watch().stopped();
-  if (folder && interrupted)
-    left_out.push_back(sweep.is_null() ? "the sweep" : fmt::format("the sweep beyond its first {} points", sweep.size()));
-  if (folder && !sweep.is_null()) {
-    text += left_in(folder->destination(interrupted), {"sweep.csv", "sweep.svg"});
-    folder->publish(interrupted);
-  }
-  work.reset();
-  if (interrupted) text += left_out_words(left_out);
-  nlohmann::json data = pull_in_json(by_name, interrupted ? std::string(to_string(Status::interrupted)) : status);
-  data["stable_path"] = path.data;
-  if (interrupted) data["status"] = to_string(Status::interrupted), data["left_out"] = left_out;
-  if (range) data["sweep"] = std::move(sweep);
-  print_json_or(c, data, text);
-  return interrupted ? exit_interrupted : failed ? exit_numerical_failure : none ? exit_no_success : exit_done;
-}
-
-}  // namespace
-
-void add_pull_in(Verb& verb) {
-  const auto request = std::make_shared<PullInRequest>();
-  verb.with_scene(true, true);
-  verb.with_json();
-  verb.repeated("--bias", request->bias, "NAME=VOLTAGE",
-                "what another drive stands at for ever, instead of its hold level where that is in volts");
-  verb.optional("--sweep", request->sweep, "FIRST:LAST:N",
-                "static deflection and capacitance at N voltages from the first to the last and back, for --out: the electrode\n"
-                "that closes the switch, open up to its pull-in voltage, closed on the way back down to the release voltage");
-  verb.with_out("folder for sweep.csv and sweep.svg");
-  verb.footer(
+struct PullInRequest : Usual {
+  static constexpr auto name = "pull-in", about = "static and dynamic pull-in voltage and release voltage of every electrode",
+                        python = "pull_in", leaves = "folder for sweep.csv and sweep.svg";
+  static constexpr auto remarks =
       "The stable path says whether one drive alone carries the switch to its contact without a jump, and on how many of 256 "
       "devices\n"
       "of [spread]: where it does, softland optimize approaches the contact slowly.\n"
       "Examples:\n  softland pull-in scenes/mem-gold.toml --set structure.thickness=\"2.1 um\"\n"
       "  softland pull-in scenes/mem-gold-pzt.toml --bias piezo=\"0.5 V\"\n"
-      "  softland pull-in scenes/mem-gold.toml --sweep \"0 V:20 V:201\" --out swept");
-  verb.runs([request](const Common& common) { return pull_in_verb(common, *request); });
+      "  softland pull-in scenes/mem-gold.toml --sweep \"0 V:20 V:201\" --out swept";
+  static std::vector<std::string> files() { return {"sweep.csv", "sweep.svg"}; }
+
+  std::vector<std::string> bias;
+  std::optional<SweepRange> sweep;
+};
+
+template <class Archive>
+void options(Archive& a, PullInRequest& r) {
+  a.assignments("bias", r.bias, "NAME=VOLTAGE",
+                "what another drive stands at for ever, instead of its hold level where that is in volts");
+  a.parsed("sweep", r.sweep, read_sweep, "FIRST:LAST:N",
+           "static deflection and capacitance at N voltages from the first to the last and back, for --out: the electrode\n"
+           "that closes the switch, open up to its pull-in voltage, closed on the way back down to the release voltage",
+           "sweep", "str | None");
 }
 
-}  // namespace softland::apps
+// The findings of pull_in_of() for every electrode that was looked at.
+struct Electrodes {
+  std::map<std::string, nlohmann::json> by_name;
+  std::string text;
+  bool failed = false, none = false;
+  std::string status{to_string(Status::done)};  // the status of the first electrode that pulls and has no voltage
+};
+
+Electrodes electrodes_of(const PreparedScene& p, const PullInFinder& find_pull_in, const Watch& watch) {
+  Electrodes all;
+  const auto& electrodes = p.scene.device.electrodes;
+  for (std::size_t k = 0; k < electrodes.size() && !watch.stopped(); ++k) {
+    nlohmann::json one = pull_in_of(p, k, watch, find_pull_in);
+    all.text += words_of(p, k, one);
+    if (pulls_in(p.scene.device, k)) {
+      const bool has_none = collapsed(one) || one["status"] == to_string(Status::no_contact);
+      all.none = all.none || has_none;
+      all.failed = all.failed || (!has_none && one["status"] != to_string(Status::done));
+      if (all.status == to_string(Status::done)) all.status = one["status"];
+    }
+    all.by_name[electrodes[k].name] = std::move(one);
+  }
+  return all;
+}
+
+std::vector<std::string> left_out_of(const PreparedScene& p, const Electrodes& all) {
+  std::vector<std::string> left_out;
+  for (const Electrode& electrode : p.scene.device.electrodes) {
+    const auto found = all.by_name.find(electrode.name);
+    if (found == all.by_name.end()) {
+      left_out.push_back("electrode " + electrode.name);
+    } else if (found->second["status"] == to_string(Status::interrupted)) {
+      left_out.push_back("dynamic pull-in of electrode " + electrode.name);
+    }
+  }
+  return left_out;
+}
+
+Outcome run(const Setting& setting, const PullInRequest& request) {
+  require_request(!setting.leaves_files || request.sweep.has_value() == *setting.leaves_files, [] {
+    return requested("sweep") + " and " + requested("out") + " belong together: the sweep is written into that folder";
+  });
+  const SceneFile& file = setting.scene;
+  const Watch& watch = setting.watch;
+  PullInMemory remembered;
+  const PullInFinder find_pull_in = remembered.finder(file);
+  // The voltages come before what a waveform in Vdp needs, so that they are told where the search for more is stopped.
+  const Scene scene = read_scene(file);
+  const bool leaves_choices = scene.auto_modes || scene.simulate.automatic_effects;
+  PreparedScene prepared = leaves_choices ? prepare_and_choose(file, false, watch) : prepare_statics(file);
+  for (const std::string& assignment : request.bias) set_bias(prepared, assignment);
+  require(!prepared.scene.device.electrodes.empty(), fmt::format("{}: there is no electrode to pull in", setting.name));
+  const Electrodes all = electrodes_of(prepared, find_pull_in, watch);
+  std::vector<std::string> left_out = left_out_of(prepared, all);
+  StablePathFound path;
+  try {
+    watch.throw_if_stopped();
+    if (!leaves_choices) {
+      const std::vector<double> standing = prepared.scene.standing;  // with --bias
+      prepared = prepare(file, false, watch, find_pull_in);
+      prepared.scene.standing = standing;
+    }
+    path = stable_path_of(prepared, watch);
+  } catch (const Interrupted&) {
+    path = {};
+  }
+  if (watch.stopped() && prepared.model.has_contact()) {
+    left_out.emplace_back("the stable path");
+    path = {};
+  }
+  Outcome outcome{.text = all.text};
+  if (!path.words.empty()) outcome.text += wrapped("Stable path: " + path.words + ".") + "\n";
+  nlohmann::json sweep = nullptr;
+  if (request.sweep && !watch.stopped()) sweep = add_sweep(outcome.files, prepared, *request.sweep, watch);
+  const bool interrupted = watch.stopped();
+  if (request.sweep && interrupted)
+    left_out.push_back(sweep.is_null() ? "the sweep" : fmt::format("the sweep beyond its first {} points", sweep.size()));
+  if (interrupted) outcome.last = left_out_words(left_out);
+  outcome.json = pull_in_json(all.by_name, interrupted ? std::string(to_string(Status::interrupted)) : all.status);
+  outcome.json["stable_path"] = path.data;
+  if (interrupted) outcome.json["status"] = to_string(Status::interrupted), outcome.json["left_out"] = left_out;
+  if (request.sweep) outcome.json["sweep"] = std::move(sweep);
+  outcome.ending = interrupted  ? Ending::interrupted
+                   : all.failed ? Ending::numerical_failure
+                   : all.none   ? Ending::no_success
+                                : Ending::done;
+  return outcome;
+}
+
+}  // namespace
+
+Study pull_in_study() { return study_of<PullInRequest>(); }
+
+}  // namespace softland::verbs

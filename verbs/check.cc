@@ -10,14 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "apps/exit_status.h"
-#include "apps/output.h"
-#include "apps/progress.h"
-#include "apps/scenes.h"
-#include "apps/verbs/verbs.h"
 #include "base/printable.h"
 #include "base/shortened.h"
 #include "model/constants.h"
+#include "model/gas/gas_law.h"
 #include "model/pull_in.h"
 #include "reports/origin.h"
 #include "reports/pull_in_words.h"
@@ -29,8 +25,9 @@
 #include "studies/closing/sent_signals.h"
 #include "studies/closing/simulate.h"
 #include "studies/closing/summits_at_hold.h"
+#include "verbs/study.h"
 
-namespace softland::apps {
+namespace softland::verbs {
 namespace {
 
 using internal::given_quantity;
@@ -129,14 +126,20 @@ nlohmann::json check_json(const PreparedScene& p, const std::map<std::string, nl
                      p, command);
 }
 
-int check_verb(const Common& c) {
-  const SceneFile file = load_scene_or_result(c);
-  static_cast<void>(claim_places(c, {}));
-  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const PreparedScene p = choose(prepare(file, false, work->watch(), quick_pull_in), false, work->watch());
+struct CheckRequest : Usual {
+  static constexpr auto name = "check", about = "validate a scene and print derived numbers and warnings", python = "checked",
+                        remarks = "Examples:\n  softland check my-switch.toml\n  softland check my-switch.toml --json -";
+};
+
+template <class Archive>
+void options(Archive&, CheckRequest&) {}
+
+Outcome run(const Setting& setting, const CheckRequest&) {
+  const Watch& watch = setting.watch;
+  const PreparedScene p = choose(prepare(setting.scene, false, watch, quick_pull_in), false, watch);
   const Structure& s = p.scene.device.structure;
   const std::string title = shortened(printable_line(p.scene.title));
-  std::string text = fmt::format("{}: valid{}\n\n", printable_line(c.scene), title.empty() ? "" : " (" + title + ")");
+  std::string text = fmt::format("{}: valid{}\n\n", printable_line(setting.name), title.empty() ? "" : " (" + title + ")");
   const auto add = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<20} {}\n", name, value); };
   std::vector<std::string> frequencies, warnings = p.scene.warnings, few_summits;
   for (const double omega : p.model.basis().angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
@@ -150,8 +153,8 @@ int check_verb(const Common& c) {
       continue;
     }
     const auto known = p.pull_in.find(p.scene.device.electrodes[k].name);
-    const auto found = pull_in_json(
-        p, k, known != p.pull_in.end() ? known->second : quick_pull_in(p.model, k, bias_of(p.scene, k), work->watch()));
+    const auto found =
+        pull_in_json(p, k, known != p.pull_in.end() ? known->second : quick_pull_in(p.model, k, bias_of(p.scene, k), watch));
     const nlohmann::json& v = found["pull_in"];
     if (v["static_V"].is_number() && v["dynamic_V"].is_number())
       searched_to[p.scene.device.electrodes[k].name] = {.static_pull_in = v["static_V"].get<double>(),
@@ -159,7 +162,7 @@ int check_verb(const Common& c) {
     if (found["status"] == to_string(Status::no_contact)) {
       const std::string& name = p.scene.device.electrodes[k].name;
       add("electrode " + name, "pulls away from the contact where the switch rests: no pull-in voltage");
-      warnings.push_back(said_of(file, "electrode." + name + ".gap", pulls_away));
+      warnings.push_back(said_of(setting.scene, "electrode." + name + ".gap", pulls_away));
       continue;
     }
     pull_in[p.scene.device.electrodes[k].name] = v;
@@ -177,7 +180,7 @@ int check_verb(const Common& c) {
     }
   }
   if (p.scene.device.dispersion) {
-    add("dispersion force", dispersion_words(p, work->watch()));
+    add("dispersion force", dispersion_words(p, watch));
     add("drive dispersion", "hold factor " + plain_number(1 + p.signals()[p.scene.device.electrodes.size()].hold_level(), 5));
   }
   if (const FilmState* const film = p.scene.device.gas ? film_of(*p.scene.device.gas) : nullptr) {
@@ -223,12 +226,14 @@ int check_verb(const Common& c) {
     add("drive " + name, fmt::format("{}hold {}, peak {}, {}", before, given_quantity(signal.hold_level(), "V"),
                                      given_quantity(signal.peak(), "V"), driver));
   }
+  const double closed_gap = p.scene.device.gap.electrode - p.scene.device.gap.contact;
+  for (std::string& warning : gas_warnings(p.scene.device, closed_gap, 0)) warnings.push_back(std::move(warning));
   if (const std::string start = start_words(p); !start.empty()) add("start", start);
   if (!p.start_equilibrium() && (p.scene.begins_closed || p.model.rest()))
     warnings.push_back("a run does not begin: " + start_words(p));
   if (!p.model.has_contact()) add("contact", "none: a run ends at first touch");
   add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
-  const StablePathFound path = stable_path_of(p, work->watch());
+  const StablePathFound path = stable_path_of(p, watch);
   if (!path.words.empty()) add("stable path", path.words);
   nlohmann::json closed;
   if (p.model.has_contact()) {
@@ -243,23 +248,16 @@ int check_verb(const Common& c) {
       warnings.push_back(std::move(lost));
   }
   for (const std::string& w : warnings) text += "\n" + wrapped("warning: " + w) + "\n";
-  work->watch().throw_if_stopped();
-  work.reset();
+  watch.throw_if_stopped();
   warnings.insert(warnings.end(), few_summits.begin(), few_summits.end());  // told above, by the contact
-  nlohmann::json data = check_json(p, pull_in, warnings, c.command);
+  nlohmann::json data = check_json(p, pull_in, warnings, setting.command);
   data["closed_state"] = std::move(closed);
   data["stable_path"] = path.data;
-  print_json_or(c, data, text);
-  return exit_done;
+  return {.json = std::move(data), .text = std::move(text)};
 }
 
 }  // namespace
 
-void add_check(Verb& verb) {
-  verb.with_scene(true, true);
-  verb.with_json();
-  verb.footer("Examples:\n  softland check my-switch.toml\n  softland check my-switch.toml --json -");
-  verb.runs(check_verb);
-}
+Study check_study() { return study_of<CheckRequest>(); }
 
-}  // namespace softland::apps
+}  // namespace softland::verbs

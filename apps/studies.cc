@@ -1,0 +1,163 @@
+#include "apps/studies.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "apps/exit_status.h"
+#include "apps/output.h"
+#include "apps/progress.h"
+#include "apps/scenes.h"
+#include "apps/streams.h"
+#include "base/read_file.h"
+#include "base/require.h"
+#include "base/shell_word.h"
+#include "studies/closing/auto_settings.h"
+
+namespace softland::apps {
+namespace {
+
+using verbs::Ending;
+using verbs::OptionRow;
+
+// What CLI11 sets, by the name of the option.
+struct Given {
+  std::map<std::string, std::string> texts;
+  std::map<std::string, std::optional<std::string>> optional;  // that may be empty
+  std::map<std::string, bool> flags;
+  std::map<std::string, std::vector<std::string>> repeated;
+
+  [[nodiscard]] verbs::Told told() const {
+    verbs::Told all;
+    for (const auto& [name, text] : texts) {
+      if (!text.empty()) all[name] = {text};
+    }
+    for (const auto& [name, text] : optional) {
+      if (text) all[name] = {*text};
+    }
+    for (const auto& [name, is_told] : flags) {
+      if (is_told) all[name] = {""};
+    }
+    for (const auto& [name, words] : repeated) {
+      if (!words.empty()) all[name] = words;
+    }
+    return all;
+  }
+};
+
+std::string spelled(std::string_view name) { return "--" + std::string(name); }
+
+int exit_status_after(Ending ending) {
+  switch (ending) {
+    case Ending::done:
+      return exit_done;
+    case Ending::no_success:
+      return exit_no_success;
+    case Ending::numerical_failure:
+      return exit_numerical_failure;
+    case Ending::interrupted:
+      break;
+  }
+  return exit_interrupted;
+}
+
+DriveWaveforms waveforms_of(const std::string& result, const PreparedScene& nominal, const Watch& watch) {
+  const Drives drives = prepare(scene_of_result(result), false, watch).drives;
+  const std::string elsewhere = begins_elsewhere(drives.waveforms(), drives.before(), nominal);
+  require(elsewhere.empty(), [&] { return result + ": " + elsewhere; });
+  return drives.waveforms();
+}
+
+// Writes the files, and says which there are and what to do with them.
+std::string leave(ResultFolder& folder, const verbs::Outcome& outcome) {
+  const bool interrupted = outcome.ending == Ending::interrupted;
+  std::vector<std::string> listed;
+  std::string scene;
+  for (const verbs::Outcome::File& file : outcome.files) {
+    folder.write(file.name, file.text());
+    if (!file.listed.empty()) listed.push_back(file.listed);
+    if (file.name.ends_with(".toml")) scene = file.name;
+  }
+  const std::filesystem::path place = folder.destination(interrupted);
+  std::string text = left_in(place, listed);
+  if (!outcome.next.empty()) text += fmt::format(fmt::runtime(outcome.next), shell_word((place / scene).string()));
+  folder.publish(interrupted);
+  return text;
+}
+
+int run_study(const verbs::Study& study, const Common& given, const Given& options) {
+  Common c = given;
+  if (c.out.empty() && study.place != nullptr) c.out = study.place;
+  const auto run = study.ask(options.told());
+  const bool takes_results = study.scene != verbs::scene_alone;
+  const SceneFile file = takes_results ? load_scene_or_result(c) : load_scene(c);
+  std::optional<ResultFolder> folder = claim_places(c, study.files);
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Watch& watch = work->watch();
+  verbs::Outcome found = run({.scene = file,
+                              .name = c.scene,
+                              .command = c.command,
+                              .watch = watch,
+                              .leaves_files = !c.out.empty(),
+                              .prepared =
+                                  [&](bool default_limits) {
+                                    return std::make_shared<const PreparedScene>(prepare_and_choose(file, default_limits, watch));
+                                  },
+                              .load = scene_of_result,
+                              .waveforms_of = [&](const std::string& result,
+                                                  const PreparedScene& nominal) { return waveforms_of(result, nominal, watch); },
+                              .text = [&] { return c.set.empty() ? read_file(c.scene) : file.text(); }});
+  work.reset();
+  for (const std::string& note : found.notes) {
+    if (!c.quiet) say(note);
+  }
+  if (folder && !found.files.empty()) found.text += leave(*folder, found);
+  print_json_or(c, found.json, found.text + found.last);
+  return exit_status_after(found.ending);
+}
+
+void declare(Verb& verb, const OptionRow& option, Given& given) {
+  const std::string name = spelled(option.name);
+  switch (option.kind) {
+    case OptionRow::Kind::flag:
+      return verb.flag(name.c_str(), given.flags[option.name], option.about);
+    case OptionRow::Kind::repeated:
+      return verb.repeated(name.c_str(), given.repeated[option.name], option.word.c_str(), option.about);
+    case OptionRow::Kind::further:
+      return verb.more(option.name.c_str(), given.repeated[option.name], option.about);
+    case OptionRow::Kind::text:
+      break;
+  }
+  if (option.may_be_empty)
+    verb.optional(name.c_str(), given.optional[option.name], option.word.c_str(), option.about);
+  else
+    verb.option(name.c_str(), given.texts[option.name], option.word.c_str(), option.about);
+}
+
+}  // namespace
+
+void add_study(Verb& verb, const verbs::Study& study) {
+  const auto given = std::make_shared<Given>();
+  const auto declare_those = [&](bool behind_the_scene) {
+    for (const OptionRow& option : study.options) {
+      if ((option.kind == OptionRow::Kind::further) == behind_the_scene) declare(verb, option, *given);
+    }
+  };
+  verb.with_scene(study.scene);
+  declare_those(true);
+  verb.with_set(study.changes);
+  verb.with_quiet();
+  verb.with_json();
+  declare_those(false);
+  if (study.leaves != nullptr) verb.with_out(study.leaves);
+  verb.footer(study.remarks);
+  verb.runs([&study, given](const Common& common) { return run_study(study, common, *given); });
+}
+
+}  // namespace softland::apps

@@ -1,0 +1,78 @@
+// Fits a scene to what was measured on devices.
+#include "studies/fitting/fit.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/assumed_spread.h"
+#include "reports/fit_report.h"
+#include "reports/result_json.h"
+#include "verbs/study.h"
+
+namespace softland::verbs {
+namespace {
+
+struct FitRequest : Usual {
+  static constexpr auto name = "fit", about = "fit a scene to what was measured on devices", python = "fit", scene = scene_alone,
+                        leaves = "folder for fitted.toml, fit.json and fit.html (default: softland-fit)", place = "softland-fit";
+  static constexpr auto remarks =
+      "fitted.toml is the scene with the values found; comments, sources and units stay. Values have standard errors, 95 %\n"
+      "intervals and correlations. What the data cannot tell apart is said in words, and which further measurement would tell "
+      "most.\n"
+      "Status 3: at no start do the devices have what was measured.\n"
+      "Status 4: the fit is not to be believed, and no interval is given. An unknown is 4 standard deviations away from what\n"
+      "was known of it, the data are off by more than 3 of their errors, or another minimum describes them as well.\n"
+      "Examples:\n  softland fit my.toml --data bench.toml\n"
+      "  softland fit my.toml --data bench.toml --unknown structure.youngs_modulus --unknown gaps --out device-17\n"
+      "  softland fit my.toml --data wafer.toml --shared structure.youngs_modulus --loss cauchy";
+  static std::vector<std::string> files() { return {"fitted.toml", "fit.json", "fit.html"}; }
+
+  std::string data;
+  FitOptions options{.jobs = one_per_core()};
+};
+
+template <class Archive>
+void options(Archive& a, FitRequest& r) {
+  FitOptions& o = r.options;
+  a.measurements("data", r.data, "what was measured, and how well: a bench.toml (docs/fit.md)");
+  a.repeated("unknown", o.unknowns, "KEY",
+             "what is fitted: an entry of [spread], which is its prior, or any key of the scene, without one (default: all of "
+             "[spread])",
+             "unknowns", true);
+  a.repeated("shared", o.shared, "KEY", "of these, what all devices of the file have in common; the rest is of each device",
+             "shared");
+  a.choice("loss", o.loss, losses, "how data that do not agree count");
+  a.whole("starts", o.starts, {.least = 1},
+          fmt::format("searches, the first one from the scene as it is (default: {})", FitOptions{}.starts));
+  seed_option(a, o.seed, "same searches, whatever --jobs is");
+  jobs_option(a, o.jobs);
+}
+
+Outcome run(const Setting& setting, const FitRequest& request) {
+  const Bench bench = load_bench(request.data);
+  const auto found = std::make_shared<const Fit>(fit(setting.scene, bench, request.options, setting.watch));
+  const Provenance provenance{.command = setting.command};
+  const auto document = std::make_shared<const Document>(fit_document(*found, provenance));
+  Outcome outcome{.json = fit_json(*found, provenance), .text = terminal_text(*document)};
+  if (found->found) {
+    const auto text = [found, written = setting.text(), name = setting.name] {
+      return fitted_text(*found, written, name, found->devices.front());
+    };
+    outcome.files.push_back({"fitted.toml", text, "fitted.toml"});
+  }
+  outcome.files.push_back({"fit.html", [document] { return page_html(*document); }, "fit.html"});
+  outcome.files.push_back({"fit.json", [json = outcome.json] { return json_text(json, 1) + "\n"; }, "fit.json"});
+  if (found->spread_assumed) outcome.notes.emplace_back(assumed_words);
+  outcome.ending = !found->found ? Ending::numerical_failure : found->doubts.empty() ? Ending::done : Ending::no_success;
+  return outcome;
+}
+
+}  // namespace
+
+Study fit_study() { return study_of<FitRequest>(); }
+
+}  // namespace softland::verbs

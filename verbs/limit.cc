@@ -1,0 +1,73 @@
+// The limit of what any drive waveform can do.
+#include "studies/search/limit.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "reports/limit_report.h"
+#include "reports/result_json.h"
+#include "studies/closing/sent_signals.h"
+#include "verbs/study.h"
+#include "waveforms/export.h"
+
+namespace softland::verbs {
+namespace {
+
+struct LimitRequest : Usual {
+  static constexpr auto name = "limit", about = "the least time in which any waveform can close the switch softly",
+                        python = "limit", leaves = "folder for limit.json, limit.svg and the landing as best.toml and best.csv";
+  static constexpr auto remarks =
+      "The least time is that of the best waveform of any shape within the limits of [driver.*], found by direct collocation:\n"
+      "the yardstick for every searched waveform. It is a lower bound for landings of these volts at that speed in the model\n"
+      "that the scene describes: a beam of more modes may touch a little earlier (--set structure.modes=6). The landing that is\n"
+      "reported has been simulated, and may take longer where a beam must come to rest.\n"
+      "Examples:\n  softland limit scenes/mem-gold.toml\n"
+      "  softland limit scenes/mem-gold-pzt.toml --actuator both --impact-velocity \"1 mm/s\" --out limit\n"
+      "  softland limit scenes/mem-gold-pzt.toml --actuator pzt --start softland-out --no-curves";
+  static std::vector<std::string> files() { return {"limit.json", "limit.svg", "best.toml", "best.csv"}; }
+
+  LimitOptions options;
+  std::optional<std::string> start;
+};
+
+template <class Archive>
+void options(Archive& a, LimitRequest& r) {
+  a.choice("actuator", r.options.actuator, actuators, "drives that may be shaped");
+  a.quantity("impact-velocity", r.options.impact_velocity,
+             {dimension::velocity, positive, "a speed above 0 m/s such as \"1 mm/s\""}, "SPEED",
+             "of the first touch, at most: \"1 mm/s\" (default: a hundredth of the plain step's)");
+  a.file("start", r.start,
+         "a scene or result whose waveform the optimum is looked for from too: of a switch that one swing does not close, say");
+  a.unless("no-curves", r.options.curves, "leave out the least times over the peak voltage and over the permitted speed");
+}
+
+Outcome run(const Setting& setting, const LimitRequest& request) {
+  LimitOptions options = request.options;
+  if (request.start) {
+    const Drives drives = prepare(setting.load(*request.start), false, {.stop = setting.watch.stop}).drives;
+    options.start = drives.waveforms();
+    options.before = drives.before();
+  }
+  const auto found = std::make_shared<const Limit>(limit(setting.scene, options, setting.watch));
+  Outcome outcome{.json = limit_json(*found, {.command = setting.command}), .text = limit_text(*found)};
+  outcome.files = {{"limit.json", [json = outcome.json] { return json_text(json, 1) + "\n"; }, "limit.json"},
+                   {"limit.svg", [found] { return limit_svg(*found); }, "limit.svg"}};
+  if (found->landing) {
+    outcome.files.push_back({"best.toml", [found] { return found->landing->scene.scene.file.text(); },
+                             "best.toml (run it with `softland simulate`)"});
+    outcome.files.push_back({"best.csv", [found] { return told_csv(found->landing->scene); }, "best.csv"});
+  }
+  const Status status = found->touch.status;
+  outcome.ending = found->interrupted             ? Ending::interrupted
+                   : status == Status::no_contact ? Ending::no_success
+                   : status == Status::done       ? Ending::done
+                                                  : Ending::numerical_failure;
+  return outcome;
+}
+
+}  // namespace
+
+Study limit_study() { return study_of<LimitRequest>(); }
+
+}  // namespace softland::verbs

@@ -1,0 +1,261 @@
+// What a verb may be told. A request is a struct with a function template `options(archive, request)` that names each option
+// once, in one line. The command line and Python declare, read and explain their options by archives of that template.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "base/choice.h"
+#include "base/range.h"
+#include "base/require.h"
+#include "base/shortened.h"
+#include "config/units.h"
+#include "sampling/points.h"
+
+namespace softland::verbs {
+
+/// What was told, by option: the texts of one that may be repeated in their order; of a flag one that is empty.
+using Told = std::map<std::string, std::vector<std::string>, std::less<>>;
+
+/// A quantity as an option takes it; `rule` ends the sentence "must be ...".
+struct Wanted {
+  Dimension dimension;
+  Range range;
+  std::string rule;
+};
+
+/// What all doors are told of an option.
+struct OptionRow {
+  enum class Kind { text, flag, repeated, further };  ///< further: words behind the scene
+
+  std::string name, word, about;  ///< "impact-velocity", "SPEED"; `about` begins in lower case
+  Kind kind = Kind::text;
+  bool may_be_empty = false;  ///< else the door refuses an empty text
+
+  // In Python:
+  std::string keyword = {};  ///< "impact_velocity"; empty where Python has no such option
+  std::string type = {};     ///< "float | str | None"
+  std::string value = {};    ///< its default, "None"
+  std::string note = {};     ///< before `about`: the unit of a number, which value `about` is of
+  std::string told = {};     ///< an expression that makes the texts of Told of it, "_quantity(impact_velocity, 'm/s')"
+  bool is_positional = false;
+};
+
+/// "impact_velocity".
+[[nodiscard]] std::string keyword_of(std::string_view name);
+/// The unit in which a number without one counts.
+[[nodiscard]] std::string_view unit_of(const Dimension& dimension);
+
+/// What an optional holds, or the type itself.
+template <class T>
+struct Held {
+  using type = T;
+};
+template <class T>
+struct Held<std::optional<T>> {
+  using type = T;
+};
+
+/// Lists the options.
+class OptionList {
+ public:
+  template <class T, class Names>
+  void choice(const char* name, T& value, const Names& names, const std::string& about) {
+    std::string list = listed(names), type;
+    for (const std::string_view one : names_of(names)) type += fmt::format("{}\"{}\"", type.empty() ? "" : ", ", one);
+    add({.name = name, .word = "NAME", .about = fmt::format("{}: {}", about, list.insert(list.find(','), " (default)"))},
+        fmt::format("Literal[{}]", type), fmt::format("\"{}\"", name_of(names, value)), "[{}]");
+  }
+  template <class T>
+  void quantity(const char* name, T&, const Wanted& wanted, const char* word, const std::string& about) {
+    const std::string_view unit = unit_of(wanted.dimension);
+    add({.name = name,
+         .word = word,
+         .about = about,
+         .may_be_empty = true,
+         .note = unit.empty() ? "" : fmt::format("[{}] ", unit)},
+        "float | str | None", "None", fmt::format("_quantity({{}}, \"{}\")", unit));
+  }
+  template <class T>
+  void whole(const char* name, T&, Range, const std::string& about) {
+    add({.name = name, .word = "N", .about = about, .may_be_empty = true}, "int | None", "None", "_whole({})");
+  }
+  void file(const char* name, std::optional<std::string>&, const std::string& about) {
+    add({.name = name, .word = "FILE", .about = about}, "str | os.PathLike[str] | None", "None", "_path({})");
+  }
+  void text(const char* name, std::string&, const char* word, const std::string& about) {
+    add({.name = name, .word = word, .about = about}, "str", "\"\"", "_text({})");
+  }
+  /// What an option says in one text that Python has as a list, joined by commas, or as a mapping, "Vdp:1 %,time:0.5 %".
+  template <class T, class Parse>
+  void parsed(const char* name, T&, const Parse&, const char* word, const std::string& about, const char* keyword,
+              const char* type) {
+    const std::string_view kind(type);
+    const bool is_mapping = kind.starts_with("Mapping");
+    add({.name = name, .word = word, .about = about, .keyword = keyword}, type, kind.ends_with("None") ? "None" : "()",
+        is_mapping ? "_pairs({}, \":\")" : "_joined({})");
+  }
+  /// Texts "KEY=VALUE", which Python has as a mapping.
+  void assignments(const char* name, std::vector<std::string>&, const char* word, const std::string& about) {
+    add({.name = name, .word = word, .about = about, .kind = OptionRow::Kind::repeated}, "Mapping[str, float | str] | None",
+        "None", "_assigned({})");
+  }
+  void repeated(const char* name, std::vector<std::string>&, const char* word, const std::string& about, const char* keyword,
+                bool is_positional = false) {
+    add({.name = name,
+         .word = word,
+         .about = about,
+         .kind = OptionRow::Kind::repeated,
+         .keyword = keyword,
+         .is_positional = is_positional},
+        "Sequence[str]", "()", "list({})");
+  }
+  /// More results behind the scene; in Python waveforms by name.
+  void results(const char* name, std::vector<std::string>&, const std::string& about) {
+    add({.name = name,
+         .word = "",
+         .about = about,
+         .kind = OptionRow::Kind::further,
+         .keyword = "waveforms",
+         .is_positional = true},
+        "Mapping[str, Mapping[str, Waveform]] | None", "None", "list({} or ())");
+  }
+  /// The file of measurements; in Python these themselves, too.
+  void measurements(const char* name, std::string&, const std::string& about) {
+    add({.name = name, .word = "FILE", .about = about, .is_positional = true},
+        "str | os.PathLike[str] | Sequence[Mapping[str, Any]]", "", "[{}]");
+  }
+  void flag(const char* name, bool&, const std::string& about) {
+    add({.name = name, .word = "", .about = about, .kind = OptionRow::Kind::flag}, "bool", "False", "_flag({})");
+  }
+  /// A member that is true unless the flag "no-NAME" is told.
+  void unless(const char* name, bool&, const std::string& about) {
+    constexpr std::string_view no = "no-";
+    add({.name = name,
+         .word = "",
+         .about = about,
+         .kind = OptionRow::Kind::flag,
+         .keyword = std::string(name).substr(no.size()),
+         .note = "False: "},
+        "bool", "True", "_flag(not {})");
+  }
+  [[nodiscard]] const std::vector<OptionRow>& all() const { return all_; }
+
+ private:
+  /// `told` has {} for the keyword.
+  void add(OptionRow row, std::string type, std::string value, const std::string& told) {
+    if (row.keyword.empty()) row.keyword = keyword_of(row.name);
+    row.type = std::move(type), row.value = std::move(value);
+    row.told = fmt::format(fmt::runtime(told), row.keyword);
+    all_.push_back(std::move(row));
+  }
+  std::vector<OptionRow> all_;
+};
+
+/// The number that an option was told. Throws InvalidRequest that names option, text and rule.
+template <class Number>
+[[nodiscard]] Number whole_number(const std::string& option, const std::string& text, const Range& range) {
+  Number value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  require_request(error != std::errc::result_out_of_range, [&] {
+    return fmt::format("{} {}: must be a whole number from {} to {}", option, text, range.least,
+                       std::numeric_limits<Number>::max());
+  });
+  require_request(error == std::errc() && end == text.data() + text.size() && static_cast<double>(value) >= range.least,
+                  [&] { return fmt::format("{} {}: must be a whole number from {} on", option, visible(text), range.least); });
+  require_request(static_cast<double>(value) <= range.most,
+                  [&] { return fmt::format("{} {}: must be at most {:.0f}", option, text, range.most); });
+  return value;
+}
+
+/// Sets the members of a request; what is not told keeps its value. Throws InvalidRequest with option, value
+/// and rule.
+class OptionReader {
+ public:
+  explicit OptionReader(const Told& told) : told_(told) {}
+
+  template <class T, class Names>
+  void choice(const char* name, T& value, const Names& names, const std::string&) {
+    const std::string* const text = find(name);
+    if (text == nullptr) return;
+    const auto* const row = find_named(names, *text);
+    require_request(row != nullptr, [&] { return fmt::format("{} {}: must be {}", requested(name), *text, listed(names)); });
+    value = row->value;
+  }
+  template <class T>
+  void quantity(const char* name, T& value, const Wanted& wanted, const char*, const std::string&) {
+    if (const std::string* const text = find(name)) value = quantity_of(name, *text, wanted);
+  }
+  template <class T>
+  void whole(const char* name, T& value, Range range, const std::string&) {
+    const std::string* const text = find(name);
+    if (text == nullptr) return;
+    value = whole_number<typename Held<T>::type>(requested(name), *text, range);
+  }
+  void file(const char* name, std::optional<std::string>& value, const std::string&) {
+    const std::string* const text = find(name);
+    if (text == nullptr) return;
+    require_request(!text->empty(), [&] { return fmt::format("{}: must not be empty", requested(name)); });
+    value = *text;
+  }
+  void text(const char* name, std::string& value, const char*, const std::string&) {
+    if (const std::string* const text = find(name)) value = *text;
+  }
+  template <class T, class Parse>
+  void parsed(const char* name, T& value, const Parse& parse, const char*, const std::string&, const char*, const char*) {
+    if (const std::string* const text = find(name)) parse(requested(name), *text, value);
+  }
+  void assignments(const char* name, std::vector<std::string>& values, const char*, const std::string&) { all(name, values); }
+  void repeated(const char* name, std::vector<std::string>& values, const char*, const std::string&, const char*, bool = false) {
+    all(name, values);
+  }
+  void results(const char* name, std::vector<std::string>& values, const std::string&) { all(name, values); }
+  void measurements(const char* name, std::string& value, const std::string&) {
+    const std::string* const text = find(name);
+    require_request(text != nullptr && !text->empty(),
+                    [&] { return fmt::format("{}: name the file of measurements, such as bench.toml", requested(name)); });
+    value = *text;
+  }
+  void flag(const char* name, bool& value, const std::string&) { value = value || told_.contains(name); }
+  void unless(const char* name, bool& value, const std::string&) { value = value && !told_.contains(name); }
+
+ private:
+  [[nodiscard]] const std::string* find(const char* name) const {
+    const auto at = told_.find(name);
+    return at == told_.end() || at->second.empty() ? nullptr : &at->second.back();
+  }
+  void all(const char* name, std::vector<std::string>& values) const {
+    if (const auto at = told_.find(name); at != told_.end()) values = at->second;
+  }
+  [[nodiscard]] double quantity_of(const char* name, const std::string& text, const Wanted& wanted) const;
+
+  const Told& told_;
+};
+
+// Options that several verbs have.
+template <class Archive, class Seed>
+void seed_option(Archive& a, Seed& seed, const std::string& same) {
+  a.whole("seed", seed, {.least = 0}, "whole number from 0 on (default 1): same seed, " + same);
+}
+template <class Archive>
+void jobs_option(Archive& a, int& jobs) {
+  a.whole("jobs", jobs, {.least = 1}, "threads (default: one per core); the result does not depend on them");
+}
+template <class Archive>
+void samples_option(Archive& a, std::uint64_t& samples, Range range, const std::string& about) {
+  a.whole("samples", samples, range, about);
+}
+/// Threads, where nothing is told of them.
+[[nodiscard]] int one_per_core();
+
+}  // namespace softland::verbs

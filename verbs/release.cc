@@ -1,0 +1,66 @@
+// The waveform that opens a closed switch without leaving it to swing.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "reports/release_report.h"
+#include "reports/result_json.h"
+#include "studies/search/opening.h"
+#include "verbs/study.h"
+
+namespace softland::verbs {
+namespace {
+
+struct ReleaseRequest : Usual {
+  static constexpr auto name = "release",
+                        about = "search the drive waveform that opens the closed switch without leaving it to swing",
+                        python = "opening",
+                        leaves =
+                            "folder for release.json, release.svg, the drives as release.csv and as release.toml, for export";
+  static constexpr auto remarks =
+      "The switch rests on its contact under the scene's hold levels, and opens at t = 0. Dropped to 0 V at once it swings "
+      "about\n"
+      "its open position; the search finds two pulses of every drive that stop it there, within the limits of [driver.*].\n"
+      "Examples:\n  softland release scenes/mem-gold.toml\n"
+      "  softland release scenes/mem-gold-pzt.toml --actuator both --out opened";
+  static std::vector<std::string> files() { return {"release.json", "release.svg", "release.csv", "release.toml"}; }
+
+  OpeningOptions options{.band = 0.05, .jobs = one_per_core()};
+};
+
+template <class Archive>
+void options(Archive& a, ReleaseRequest& r) {
+  OpeningOptions& o = r.options;
+  a.choice("actuator", o.actuator, actuators, "drives that may brake");
+  a.quantity("band", o.band,
+             {dimension::none,
+              {.least = 0, .most = 1, .least_open = true, .most_open = true},
+              "a share of the contact gap above 0 % and below 100 %, such as \"5 %\""},
+             "SHARE", "of the contact gap: nearer to its open position the switch counts as open (default: 5 %)");
+  a.whole("budget", o.max_evaluations, {.least = 1}, "evaluations (default: 3000)");
+  samples_option(a, o.devices, {.least = 0, .most = SamplePoints::largest_size},
+                 "devices of [spread] that both openings are judged on (default: 200; 0: none)");
+  seed_option(a, o.seed, "same waveform");
+  jobs_option(a, o.jobs);
+}
+
+Outcome run(const Setting& setting, const ReleaseRequest& request) {
+  const auto found = std::make_shared<const OpeningResult>(search_opening(setting.scene, request.options, setting.watch));
+  Outcome outcome{.json = release_json(*found, {.command = setting.command}), .text = release_text(*found)};
+  outcome.files = {{"release.json", [json = outcome.json] { return json_text(json, 1) + "\n"; }, "release.json"},
+                   {"release.svg", [found] { return release_svg(*found); }, "release.svg"},
+                   {"release.csv", [found] { return release_csv(*found); }, "release.csv"},
+                   {"release.toml", [found] { return found->scene->text(); }, "release.toml"}};
+  if (!found->interrupted) outcome.next = "\nFor a generator:\n  softland export {}\n";
+  outcome.ending = found->interrupted                                            ? Ending::interrupted
+                   : found->plain.trajectory.status == Status::numerical_failure ? Ending::numerical_failure
+                   : found->better                                               ? Ending::done
+                                                                                 : Ending::no_success;
+  return outcome;
+}
+
+}  // namespace
+
+Study release_study() { return study_of<ReleaseRequest>(); }
+
+}  // namespace softland::verbs

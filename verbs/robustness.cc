@@ -1,0 +1,137 @@
+// How drives do on devices that differ as [spread] says.
+#include "studies/devices/robustness.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/assumed_spread.h"
+#include "config/calibration_words.h"
+#include "reports/report_files.h"
+#include "reports/robustness_report.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/devices/box_and_chaos.h"
+#include "verbs/study.h"
+
+namespace softland::verbs {
+namespace {
+
+constexpr std::size_t most_worst = 3;
+
+std::string worst_file(std::size_t i) { return fmt::format("worst-{}.toml", i + 1); }
+// The scene of the worst device of the box.
+std::string box_file(std::string_view key) { return fmt::format("box-{}.toml", figure_of(key).symbol); }
+
+struct RobustnessRequest : Usual {
+  static constexpr auto name = "robustness", about = "how drives do on devices that differ as [spread] says",
+                        python = "robustness", scene = varied_scene,
+                        leaves = "folder for robustness.html, robustness.json, devices.csv and the worst devices as scenes",
+                        changes = "change one key of the first: --set spread.gaps.cov=\"1 %\"";
+  static constexpr auto remarks =
+      "The plain step to the same hold levels is judged beside every drive. Every device gets the volts of the nominal one,\n"
+      "or, where it is calibrated, the same waveform in its own units. Exact derivatives of the nominal device's figures by\n"
+      "what varies stand beside the sample; they know nothing of rebounds that come or go.\n"
+      "Examples:\n  softland robustness scenes/mem-gold.toml --samples 500\n"
+      "  softland robustness scenes/mem-gold.toml --other-ways --out box\n"
+      "  softland robustness scenes/mem-gold.toml softland-out --out robust";
+  static std::vector<std::string> files() {
+    std::vector<std::string> all(robustness_files.begin(), robustness_files.end());
+    for (std::size_t i = 0; i < most_worst; ++i) all.push_back(worst_file(i));
+    for (const std::string_view key : explained_figures) all.push_back(box_file(key));
+    return all;
+  }
+
+  RobustnessOptions options{.jobs = one_per_core(), .worth_of_measuring = true};
+  std::vector<std::string> results;  ///< whose drives are judged as well
+  std::string calibration;           ///< the measurements of every device; empty: the scene says them
+  bool box_and_chaos = false;        ///< ranges over a box, and polynomial chaos, beside the sample
+};
+
+template <class Archive>
+void options(Archive& a, RobustnessRequest& r) {
+  a.results("RESULT", r.results, "more of them, whose drives are judged on the devices of the first");
+  samples_option(a, r.options.samples, {.least = 1, .most = SamplePoints::largest_size}, "devices (default: 2000)");
+  a.choice("points", r.options.points, point_sets, "how they are chosen");
+  a.text("calibrate", r.calibration, "LIST",
+         "measured on every device before it is driven, as for optimize; the report says what each measurement is worth");
+  a.flag("other-ways", r.box_and_chaos,
+         fmt::format("beside the sample, for the last drive: the worst and the best device of a box, by search, and polynomial "
+                     "chaos; {} closings more",
+                     2 * explained_figures.size() * BoxAndChaosOptions{}.closings_per_search));
+  seed_option(a, r.options.seed, "same devices");
+  jobs_option(a, r.options.jobs);
+}
+
+// The report keeps references to the others.
+struct Judged {
+  std::shared_ptr<const PreparedScene> nominal;
+  Robustness found = {};
+  std::optional<RobustnessReport> report = {};
+};
+
+std::shared_ptr<const PreparedScene> nominal_of(const Setting& setting, const RobustnessRequest& request, bool& spread_assumed) {
+  SceneFile file = setting.scene;
+  spread_assumed = assume_spread(file);
+  set_calibration(file, request.calibration);
+  if (!spread_assumed && request.calibration.empty()) return setting.prepared(true);
+  return std::make_shared<const PreparedScene>(prepare_and_choose(file, true, setting.watch));
+}
+
+std::vector<Outcome::File> files_of(const std::shared_ptr<const Judged>& judged) {
+  std::vector<Outcome::File> files;
+  const RobustnessReport& report = *judged->report;
+  for (ReportFile<RobustnessReport>& one : softland::files_of(report))
+    files.push_back({one.name, [judged, text = std::move(one.text)] { return text(*judged->report); }, one.name});
+  const auto add = [&]<class WhichDevice>(std::string name, const WhichDevice& device, const char* listed) {
+    const auto text = [judged, device] {
+      return scene_of_device(*judged->nominal, judged->found.drives.back(), device, judged->report->options).text();
+    };
+    files.push_back({std::move(name), text, listed});
+  };
+  const std::vector<std::size_t>& worst = judged->found.drives.back().worst;
+  for (std::size_t i = 0; i < std::min(most_worst, worst.size()); ++i)
+    add(worst_file(i), worst[i], i == 0 ? "worst-*.toml (the worst devices of the last drive, for `softland simulate`)" : "");
+  if (!report.box_and_chaos) return files;
+  const char* listed = "box-*.toml (those of the box)";
+  for (const FigureRange& range : report.box_and_chaos->ranges) {
+    if (range.most.values.empty()) continue;
+    add(box_file(range.key), range.most, std::exchange(listed, ""));
+  }
+  return files;
+}
+
+Outcome run(const Setting& setting, const RobustnessRequest& request) {
+  const auto judged = std::make_shared<Judged>();
+  bool spread_assumed = false;
+  judged->nominal = nominal_of(setting, request, spread_assumed);
+  const PreparedScene& nominal = *judged->nominal;
+  const Calibration& calibration = nominal.scene.calibration;
+  std::vector<NamedDrive> drives{{.name = setting.name, .waveforms = nominal.drives.waveforms(), .calibration = calibration}};
+  for (const std::string& result : request.results)
+    drives.push_back({.name = result, .waveforms = setting.waveforms_of(result, nominal), .calibration = calibration});
+  judged->found = robustness(nominal, drives, request.options, setting.watch);
+  judged->report.emplace(RobustnessReport{.nominal = nominal,
+                                          .found = judged->found,
+                                          .options = request.options,
+                                          .command = setting.command,
+                                          .spread_assumed = spread_assumed});
+  RobustnessReport& report = *judged->report;
+  add_details(report, request.box_and_chaos, setting.watch);
+  return {.json = robustness_json(report),
+          .text = terminal_text(robustness_document(report)),
+          .files = files_of(judged),
+          .ending = report.interrupted      ? Ending::interrupted
+                    : report.unheld.empty() ? Ending::done
+                                            : Ending::no_success};
+}
+
+}  // namespace
+
+Study robustness_study() { return study_of<RobustnessRequest>(); }
+
+}  // namespace softland::verbs

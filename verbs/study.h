@@ -1,0 +1,122 @@
+// A verb that looks at one scene: what it may be told, what it does, and what it leaves, for the command line and for Python.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/watch.h"
+#include "config/scene.h"
+#include "model/status.h"
+#include "studies/closing/prepared.h"
+#include "verbs/options.h"
+
+namespace softland::verbs {
+
+/// How a verb ended. The program has an exit status for each.
+enum class Ending { done, no_success, numerical_failure, interrupted };
+/// What a closing that ended so means.
+[[nodiscard]] Ending ending_of(Status status);
+
+/// What a verb found, as every door takes it.
+struct Outcome {
+  struct File {
+    std::string name;
+    std::function<std::string()> text;
+    std::string listed = {};  ///< how its name stands where files are listed, "" where it does not
+  };
+  nlohmann::json json;
+  std::string text;  ///< for a terminal
+  std::vector<File> files = {};
+  std::string next = {};                ///< below the files; "{}" stands for the scene in their folder that `export` takes
+  std::string last = {};                ///< below all
+  std::vector<std::string> notes = {};  ///< for standard error
+  Ending ending = Ending::done;
+};
+
+/// What every verb is given.
+struct Setting {
+  SceneFile scene;
+  std::string name;     ///< how the user named it
+  std::string command;  ///< for provenance
+  const Watch& watch;
+  std::optional<bool> leaves_files = {};  ///< whether files will be kept, where that is known beforehand
+  /// The scene made ready; without and with the limits that a search takes where the scene says nothing.
+  std::function<std::shared_ptr<const PreparedScene>(bool default_limits)> prepared;
+  /// The scene of a file, or of a result.
+  std::function<SceneFile(const std::string&)> load;
+  /// The waveforms of a result for the switch of `nominal`. Throws InvalidInput where it cannot be driven by them.
+  std::function<DriveWaveforms(const std::string& result, const PreparedScene& nominal)> waveforms_of;
+  /// The scene as it is written, with its comments.
+  std::function<std::string()> text;
+};
+
+struct Study {
+  const char *name, *about;
+  const char* python;   ///< the method of a scene in Python
+  const char* scene;    ///< what the scene may be, for --help
+  const char* leaves;   ///< what --out holds, in words; null where it leaves no files
+  const char* place;    ///< the folder where --out names none; null: then none is written
+  const char* changes;  ///< an example of --set
+  const char* remarks;
+  std::vector<std::string> files;  ///< that --out may hold
+  std::vector<OptionRow> options;
+  /// Reads what was told; the study itself runs when that is called. Throws InvalidRequest.
+  std::function<std::function<Outcome(const Setting&)>(const Told&)> ask;
+};
+
+inline constexpr auto scene_or_result = "scene file (TOML), folder that --out named, or result.json";
+inline constexpr auto varied_scene = "scene file with [spread], folder that --out named, or result.json";
+inline constexpr auto scene_alone = "scene file (TOML)";
+inline constexpr auto usual_change = "change one key: --set gap.contact=\"1.8 um\"";
+
+/// What a request says of itself where it differs from the usual verb.
+struct Usual {
+  static constexpr const char *scene = scene_or_result, *leaves = nullptr, *place = nullptr, *changes = usual_change;
+  static std::vector<std::string> files() { return {}; }
+};
+
+/// The study of a request: a struct with name, about, python and remarks, a template options(archive, request), and
+/// run(setting, request).
+template <class Request>
+[[nodiscard]] Study study_of() {
+  OptionList list;
+  Request defaults;
+  options(list, defaults);
+  return {.name = Request::name,
+          .about = Request::about,
+          .python = Request::python,
+          .scene = Request::scene,
+          .leaves = Request::leaves,
+          .place = Request::place,
+          .changes = Request::changes,
+          .remarks = Request::remarks,
+          .files = Request::files(),
+          .options = list.all(),
+          .ask = [](const Told& told) -> std::function<Outcome(const Setting&)> {
+            Request request;
+            OptionReader reader(told);
+            options(reader, request);
+            return [request](const Setting& setting) { return run(setting, request); };
+          }};
+}
+
+// One file each.
+[[nodiscard]] Study accuracy_study();
+[[nodiscard]] Study calibrate_study();
+[[nodiscard]] Study check_study();
+[[nodiscard]] Study effects_study();
+[[nodiscard]] Study fit_study();
+[[nodiscard]] Study limit_study();
+[[nodiscard]] Study pull_in_study();
+[[nodiscard]] Study release_study();
+[[nodiscard]] Study robustness_study();
+
+/// All of them, in the order of --help.
+[[nodiscard]] const std::vector<Study>& all_studies();
+
+}  // namespace softland::verbs
