@@ -93,12 +93,18 @@ std::optional<std::size_t> RecordingMaker::time_place() const {
     const std::optional<Unit> unit = unit_of_column(k);
     if (unit && (unit->measure == Measure::time || unit->measure == Measure::samples)) return k;
   }
-  constexpr std::array usual{"time", "t",     "x",     "x-axis", "xpos",  "times",  "timestamp",
-                             "zeit", "temps", "tempo", "tiempo", "index", "sample", "n"};
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::string name = lower_case(heading_of(block_.names[k]).name);
-    if (std::find(usual.begin(), usual.end(), name) != usual.end()) return k;
-  }
+  const auto named_one_of = [&](const auto& names) -> std::optional<std::size_t> {
+    for (std::size_t k = 0; k < count; ++k) {
+      if (std::ranges::find(names, lower_case(heading_of(block_.names[k]).name)) != std::end(names)) return k;
+    }
+    return std::nullopt;
+  };
+  // A number of the row counts only where there is no time.
+  constexpr std::array<std::string_view, 11> times{"time",      "t",    "x",     "x-axis", "xpos",  "times",
+                                                   "timestamp", "zeit", "temps", "tempo",  "tiempo"};
+  constexpr std::array<std::string_view, 3> rows{"index", "sample", "n"};
+  if (const auto time = named_one_of(times)) return time;
+  if (const auto row = named_one_of(rows)) return row;
   if (block_.has_headings || count < 2) return std::nullopt;
   // Without names: the first column where it never falls, and does not stand still.
   const std::vector<double>& first = block_.values.front();

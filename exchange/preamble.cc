@@ -76,12 +76,9 @@ constexpr std::array known_keys{
 };
 
 /// Keys of units.
-constexpr std::array<std::string_view, 5> vertical_keys{"verticalunits", "verticalunit", "yunits", "yunit", "vunit"};
-constexpr std::array<std::string_view, 5> horizontal_keys{"horizontalunits", "horizontalunit", "xunits", "xunit", "hunit"};
-
-bool names_unit(const std::array<std::string_view, 5>& keys, std::string_view letters) {
-  return std::find(keys.begin(), keys.end(), letters) != keys.end();
-}
+constexpr Words vertical_keys{"verticalunits", "verticalunit", "yunits", "yunit", "vunit", "yaxisunits", "yaxisunit"};
+constexpr Words horizontal_keys{"horizontalunits", "horizontalunit", "xunits",       "xunit",      "hunit",    "timeunits",
+                                "timeunit",        "timebaseunits",  "timebaseunit", "xaxisunits", "xaxisunit"};
 
 /// A format by words that all stand in its preamble and headings, lower case. The first one that fits is taken.
 struct FormatRow {
@@ -156,8 +153,8 @@ bool Preamble::take(std::string_view key, std::string_view value) {
   const Heading heading = heading_of(key);
   const std::string letters = letters_of(heading.unit ? std::string_view(heading.name) : key);
   value = trimmed(value);
-  const bool is_vertical = names_unit(vertical_keys, letters);
-  if (is_vertical || names_unit(horizontal_keys, letters)) {
+  const bool is_vertical = vertical_keys.contain(letters);
+  if (is_vertical || horizontal_keys.contain(letters)) {
     const std::size_t colon = value.rfind(':');
     const std::optional<Unit> unit = unit_of(colon == std::string_view::npos ? value : value.substr(colon + 1));
     std::optional<Unit>& to = is_vertical ? vertical_unit : horizontal_unit;
@@ -212,7 +209,7 @@ bool is_setting(const std::vector<std::string_view>& cells) {
   std::copy_if(cells.begin(), cells.end(), std::back_inserter(filled), [](std::string_view cell) { return !cell.empty(); });
   if (filled.size() != 2 || !(looks_like_number(filled[1]) || unit_of(filled[1]))) return false;
   const std::string letters = letters_of(filled[0]);
-  return names_unit(vertical_keys, letters) || names_unit(horizontal_keys, letters) ||
+  return vertical_keys.contain(letters) || horizontal_keys.contain(letters) ||
          std::any_of(known_keys.begin(), known_keys.end(), [&](const KeyRow& row) { return row.key == letters; });
 }
 

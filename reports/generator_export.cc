@@ -70,9 +70,23 @@ std::string amplifier_words(const Drive& drive, double factor) {
 }
 
 void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling) {
+  // The scene says what is wrong with its key: it is told of the option.
+  const auto set = [&](std::string_view option, const std::string& told, const std::string& assignment,
+                       const std::string& drive) {
+    try {
+      file.set(assignment);
+      static_cast<void>(read_scene(file));
+    } catch (const InvalidInput& error) {
+      const std::string said = error.what(), before = fmt::format("--set {}: ", assignment);
+      if (!said.starts_with(before)) throw;
+      throw InvalidRequest(
+          fmt::format("{} {}: [driver.{}] {}", requested(option), visible(told), drive, said.substr(before.size())));
+    }
+  };
   for (const std::string& drive : drives) {
-    if (sampling.rate) file.set(fmt::format("driver.{}.sample_rate=\"{}\"", drive, *sampling.rate));
-    if (sampling.bits) file.set(fmt::format("driver.{}.bits={}", drive, *sampling.bits));
+    if (const auto& rate = sampling.rate)
+      set("sample-rate", *rate, fmt::format("driver.{}.sample_rate=\"{}\"", drive, *rate), drive);
+    if (const auto& bits = sampling.bits) set("bits", *bits, fmt::format("driver.{}.bits={}", drive, *bits), drive);
   }
 }
 

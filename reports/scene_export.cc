@@ -123,8 +123,9 @@ double error_of(const Measured& measured, const std::optional<double>& given, co
   return usual_error;
 }
 
-// Warns of a device that hardly any is like; `deviation`: of the spread, `ratio`: what is measured over the nominal, relative.
-void warn_if_strange(const Measured& measured, double ratio, double deviation, const std::optional<double>& error,
+// Warns of a device that hardly any is like; `deviation`: of the spread, `ratio`: of the unit that the measurement tells over
+// that of the nominal device, `own`: what is measured over the nominal value.
+void warn_if_strange(const Measured& measured, double own, double ratio, double deviation, const std::optional<double>& error,
                      const Say& say) {
   constexpr double strange = 4;
   const double off = std::abs(ratio - 1), sigma = std::hypot(deviation, error_of(measured, error, say));
@@ -132,7 +133,7 @@ void warn_if_strange(const Measured& measured, double ratio, double deviation, c
   say(
       fmt::format("warning: {}: {} % from the nominal device, {} times the standard deviation of devices and measurement: is "
                   "it this switch?",
-                  measured.said, plain_number(100 * off, 3), plain_number(off / sigma, 2)));
+                  measured.said, plain_number(100 * std::abs(own - 1), 3), plain_number(off / sigma, 2)));
 }
 
 // The scene, whose devices differ in the usual way where it does not say how.
@@ -162,11 +163,12 @@ DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int j
   const bool by_volts = measured.pull_in.value || measured.time.value;
   const DeviceUnits deviation = deviation_of_units(with_spread(p), by_volts, jobs, watch);
   if (measured.time.value)
-    warn_if_strange(measured.time, volts, deviation.volts, told.volts_by_time * calibration.time_error.value_or(usual_time_error),
-                    say);
-  if (measured.pull_in.value) warn_if_strange(measured.pull_in, volts, deviation.volts, calibration.pull_in_error, say);
-  if (measured.frequency.value) warn_if_strange(measured.frequency, 1 / time, deviation.time, calibration.frequency_error, say);
-  if (measured.piezo.value) warn_if_strange(measured.piezo, 1 / piezo, deviation.piezo, calibration.piezo_error, say);
+    warn_if_strange(measured.time, *measured.time.value / meter.closing_time(), volts, deviation.volts,
+                    told.volts_by_time * calibration.time_error.value_or(usual_time_error), say);
+  if (measured.pull_in.value) warn_if_strange(measured.pull_in, volts, volts, deviation.volts, calibration.pull_in_error, say);
+  if (measured.frequency.value)
+    warn_if_strange(measured.frequency, 1 / time, 1 / time, deviation.time, calibration.frequency_error, say);
+  if (measured.piezo.value) warn_if_strange(measured.piezo, 1 / piezo, 1 / piezo, deviation.piezo, calibration.piezo_error, say);
   const KnownUnits known = known_units(p, std::array{calibration}, jobs, watch).front();
   return known.of({.volts = volts, .time = time, .piezo = piezo, .volts_by_time = told.volts_by_time});
 }
@@ -287,6 +289,12 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
   }
   SentSignals sent =
       sent_signals(p, measured.are_none() ? p.waveforms() : waveforms_of(p, measured, request.jobs, watch, say), sent_as);
+  if (const SceneFile& scene = p.scene.file; sent.signals.empty()) {
+    constexpr std::string_view none = "there is no waveform to export";
+    for (const std::string& drive : scene.keys("waveform"))
+      scene.refuse("waveform." + drive, fmt::format("{}: '{}' is a factor of the model, and no source is told it", none, drive));
+    throw InvalidInput(fmt::format("{}: {}; there must be at least one", scene.name(), none));
+  }
   if (!request.sampling.drive.empty())
     std::erase_if(sent.signals, [&](const auto& one) { return one.first != request.sampling.drive; });
   if (generator == nullptr && request.format != "codes") {

@@ -36,6 +36,7 @@ constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2
 constexpr double least_of_race = 0.4, end_of_race = 0.75;  // of a budget of time
 constexpr std::string_view quasi_static_short = "quasi-static:2",
                            approaches = "+quasi-static+quasi-static:2";  // that are searched where there is a stable path
+constexpr std::string_view usual_prefix = "usual_limit.";
 constexpr double alike = 1.05;               // times the least cost, which the devices of the choice do not tell from it
 constexpr double little_more = 1.25;         // times the least cost, for which a sooner waveform is preferred where there is none
 constexpr std::uint64_t path_devices = 512;  // of which it is told how many have a stable path
@@ -161,6 +162,11 @@ FamilyColumns DevicesSearch::columns() const {
   std::string families;
   for (const std::string& name : names_) families += (families.empty() ? "" : "+") + name;
   FamilyColumns all = searched_columns(settings_, families);
+  // Those within the usual limits stand behind the others.
+  for (std::size_t k = 0; k < usual_room_.size(); ++k) {
+    all.families.push_back(all.families[k]);
+    for (std::string& name : all.families.back()) name.insert(0, usual_prefix);
+  }
   for (std::vector<std::string>& own : all.families) {
     for (std::string& name : own) name.insert(0, raced_prefix);
   }
@@ -171,6 +177,7 @@ double DevicesSearch::seconds() const { return std::chrono::duration<double>(std
 
 void DevicesSearch::run(std::size_t before, std::function<void()> looked, double reserved) {
   for (std::size_t k = 0; k < settings_.size(); ++k) settings_[k].family = before + k;
+  for (std::size_t k = 0; k < usual_room_.size(); ++k) usual_room_[k].family = before + settings_.size() + k;
   looked_ = std::move(looked);
   race_families(reserved);
   choose();
@@ -214,10 +221,10 @@ void DevicesSearch::race_all() {
   std::vector<DriveWaveforms> begun;
   if (!usual_room_.empty()) {
     RaceOptions first = own;
-    first.memory = nullptr;  // whose keys do not tell limits
-    first.out_of_time = [this] { return gave_up_ || seconds() > race_end_ / 2; };
-    if (devices_.are_a_budget) first.closings /= 2;
     own.closings /= 2;
+    const bool has_room_for_both = static_cast<double>(own.closings) >= least_length_of_race * static_cast<double>(race_closings);
+    if (has_room_for_both) first.out_of_time = [this] { return gave_up_ || seconds() > race_end_ / 2; };
+    if (has_room_for_both && devices_.are_a_budget) first.closings /= 2;
     race_in_usual_room_ = race(usual_room_, *cost_, aims_, first);
     closings_ += race_in_usual_room_.closings;
     if (!race_in_usual_room_.racers.empty()) begun.push_back(race_in_usual_room_.racers.front().waveforms);

@@ -193,6 +193,44 @@ TEST(Recording, OthersThatAreReadByTheirStructure) {
   EXPECT_EQ(read("t,drive\n0,0\n1,1\n2,1\n").rows(), 3U);
 }
 
+TEST(Recording, ATimeCountsBeforeTheNumberOfTheRow) {
+  for (const std::string number : {"Index", "index", "Sample", "N", "No.", "Point"}) {
+    for (const std::string time : {"Time", "time (s)", "t", "Timestamp", "Zeit"}) {
+      for (const bool is_first : {true, false}) {
+        const std::string first = is_first ? number + "," + time : time + "," + number;
+        std::string text = first + ",CH1\n";
+        for (const auto& [row, at] :
+             std::vector<std::pair<int, std::string>>{{0, "0"}, {1, "1e-6"}, {2, "20e-6"}, {3, "21e-6"}}) {
+          text += is_first ? fmt::format("{},{},{}\n", row, at, 90 - row) : fmt::format("{},{},{}\n", at, row, 90 - row);
+        }
+        SCOPED_TRACE(text);
+        EXPECT_EQ(read(text).times, (std::vector<double>{0, 1e-6, 20e-6, 21e-6}));
+      }
+    }
+  }
+  EXPECT_EQ(read("Index,CH1\n0,1\n1,2\n2,3\n", {.interval = 1e-6}).times.back(), 2e-6);
+}
+
+TEST(Recording, AUnitThatALineNamesCountsForTheColumnOfTimes) {
+  for (const std::string key :
+       {"Time Units", "Time Unit", "Time Base Units", "X-Axis Units", "\"X-Axis Unit\"", "Horizontal Units", "X Units"}) {
+    SCOPED_TRACE(key);
+    const Recording found = read(key + ",ms\nTIME,CH1\n0,0\n0.001,1\n0.002,2\n");
+    expect_near(found.times, {0, 1e-6, 2e-6}, key);
+  }
+}
+
+TEST(Recording, AUnitBehindAnUnderscoreCountsForTimesAndVolts) {
+  const Recording found = read("time_us,main_mV,gate_kV,node_v\n0,90000,1,1\n1,80000,2,2\n2,70000,3,3\n");
+  expect_near(found.times, {0, 1e-6, 2e-6}, "time");
+  ASSERT_EQ(found.channels.size(), 3);
+  EXPECT_EQ(found.channels[0].name, "main");
+  EXPECT_EQ(found.channels[0].unit, "mV");
+  EXPECT_EQ(found.channels[1].unit, "kV");
+  EXPECT_EQ(found.channels[2].unit, "");
+  EXPECT_EQ(found.channels[2].name, "node_v");
+}
+
 TEST(Recording, SecondColumnsOfTimesMustBeTheSame) {
   EXPECT_EQ(read("TIME,CH1,TIME,CH2\n0,1.5,0,2\n1,2,1,3\n2,3,2,4\n").channels.size(), 2U);
   refused("TIME,CH1,TIME,CH2\n0,1.5,0,2\n1,2,1,3\n2,3,3,4\n", {"columns 1 and 3", "time_column"});
