@@ -787,7 +787,7 @@ TEST(Export, ForAGeneratorTellsHowTheSwitchClosesAsSampled_optimized) {
   for (const auto& [words, said] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--format", "awg"}, "--format awg: must be one of csv, spice-pwl, codes, spice-model"},
            {{"--format", "rigol-csv"}, "drive 'main' takes no samples: give --sample-rate"},
-           {{"--format", "rigol-csv", "--sample-rate", "27 V"}, "sample_rate"},
+           {{"--format", "rigol-csv", "--sample-rate", "27 V"}, "--sample-rate 27 V: [driver.main] expected a frequency"},
            {{"--format", "siglent-csv", "--sample-rate", "150 MHz"}, "Siglent SDG1000X takes 16384"},
            {{"--format", "keysight-arb", "--sample-rate", "1 MHz", "--amplifier", "0"}, "must be above 0"},
            {{"--format", "keysight-arb", "--sample-rate", "1 MHz", "--marker", "1 s"}, "must be within the waveform"},
