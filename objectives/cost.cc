@@ -105,7 +105,7 @@ double cost(const Aim& aim, const Metrics& m, const CostScale& scale, const Metr
   const double t = shares.of(&Metrics::initial_contact_time);
   const double late = t + 10 * std::max(0.0, t - scale.free_touch);
   shares.lead = 0.2 * h + 0.15 * v * v + 0.45 * k + 0.1 * s * s + 0.05 * p + 0.02 * late;
-  const double excess = scale.step_lands && !aim.has_own_objective() ? excess_over_step(m, scale.step) : 0;
+  const double excess = scale.judges_hardness && !aim.has_own_objective() ? excess_over_step(m, scale.step) : 0;
   shares.lead += excess;
   // What lets go again is no landing, however softly it came: behind all that stay, before what never touches.
   const double reopening = m.reopened ? 5 : 0;

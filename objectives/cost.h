@@ -21,9 +21,9 @@
 //                              within the score; steady: from when on the contact force is steady over first touch of the
 //                              step, the end of the score where it is not
 //
-// Where the plain step lands without a significant rebound, a closing can be harder than the step and have none either. B and F
-// then grow by E: the largest excess of touch speed, peak contact force and impact energy over those of the step, as a share of
-// them.
+// A closing can be harder than the plain step and have no rebound. B and F grow by E: the largest excess of touch speed, peak
+// contact force and impact energy over those of the step, as a share of them. A condition that the plain step breaks lifts this
+// rule, and so does an own objective.
 //
 // A weighted sum of targets has the weighted mean of their F, those of bounce, rebound and count being B. The F of a user's own
 // objective is its value (own_objective.h); of one that does not ask for a landing first the cost is F / (1 + F).
@@ -232,11 +232,11 @@ inline constexpr auto hard_figures =
 
 /// The figures are those of a run that ends a fixed time after first contact.
 struct CostScale {
-  Metrics step;             ///< of the plain step
-  double score_window = 0;  ///< [s]
-  double contact_gap = 0;   ///< [m]
-  double free_touch = 0;    ///< T_free, over first touch of the step
-  bool step_lands = false;  ///< whether the plain step settles without a significant rebound
+  Metrics step;                 ///< of the plain step
+  double score_window = 0;      ///< [s]
+  double contact_gap = 0;       ///< [m]
+  double free_touch = 0;        ///< T_free, over first touch of the step
+  bool judges_hardness = true;  ///< not where the plain step breaks a condition of the search
 };
 /// Infinite for a run that could not be followed.
 [[nodiscard]] double cost(const Aim& aim, const Metrics& figures, const CostScale& scale, const MetricsOptions& options);

@@ -331,7 +331,7 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
                   .score_window = std::max(period, 3 * given.model.basis().in_contact_period()),
                   .contact_gap = given.scene.device.gap.contact,
                   .free_touch = actuator == Actuator::pzt ? braked_touch : driven_touch,
-                  .step_lands = baseline.metrics.lands()};
+                  .judges_hardness = !(broken(beside, baseline.metrics) > 0)};
   ClosingOptions run{.duration = given.duration, .tolerance = search_tolerance, .after_contact = scale.score_window};
   const std::vector<Signal> plain = baseline_scene.signals();
   const Hold hold = hold_of(given.model, plain);
