@@ -94,7 +94,11 @@ std::string leave(ResultFolder& folder, const verbs::Outcome& outcome) {
 int run_study(const verbs::Study& study, const Common& given, const Given& options) {
   Common c = given;
   if (c.out.empty() && study.place != nullptr) c.out = study.place;
-  const auto run = study.ask(options.told());
+  const verbs::Told told = options.told();
+  const auto run = study.ask(told);
+  if (study.leaving != nullptr)
+    require(told.contains(study.leaving) == !c.out.empty(),
+            [&] { return fmt::format("--{0} and --out belong together: the {0} is written into that folder", study.leaving); });
   const bool takes_results = study.scene != verbs::scene_alone;
   const SceneFile file = takes_results ? load_scene_or_result(c) : load_scene(c);
   std::optional<ResultFolder> folder = claim_places(c, study.files);
@@ -104,7 +108,6 @@ int run_study(const verbs::Study& study, const Common& given, const Given& optio
                               .name = c.scene,
                               .command = c.command,
                               .watch = watch,
-                              .leaves_files = !c.out.empty(),
                               .prepared =
                                   [&](bool default_limits) {
                                     return std::make_shared<const PreparedScene>(prepare_and_choose(file, default_limits, watch));

@@ -25,6 +25,11 @@ bool is_of(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+bool is_there(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::exists(folder, ignored);
+}
+
 fs::path created(const fs::path& folder, const std::string& called) {
   require_no_companion(folder, called);
   std::error_code error;
@@ -37,7 +42,8 @@ fs::path created(const fs::path& folder, const std::string& called) {
 
 ResultFolder::ResultFolder(const fs::path& folder, const std::string& called, const std::string& command,
                            const std::vector<std::string>& files, const std::vector<std::string>& kept)
-    : folder_(created(folder, called)),
+    : made_(is_there(folder) ? nullptr : new fs::path(fs::absolute(folder))),
+      folder_(created(folder, called)),
       files_(files),
       kept_(kept),
       lock_(std::make_unique<LockFile>(folder_ / lock_name, LockedPlace{called, "folder", "another run works in this folder"},
@@ -50,6 +56,12 @@ ResultFolder::ResultFolder(const fs::path& folder, const std::string& called, co
     require(is_of(kept_, name) || !was_read(file),
             [&] { return fmt::format("{}: {} would be replaced, which this run reads; name another folder", called, file); });
   }
+}
+
+void ResultFolder::RemoveEmpty::operator()(const fs::path* folder) const {
+  std::error_code ignored;
+  fs::remove(*folder, ignored);  // not one that holds anything
+  delete folder;
 }
 
 std::vector<fs::path> ResultFolder::places(const fs::path& folder, const std::string& name) {

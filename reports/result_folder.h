@@ -42,6 +42,12 @@ class ResultFolder {
   void remove_abandoned() const;
   void check_lock() const;
 
+  // Removes a folder that this run has made, when it leaves nothing there.
+  struct RemoveEmpty {
+    void operator()(const std::filesystem::path* folder) const;
+  };
+
+  std::unique_ptr<const std::filesystem::path, RemoveEmpty> made_;  // goes after the lock
   std::filesystem::path folder_;
   std::vector<std::string> files_, written_, kept_;
   std::unique_ptr<const LockFile> lock_;

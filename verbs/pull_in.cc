@@ -145,11 +145,10 @@ std::string left_out_words(const std::vector<std::string>& left_out) {
 
 struct PullInRequest : Usual {
   static constexpr auto name = "pull-in", about = "static and dynamic pull-in voltage and release voltage of every electrode",
-                        python = "pull_in", leaves = "folder for sweep.csv and sweep.svg";
+                        python = "pull_in", leaves = "folder for sweep.csv and sweep.svg", leaving = "sweep";
   static constexpr auto remarks =
-      "The stable path says whether one drive alone carries the switch to its contact without a jump, and on how many of 256 "
-      "devices\n"
-      "of [spread]: where it does, softland optimize approaches the contact slowly.\n"
+      "The stable path says whether one drive alone carries the switch to its contact without a jump, and for what share of\n"
+      "256 devices of [spread]. Where it does, softland optimize approaches the contact slowly.\n"
       "Examples:\n  softland pull-in scenes/mem-gold.toml --set structure.thickness=\"2.1 um\"\n"
       "  softland pull-in scenes/mem-gold-pzt.toml --bias piezo=\"0.5 V\"\n"
       "  softland pull-in scenes/mem-gold.toml --sweep \"0 V:20 V:201\" --out swept";
@@ -162,10 +161,10 @@ struct PullInRequest : Usual {
 template <class Archive>
 void options(Archive& a, PullInRequest& r) {
   a.assignments("bias", r.bias, "NAME=VOLTAGE",
-                "what another drive stands at for ever, instead of its hold level where that is in volts");
+                "constant voltage of another drive, in place of its hold level where that is in volts");
   a.parsed("sweep", r.sweep, read_sweep, "FIRST:LAST:N",
-           "static deflection and capacitance at N voltages from the first to the last and back, for --out: the electrode\n"
-           "that closes the switch, open up to its pull-in voltage, closed on the way back down to the release voltage",
+           "static deflection and capacitance at N voltages from the first to the last and back, for --out: the closing\n"
+           "electrode, open up to its pull-in voltage, closed on the way back down to the release voltage",
            "sweep", "str | None");
 }
 
@@ -208,9 +207,6 @@ std::vector<std::string> left_out_of(const PreparedScene& p, const Electrodes& a
 }
 
 Outcome run(const Setting& setting, const PullInRequest& request) {
-  require_request(!setting.leaves_files || request.sweep.has_value() == *setting.leaves_files, [] {
-    return requested("sweep") + " and " + requested("out") + " belong together: the sweep is written into that folder";
-  });
   const SceneFile& file = setting.scene;
   const Watch& watch = setting.watch;
   PullInMemory remembered;

@@ -44,7 +44,6 @@ struct Setting {
   std::string name;     ///< how the user named it
   std::string command;  ///< for provenance
   const Watch& watch;
-  std::optional<bool> leaves_files = {};  ///< whether files will be kept, where that is known beforehand
   /// The scene made ready; without and with the limits that a search takes where the scene says nothing.
   std::function<std::shared_ptr<const PreparedScene>(bool default_limits)> prepared;
   /// The scene of a file, or of a result.
@@ -61,6 +60,7 @@ struct Study {
   const char* scene;    ///< what the scene may be, for --help
   const char* leaves;   ///< what --out holds, in words; null where it leaves no files
   const char* place;    ///< the folder where --out names none; null: then none is written
+  const char* leaving;  ///< the option that files are of, which --out asks for and which asks for --out; null: they are of all
   const char* changes;  ///< an example of --set
   const char* remarks;
   std::vector<std::string> files;  ///< that --out may hold
@@ -76,7 +76,8 @@ inline constexpr auto usual_change = "change one key: --set gap.contact=\"1.8 um
 
 /// What a request says of itself where it differs from the usual verb.
 struct Usual {
-  static constexpr const char *scene = scene_or_result, *leaves = nullptr, *place = nullptr, *changes = usual_change;
+  static constexpr const char *scene = scene_or_result, *leaves = nullptr, *place = nullptr, *leaving = nullptr,
+                              *changes = usual_change;
   static std::vector<std::string> files() { return {}; }
 };
 
@@ -93,6 +94,7 @@ template <class Request>
           .scene = Request::scene,
           .leaves = Request::leaves,
           .place = Request::place,
+          .leaving = Request::leaving,
           .changes = Request::changes,
           .remarks = Request::remarks,
           .files = Request::files(),

@@ -556,7 +556,7 @@ TEST(Accuracy, EndsWithFourWhenTheSwitchDoesNotClose) {
   const Outcome o = here.run({"accuracy", "gold.toml", "--set", "waveform.main.level=0.5 Vdp", "--out", "acc"});
   EXPECT_EQ(o.status, 4);
   EXPECT_EQ(o.out, "The switch does not touch within its window: there are no figures to be accurate in.\n");
-  EXPECT_TRUE(fs::is_empty(here.path() / "acc"));
+  EXPECT_FALSE(fs::exists(here.path() / "acc"));
 }
 
 TEST(Check, CitesTheLimitOfTheScenesOwnFilm_optimized) {
@@ -600,6 +600,21 @@ TEST(Check, WarnsOfAGasBeyondTheLimitsOfItsLaw) {
   const Outcome text = here.run({"check", scene, "--quiet", "--set", "gas.pressure=10 Pa"});
   EXPECT_THAT(text.out, HasSubstr("warning: gas law strip: Knudsen number 456 exceeds"));
   EXPECT_THAT(here.run({"check", scene, "--quiet"}).out, Not(HasSubstr("Knudsen number 0")));
+}
+
+TEST(CommandLine, ARefusedSceneLeavesNoFolder) {
+  const Workplace here;
+  const std::string scene = std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml";
+  std::filesystem::create_directory(here.path() / "there");
+  for (const std::string verb : {"simulate", "accuracy", "optimize", "limit", "release", "robustness"}) {
+    SCOPED_TRACE(verb);
+    EXPECT_EQ(here.run({verb, scene, "--set", "gap.contact=-1 um", "--out", "refused"}).status, 2);
+    EXPECT_FALSE(std::filesystem::exists(here.path() / "refused"));
+    EXPECT_EQ(here.run({verb, scene, "--set", "gap.contact=-1 um", "--out", "there"}).status, 2);
+    EXPECT_TRUE(std::filesystem::exists(here.path() / "there"));
+  }
+  EXPECT_EQ(here.run({"pull-in", scene, "--out", "refused"}).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(here.path() / "refused"));
 }
 
 TEST(CommandLine, AnOptionIsNotTakenForTheValueOfAnother) {
