@@ -197,7 +197,8 @@ class Comparison:
 
 def layout(text):
     """JSON without its values: keys, order, blanks."""
-    return re.sub(r'"(?:\\.|[^"\\])*"(?!\s*:)|[-+0-9.eE]+|true|false|null', "_", text)
+    tokens = r'"(?:\\.|[^"\\])*"(\s*:)?|[-+0-9.eE]+|true|false|null'
+    return re.sub(tokens, lambda token: token[0] if token[1] else "_", text)
 
 
 def words(line):
