@@ -20,15 +20,17 @@ PlanRequest plan_of_options(const Common& c, const ExploreRequest& r) {
   PlanRequest plan{.scene = load_scene(c), .vary = r.vary, .sample = r.sample, .pareto = r.pareto};
   if (!r.pareto.empty() && r.sample.empty()) plan.sample = usual_front_sample;
   const std::map<std::string, std::string> given = r.of_plan();
-  plan.place = [given, vary = r.vary](std::string_view key, std::size_t number) {
+  plan.place = [given, vary = r.vary, options = r.options](std::string_view key, std::size_t number) {
     const auto found = given.find(std::string(key));
     const std::string value = key == "vary" && number < vary.size() ? vary[number] : found == given.end() ? "" : found->second;
+    if (key == "options") return fmt::format("--option {}", shortened(printable_line(visible(in_words(options, ", ")))));
     return key == "certify" ? std::string("--certify") : fmt::format("--{} {}", key, shortened(printable_line(visible(value))));
   };
   if (!r.study.empty()) plan.study = r.study;
   for (const std::string_view name : plan_options) {
     if (const auto value = given.find(std::string(name)); value != given.end()) plan.options[value->first] = value->second;
   }
+  add_options(plan, r.options);
   plan.seed = seed_of(r.seed, plan.seed);
   if (!r.list.empty()) {
     require(r.vary.empty() && plan.sample.empty(), [&] {
@@ -60,6 +62,7 @@ std::map<std::string, std::string> ExploreRequest::of_plan() const {
   if (samples) given.emplace("samples", *samples);
   if (budget) given.emplace("budget", *budget);
   if (seed) given.emplace("seed", *seed);
+  if (!options.empty()) given.emplace("option", options.front());
   if (certify) given.emplace("certify", "true");
   return given;
 }

@@ -15,7 +15,7 @@ namespace softland::apps {
 
 /// The words of the options; what was not given is empty.
 struct ExploreRequest {
-  std::vector<std::string> vary;
+  std::vector<std::string> vary, options;
   std::string sample, pareto, list, study, target, actuator, waveform, optimizer, shard;
   std::string out;
   std::optional<std::string> samples, budget, seed, jobs, point;

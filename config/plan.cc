@@ -497,7 +497,14 @@ std::string Plan::canonical_text() const {
     return "[" + joined + "]";
   };
   std::string text = fmt::format("[{}]\nstudy = {}\n", plan_section, internal::toml_string(study_));
-  for (const auto& [name, value] : options_) text += fmt::format("{} = {}\n", name, internal::toml_string(value));
+  std::vector<std::string> others;
+  for (const auto& [name, value] : options_) {
+    if (std::ranges::find(plan_options, name) != std::end(plan_options))
+      text += fmt::format("{} = {}\n", name, internal::toml_string(value));
+    else
+      others.push_back(internal::toml_string(name + "=" + value));
+  }
+  if (!others.empty()) text += fmt::format("options = {}\n", list(others, [](const std::string& one) { return one; }));
   text += fmt::format("seed = \"{}\"\n", seed_);
   if (sample_)
     text += fmt::format("sample = \"{}:{}\"\n",
@@ -566,8 +573,8 @@ class PlanReader {
       if (name.str() != plan_section)
         file_.fail(internal::join_path("", name.str()), "a plan has the one section [plan]; the scene is a file of its own");
     }
-    std::vector<std::string_view> known{"scene", "scene_text", "set",  "study", "vary",  "sample",
-                                        "list",  "columns",    "rows", "seed",  "pareto"};
+    std::vector<std::string_view> known{"scene", "scene_text", "set",  "study", "vary",   "sample",
+                                        "list",  "columns",    "rows", "seed",  "pareto", "options"};
     known.insert(known.end(), std::begin(plan_options), std::end(plan_options));
     for (const auto& [name, node] : *section->as_table()) {
       if (std::find(known.begin(), known.end(), name.str()) == known.end())
@@ -654,6 +661,16 @@ class PlanReader {
 
 }  // namespace
 
+void add_options(PlanRequest& request, const std::vector<std::string>& told) {
+  for (std::size_t k = 0; k < told.size(); ++k) {
+    const std::size_t equals = told[k].find('=');
+    require(equals != std::string::npos && equals > 0, [&] {
+      return fmt::format("{}: must be NAME=VALUE, such as \"impact-velocity=1 mm/s\"", request.place("options", k));
+    });
+    request.options[told[k].substr(0, equals)] = told[k].substr(equals + 1);
+  }
+}
+
 PlanRequest read_plan(const SceneFile& file) {
   require(is_plan(file), [&] { return fmt::format("{}: has no section [plan]", file.name()); });
   const PlanReader in(file);
@@ -666,6 +683,7 @@ PlanRequest read_plan(const SceneFile& file) {
   for (const std::string_view option : plan_options) {
     if (const std::optional<std::string> value = in.text(option)) request.options[std::string(option)] = *value;
   }
+  add_options(request, in.texts("options"));
   if (const std::optional<std::string> seed = in.text("seed")) {
     const auto number = whole_number(*seed);
     if (!number) in.fail("seed", "must be a whole number from 0 on");

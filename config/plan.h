@@ -51,7 +51,9 @@ struct PlanRequest {
 /// Columns and rows of a CSV file, whose header names keys with their units, "structure.length [um],gap.contact [um]". Throws
 /// InvalidInput.
 void read_list(PlanRequest& request, const std::string& path);
-/// The options that a study may have, for the keys of a [plan].
+/// Adds options of the study, "impact-velocity=1 mm/s". Throws InvalidInput.
+void add_options(PlanRequest& request, const std::vector<std::string>& told);
+/// The options that have a key of their own in a [plan]; others stand in its list `options`.
 inline constexpr std::string_view plan_options[] = {"certify",  "samples",   "target", "actuator",
                                                     "waveform", "optimizer", "budget"};
 

@@ -12,6 +12,7 @@
 #include "reports/origin.h"
 #include "studies/exploration/exploring.h"
 #include "studies/exploration/front_search.h"
+#include "verbs/points.h"
 
 namespace softland::python {
 
@@ -53,7 +54,7 @@ ExploreRequest request_of(const SceneFile& file, const py::dict& given) {
                                                                    : "";
     return fmt::format("{} {}", key, value);
   };
-  complete(plan);
+  complete(plan, verbs::studies_of_points());
   return request;
 }
 
@@ -83,7 +84,7 @@ void explore(const PyScene& scene, const py::dict& given) {
   const ExploreRequest request = request_of(scene.file, given);
   Run run(given["progress"]);
   run([&](const Watch& watch) {
-    Exploration exploration(Plan(request.plan), watch);
+    Exploration exploration(Plan(request.plan), watch, verbs::studies_of_points());
     const bool is_search = exploration.plan().is_search();
     const Shard shard = request.shard.empty() ? Shard{} : shard_from(request.shard);
     require_part(exploration, shard);

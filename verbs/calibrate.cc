@@ -77,9 +77,8 @@ struct CalibrateRequest : Usual {
                         python = "calibrate", scene = varied_scene, changes = "change one key: --set spread.gaps.cov=\"1 %\"";
   static constexpr auto remarks =
       "The scene's drive is the recipe: a landing, not the plain step. Every device is closed with the recipe's voltages and\n"
-      "times multiplied by factors told from what is measured: from each figure, and from every pair. Where it drives a piezo, "
-      "its\n"
-      "voltages have a factor of their own.\n"
+      "times multiplied by factors that each measured figure predicts, and each pair of them. The voltages of a piezo have a\n"
+      "factor of their own.\n"
       "Example:\n  softland calibrate softland-out --error \"Vdp:0.2 %,frequency:0.1 %\"";
 
   IdentificationOptions options{.jobs = one_per_core()};
@@ -92,7 +91,7 @@ void options(Archive& a, CalibrateRequest& r) {
            "steps whose closing times are measured, in multiples of the nominal Vdp (default: 1.1,1.25,1.5)", "steps",
            "Sequence[float]");
   a.parsed("error", r.options, read_errors, "LIST",
-           "of the measurements, one standard deviation: \"Vdp:1 %,frequency:0.5 %\"; there are Vdp, Vsp, release, frequency, "
+           "standard deviation of each measurement: \"Vdp:1 %,frequency:0.5 %\"; there are Vdp, Vsp, release, frequency, "
            "piezo and time (default: exact)",
            "errors", "Mapping[str, float | str] | None");
   seed_option(a, r.options.seed, "same devices");

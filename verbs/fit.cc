@@ -20,8 +20,9 @@ struct FitRequest : Usual {
   static constexpr auto name = "fit", about = "fit a scene to what was measured on devices", python = "fit", scene = scene_alone,
                         leaves = "folder for fitted.toml, fit.json and fit.html (default: softland-fit)", place = "softland-fit";
   static constexpr auto remarks =
-      "fitted.toml is the scene with the values found; comments, sources and units stay. Values have standard errors, 95 %\n"
-      "intervals and correlations. What the data cannot tell apart is said in words, and which further measurement would tell "
+      "fitted.toml is the scene with the fitted values; comments, sources and units stay. The report gives standard errors, 95 "
+      "%\n"
+      "intervals and correlations. It names the unknowns that the data cannot separate, and the measurement that would tell "
       "most.\n"
       "Status 3: at no start do the devices have what was measured.\n"
       "Status 4: the fit is not to be believed, and no interval is given. An unknown is 4 standard deviations away from what\n"
@@ -38,14 +39,14 @@ struct FitRequest : Usual {
 template <class Archive>
 void options(Archive& a, FitRequest& r) {
   FitOptions& o = r.options;
-  a.measurements("data", r.data, "what was measured, and how well: a bench.toml (docs/fit.md)");
+  a.measurements("data", r.data, "file of measurements and their errors: a bench.toml (docs/fit.md)");
   a.repeated("unknown", o.unknowns, "KEY",
-             "what is fitted: an entry of [spread], which is its prior, or any key of the scene, without one (default: all of "
+             "quantity to fit: an entry of [spread], which is its prior, or any key of the scene, without one (default: all of "
              "[spread])",
              "unknowns", true);
-  a.repeated("shared", o.shared, "KEY", "of these, what all devices of the file have in common; the rest is of each device",
+  a.repeated("shared", o.shared, "KEY", "unknown that all devices of the file have in common; the others belong to each device",
              "shared");
-  a.choice("loss", o.loss, losses, "how data that do not agree count");
+  a.choice("loss", o.loss, losses, "loss function for data that do not agree");
   a.whole("starts", o.starts, {.least = 1},
           fmt::format("searches, the first one from the scene as it is (default: {})", FitOptions{}.starts));
   seed_option(a, o.seed, "same searches, whatever --jobs is");

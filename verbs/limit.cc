@@ -18,10 +18,10 @@ struct LimitRequest : Usual {
   static constexpr auto name = "limit", about = "the least time in which any waveform can close the switch softly",
                         python = "limit", leaves = "folder for limit.json, limit.svg and the landing as best.toml and best.csv";
   static constexpr auto remarks =
-      "The least time is that of the best waveform of any shape within the limits of [driver.*], found by direct collocation:\n"
-      "the yardstick for every searched waveform. It is a lower bound for landings of these volts at that speed in the model\n"
-      "that the scene describes: a beam of more modes may touch a little earlier (--set structure.modes=6). The landing that is\n"
-      "reported has been simulated, and may take longer where a beam must come to rest.\n"
+      "The least time belongs to the best waveform of any shape within the limits of [driver.*]. Direct collocation finds it.\n"
+      "It bounds every searched waveform from below: landings with these volts at that impact velocity, in the model that the\n"
+      "scene describes. A beam with more modes may touch a little earlier (--set structure.modes=6). The reported landing has\n"
+      "been simulated. It may take longer where a beam must come to rest.\n"
       "Examples:\n  softland limit scenes/mem-gold.toml\n"
       "  softland limit scenes/mem-gold-pzt.toml --actuator both --impact-velocity \"1 mm/s\" --out limit\n"
       "  softland limit scenes/mem-gold-pzt.toml --actuator pzt --start softland-out --no-curves";
@@ -36,10 +36,10 @@ void options(Archive& a, LimitRequest& r) {
   a.choice("actuator", r.options.actuator, actuators, "drives that may be shaped");
   a.quantity("impact-velocity", r.options.impact_velocity,
              {dimension::velocity, positive, "a speed above 0 m/s such as \"1 mm/s\""}, "SPEED",
-             "of the first touch, at most: \"1 mm/s\" (default: a hundredth of the plain step's)");
+             "largest impact velocity at the first touch, such as \"1 mm/s\" (default: a hundredth of the plain step's)");
   a.file("start", r.start,
-         "a scene or result whose waveform the optimum is looked for from too: of a switch that one swing does not close, say");
-  a.unless("no-curves", r.options.curves, "leave out the least times over the peak voltage and over the permitted speed");
+         "scene or result whose waveform is a further starting point, for a switch that one swing does not close");
+  a.unless("no-curves", r.options.curves, "omit the least times over the peak voltage and over the permitted impact velocity");
 }
 
 Outcome run(const Setting& setting, const LimitRequest& request) {

@@ -18,9 +18,9 @@ struct ReleaseRequest : Usual {
                         leaves =
                             "folder for release.json, release.svg, the drives as release.csv and as release.toml, for export";
   static constexpr auto remarks =
-      "The switch rests on its contact under the scene's hold levels, and opens at t = 0. Dropped to 0 V at once it swings "
-      "about\n"
-      "its open position; the search finds two pulses of every drive that stop it there, within the limits of [driver.*].\n"
+      "The switch rests on its contact under the scene's hold levels, and the command to open comes at t = 0. Drives that go\n"
+      "to 0 V at once leave the switch swinging about its open position. The search finds two pulses of every drive that stop\n"
+      "it there, within the limits of [driver.*].\n"
       "Examples:\n  softland release scenes/mem-gold.toml\n"
       "  softland release scenes/mem-gold-pzt.toml --actuator both --out opened";
   static std::vector<std::string> files() { return {"release.json", "release.svg", "release.csv", "release.toml"}; }
@@ -31,15 +31,15 @@ struct ReleaseRequest : Usual {
 template <class Archive>
 void options(Archive& a, ReleaseRequest& r) {
   OpeningOptions& o = r.options;
-  a.choice("actuator", o.actuator, actuators, "drives that may brake");
+  a.choice("actuator", o.actuator, actuators, "drives that may brake the opening");
   a.quantity("band", o.band,
              {dimension::none,
               {.least = 0, .most = 1, .least_open = true, .most_open = true},
               "a share of the contact gap above 0 % and below 100 %, such as \"5 %\""},
-             "SHARE", "of the contact gap: nearer to its open position the switch counts as open (default: 5 %)");
+             "SHARE", "share of the contact gap within which the switch counts as open (default: 5 %)");
   a.whole("budget", o.max_evaluations, {.least = 1}, "evaluations (default: 3000)");
   samples_option(a, o.devices, {.least = 0, .most = SamplePoints::largest_size},
-                 "devices of [spread] that both openings are judged on (default: 200; 0: none)");
+                 "devices of [spread] on which both openings are evaluated (default: 200; 0: none)");
   seed_option(a, o.seed, "same waveform");
   jobs_option(a, o.jobs);
 }

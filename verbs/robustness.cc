@@ -33,9 +33,9 @@ struct RobustnessRequest : Usual {
                         leaves = "folder for robustness.html, robustness.json, devices.csv and the worst devices as scenes",
                         changes = "change one key of the first: --set spread.gaps.cov=\"1 %\"";
   static constexpr auto remarks =
-      "The plain step to the same hold levels is judged beside every drive. Every device gets the volts of the nominal one,\n"
-      "or, where it is calibrated, the same waveform in its own units. Exact derivatives of the nominal device's figures by\n"
-      "what varies stand beside the sample; they know nothing of rebounds that come or go.\n"
+      "The plain step to the same hold levels is evaluated beside every drive. Every device gets the volts of the nominal\n"
+      "design, or the same waveform in its own units where it is calibrated. Exact derivatives of the nominal figures by what\n"
+      "varies stand beside the sample. They do not know of rebounds that come or go.\n"
       "Examples:\n  softland robustness scenes/mem-gold.toml --samples 500\n"
       "  softland robustness scenes/mem-gold.toml --other-ways --out box\n"
       "  softland robustness scenes/mem-gold.toml softland-out --out robust";
@@ -54,14 +54,14 @@ struct RobustnessRequest : Usual {
 
 template <class Archive>
 void options(Archive& a, RobustnessRequest& r) {
-  a.results("RESULT", r.results, "more of them, whose drives are judged on the devices of the first");
+  a.results("RESULT", r.results, "further results whose drives are evaluated on the devices of the first");
   samples_option(a, r.options.samples, {.least = 1, .most = SamplePoints::largest_size}, "devices (default: 2000)");
-  a.choice("points", r.options.points, point_sets, "how they are chosen");
+  a.choice("points", r.options.points, point_sets, "point set of the devices");
   a.text("calibrate", r.calibration, "LIST",
-         "measured on every device before it is driven, as for optimize; the report says what each measurement is worth");
+         "measurements made on every device before it is driven, as for optimize; the report says what each is worth");
   a.flag("other-ways", r.box_and_chaos,
-         fmt::format("beside the sample, for the last drive: the worst and the best device of a box, by search, and polynomial "
-                     "chaos; {} closings more",
+         fmt::format("add the worst and the best device of a box, by search, and polynomial chaos, for the last drive: {} more "
+                     "closings",
                      2 * explained_figures.size() * BoxAndChaosOptions{}.closings_per_search));
   seed_option(a, r.options.seed, "same devices");
   jobs_option(a, r.options.jobs);

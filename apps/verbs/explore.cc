@@ -32,6 +32,7 @@
 #include "store/study_store.h"
 #include "studies/exploration/exploring.h"
 #include "studies/exploration/front_search.h"
+#include "verbs/points.h"
 
 namespace softland::apps {
 namespace {
@@ -48,7 +49,7 @@ int status_of(const Overview& found, bool interrupted) {
 int print_point(const Common& c, const ExploreRequest& r) {
   const auto k = whole_number<std::uint64_t>("--point", r.point.value(), 0);
   PlanRequest request = plan_request(c, r);
-  complete(request);
+  complete(request, verbs::studies_of_points());
   const Plan plan(request);
   require(k < plan.points(), [&] { return fmt::format("--point {}: the plan has {} points, counted from 0", k, plan.points()); });
   const bool is_optimized = plan.study() == name_of(point_studies, PointStudy::optimize);
@@ -177,7 +178,7 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   const bool goes_on = is_store(c.scene);
   const Shard shard = shard_of(r, goes_on ? c.scene : std::string());
   PlanRequest request = plan_request(c, r);
-  complete(request);
+  complete(request, verbs::studies_of_points());
   require(!goes_on || (r.resume && r.out.empty()),
           [&] { return fmt::format("{}: is a store already: --resume goes on with it, and --out is not for that", c.scene); });
   const std::string out = goes_on ? c.scene : r.out.empty() ? "softland-out.sqlite" : r.out;
@@ -187,7 +188,7 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   require(c.json.empty() || !is_companion(c.json, out),
           [&] { return fmt::format("--json {}: is a file that the store {} has beside it; name another", c.json, out); });
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  Exploration exploration(Plan(request), work->watch());
+  Exploration exploration(Plan(request), work->watch(), verbs::studies_of_points());
   work.reset();
 
   require_part(exploration, shard);
@@ -218,6 +219,18 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
 
 }  // namespace
 
+namespace {
+
+// "simulate (default), pull-in, ... or release"
+std::string studies_listed() {
+  std::vector<std::string> names;
+  for (const std::string_view name : names_of(point_studies)) names.emplace_back(name);
+  for (const OtherStudy& one : verbs::studies_of_points()) names.push_back(one.name);
+  return first_is_default(in_words(names, " or "));
+}
+
+}  // namespace
+
 void add_explore(Verb& verb) {
   const auto request = std::make_shared<ExploreRequest>();
   verb.with_scene();
@@ -230,7 +243,9 @@ void add_explore(Verb& verb) {
       "search the points that no other one beats in all of these figures, \"initial_contact_time,impact_velocity\", in the box "
       "of --vary KEY=LOW:HIGH by NSGA-II; max:FIGURE is to be large; --sample nsga2:N for N points (default: 2000)");
   verb.option("--list", request->list, "FILE", "points of a CSV file, whose header names keys with units: structure.length [um]");
-  verb.option("--study", request->study, "NAME", "at every point: " + first_is_default(listed(point_studies)));
+  verb.option("--study", request->study, "NAME", "study at every point: " + studies_listed());
+  verb.repeated("--option", request->options, "NAME=VALUE",
+                "option of the study, as its verb has it, where explore has none: \"impact-velocity=1 mm/s\"; may be repeated");
   verb.flag("--certify", request->certify, "simulate: the errors of the figures too");
   verb.with_samples(request->samples, "robustness: devices (default: 500)");
   verb.option("--target", request->target, "NAME", "optimize: as there");

@@ -17,6 +17,7 @@
 #include "config/plan.h"
 #include "store/study_store.h"
 #include "studies/exploration/stored_exploration.h"
+#include "verbs/points.h"
 
 namespace softland::apps {
 namespace {
@@ -37,7 +38,7 @@ Plan plan_of(const std::string& file) {
     return read_plan(text);
   };
   PlanRequest request = is_store(file) ? exploration_in(StudyReader(file)) : of_file();
-  complete(request);
+  complete(request, verbs::studies_of_points());
   return Plan(request);
 }
 

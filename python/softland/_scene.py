@@ -275,7 +275,7 @@ class Scene(Studies, MutableMapping[str, Any]):
         vary: Mapping[str, str] | Sequence[str],
         out: str | os.PathLike[str] = "softland-out.sqlite",
         *,
-        study: Literal["simulate", "pull-in", "robustness", "optimize"] = "simulate",
+        study: Literal["simulate", "pull-in", "robustness", "optimize", "limit", "release", "effects", "check"] = "simulate",
         sample: str = "",
         pareto: Sequence[str] = (),
         options: Mapping[str, Any] | None = None,

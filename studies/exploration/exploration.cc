@@ -150,6 +150,37 @@ std::vector<PointFigure> robustness_figures() {
 
 }  // namespace
 
+namespace {
+
+// "touch.least_time_s" is "touch.least_time" in s.
+PointFigure figure_of_key(const std::string& key) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 13> suffixes{{{"_rad_s", "rad/s"},
+                                                                                    {"_m_s", "m/s"},
+                                                                                    {"_V_s", "V/s"},
+                                                                                    {"_rad", "rad"},
+                                                                                    {"_Hz", "Hz"},
+                                                                                    {"_Pa", "Pa"},
+                                                                                    {"_s", "s"},
+                                                                                    {"_m", "m"},
+                                                                                    {"_V", "V"},
+                                                                                    {"_N", "N"},
+                                                                                    {"_J", "J"},
+                                                                                    {"_F", "F"},
+                                                                                    {"_W", "W"}}};
+  // The number of a list, or the name of an electrode, may stand behind the unit: "natural_frequencies_rad_s.1".
+  for (std::size_t end = key.size(); end != std::string::npos && end > 0; end = key.rfind('.', end - 1)) {
+    const std::string_view head = std::string_view(key).substr(0, end);
+    for (const auto& [suffix, unit] : suffixes) {
+      if (!head.ends_with(suffix)) continue;
+      const std::string quantity = std::string(head.substr(0, end - suffix.size())) + key.substr(end);
+      return {.quantity = quantity, .name = quantity, .unit = std::string(unit)};
+    }
+  }
+  return {.quantity = key, .name = key, .unit = {}};
+}
+
+}  // namespace
+
 PointFigure parameter_figure(const std::string& name) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 4> suffixes{
       {{"_rad_s", "rad/s"}, {"_rad", "rad"}, {"_s", "s"}, {"_V", "V"}}};
@@ -167,7 +198,7 @@ PointFigure figure_column(const Figure& figure, const std::string& before, const
           .unit = std::string(figure.unit)};
 }
 
-void complete(PlanRequest& request) {
+void complete(PlanRequest& request, const OtherStudies& others) {
   const auto checked = [&](std::string_view key, auto&& check) {
     try {
       check();
@@ -176,7 +207,27 @@ void complete(PlanRequest& request) {
     }
   };
   const auto* study = find_named(point_studies, request.study);
-  checked("study", [&] { require(study != nullptr, [] { return fmt::format("must be {}", listed(point_studies)); }); });
+  if (const auto other = std::ranges::find(others, request.study, &OtherStudy::name); other != others.end()) {
+    for (const auto& [name, value] : request.options) {
+      const bool has_place = std::ranges::find(plan_options, name) != std::end(plan_options);
+      checked(has_place ? std::string_view(name) : "options", [&] { other->check({{name, value}}); });
+    }
+    return;
+  }
+  checked("study", [&] {
+    require(study != nullptr, [&] {
+      std::vector<std::string> names;
+      for (const auto& row : point_studies) names.emplace_back(row.name);
+      for (const OtherStudy& one : others) names.push_back(one.name);
+      return fmt::format("must be {}", in_words(names, " or "));
+    });
+  });
+  for (const auto& [name, value] : request.options) {
+    checked("options", [&] {
+      require(std::ranges::find(options, name, &OptionRow::name) != options.end(),
+              [&] { return fmt::format("study {} has no option '{}'", request.study, name); });
+    });
+  }
   for (const OptionRow& option : options) {
     const auto given = request.options.find(std::string(option.name));
     if (given == request.options.end() || option.study == study->value) continue;
@@ -205,8 +256,12 @@ void complete(PlanRequest& request) {
   }
 }
 
-Exploration::Exploration(Plan plan, const Watch& watch)
-    : plan_(std::move(plan)), study_(find_named(point_studies, plan_.study())->value) {
+Exploration::Exploration(Plan plan, const Watch& watch, const OtherStudies& others) : plan_(std::move(plan)) {
+  if (const auto* const row = find_named(point_studies, plan_.study())) {
+    study_ = row->value;
+  } else {
+    other_ = *std::ranges::find(others, plan_.study(), &OtherStudy::name);
+  }
   for (const PlanVariable& variable : plan_.variables()) {
     for (const PlanKey& key : variable.keys) {
       shares_switches_ = shares_switches_ || key.path.starts_with("waveform.") || key.path.starts_with("driver.") ||
@@ -221,7 +276,12 @@ void Exploration::list_figures(const Watch& watch) {
   const auto add_closing = [&] {
     for (const Figure& figure : all_figures) add(figure_column(figure));
   };
-  switch (study_) {
+  if (other_) {
+    for (const auto& [key, value] : other_->record(plan_.base(), plan_.options(), plan_.seed(), 1, watch).numbers)
+      add(figure_of_key(key));
+    return;
+  }
+  switch (*study_) {
     case PointStudy::simulate:
       add_closing();
       if (!plan_.options().contains("certify")) return;
@@ -263,7 +323,8 @@ void Exploration::list_figures(const Watch& watch) {
 std::string Exploration::content(const SceneFile& scene) const {
   std::string text = plan_.study();
   for (const auto& [name, value] : plan_.options()) text += fmt::format("\n{}={}", name, value);
-  if (study_ == PointStudy::robustness || study_ == PointStudy::optimize) text += fmt::format("\nseed={}", plan_.seed());
+  if (other_ || study_ == PointStudy::robustness || study_ == PointStudy::optimize)
+    text += fmt::format("\nseed={}", plan_.seed());
   return text + "\n\n" + scene.text();
 }
 
@@ -294,7 +355,8 @@ PointRow Exploration::row(const SceneFile& scene, int jobs, const Watch& watch) 
 }
 
 PointRow Exploration::computed(const SceneFile& scene, int jobs, const Watch& watch) {
-  switch (study_) {
+  if (other_) return recorded(scene, jobs, watch);
+  switch (*study_) {
     case PointStudy::simulate:
       return simulated(scene, jobs, watch);
     case PointStudy::pull_in:
@@ -342,6 +404,17 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Watch& watch) {
     if (!is_electrode) continue;
     row.figures.push_back(finite(release_voltage(p.model, k, bias)));
     row.figures.push_back(finite(found.statically.deflection));
+  }
+  return row;
+}
+
+// A number that the record of the plan's scene has, and this one has not, is not known here.
+PointRow Exploration::recorded(const SceneFile& scene, int jobs, const Watch& watch) {
+  const OtherStudy::Record record = other_->record(scene, plan_.options(), plan_.seed(), jobs, watch);
+  PointRow row{.status = record.status, .reason = {}, .figures = std::vector<double>(figures_.size(), Metrics::unset)};
+  for (const auto& [key, value] : record.numbers) {
+    const auto column = std::ranges::find(figures_, figure_of_key(key).quantity, &PointFigure::quantity);
+    if (column != figures_.end()) row.figures[static_cast<std::size_t>(column - figures_.begin())] = finite(value);
   }
   return row;
 }

@@ -7,6 +7,8 @@
 //               dispersion force
 //   robustness  yields and quantiles of the figures over `samples` devices that differ as [spread] says, under the scene's own
 //               waveforms
+//   limit, release, effects, check
+//               the numbers of the record that the verb gives: its columns are those of the record of the plan's own scene
 //   optimize    a whole search on the nominal device, which does not begin with half its budget as that of the verb: the figures
 //               of the waveform found, its parameters, the goal, and the plain step's figures beside them
 //
@@ -14,7 +16,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -48,6 +52,23 @@ struct PointFigure {
 /// Of a figure of merit, with something before its quantity and after its name.
 [[nodiscard]] PointFigure figure_column(const Figure& figure, const std::string& before = {}, const std::string& words = {});
 
+/// A study that is known from outside: any verb that looks at one scene.
+struct OtherStudy {
+  using Options = std::map<std::string, std::string>;
+  /// The numbers of its record, "touch.least_time_s", and how it ended. Yes or no is 1 or 0.
+  struct Record {
+    std::string status;
+    std::vector<std::pair<std::string, double>> numbers;
+  };
+
+  std::string name;
+  /// Throws InvalidInput where an option is none of the study, or breaks its rule.
+  std::function<void(const Options&)> check;
+  /// Throws Interrupted where `watch` asks to stop, and InvalidInput.
+  std::function<Record(const SceneFile&, const Options&, std::uint64_t seed, int jobs, const Watch&)> record;
+};
+using OtherStudies = std::vector<OtherStudy>;
+
 struct PointRow {
   std::string status;
   std::string reason = {};
@@ -59,12 +80,12 @@ struct PointRow {
 
 /// Checks the study and its options, and writes out those that are not given, so that the plan does not hang on a default. Throws
 /// InvalidInput, beginning with the place of the entry.
-void complete(PlanRequest& request);
+void complete(PlanRequest& request, const OtherStudies& others = {});
 
 class Exploration {
  public:
   /// The plan's study must be complete. Throws InvalidInput where the scene of the plan lacks what the study needs.
-  explicit Exploration(Plan plan, const Watch& watch = {});
+  explicit Exploration(Plan plan, const Watch& watch = {}, const OtherStudies& others = {});
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const std::vector<PointFigure>& figures() const { return figures_; }
@@ -83,11 +104,13 @@ class Exploration {
   [[nodiscard]] PointRow simulated(const SceneFile& scene, int jobs, const Watch& watch);
   [[nodiscard]] PointRow pulled_in(const SceneFile& scene, const Watch& watch);
   [[nodiscard]] PointRow on_devices(const SceneFile& scene, int jobs, const Watch& watch);
+  [[nodiscard]] PointRow recorded(const SceneFile& scene, int jobs, const Watch& watch);
   [[nodiscard]] PointRow optimized(const SceneFile& scene, int jobs, const Watch& watch);
   [[nodiscard]] PreparedScene prepared(const SceneFile& scene, bool default_limits, const Watch& watch);
 
   Plan plan_;
-  PointStudy study_;
+  std::optional<PointStudy> study_;  // none: the other one
+  std::optional<OtherStudy> other_;
   std::vector<PointFigure> figures_;
   std::vector<std::string> parameters_;  // of a search
   bool shares_switches_ = false;         // points of the plan may have the same switch

@@ -66,6 +66,76 @@ TEST_F(Explore, HasTheSameRowsWhateverTheNumberOfJobsAndTheParts_optimized) {
   expect_same_rows(whole, parts);
 }
 
+// Every number of a point is that of the verb's own record of its scene.
+TEST_F(Explore, OfOtherStudiesHasTheNumbersOfTheirRecords_optimized) {
+  struct Asked {
+    std::string study;
+    std::vector<std::string> options, as_verb;
+    std::string key;  // that is surely there
+  };
+  const std::vector<Asked> all{{"check", {}, {}, "/pull_in/dynamic_V"},
+                               {"effects", {}, {}, "/relative_spread/gas/impact_velocity"},
+                               {"limit",
+                                {"--option", "impact-velocity=2 mm/s", "--option", "no-curves=true"},
+                                {"--impact-velocity", "2 mm/s", "--no-curves"},
+                                "/touch/least_time_s"},
+                               {"release",
+                                {"--option", "budget=40", "--option", "samples=8"},
+                                {"--budget", "40", "--samples", "8"},
+                                "/plain/figures/settling_time_s"}};
+  for (const Asked& asked : all) {
+    SCOPED_TRACE(asked.study);
+    const std::string store = asked.study + ".sqlite";
+    const auto explored = [&](const std::string& out, const std::string& jobs) {
+      std::vector<std::string> words{"--vary", "gap.contact=1.8 um,2 um", "--study", asked.study, "--out", out, "--jobs", jobs};
+      words.insert(words.end(), asked.options.begin(), asked.options.end());
+      return done(explore(words));
+    };
+    EXPECT_EQ(explored(store, "1")["rows"]["computed"], 2);
+    (void)explored("two-" + store, "2");
+    const std::vector<StoredRow> rows = rows_of(at(store));
+    expect_same_rows(rows, rows_of(at("two-" + store)));
+    EXPECT_EQ(done({"explore", store, "--resume", "--quiet"})["rows"]["known"], 2);
+
+    ASSERT_EQ(here.run({"explore", store, "--point", "1", "--out", "point.toml", "--quiet"}).status, 0);
+    std::vector<std::string> verb{asked.study, "point.toml", "--quiet", "--json", "-"};
+    verb.insert(verb.end(), asked.as_verb.begin(), asked.as_verb.end());
+    const json record = json::parse(here.run(verb).out);
+    ASSERT_TRUE(record.contains(json::json_pointer(asked.key))) << record.dump(1);
+    const std::vector<StoredColumn> columns = StudyReader(at(store)).plan().columns;
+    std::size_t compared = 0;
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      if (columns[k].kind != ColumnKind::figure) continue;
+      std::string path = "/" + columns[k].name, unit = columns[k].unit;
+      std::ranges::replace(path, '.', '/');
+      std::ranges::replace(unit, '/', '_');
+      if (!unit.empty()) path += "_" + unit;
+      const json::json_pointer at_key(path);
+      if (!record.contains(at_key) || !record[at_key].is_number()) continue;
+      EXPECT_EQ(rows[1].values[k], record[at_key].get<double>()) << path;
+      ++compared;
+    }
+    EXPECT_GE(compared, asked.study == "effects" ? 3U : 5U);
+  }
+  const auto refused = [&](const std::vector<std::string>& words) {
+    std::vector<std::string> asked = explore({"--vary", levels + "3", "--out", "no.sqlite"});
+    asked.insert(asked.end(), words.begin(), words.end());
+    const Outcome bad = here.run(asked);
+    EXPECT_EQ(bad.status, 2);
+    return bad.err;
+  };
+  EXPECT_NE(refused({"--study", "limits"})
+                .find("--study limits: must be simulate, pull-in, robustness, optimize, check, effects, limit or release"),
+            std::string::npos);
+  EXPECT_NE(refused({"--study", "limit", "--option", "speed=1"}).find("--option speed=1: study limit has no option 'speed'"),
+            std::string::npos);
+  EXPECT_NE(refused({"--study", "limit", "--samples", "3"}).find("--samples 3: study limit has no option 'samples'"),
+            std::string::npos);
+  EXPECT_NE(refused({"--study", "limit", "--option", "impact-velocity=0"}).find("must be a speed above 0 m/s"),
+            std::string::npos);
+  EXPECT_NE(refused({"--option", "certify"}).find("--option certify: must be NAME=VALUE"), std::string::npos);
+}
+
 TEST_F(Explore, TakesPointsOfACoarserGridAndASmallerSampleOver_optimized) {
   (void)done(explore({"--vary", levels + "3", "--out", "grid.sqlite"}));
   const json finer = done(explore({"--vary", levels + "5", "--out", "grid.sqlite", "--resume"}));

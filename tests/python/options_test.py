@@ -36,7 +36,7 @@ PROGRAM_ALONE = {
     "explore": {
         "list": "an Evaluator takes rows",
         "point": "Store has the points",
-        **{name: "of the study at every point: options" for name in ("certify", "samples", "target", "actuator", "waveform", "optimizer", "budget")},
+        **{name: "of the study at every point: options" for name in ("certify", "samples", "target", "actuator", "waveform", "optimizer", "budget", "option")},
     },
     "tune": {
         **{name: "the device is a function in Python" for name in ("device", "by-hand", "format", "sample-rate", "bits", "amplifier", "contact", "timeout")},
