@@ -52,7 +52,7 @@ ExploreRequest request_of(const SceneFile& file, const py::dict& given) {
                               : key == "sample"                    ? sample
                               : option != options.end()            ? option->second
                                                                    : "";
-    return fmt::format("{} {}", key, value);
+    return value.empty() ? std::string(key) : fmt::format("{} {}", key, value);
   };
   complete(plan, verbs::studies_of_points());
   return request;
