@@ -26,10 +26,10 @@ namespace {
 using verbs::Ending;
 using verbs::OptionRow;
 
-// What CLI11 sets, by the name of the option.
+// Values that CLI11 sets, by the name of the option.
 struct Given {
   std::map<std::string, std::string> texts;
-  std::map<std::string, std::optional<std::string>> optional;  // that may be empty
+  std::map<std::string, std::optional<std::string>> optional;  // these may be empty
   std::map<std::string, bool> flags;
   std::map<std::string, std::vector<std::string>> repeated;
 

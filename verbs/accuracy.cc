@@ -1,4 +1,4 @@
-// What accuracy costs in time.
+// Verb `accuracy`: errors of the figures against the time of a closing.
 #include "studies/closing/accuracy.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Which measurable figures of a device pin its waveform best.
+// Verb `calibrate`: measurable figures of a device, ranked by how well they pin its waveform.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Derived numbers and warnings of a scene.
+// Verb `check`: derived numbers and warnings of a scene.
 #include <fmt/format.h>
 
 #include <algorithm>

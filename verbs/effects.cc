@@ -1,4 +1,4 @@
-// Which effects matter in a scene.
+// Verb `effects`: a closing with and without each effect.
 #include "studies/closing/effects.h"
 
 #include "reports/effects_report.h"

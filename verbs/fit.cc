@@ -1,4 +1,4 @@
-// Fits a scene to what was measured on devices.
+// Verb `fit`: a scene fitted to measurements.
 #include "studies/fitting/fit.h"
 
 #include <fmt/format.h>

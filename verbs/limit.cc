@@ -1,4 +1,4 @@
-// The limit of what any drive waveform can do.
+// Verb `limit`: the least time in which any waveform can close the switch.
 #include "studies/search/limit.h"
 
 #include <memory>

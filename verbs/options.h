@@ -1,5 +1,5 @@
-// What a verb may be told. A request is a struct with a function template `options(archive, request)` that names each option
-// once, in one line. The command line and Python declare, read and explain their options by archives of that template.
+// Options of a verb. A request is a struct with a function template `options(archive, request)`, which names each option once.
+// The command line and Python declare, read and explain their options by archives of that template.
 #pragma once
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@
 
 namespace softland::verbs {
 
-/// What was told, by option: the texts of one that may be repeated in their order; of a flag one that is empty.
+/// The texts that the user gave, by option, in their order. A flag has one empty text.
 using Told = std::map<std::string, std::vector<std::string>, std::less<>>;
 
 /// A quantity as an option takes it; `rule` ends the sentence "must be ...".
@@ -34,7 +34,7 @@ struct Wanted {
   std::string rule;
 };
 
-/// What all doors are told of an option.
+/// An option as the command line and Python declare it.
 struct OptionRow {
   enum class Kind { text, flag, repeated, further };  ///< further: words behind the scene
 
@@ -56,7 +56,7 @@ struct OptionRow {
 /// The unit in which a number without one counts.
 [[nodiscard]] std::string_view unit_of(const Dimension& dimension);
 
-/// What an optional holds, or the type itself.
+/// The type that an optional holds, or the type itself.
 template <class T>
 struct Held {
   using type = T;
@@ -96,7 +96,7 @@ class OptionList {
   void text(const char* name, std::string&, const char* word, const std::string& about) {
     add({.name = name, .word = word, .about = about}, "str", "\"\"", "_text({})");
   }
-  /// What an option says in one text that Python has as a list, joined by commas, or as a mapping, "Vdp:1 %,time:0.5 %".
+  /// An option with a text of its own form. Python has a list for "1.1,1.25" and a mapping for "Vdp:1 %,time:0.5 %".
   template <class T, class Parse>
   void parsed(const char* name, T&, const Parse&, const char* word, const std::string& about, const char* keyword,
               const char* type) {

@@ -1,4 +1,4 @@
-// Pull-in voltages of every electrode.
+// Verb `pull-in`: pull-in voltages of every electrode.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

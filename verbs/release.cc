@@ -1,4 +1,4 @@
-// The waveform that opens a closed switch without leaving it to swing.
+// Verb `release`: a waveform that opens the closed switch without residual vibration.
 #include <memory>
 #include <string>
 #include <vector>

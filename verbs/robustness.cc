@@ -1,4 +1,4 @@
-// How drives do on devices that differ as [spread] says.
+// Verb `robustness`: drives on devices with the process variation of [spread].
 #include "studies/devices/robustness.h"
 
 #include <fmt/format.h>
@@ -67,7 +67,7 @@ void options(Archive& a, RobustnessRequest& r) {
   jobs_option(a, r.options.jobs);
 }
 
-// The report keeps references to the others.
+// The nominal design and the findings that the report refers to.
 struct Judged {
   std::shared_ptr<const PreparedScene> nominal;
   Robustness found = {};

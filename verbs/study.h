@@ -1,4 +1,5 @@
-// A verb that looks at one scene: what it may be told, what it does, and what it leaves, for the command line and for Python.
+// A study is a verb that looks at one scene. Its options, its computation and its files are said once, for the command line and
+// for Python.
 #pragma once
 
 #include <functional>
@@ -19,10 +20,10 @@ namespace softland::verbs {
 
 /// How a verb ended. The program has an exit status for each.
 enum class Ending { done, no_success, numerical_failure, interrupted };
-/// What a closing that ended so means.
+/// The ending of a verb whose closing has this status.
 [[nodiscard]] Ending ending_of(Status status);
 
-/// What a verb found, as every door takes it.
+/// The findings of a verb, as the command line and Python take them.
 struct Outcome {
   struct File {
     std::string name;
@@ -30,15 +31,15 @@ struct Outcome {
     std::string listed = {};  ///< how its name stands where files are listed, "" where it does not
   };
   nlohmann::json json;
-  std::string text;  ///< for a terminal
+  std::string text;  ///< shown on a terminal
   std::vector<File> files = {};
   std::string next = {};                ///< below the files; "{}" stands for the scene in their folder that `export` takes
   std::string last = {};                ///< below all
-  std::vector<std::string> notes = {};  ///< for standard error
+  std::vector<std::string> notes = {};  ///< written to standard error
   Ending ending = Ending::done;
 };
 
-/// What every verb is given.
+/// The input of every verb.
 struct Setting {
   SceneFile scene;
   std::string name;     ///< how the user named it
@@ -57,13 +58,13 @@ struct Setting {
 struct Study {
   const char *name, *about;
   const char* python;   ///< the method of a scene in Python
-  const char* scene;    ///< what the scene may be, for --help
-  const char* leaves;   ///< what --out holds, in words; null where it leaves no files
+  const char* scene;    ///< --help describes the scene by it
+  const char* leaves;   ///< description of the files in --out; null: there are none
   const char* place;    ///< the folder where --out names none; null: then none is written
   const char* leaving;  ///< the option that files are of, which --out asks for and which asks for --out; null: they are of all
   const char* changes;  ///< an example of --set
   const char* remarks;
-  std::vector<std::string> files;  ///< that --out may hold
+  std::vector<std::string> files;  ///< names of files that --out may hold
   std::vector<OptionRow> options;
   /// Reads what was told; the study itself runs when that is called. Throws InvalidRequest.
   std::function<std::function<Outcome(const Setting&)>(const Told&)> ask;
@@ -74,7 +75,7 @@ inline constexpr auto varied_scene = "scene file with [spread], folder that --ou
 inline constexpr auto scene_alone = "scene file (TOML)";
 inline constexpr auto usual_change = "change one key: --set gap.contact=\"1.8 um\"";
 
-/// What a request says of itself where it differs from the usual verb.
+/// Defaults for the members of a request that describe its verb.
 struct Usual {
   static constexpr const char *scene = scene_or_result, *leaves = nullptr, *place = nullptr, *leaving = nullptr,
                               *changes = usual_change;

@@ -438,8 +438,8 @@ bool DevicesSearch::Placed::is_before(const Placed& other) const {
   return rank < other.rank;
 }
 
-// Of candidates that cost a little more than the least the soonest comes first. Volts beyond the usual ones find sooner ones that
-// cost as much: none goes before what usual volts give that costs more than that.
+// The soonest candidate comes first among those that cost a little more than the least. Volts beyond the usual ones find sooner
+// candidates at that cost: none of them goes before the winner within usual volts when it costs more.
 void DevicesSearch::prefer_sooner(std::vector<Placed>& sorted) {
   const auto soonest = [&](double most, bool in_usual_room) {
     double least = std::numeric_limits<double>::infinity();

@@ -7,7 +7,7 @@
 namespace softland {
 namespace {
 
-// Whether a limit was wider than the usual one of its electrode.
+// Returns true when the limit was wider than the usual one of its electrode.
 bool narrow(DriverLimits& limits, const PullInVoltages& pull_in) {
   const double usual = default_limit(pull_in);
   const DriverLimits before = limits;

@@ -71,7 +71,7 @@ TEST_F(Explore, OfOtherStudiesHasTheNumbersOfTheirRecords_optimized) {
   struct Asked {
     std::string study;
     std::vector<std::string> options, as_verb;
-    std::string key;  // that is surely there
+    std::string key;  // the record must have it
   };
   const std::vector<Asked> all{{"check", {}, {}, "/pull_in/dynamic_V"},
                                {"effects", {}, {}, "/relative_spread/gas/impact_velocity"},

@@ -128,7 +128,7 @@ TEST(ForDevices, RanksTheDrawingsCandidatesAgainWhereThereIsNoRace_optimized) {
   EXPECT_LE(cost_of(found, "for the devices"), 1.02 * cost_of(found, "plain step"));
 }
 
-// What the winner costs on the devices of the choice.
+// The cost of the winner on the devices of the choice.
 double least_cost(const SceneFile& file, std::uint64_t seed) {
   const ForDevicesResult found = searched(file, race_closings / 2, seed);
   EXPECT_FALSE(found.candidates.empty());

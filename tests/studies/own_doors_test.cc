@@ -77,7 +77,7 @@ struct SameRamp {
 
 TEST(OwnObjective, OfAFigureIsTheTargetOfThatFigure) {
   SearchSetting built_in = search_setting(quick_gold(), Target::drive, Actuator::electrostatic, "pulse", {});
-  built_in.scale.judges_hardness = false;  // as for an objective of one's own
+  built_in.scale.judges_hardness = false;  // an own objective lifts that rule
   SearchSetting own = built_in;
   own.target = by(share_of_drive);
   for (const std::vector<double>& x : built_in.space.starts()) {
