@@ -76,7 +76,7 @@ struct ChosenFrom {
   double median_touch = Metrics::unset;                                ///< [s]
   double waited = Metrics::unset;                                      ///< 95 % quantile of what DevicesSearch::free() counts [s]
   bool is_good_enough = false;                                         ///< as the choice asks
-  bool is_in_usual_room = false;  ///< the race within usual limits found it
+  bool is_in_usual_room = false;                                       ///< the race within usual limits found it
 };
 
 /// The share of devices of which most land, which decides where it is as much.
