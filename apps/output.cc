@@ -68,19 +68,20 @@ void print_json_or(const Common& c, const json& data, const std::string& text) {
   print(c.json == "-" ? json_text(data, 2) : text);
 }
 
-int exit_status_of(Status s) {
-  switch (s) {
-    case Status::interrupted:
-      return exit_interrupted;
-    case Status::numerical_failure:
-      return exit_numerical_failure;
-    case Status::no_contact:
-    case Status::collapsed_at_rest:
-    case Status::collapsed_onto_electrode:
-      return exit_no_success;
-    default:
+int exit_status_of(verbs::Ending ending) {
+  switch (ending) {
+    case verbs::Ending::done:
       return exit_done;
+    case verbs::Ending::no_success:
+      return exit_no_success;
+    case verbs::Ending::numerical_failure:
+      return exit_numerical_failure;
+    case verbs::Ending::interrupted:
+      break;
   }
+  return exit_interrupted;
 }
+
+int exit_status_of(Status status) { return exit_status_of(verbs::ending_of(status)); }
 
 }  // namespace softland::apps

@@ -13,6 +13,7 @@
 #include "reports/result.h"
 #include "reports/result_folder.h"
 #include "reports/result_json.h"
+#include "verbs/study.h"
 
 namespace softland::apps {
 
@@ -38,7 +39,8 @@ void print_result(const Common& common, const Result& result, const std::string&
 /// Data as --json asks for, or else `text` on standard output.
 void print_json_or(const Common& common, const nlohmann::json& data, const std::string& text);
 
-/// What a closing that ended so means to who called the program.
+/// The exit status of a verb, and of one whose closing has this status.
+[[nodiscard]] int exit_status_of(verbs::Ending ending);
 [[nodiscard]] int exit_status_of(Status status);
 
 }  // namespace softland::apps

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/exit_status.h"
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/scenes.h"
@@ -52,20 +51,6 @@ struct Given {
 };
 
 std::string spelled(std::string_view name) { return "--" + std::string(name); }
-
-int exit_status_after(Ending ending) {
-  switch (ending) {
-    case Ending::done:
-      return exit_done;
-    case Ending::no_success:
-      return exit_no_success;
-    case Ending::numerical_failure:
-      return exit_numerical_failure;
-    case Ending::interrupted:
-      break;
-  }
-  return exit_interrupted;
-}
 
 DriveWaveforms waveforms_of(const std::string& result, const PreparedScene& nominal, const Watch& watch) {
   const Drives drives = prepare(scene_of_result(result), false, watch).drives;
@@ -122,7 +107,7 @@ int run_study(const verbs::Study& study, const Common& given, const Given& optio
   }
   if (folder && !found.files.empty()) found.text += leave(*folder, found);
   print_json_or(c, found.json, found.text + found.last);
-  return exit_status_after(found.ending);
+  return exit_status_of(found.ending);
 }
 
 void declare(Verb& verb, const OptionRow& option, Given& given) {

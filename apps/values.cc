@@ -1,14 +1,11 @@
 #include "apps/values.h"
 
-#include <algorithm>
-#include <thread>
-
 #include "config/told_quantity.h"
 
 namespace softland::apps {
 
 int job_count(const std::optional<std::string>& option) {
-  return option ? whole_number("--jobs", *option, 1) : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  return option ? whole_number("--jobs", *option, 1) : verbs::one_per_core();
 }
 
 std::uint64_t seed_of(const std::optional<std::string>& option, std::uint64_t seed) {

@@ -43,7 +43,7 @@ struct OptionRow {
   bool may_be_empty = false;  ///< else the door refuses an empty text
 
   // In Python:
-  std::string keyword = {};  ///< "impact_velocity"; empty where Python has no such option
+  std::string keyword = {};  ///< "impact_velocity"
   std::string type = {};     ///< "float | str | None"
   std::string value = {};    ///< its default, "None"
   std::string note = {};     ///< before `about`: the unit of a number, which value `about` is of

@@ -148,7 +148,7 @@ struct PullInRequest : Usual {
                         python = "pull_in", leaves = "folder for sweep.csv and sweep.svg", leaving = "sweep";
   static constexpr auto remarks =
       "The stable path says whether one drive alone carries the switch to its contact without a jump, and for what share of\n"
-      "256 devices of [spread]. Where it does, softland optimize approaches the contact slowly.\n"
+      "256 devices of [spread]. With a stable path softland optimize approaches the contact slowly.\n"
       "Examples:\n  softland pull-in scenes/mem-gold.toml --set structure.thickness=\"2.1 um\"\n"
       "  softland pull-in scenes/mem-gold-pzt.toml --bias piezo=\"0.5 V\"\n"
       "  softland pull-in scenes/mem-gold.toml --sweep \"0 V:20 V:201\" --out swept";

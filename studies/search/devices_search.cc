@@ -356,7 +356,7 @@ void DevicesSearch::take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool 
   }
 }
 
-// What the race came to, on other devices, beside the plain step.
+// Places the ends of the races on other devices, beside the plain step.
 void DevicesSearch::choose() {
   watch_.tell("choosing on other devices", 0);
   std::vector<ChosenFrom> pool;

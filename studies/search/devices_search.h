@@ -214,7 +214,7 @@ class DevicesSearch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   bool spread_assumed_ = false;
   std::vector<SearchSetting> settings_;
-  std::size_t raced_ = 0;                  // of the settings, those of families that are raced
+  std::size_t raced_ = 0;                  // number of settings whose families are raced; they come first
   std::vector<SearchSetting> usual_room_;  // those within the usual limits; none where the scene's are no wider
   std::vector<std::string> names_;         // of the families
   std::optional<StableApproach> approach_;
