@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -26,19 +27,25 @@ namespace softland {
 /// A number that is not given.
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
-/// A number of the parameter struct `Owner`, or a word that chooses one of its enumerators.
+/// A number of the parameter struct `Owner`, a flag, or a word that chooses one of its enumerators. What has neither `in`,
+/// `count`, `flag` nor `words` is a number that sets no member: code of its own reads it.
 template <class Owner>
 struct Field {
   std::string_view key;              ///< in a scene, and of messages
   std::string_view unit = {};        ///< SI; empty for a plain number and for a word
   std::string_view about = {};       ///< one line for people
-  double& (*in)(Owner&) = nullptr;   ///< the number, see reach(); null for a word
+  double& (*in)(Owner&) = nullptr;   ///< the number, see reach(); null for what is no such number
+  int& (*count)(Owner&) = nullptr;   ///< a whole number
+  bool& (*flag)(Owner&) = nullptr;   ///< a flag
+  std::string_view or_word = {};     ///< of a whole number: a word that may stand instead of it
   bool required = false;             ///< else a scene may leave it out, and it keeps the value of an Owner{}
   Range range = positive;            ///< ends that it leaves open are closed in a scene by the extent of the unit
   std::string_view fallback = {};    ///< the value of an Owner{} as a scene writes it; empty where that means "none"
   std::string_view instead_of = {};  ///< the key of another field of the law that this one excludes
   std::string_view not_below = {};   ///< the key of another field of the law, whose value is the least one
   std::string_view such_as = {};     ///< a value for messages, where what is usual of the unit would not do
+  std::string_view beyond = {};  ///< what a scene does where a value must lie outside the range, which is then the scene's alone
+  std::string_view why_fixed = {};                       ///< why devices cannot differ by it; empty: they can
   std::vector<std::string_view> (*words)() = nullptr;    ///< of a word: what it may be
   void (*choose)(Owner&, std::string_view) = nullptr;    ///< of a word: sets the enumerator
   std::string_view refused_word = {}, why_refused = {};  ///< of a word: one that people may expect here, and why it is not there
@@ -46,7 +53,7 @@ struct Field {
 
 /// The member at the end of a path of members: reach<Law, &Law::summits, &Summits::radius>.
 template <class Owner, auto... path>
-[[nodiscard]] constexpr double& reach(Owner& owner) {
+[[nodiscard]] constexpr auto& reach(Owner& owner) {
   return (owner.*....*path);
 }
 
@@ -112,13 +119,20 @@ template <class Variant>
   return text;
 }
 
+/// The field of a number under this key; null where there is none.
+template <class Owner>
+[[nodiscard]] constexpr const Field<Owner>* find_field(std::span<const Field<Owner>> fields, std::string_view key) {
+  for (const Field<Owner>& field : fields) {
+    if (field.key == key && field.in != nullptr) return &field;
+  }
+  return nullptr;
+}
+
 /// The number that a law has under this key; null where it has none.
 template <class Law>
 [[nodiscard]] double* number_of(Law& law, std::string_view key) {
-  for (const Field<Law>& field : fields_of<Law>) {
-    if (field.key == key && field.in != nullptr) return &field.in(law);
-  }
-  return nullptr;
+  const Field<Law>* const field = find_field<Law>(fields_of<Law>, key);
+  return field == nullptr ? nullptr : &field->in(law);
 }
 template <class... Laws>
 [[nodiscard]] double* number_of(std::variant<Laws...>& law, std::string_view key) {

@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
     const auto microseconds_like = [&](const Switch* like) {
       return microseconds([&](double factor) {
         Device d = p.scene.device;
-        d.structure.thickness *= factor, d.structure.youngs_modulus *= factor, d.gap.electrode *= factor;
+        d.structure.thickness *= factor, part_of<Beam>(d.structure).youngs_modulus *= factor, d.gap.electrode *= factor;
         const Switch built(d, p.quadrature, like);
       });
     };

@@ -4,13 +4,17 @@
 #include <fmt/ranges.h>
 
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
+
+#include "model/structure/structure.h"
 
 namespace softland {
 namespace {
 
-void vary(SceneFile& file, const std::string& key, const std::string& cov) {
-  if (file.written(key)) file.set(fmt::format("spread.\"{}\"={{distribution=\"normal\",cov=\"{}\"}}", key, cov));
+void vary(SceneFile& file, const std::string& key, std::string_view cov, bool always) {
+  if (always || file.written(key)) file.set(fmt::format("spread.\"{}\"={{distribution=\"normal\",cov=\"{}\"}}", key, cov));
 }
 
 }  // namespace
@@ -23,13 +27,13 @@ bool assume_spread(SceneFile& file) {
     const std::string key = fmt::format("electrode.{}.gap", name);
     if (file.written(key)) gaps.push_back('"' + key + '"');
   }
-  if (file.written("structure.kind") == "plate") {
-    vary(file, "structure.stiffness", "6.7 %");
-  } else if (file.written("structure.kind") == "modes") {
-    file.set("spread.\"structure.frequency_factor\"={distribution=\"normal\",cov=\"3.5 %\"}");
-  } else {
-    vary(file, "structure.thickness", "2 %");
-    vary(file, "structure.youngs_modulus", "3 %");
+  if (const auto kind = law_named<StructureKind>(file.written("structure.kind").value_or(""))) {
+    std::visit(
+        [&](const auto& own) {
+          for (const UsualSpread& usual : own.usual_spread)
+            vary(file, "structure." + std::string(usual.key), usual.cov, usual.has_default);
+        },
+        *kind);
   }
   if (!gaps.empty()) file.set(fmt::format("spread.gaps={{keys=[{}],distribution=\"normal\",cov=\"2 %\"}}", fmt::join(gaps, ",")));
   return true;

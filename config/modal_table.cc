@@ -10,8 +10,8 @@
 
 #include "base/engineering.h"
 #include "base/require.h"
+#include "config/schema/sections.h"
 #include "exchange/mode_table.h"
-#include "model/tabulated_modes.h"
 
 namespace softland::internal {
 namespace {
@@ -120,30 +120,58 @@ std::shared_ptr<const ModalTable> table_of_scene(const SectionReader& in) {
 
 }  // namespace
 
+std::vector<Key> modal_table_keys() {
+  Key shapes = numbers(keys::shapes, {dimension::none}, any, "a list per mode: mass-normalised, in 1/sqrt(kg), at the positions");
+  shapes.is_nested = true;
+  Key normalised{
+      .name = keys::mass_normalised, .type = KeyType::flag, .about = "the modes of the file are, though it does not say so"};
+  return {
+      words(keys::file, "table of modes, CalculiX .frd, export of COMSOL, UFF 55 or ANSYS .rom, relative to the scene")
+          .needed()
+          .instead(keys::positions),
+      words(keys::axis, "of the file, from the clamp to the far end: x, -y"),
+      words(keys::direction, "of the file, towards the near electrode: -z"),
+      words(keys::length_unit, "of the file's positions, where it does not say").such_as("mm"),
+      words(keys::mass_unit, "of the model behind the file").such_as("t"),
+      number(keys::mass, {dimension::mass}, positive, "of the structure, even along its axis: normalises modes that are not")
+          .fixed("it normalises the modes of a file; vary structure.frequency_factor"),
+      std::move(normalised),
+      number(keys::clamp, {dimension::length}, any, "where the clamp is on the axis of the file, if there is no node")
+          .fixed("it is a place in the file"),
+      numbers(keys::positions, {dimension::length}, not_negative,
+              "instead of a file: places from the clamp on, which is the first")
+          .instead(keys::file),
+      numbers(keys::frequencies, {dimension::frequency}, positive,
+              "of the modes at these positions, or of a file that does not hold them"),
+      std::move(shapes),
+  };
+}
+
 void read_modal_table(Scene& scene, const SectionReader& in) {
   Structure& s = scene.device.structure;
+  std::shared_ptr<const ModalTable>& table = part_of<ModalStructure>(s).table;
   if (in.is_given(keys::positions)) {
-    s.table = table_of_scene(in);
+    table = table_of_scene(in);
   } else {
     in.require(!in.is_given(keys::shapes), keys::shapes, "stands beside positions, not beside a file");
-    s.table = table_of_file(scene, in);
+    table = table_of_file(scene, in);
   }
-  s.length = s.table->length();
-  if (!in.is_given("thickness")) s.thickness = std::numeric_limits<double>::quiet_NaN();
+  s.length = table->length();
   if (!in.is_given("modes")) s.modes = most_modes_of(s);
-  in.require(s.modes <= s.table->count(), "modes", fmt::format("must not exceed {}, the modes of the file", s.table->count()));
+  in.require(s.modes <= table->count(), "modes", fmt::format("must not exceed {}, the modes of the file", table->count()));
 }
 
 void hold_table(toml::table& root, const Structure& s) {
-  if (s.kind != StructureKind::modes) return;
+  const auto* const modal = s.find<ModalStructure>();
+  if (modal == nullptr) return;
   toml::table& section = *root["structure"].as_table();
   for (const std::string_view key : {keys::file, keys::axis, keys::direction, keys::length_unit, keys::mass_unit, keys::mass,
                                      keys::mass_normalised, keys::clamp, keys::positions, keys::frequencies, keys::shapes})
     section.erase(key);
   toml::array positions, frequencies, shapes;
-  for (const double x : s.table->positions()) positions.push_back(quantity_text(x, dimension::length));
-  for (const double f : s.table->frequencies()) frequencies.push_back(quantity_text(f, dimension::frequency));
-  for (const std::vector<double>& shape : s.table->shapes()) {
+  for (const double x : modal->table->positions()) positions.push_back(quantity_text(x, dimension::length));
+  for (const double f : modal->table->frequencies()) frequencies.push_back(quantity_text(f, dimension::frequency));
+  for (const std::vector<double>& shape : modal->table->shapes()) {
     toml::array one;
     for (const double value : shape) one.push_back(value);
     shapes.push_back(std::move(one));

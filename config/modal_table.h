@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include "config/scene.h"
 #include "config/section_reader.h"
@@ -15,13 +16,16 @@ inline constexpr std::string_view file = "file", axis = "axis", direction = "dir
                                   positions = "positions", frequencies = "frequencies", shapes = "shapes";
 }  // namespace modal_keys
 
+/// These keys, which stand before the fields of a ModalStructure.
+[[nodiscard]] std::vector<Key> modal_table_keys();
+
 /// Sets table, length, width and the number of modes of the structure; what was taken from a file of another program becomes a
 /// note of the scene. Throws InvalidInput with key, file and rule for what cannot be read, and for a structure that is no beam of
 /// constant width, straight at rest.
 void read_modal_table(Scene& scene, const SectionReader& in);
 
 /// Puts the table itself where a scene names its file, so that the scene needs no other file: it reads back to the same bits.
-/// Does nothing to other structures.
+/// Other structures stay as they are.
 void hold_table(toml::table& root, const Structure& structure);
 
 }  // namespace softland::internal

@@ -108,8 +108,7 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
   if (device.electrodes.empty() && !device.piezo && !file.find({"waveform", "dispersion"})) {
     warnings.push_back(file.name + ": neither an electrode nor a piezo layer: nothing drives this switch");
   }
-  if (const auto& surface = device.surface; surface && surface->residual_stress != 0 &&
-                                            device.structure.kind == StructureKind::cantilever &&
+  if (const auto& surface = device.surface; surface && surface->residual_stress != 0 && !device.structure.has_far_clamp() &&
                                             surface->cantilever_load == ResidualLoad::none) {
     warnings.push_back(fmt::format(
         "{}: surface.residual_stress does nothing to a cantilever unless surface.cantilever_load says so", file.name));
@@ -117,15 +116,16 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
   constexpr double wide = 5;          // width over thickness from which the beam bends more like a plate
   constexpr double rounding = 1e-12;  // 20 um is not more than five times 4 um, whatever the last bit says
   const Structure& structure = device.structure;
-  if (structure.kind != StructureKind::plate && structure.kind != StructureKind::modes &&
-      !file.find({"structure", "plate_strain"}) && structure.width > wide * structure.thickness * (1 + rounding)) {
+  const auto* const beam = structure.find<Beam>();
+  if (beam != nullptr && !file.find({"structure", "plate_strain"}) &&
+      structure.width > wide * structure.thickness * (1 + rounding)) {
     warnings.push_back(fmt::format(
         "{}: {}: more than five thicknesses; youngs_modulus is used as given (plate_strain = false), plate_strain = true with "
         "poissons_ratio would use E / (1 - nu^2)",
         file.origin("structure.width").text, file.written("structure.width")));
   }
-  if (structure.plate_strain && device.piezo && std::isnan(device.piezo->e31)) {
-    const double more = 1 / (1 - structure.poissons_ratio) - 1;
+  if (beam != nullptr && beam->plate_strain && device.piezo && std::isnan(device.piezo->e31)) {
+    const double more = 1 / (1 - beam->poissons_ratio) - 1;
     warnings.push_back(fmt::format(
         "{}: with plate_strain = true a layer pulls across the width as well: its moment is {:.0f} % above that of d31 at the "
         "beam's Poisson's ratio; give e31 = d31 E / (1 - nu) of the layer",

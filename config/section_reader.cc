@@ -351,17 +351,20 @@ void SectionReader::set_members(Scene& scene, std::size_t entry) const {
   }
 }
 
-void SectionReader::require_of_plate(std::string_view key, std::string_view needed) const {
-  const SectionReader structure(file_, "structure");
-  const bool is_plate = structure.text("kind") == name_of(structure_kinds, StructureKind::plate);
-  const bool is_file = structure.text("kind") == name_of(structure_kinds, StructureKind::modes) && needed == "thickness";
-  require((!is_plate && !is_file) || structure.is_given(needed), key,
-          fmt::format("needs structure.{} {}", needed, is_plate ? "on a plate" : "beside the modes of a file"));
+void SectionReader::require_of_structure(std::string_view key, std::string_view needed, const Structure& structure) const {
+  const bool may_lack = structure.is_rigid() || (needed == "thickness" && std::isnan(structure.thickness));
+  require(!may_lack || SectionReader(file_, "structure").is_given(needed), key,
+          fmt::format("needs structure.{} {}", needed, structure.whose()));
 }
 
 std::string SectionReader::written_length(const Structure& structure) const {
-  return structure.kind == StructureKind::modes ? fmt::format("the {} of the modes' table", engineering(structure.length, "m"))
-                                                : file_.written("structure.length");
+  return std::visit(
+      [&]<class Kind>(const Kind&) -> std::string {
+        if constexpr (requires { Kind::length_is; })
+          return fmt::format(fmt::runtime(Kind::length_is), engineering(structure.length, "m"));
+        return file_.written("structure.length");
+      },
+      structure.kind);
 }
 
 void SectionReader::require_on_beam(std::string_view key, const Structure& beam) const {

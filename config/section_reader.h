@@ -65,8 +65,8 @@ class SectionReader {
   }
   /// Throws InvalidInput about the section.
   [[noreturn]] void fail(std::string_view rule) const { file_.fail_section(path_, rule); }
-  /// Throws InvalidInput about this key on a plate that lacks a key of [structure]; of a thickness also beside a file of modes.
-  void require_of_plate(std::string_view key, std::string_view needed) const;
+  /// Throws InvalidInput about this key where [structure] lacks the key that it needs and may leave out.
+  void require_of_structure(std::string_view key, std::string_view needed, const Structure& structure) const;
   /// Throws InvalidInput unless the two lengths of this key increase and lie on the beam.
   void require_on_beam(std::string_view key, const Structure& beam) const;
   /// Where the length of what moves is said, or how long it is.

@@ -19,12 +19,11 @@
 softland::Device actuator(double overlap, double spring_width) {
   const double etch = 0.4e-6, layer = 40e-6, fingers = 70, finger = 5.01e-6 - 2 * etch;
   const double facing = overlap - etch, spring = spring_width - 2 * etch, modulus = 169e9 / (1 - 0.069 * 0.069);
-  return {.structure = {.kind = softland::StructureKind::plate,
-                        .length = fingers * facing,
+  return {.structure = {.length = fingers * facing,
                         .width = layer,
                         .thickness = finger,
-                        .mass = 3.5e-9,  // no matter at rest
-                        .stiffness = 2 * modulus * std::pow(spring / 241e-6, 3) * layer},
+                        .kind = softland::Plate{.mass = 3.5e-9,  // no matter at rest
+                                                .stiffness = 2 * modulus * std::pow(spring / 241e-6, 3) * layer}},
           .gap = {.electrode = 4.83e-6 + 2 * etch, .contact = 3.83e-6 + 2 * etch},
           .electrodes = {{.name = "main",
                           .begin = 0,

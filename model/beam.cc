@@ -81,13 +81,14 @@ std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double p
 }  // namespace
 
 double bending_modulus(const Structure& s) {
-  return s.plate_strain ? s.youngs_modulus / (1 - s.poissons_ratio * s.poissons_ratio) : s.youngs_modulus;
+  const Beam& beam = part_of<Beam>(s);
+  return beam.plate_strain ? beam.youngs_modulus / (1 - beam.poissons_ratio * beam.poissons_ratio) : beam.youngs_modulus;
 }
 
 CompositeSection plain_section(const Structure& s, const std::optional<Surface>& surface) {
   const double skins = surface ? surface_rigidity(*surface, s) : 0;
   return {.rigidity = bending_modulus(s) * s.width * std::pow(s.thickness, 3) / 12 + skins,
-          .mass_per_length = s.density * s.width * s.thickness};
+          .mass_per_length = part_of<Beam>(s).density * s.width * s.thickness};
 }
 
 CompositeSection layered_section(const Structure& s, const Piezo& p) {
@@ -96,7 +97,7 @@ CompositeSection layered_section(const Structure& s, const Piezo& p) {
   return {.neutral_axis = zc,
           .rigidity = a * (ep * bp * bp * bp / 12 + eb * b * b * b / 12 + ep * bp * std::pow(zc - bp / 2, 2) +
                            eb * b * std::pow(bp + b / 2 - zc, 2)),
-          .mass_per_length = a * (s.density * b + p.density * bp)};
+          .mass_per_length = a * (part_of<Beam>(s).density * b + p.density * bp)};
 }
 
 double piezo_moment_per_volt(const Structure& s, const Piezo& p) {
@@ -104,18 +105,18 @@ double piezo_moment_per_volt(const Structure& s, const Piezo& p) {
   return e31 * s.width * (layered_section(s, p).neutral_axis - p.thickness / 2);
 }
 
-double axial_stress(const Structure& s) { return s.residual_stress * (s.biaxial ? 1 - s.poissons_ratio : 1); }
+double axial_stress(const Bridge& bridge) { return bridge.residual_stress * (bridge.biaxial ? 1 - bridge.poissons_ratio : 1); }
 
 BeamSupport beam_support(const Structure& s, const std::optional<Surface>& surface) {
   const double pull = surface ? surface_pull(*surface, s) : 0;
-  if (s.kind == StructureKind::clamped_clamped) {
-    return {.far_clamp = true, .axial_force = axial_stress(s) * s.width * s.thickness + pull};
+  if (const auto* bridge = s.find<Bridge>()) {
+    return {.far_clamp = true, .axial_force = axial_stress(*bridge) * s.width * s.thickness + pull};
   }
   return {.axial_force = surface && surface->cantilever_load == ResidualLoad::compression ? -pull : 0};
 }
 
 double buckling_stress(const Structure& s, const std::optional<Surface>& surface) {
-  const double slenderness = (s.kind == StructureKind::clamped_clamped ? 2 * pi : pi / 2) / s.length;
+  const double slenderness = (s.has_far_clamp() ? 2 * pi : pi / 2) / s.length;
   return slenderness * slenderness * plain_section(s, surface).rigidity / (s.width * s.thickness);
 }
 
@@ -123,6 +124,22 @@ std::string why_buckled(const Structure& s, const std::optional<Surface>& surfac
   const double stress = beam_support(s, surface).axial_force / (s.width * s.thickness), limit = -buckling_stress(s, surface);
   if (stress > limit) return {};
   return fmt::format("leaves {:.4g} MPa along the beam, which buckles at {:.4g} MPa", stress / 1e6, limit / 1e6);
+}
+
+std::string why_no_beam(const Device& d) {
+  const auto needs_ratio = [](const char* who, double ratio) {
+    return fmt::format("structure.poissons_ratio = {}: {} needs one between -1 and 0.5", ratio, who);
+  };
+  const Beam& beam = part_of<Beam>(d.structure);
+  const bool has_ratio = beam.poissons_ratio > -1 && beam.poissons_ratio < 0.5;
+  if (beam.plate_strain && !has_ratio) return needs_ratio("plate_strain", beam.poissons_ratio);
+  const auto* const bridge = d.structure.find<Bridge>();
+  if (bridge == nullptr) return {};
+  if (bridge->biaxial && !has_ratio) return needs_ratio("biaxial", beam.poissons_ratio);
+  const std::string buckled = d.surface ? std::string() : why_buckled(d.structure);
+  if (buckled.empty() && bridge->residual_stress < 1e30) return {};
+  return fmt::format("structure.residual_stress = {}: {}", engineering(bridge->residual_stress, "Pa"),
+                     buckled.empty() ? "must be below 1e30 Pa" : buckled);
 }
 
 std::vector<BeamSection> beam_sections(const Device& device) {
@@ -326,6 +343,17 @@ BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const 
     throw InvalidInput(fmt::format("axial force {}: {}", engineering(support.axial_force, "N"), error.what()));
   }
   frequencies_ = frequency_scale_ / normalised_->inverse_squares().array().sqrt();
+}
+
+MidPlaneStretching stretching_of(const BeamModes& beam, const Structure& s) {
+  const Eigen::MatrixXd slopes = beam.slope_products();
+  return {.modes = static_cast<std::size_t>(slopes.rows()),
+          .slopes = std::vector<double>(slopes.data(), slopes.data() + slopes.size()),
+          .stiffness = part_of<Beam>(s).youngs_modulus * s.width * s.thickness / (2 * s.length)};
+}
+
+BeamModes beam_modes(const Device& device, std::shared_ptr<const NormalisedModes> known) {
+  return {beam_sections(device), device.structure.modes, beam_support(device.structure, device.surface), std::move(known)};
 }
 
 }  // namespace softland

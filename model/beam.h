@@ -25,6 +25,7 @@
 
 #include "model/device.h"
 #include "model/receptance.h"
+#include "model/stretching.h"
 
 namespace softland {
 
@@ -55,13 +56,16 @@ struct CompositeSection {
 [[nodiscard]] std::vector<BeamSection> beam_sections(const Device& device);
 /// What residual_stress leaves in the released beam between two clamps [Pa]: all of a stress along the beam; of the equal biaxial
 /// stress of a film, sigma (1 - nu), since the beam's sides are free and its strain along the beam is held.
-[[nodiscard]] double axial_stress(const Structure& structure);
+[[nodiscard]] double axial_stress(const Bridge& bridge);
 /// Compressive stress at which the beam buckles [Pa], E I as plain_section(): 4 pi^2 E I / (A L^2) between two clamps, a
 /// sixteenth of that with a free end.
 [[nodiscard]] double buckling_stress(const Structure& structure, const std::optional<Surface>& surface = {});
 
 /// Why the beam cannot rest straight under its axial stress; empty when it can.
 [[nodiscard]] std::string why_buckled(const Structure& structure, const std::optional<Surface>& surface = {});
+
+/// Which rule a beam breaks; empty: none.
+[[nodiscard]] std::string why_no_beam(const Device& device);
 
 struct BeamSupport {
   bool far_clamp = false;  ///< the end at L is clamped as well
@@ -154,5 +158,11 @@ class BeamModes {
   std::shared_ptr<const NormalisedModes> normalised_;
   Eigen::VectorXd frequencies_;
 };
+
+/// Stretching of a beam between two clamps.
+[[nodiscard]] MidPlaneStretching stretching_of(const BeamModes& modes, const Structure& structure);
+
+/// The modes of a device whose structure is a beam.
+[[nodiscard]] BeamModes beam_modes(const Device& device, std::shared_ptr<const NormalisedModes> known = {});
 
 }  // namespace softland

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/engineering.h"
 #include "base/require.h"
 #include "model/beam.h"
 #include "model/forces/electrostatic.h"
 #include "model/surface.h"
-#include "model/tabulated_modes.h"
 
 namespace softland {
 namespace {
@@ -28,62 +28,57 @@ void span(double begin, double end, double length, const std::string& name) {
   });
 }
 
-void check_between_clamps(const Device& d) {
-  const Structure& s = d.structure;
-  require(!s.biaxial || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5),
-          [&] { return fmt::format("structure.poissons_ratio = {}: biaxial needs one between -1 and 0.5", s.poissons_ratio); });
-  const std::string buckled = d.surface ? std::string() : why_buckled(s);
-  require(buckled.empty() && s.residual_stress < 1e30, [&] {
-    return fmt::format("structure.residual_stress = {}: {}", engineering(s.residual_stress, "Pa"),
-                       buckled.empty() ? "must be below 1e30 Pa" : buckled);
-  });
-  require(!d.piezo,
-          "piezo: between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off "
-          "its middle line; a layer needs a cantilever");
+/// The numbers of `owner`, a part of the device; those that a scene may leave out may be as they are in `unset`.
+template <class Owner>
+void check_fields(const std::string& part, Owner owner, Owner unset, std::span<const Field<Owner>> fields) {
+  for (const Field<Owner>& field : fields) {
+    // A scene's bound that has a way beyond it, and what a rule of its own decides.
+    if (field.in == nullptr || !field.beyond.empty() || field.range == Range{}) continue;
+    const double value = field.in(owner), missing = field.in(unset);
+    const bool may_miss = !field.required || !field.instead_of.empty();
+    if (may_miss && (value == missing || (std::isnan(value) && std::isnan(missing)))) continue;
+    const std::string name = part + "." + std::string(field.key), unit(field.unit);
+    const auto refuse_unless = [&](bool right, const auto& rule) {
+      require(right, [&] { return fmt::format("{} = {}: {}", name, engineering(value, unit), rule()); });
+    };
+    const Field<Owner>* const bound = find_field(fields, field.not_below);
+    if (bound != nullptr) {
+      const double least = bound->in(owner);
+      refuse_unless(value >= least && value < 1e30, [&] {
+        return fmt::format("must not be below {}.{} = {}, and below 1e30 {}", part, field.not_below, engineering(least, unit),
+                           unit);
+      });
+    } else if (field.range == softland::positive) {
+      positive(value, unit.c_str(), name.c_str());
+    } else {
+      refuse_unless(field.range.contains(value), [&] { return field.range.rule(unit); });
+    }
+  }
 }
-
-void check_tabulated(const Device& d) {
-  const Structure& s = d.structure;
-  require(s.table != nullptr, "structure.kind = modes: there is no table of modes");
-  require(s.length == s.table->length(), [&] {
-    return fmt::format("structure.length = {}: must be the length of the table of modes, {}", engineering(s.length, "m"),
-                       engineering(s.table->length(), "m"));
-  });
-  require(
-      !s.table->is_held_at_both_ends(),
-      "structure.kind = modes: the far end stands still in every mode; between two clamps bending stretches the structure, which "
-      "modes do not hold: kind = clamped-clamped does");
-  require(s.modes <= s.table->count(), [&] {
-    return fmt::format("structure.modes = {}: must not exceed {}, the modes of the file", s.modes, s.table->count());
-  });
-  require(s.frequency_factor > 0.01 && s.frequency_factor < 100,
-          [&] { return fmt::format("structure.frequency_factor = {}: must lie between 0.01 and 100", s.frequency_factor); });
-  require(!d.piezo, "piezo: a layer changes the modes, which a file cannot follow; a layer needs a cantilever");
+template <class Law>
+void check_fields(const std::string& part, const Law& law) {
+  check_fields<Law>(part, law, Law{}, fields_of<Law>);
 }
 
 void check_structure(const Device& d) {
   const Structure& s = d.structure;
-  const bool plate = s.kind == StructureKind::plate;
   positive(s.length, "m", "structure.length");
   positive(s.width, "m", "structure.width");
-  if (plate) {
-    positive(s.mass, "kg", "structure.mass");
-    positive(s.stiffness, "N/m", "structure.stiffness");
-  } else if (s.kind == StructureKind::modes) {
-    check_tabulated(d);
-  } else {
-    positive(s.thickness, "m", "structure.thickness");
-    positive(s.youngs_modulus, "Pa", "structure.youngs_modulus");
-    positive(s.density, "kg/m^3", "structure.density");
-  }
+  Structure unset;
+  std::visit([&]<class Kind>(const Kind&) { unset.kind = Kind{}; }, s.kind);
+  check_fields("structure", s, unset, fields_in_force(s));
   require(s.modes >= 1 && s.modes <= most_modes,
           [&] { return fmt::format("structure.modes = {}: must be from 1 to {}", s.modes, most_modes); });
   require(s.damping_ratio >= 0 && s.damping_ratio < 1e3,
           [&] { return fmt::format("structure.damping_ratio = {}: must be in [0, 1000)", s.damping_ratio); });
-  require(!s.plate_strain || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5), [&] {
-    return fmt::format("structure.poissons_ratio = {}: plate_strain needs one between -1 and 0.5", s.poissons_ratio);
-  });
-  if (s.kind == StructureKind::clamped_clamped) check_between_clamps(d);
+  std::visit(
+      [&](const auto& kind) {
+        if constexpr (requires { kind.why_invalid(d); }) {
+          const std::string wrong = kind.why_invalid(d);
+          require(wrong.empty(), wrong);
+        }
+      },
+      s.kind);
 }
 
 void check_gap_and_electrodes(const Device& d) {
@@ -103,32 +98,6 @@ void check_gap_and_electrodes(const Device& d) {
   }
 }
 
-/// The numbers of a part's law; those that a scene may leave out may be as an Owner{} has them.
-template <class Law>
-void check_fields(const std::string& part, Law law) {
-  Law unset{};
-  for (const Field<Law>& field : fields_of<Law>) {
-    if (field.in == nullptr) continue;
-    const double value = field.in(law), missing = field.in(unset);
-    const bool may_miss = !field.required || !field.instead_of.empty();
-    if (may_miss && (value == missing || (std::isnan(value) && std::isnan(missing)))) continue;
-    const std::string name = part + "." + std::string(field.key), unit(field.unit);
-    const auto refuse_unless = [&](bool right, const auto& rule) {
-      require(right, [&] { return fmt::format("{} = {}: {}", name, engineering(value, unit), rule()); });
-    };
-    if (const double* least = number_of(law, field.not_below)) {
-      refuse_unless(value >= *least && value < 1e30, [&] {
-        return fmt::format("must not be below {}.{} = {}, and below 1e30 {}", part, field.not_below, engineering(*least, unit),
-                           unit);
-      });
-    } else if (field.range == softland::positive) {
-      positive(value, unit.c_str(), name.c_str());
-    } else {
-      refuse_unless(field.range.contains(value), [&] { return field.range.rule(unit); });
-    }
-  }
-}
-
 void check_gas(const Gas& g, const Structure& s) {
   if (limits_of(g).needs_thickness) positive(s.thickness, "m", "structure.thickness");
   std::visit([](const auto& law) { check_fields("gas", law); }, g);
@@ -140,12 +109,11 @@ void check_gas(const Gas& g, const Structure& s) {
 void check_contact(const Device& d) {
   const Contact& c = *d.contact;
   const Structure& s = d.structure;
-  const bool plate = s.kind == StructureKind::plate;
   const bool rigid = std::holds_alternative<RigidStop>(c.model);
-  require(!rigid || plate, "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
+  require(!rigid || s.is_rigid(), "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
   require(!rigid || !d.gas || !is_compressible(*d.gas),
           "contact.model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests");
-  const bool no_pad = plate && !acts_per_area(c.model) && c.pad_length == 0;  // only its area would count
+  const bool no_pad = s.is_rigid() && !acts_per_area(c.model) && c.pad_length == 0;  // only its area would count
   require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {
     return fmt::format("contact.pad_length = {}: must be positive and below structure.length = {}",
                        engineering(c.pad_length, "m"), engineering(s.length, "m"));
@@ -166,7 +134,7 @@ void check_contact(const Device& d) {
 }
 
 void check_piezo(const Piezo& p, const Structure& s) {
-  require(s.kind != StructureKind::plate, "piezo: a rigid plate does not bend; a layer needs a beam");
+  require(s.why_no_layer().empty(), [&] { return fmt::format("piezo: {}", s.why_no_layer()); });
   span(p.begin.on(s.length), p.end.on(s.length), s.length, "piezo.span");
   positive(p.thickness, "m", "piezo.thickness");
   positive(p.youngs_modulus, "Pa", "piezo.youngs_modulus");
@@ -191,13 +159,8 @@ void check_dispersion(const Dispersion& v, const Gap& gap) {
 
 }  // namespace
 
-int most_modes_of(const Structure& structure) {
-  if (structure.kind == StructureKind::plate) return 1;
-  return structure.kind == StructureKind::modes && structure.table ? std::min(most_modes, structure.table->count()) : most_modes;
-}
-
 double Device::contact_position() const {
-  if (structure.kind == StructureKind::clamped_clamped) return structure.length / 2;
+  if (structure.has_far_clamp()) return structure.length / 2;
   if (!contact || contact->distribution == ContactDistribution::pad) return structure.length;
   return structure.length - contact->pad_length / 2;
 }
@@ -221,7 +184,7 @@ std::optional<ElectrodeConflict> electrode_conflict(const Structure& s, const st
       if (electrodes[k].side != side && electrodes[k].side != Side::both) continue;
       for (const Stretch& pad : electrodes[k].pads(s.length)) here.push_back({k, pad});
     }
-    const bool plate = s.kind == StructureKind::plate;
+    const bool plate = s.is_rigid();
     if (!plate) std::ranges::stable_sort(here, {}, [](const Pad& pad) { return pad.at.begin; });
     double taken = 0;  // of the length: up to here on a beam, in all on a plate
     for (std::size_t i = 0; i < here.size(); ++i) {
@@ -244,8 +207,8 @@ std::optional<ElectrodeConflict> electrode_conflict(const Structure& s, const st
 
 std::string why_not_along_pad(const Structure& structure, const Contact& contact) {
   constexpr double longest = 0.1;  // of the beam: the first mode is then straight along the pad to 5e-5
-  if (structure.kind == StructureKind::plate) return "a plate touches with all of its pad at once, as at the centre";
-  if (structure.kind == StructureKind::clamped_clamped) {
+  if (structure.is_rigid()) return "a plate touches with all of its pad at once, as at the centre";
+  if (structure.has_far_clamp()) {
     return "needs a cantilever, whose tilted pad is straight and touches first with its free end; between two clamps the pad "
            "lies flat about the middle";
   }

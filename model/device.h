@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,47 +15,9 @@
 #include "model/contact/contact.h"
 #include "model/forces/fringing.h"
 #include "model/gas/gas.h"
+#include "model/structure/structure.h"
 
 namespace softland {
-
-/// The most modes of a beam that moves.
-inline constexpr int most_modes = 20;
-/// The most modes of a beam that stands still: see SwitchOptions::modes.
-inline constexpr int most_static_modes = 40;
-
-enum class StructureKind { cantilever, clamped_clamped, plate, modes };
-inline constexpr auto structure_kinds = std::to_array<Named<StructureKind>>({{StructureKind::cantilever, "cantilever"},
-                                                                             {StructureKind::clamped_clamped, "clamped-clamped"},
-                                                                             {StructureKind::plate, "plate"},
-                                                                             {StructureKind::modes, "modes"}});
-static_assert(is_complete<structure_kinds>());
-
-class ModalTable;
-
-/// What moves: a beam of rectangular section (Euler-Bernoulli), clamped at one end or both, a rigid plate on springs, or a
-/// structure of constant width whose modes another program computed, clamped at x = 0 and free at its far end.
-struct Structure {
-  StructureKind kind = StructureKind::cantilever;
-  double length = 0;          ///< L [m]; plate: its area over its width; modes: that of the table
-  double width = 0;           ///< a [m]
-  double thickness = 0;       ///< b [m]
-  double youngs_modulus = 0;  ///< E [Pa], used as given unless plate_strain
-  double density = 0;         ///< rho [kg/m^3]
-  int modes = 4;              ///< plate: has one, whatever is said here
-  double mass = 0;            ///< plate: moving mass [kg]
-  double stiffness = 0;       ///< plate: of all springs together [N/m]
-  double damping_ratio = 0;   ///< zeta of every mode
-  bool plate_strain = false;  ///< use E / (1 - nu^2)
-  double poissons_ratio = std::numeric_limits<double>::quiet_NaN();
-  double residual_stress = 0;                    ///< clamped_clamped: before the beam bends, positive in tension [Pa]
-  bool biaxial = false;                          ///< residual_stress is that of a film: the beam keeps residual_stress (1 - nu)
-  bool stretching = true;                        ///< clamped_clamped: bending stretches the beam
-  std::shared_ptr<const ModalTable> table = {};  ///< modes: see model/tabulated_modes.h
-  double frequency_factor = 1;                   ///< modes: of all natural frequencies, over those of the table
-};
-
-/// The most modes that a structure can have: of a plate 1, of a table those in it.
-[[nodiscard]] int most_modes_of(const Structure& structure);
 
 struct Gap {
   double electrode = 0;  ///< d0, rest distance beam to electrode [m]
@@ -179,8 +140,7 @@ struct Device {
   [[nodiscard]] bool touches_along_pad() const { return contact && contact->distribution == ContactDistribution::pad; }
   /// Where the pad begins and ends [m]; of a device with a contact.
   [[nodiscard]] std::pair<double, double> pad() const {
-    const double end =
-        structure.kind == StructureKind::clamped_clamped ? (structure.length + contact->pad_length) / 2 : structure.length;
+    const double end = structure.has_far_clamp() ? (structure.length + contact->pad_length) / 2 : structure.length;
     return {end - contact->pad_length, end};
   }
 };

@@ -465,9 +465,7 @@ std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bi
   return path;
 }
 
-bool judges_stability(const Switch& model) {
-  return model.modes() > 1 || model.device().structure.kind != StructureKind::clamped_clamped;
-}
+bool judges_stability(const Switch& model) { return model.modes() > 1 || !model.device().structure.has_far_clamp(); }
 
 bool keeps_closed(const Switch& model, const std::optional<ClosedEquilibrium>& closed) {
   return closed && (closed->smallest_eigenvalue > 0 || !judges_stability(model));

@@ -15,7 +15,7 @@
 #include "base/gauss.h"
 #include "model/beam.h"
 #include "model/device.h"
-#include "model/tabulated_modes.h"
+#include "model/structure/tabulated_modes.h"
 
 namespace softland {
 

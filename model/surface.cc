@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
 #include "model/beam.h"
 
@@ -10,12 +11,10 @@ namespace softland {
 
 std::string why_no_surface(const Device& d) {
   const Surface& surface = *d.surface;
-  if (d.structure.kind == StructureKind::modes)
-    return "skins change the modes, which a file cannot follow; a surface needs a beam";
-  if (d.structure.kind == StructureKind::plate) return "a rigid plate does not bend; a surface needs a beam";
+  if (const std::string_view why = d.structure.why_no_skins(); !why.empty()) return std::string(why);
   if (d.piezo) return "is for a bare beam, and the piezo layer covers a face";
   if (!std::isfinite(surface.elastic_modulus) || !std::isfinite(surface.residual_stress)) return "must be finite";
-  if (surface.cantilever_load != ResidualLoad::none && d.structure.kind != StructureKind::cantilever) {
+  if (surface.cantilever_load != ResidualLoad::none && d.structure.has_far_clamp()) {
     return "cantilever_load is for a cantilever; between two clamps residual_stress is a tension";
   }
   const double rigidity = plain_section(d.structure, d.surface).rigidity;

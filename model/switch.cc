@@ -14,9 +14,7 @@
 #include "model/forces/electrostatic.h"
 #include "model/forces/gold_casimir.h"
 #include "model/modal_projection.h"
-#include "model/plate.h"
 #include "model/sampled_modes.h"
-#include "model/tabulated_modes.h"
 
 namespace softland {
 namespace {
@@ -53,13 +51,6 @@ std::shared_ptr<const DistributedLaw> dispersion_force(const Dispersion& d, doub
   return d.conductor == Conductor::gold ? with(GoldCasimir{}) : with(IdealCasimir{});
 }
 
-MidPlaneStretching stretching_of(const BeamModes& beam, const Structure& s) {
-  const Eigen::MatrixXd slopes = beam.slope_products();
-  return {.modes = static_cast<std::size_t>(slopes.rows()),
-          .slopes = std::vector<double>(slopes.data(), slopes.data() + slopes.size()),
-          .stiffness = s.youngs_modulus * s.width * s.thickness / (2 * s.length)};
-}
-
 }  // namespace
 
 template <class Modes>
@@ -88,23 +79,24 @@ void Switch::set_modes(const Modes& structure, double points_per_length, int few
 
 Switch::Switch(const Device& device, const SwitchOptions& options, const Switch* like) : device_(device) {
   validate(device_);
-  if (options.modes && device.structure.kind != StructureKind::plate) {
-    const int most = device.structure.kind == StructureKind::modes ? most_modes_of(device.structure) : most_static_modes;
+  if (options.modes && !device.structure.is_rigid()) {
+    const int most = device.structure.find<Beam>() != nullptr ? most_static_modes : most_modes_of(device.structure);
     require(*options.modes >= 1 && *options.modes <= most,
             [&] { return fmt::format("modes = {}: must be from 1 to {}", *options.modes, most); });
     device_.structure.modes = *options.modes;
   }
   const Structure& s = device_.structure;
-  if (s.kind == StructureKind::plate) {
-    set_modes(RigidPlate(s), 0, 1, nullptr);  // the gap is the same everywhere: one point each says it all
-  } else if (s.kind == StructureKind::modes) {
-    set_modes(TabulatedModes(s.table, s.modes, s.frequency_factor), options.points_per_length, options.points_per_panel, like);
-  } else {
-    const BeamModes beam(beam_sections(device_), s.modes, beam_support(s, device_.surface),
-                         like != nullptr ? like->sampled_->modes : nullptr);
-    set_modes(beam, options.points_per_length, options.points_per_panel, like);
-    if (s.kind == StructureKind::clamped_clamped && s.stretching) stretching_ = stretching_of(beam, s);
-  }
+  std::visit(
+      [&]<class Kind>(const Kind& kind) {
+        const auto modes = kind.modes(device_, like != nullptr ? like->sampled_->modes : nullptr);
+        if constexpr (requires { Kind::is_rigid; }) {
+          set_modes(modes, 0, 1, nullptr);  // the gap is the same everywhere: one point each says it all
+        } else {
+          set_modes(modes, options.points_per_length, options.points_per_panel, like);
+        }
+        if constexpr (requires { kind.stretching(modes, s); }) stretching_ = kind.stretching(modes, s);
+      },
+      s.kind);
   const Eigen::Index n = quadrature_.points();
 
   // A law on the far side, where the rest gap is `gap`.

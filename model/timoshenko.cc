@@ -53,12 +53,13 @@ Basis basis(const std::vector<double>& points, int functions, bool both_clamped)
 }  // namespace
 
 std::vector<double> frequency_excess(const Structure& s) {
-  if (s.kind == StructureKind::plate || s.kind == StructureKind::modes) return {};
-  const bool both_clamped = s.kind == StructureKind::clamped_clamped;
-  const double nu = std::isnan(s.poissons_ratio) ? usual_poissons_ratio : s.poissons_ratio;
+  const auto* const beam = s.find<Beam>();
+  if (beam == nullptr) return {};
+  const bool both_clamped = s.has_far_clamp();
+  const double nu = std::isnan(beam->poissons_ratio) ? usual_poissons_ratio : beam->poissons_ratio;
   const double beyond = std::min(1.0, most_slender * s.thickness / s.length);
   const double gyration = std::pow(s.thickness / s.length / beyond, 2) / 12;  // I / (A L^2)
-  const double stiffer = s.plate_strain ? 1 / (1 - nu * nu) : 1;
+  const double stiffer = beam->plate_strain ? 1 / (1 - nu * nu) : 1;
   const double shear = gyration * stiffer * 2 * (1 + nu) / shear_coefficient;  // E I / (kappa A G L^2)
 
   const int functions = 2 * s.modes + 12;

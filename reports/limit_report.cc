@@ -92,7 +92,7 @@ ReportTable list_table(const char* title, const std::vector<LeastTime>& all, Nam
 
 // The model for which a least time is a bound: a beam with more modes may touch earlier. Empty for a plate, which has one mode.
 std::string model_of(const Limit& limit) {
-  if (limit.given.scene.device.structure.kind == StructureKind::plate) return {};
+  if (limit.given.scene.device.structure.is_rigid()) return {};
   const auto modes = limit.given.model.modes();
   return fmt::format("{} mode{}", modes, modes == 1 ? "" : "s");
 }

@@ -21,15 +21,13 @@ std::vector<Key> contact_keys() {
 }
 
 void check_pad_length(const Device& d, const SectionReader& in) {
-  const bool plate = d.structure.kind == StructureKind::plate;
   const bool per_area = acts_per_area(d.contact->model);
   if (!in.is_given("pad_length")) {
-    if (plate && !per_area) return;  // only the area of a plate's pad would count
+    if (d.structure.is_rigid() && !per_area) return;  // only the area of a plate's pad would count
     in.fail(R"(missing key 'pad_length' (a length such as "2 um"))");
   }
-  if (per_area) in.require_of_plate("pad_length", "width");
-  in.require(d.contact->pad_length < d.structure.length, "pad_length",
-             "must be less than " + (plate ? "structure.area / structure.width" : in.written_length(d.structure)));
+  if (per_area) in.require_of_structure("pad_length", "width", d.structure);
+  in.require(d.contact->pad_length < d.structure.length, "pad_length", "must be less than " + in.written_length(d.structure));
 }
 
 void check_contact(Scene& scene, const SectionReader& in, std::size_t) {
@@ -37,7 +35,7 @@ void check_contact(Scene& scene, const SectionReader& in, std::size_t) {
   const Contact& c = *d.contact;
   check_pad_length(d, in);
   if (std::holds_alternative<RigidStop>(c.model)) {
-    in.require(d.structure.kind == StructureKind::plate, "model", "needs a plate: a beam has modes that take part in an impact");
+    in.require(d.structure.is_rigid(), "model", "needs a plate: a beam has modes that take part in an impact");
     in.require(!d.gas || !is_compressible(*d.gas), "model",
                "not with gas.model = \"reynolds\", whose film still flows under a plate that rests");
   }

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "config/schema/sections.h"
 #include "config/section_reader.h"
 #include "model/forces/electrostatic.h"
@@ -17,7 +19,7 @@ std::size_t begin_electrode(Scene& scene, const SectionReader&, std::string_view
 
 /// A plate counts the length that gives the electrode's area.
 void check_extent(const Structure& s, Electrode& e, const SectionReader& in) {
-  if (s.kind == StructureKind::plate) {
+  if (s.is_rigid()) {
     in.require(!in.is_given("span"), "span", "belongs to a beam; the electrode of a plate has an area");
     e.begin = 0;
     e.end = s.length;
@@ -35,13 +37,14 @@ void check_extent(const Structure& s, Electrode& e, const SectionReader& in) {
 void check_fringing(const Structure& s, const Electrode& e, const SectionReader& in) {
   const FringingRow& law = row_of(fringing_laws, e.fringing);
   const SectionReader structure(in.file(), "structure");
-  if (s.kind == StructureKind::modes && law.needs_thickness && !structure.is_given("thickness"))
-    in.fail(fmt::format("fringing = {} needs structure.thickness beside the modes of a file; fringing = \"linear\" does not",
-                        toml_string(law.name)));
-  if (s.kind != StructureKind::plate) return;
-  if ((law.needs_width && !structure.is_given("width")) || (law.needs_thickness && !structure.is_given("thickness"))) {
-    in.fail(fmt::format("fringing = {} needs structure.width{} on a plate; fringing = \"none\" does not", toml_string(law.name),
-                        law.needs_thickness ? " and structure.thickness" : ""));
+  const bool lacks_thickness = law.needs_thickness && std::isnan(s.thickness);
+  if (!s.is_rigid()) {
+    if (lacks_thickness)
+      in.fail(fmt::format("fringing = {} needs structure.thickness {}; fringing = \"linear\" does not", toml_string(law.name),
+                          s.whose()));
+  } else if (lacks_thickness || (law.needs_width && !structure.is_given("width"))) {
+    in.fail(fmt::format("fringing = {} needs structure.width{} {}; fringing = \"none\" does not", toml_string(law.name),
+                        law.needs_thickness ? " and structure.thickness" : "", s.whose()));
   }
 }
 

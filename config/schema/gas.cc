@@ -20,12 +20,11 @@ std::vector<Key> gas_keys() {
 void check_gas(Scene& scene, const SectionReader& in, std::size_t) {
   const Structure& moving = scene.device.structure;
   if (in.has_value("damping") && in.quantities("damping").front().dimension == dimension::damping) {
-    in.require(moving.kind == StructureKind::plate, "damping",
-               "is that of a whole plate: of a beam give it per length, in N s/m^2");
+    in.require(moving.is_rigid(), "damping", "is that of a whole plate: of a beam give it per length, in N s/m^2");
     std::get<LinearGas>(*scene.device.gas).damping /= moving.length;
   }
-  if (!in.is_given("quality_factor")) in.require_of_plate("model", "width");
-  if (limits_of(*scene.device.gas).needs_thickness) in.require_of_plate("model", "thickness");
+  if (!in.is_given("quality_factor")) in.require_of_structure("model", "width", moving);
+  if (limits_of(*scene.device.gas).needs_thickness) in.require_of_structure("model", "thickness", moving);
 }
 
 }  // namespace

@@ -34,25 +34,42 @@ void bound_word(Scene& scene, std::size_t entry, std::string_view word) {
       part(scene, entry));
 }
 
-template <auto part, class Law, std::size_t i>
-[[nodiscard]] Key key_of_field() {
-  const Field<Law>& field = fields_of<Law>[i];
+/// The key that a field describes, without the member that it sets.
+template <class Owner>
+[[nodiscard]] Key described(const Field<Owner>& field) {
   Key key{.name = field.key,
           .range = field.range,
           .fallback = field.fallback,
           .required = field.required,
           .about = field.about,
+          .beyond = field.beyond,
+          .why_fixed = field.why_fixed,
           .like = field.such_as};
+  if (!field.instead_of.empty()) key.instead_of.push_back(field.instead_of);
   if (field.words != nullptr) {
     key.type = KeyType::choice;
     key.range = {};
     key.choices = field.words();
     if (!field.refused_word.empty()) key.choices.push_back(field.refused_word);
-    key.bound.choose = bound_word<part, Law, i>;
+  } else if (field.flag != nullptr) {
+    key.type = KeyType::flag;
+    key.range = {};
+  } else if (field.count != nullptr) {
+    key.type = KeyType::integer;
+    if (!field.or_word.empty()) key.words.push_back(field.or_word);
   } else {
     key.dimensions = {field.unit.empty() ? dimension::none : parse_quantity("1 " + std::string(field.unit)).dimension};
+  }
+  return key;
+}
+
+template <auto part, class Law, std::size_t i>
+[[nodiscard]] Key key_of_field() {
+  Key key = described(fields_of<Law>[i]);
+  if (key.type == KeyType::choice) {
+    key.bound.choose = bound_word<part, Law, i>;
+  } else {
     key.bound.number = bound_number<part, Law, i>;
-    if (!field.instead_of.empty()) key.instead_of.push_back(field.instead_of);
   }
   return key;
 }

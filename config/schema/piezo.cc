@@ -9,15 +9,8 @@ using OfPiezo = Of<piezo>;
 constexpr Range at_least_one{.least = 1, .most = 1e6};
 
 std::size_t begin_piezo(Scene& scene, const SectionReader& in, std::string_view) {
-  const StructureKind kind = scene.device.structure.kind;
-  if (kind == StructureKind::modes) in.fail("a layer changes the modes, which a file cannot follow; a layer needs a cantilever");
-  if (kind == StructureKind::plate) in.fail("a plate does not bend; a layer needs a beam");
+  if (const std::string_view why = scene.device.structure.why_no_layer(); !why.empty()) in.fail(why);
   if (scene.device.surface) in.fail("covers a face of the beam; [surface] is for a bare beam");
-  if (kind == StructureKind::clamped_clamped) {
-    in.fail(
-        "between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off its "
-        "middle line; a layer needs a cantilever");
-  }
   scene.device.piezo.emplace();
   return 0;
 }

@@ -18,9 +18,6 @@ inline constexpr Range any{};
 inline constexpr Range not_negative{.least = 0};
 inline constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
 
-/// Structures that bend.
-inline const std::vector<std::string_view> beams{"cantilever", "clamped-clamped"};
-
 /// An electrode's voltages may be multiples of its pull-in voltages.
 inline const std::vector<Dimension> drive_voltage{dimension::voltage, dimension::static_pull_in, dimension::dynamic_pull_in};
 

@@ -18,13 +18,13 @@
 #include "base/watch.h"        // Watch, Interrupted
 
 // A scene: from a file, from text, or from a Device made here.
-#include "config/aim.h"             // parse_aim("0.7 bounce + 0.3 energy")
-#include "config/assumed_spread.h"  // how devices differ, where a scene does not say
-#include "config/criterion.h"       // conditions: "permanent_contact_time < 60 us"
-#include "config/invalid_key.h"     // InvalidKey: key, file and line of what is wrong in a scene
-#include "config/scene.h"           // SceneFile, Scene
-#include "model/device.h"           // Device
-#include "model/tabulated_modes.h"  // ModalTable: a structure by its modes
+#include "config/aim.h"                       // parse_aim("0.7 bounce + 0.3 energy")
+#include "config/assumed_spread.h"            // how devices differ, where a scene does not say
+#include "config/criterion.h"                 // conditions: "permanent_contact_time < 60 us"
+#include "config/invalid_key.h"               // InvalidKey: key, file and line of what is wrong in a scene
+#include "config/scene.h"                     // SceneFile, Scene
+#include "model/device.h"                     // Device
+#include "model/structure/tabulated_modes.h"  // ModalTable: a structure by its modes
 
 // Its pieces: the switch, its pull-in voltages, waveforms and one closing.
 #include "exchange/recording.h"  // read: files of instruments

@@ -86,16 +86,14 @@ std::optional<ElasticContact> lane_contact(const Switch& model) {
   return std::nullopt;
 }
 
-bool stretches(const Structure& s) { return s.kind == StructureKind::clamped_clamped && s.stretching; }
-
 /// Whether the laws are those of fleet::UsualLaws.
 bool is_usual(const Switch& model) {
   const Device& device = model.device();
   const std::vector<Electrode>& all = device.electrodes;
   const auto alike = [&](const Electrode& e) { return e.side == Side::near && e.fringing == all.front().fringing; };
-  const bool is_plate = device.structure.kind == StructureKind::plate;  // whose electrodes lie over the same points
+  const bool is_plate = device.structure.is_rigid();  // whose electrodes lie over the same points
   const bool film = !device.gas || (std::holds_alternative<StripGas>(*device.gas) && std::isnan(far_gap(*device.gas)));
-  return model.modes() <= fleet::usual_modes && !device.dispersion && !stretches(device.structure) && film &&
+  return model.modes() <= fleet::usual_modes && !device.dispersion && !model.stretching() && film &&
          std::holds_alternative<UniformAsperityContact>(model.contact()) && std::ranges::all_of(all, alike) &&
          !(is_plate && all.size() > 1) && !electrode_conflict(device.structure, all);
 }
@@ -153,7 +151,7 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
                     .electrodes = to_int(device.electrodes.size()),
                     .drives = to_int(model.drives()),
                     .piezo = model.has_piezo(),
-                    .stretching = stretches(device.structure),
+                    .stretching = model.stretching().has_value(),
                     .film = *lane_film(device.gas),
                     .far_film = device.gas && !std::isnan(far_gap(*device.gas)),
                     .dispersion = *lane_dispersion(device.dispersion),

@@ -26,7 +26,7 @@ class Study {
       : prepared_(prepared), options_(options), signals_(prepared.signals()) {
     own_modes_ = prepared.model.modes();
     own_integrator_ = automatic_integrator(prepared.model);
-    if (prepared.scene.device.structure.kind != StructureKind::plate) {
+    if (!prepared.scene.device.structure.is_rigid()) {
       own_points_ = prepared_.quadrature.points_per_length;
       for (const double points : options.points) {
         if (points != *own_points_) other_points_.push_back(points);

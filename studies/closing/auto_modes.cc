@@ -120,7 +120,7 @@ std::string AutoModes::note() const {
 
 AutoModes choose_modes(const SceneFile& file, const Watch& watch) {
   const Scene scene = read_scene(file);
-  const bool both_clamped = scene.device.structure.kind == StructureKind::clamped_clamped;
+  const bool both_clamped = scene.device.structure.has_far_clamp();
   const int further = both_clamped ? 6 : 3;
   std::map<int, Judgement> known;
   const auto with = [&](int modes) -> const Judgement& {

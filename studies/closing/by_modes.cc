@@ -104,7 +104,7 @@ bool ByModes::is_worth_telling() const { return std::abs(moved()) > mode_shift_w
 
 ModeLadder::ModeLadder(const Scene& scene, const Switch& own) : scene_(&scene), own_(&own) {
   const Structure& s = own.device().structure;
-  if (s.kind == StructureKind::plate || s.kind == StructureKind::modes) return;
+  if (s.find<Beam>() == nullptr) return;
   for (const int modes : {2 * s.modes, 4 * s.modes}) {
     const int most = richer_.empty() ? s.modes : static_cast<int>(richer_.back().modes());
     if (std::min(modes, most_static_modes) > most) richer_.push_back(with(std::min(modes, most_static_modes)));

@@ -37,7 +37,6 @@ std::vector<Device> with_more_modes(const Device& device) {
   constexpr std::array more = {2, 4, 6};
   constexpr int most = 20;
   std::vector<Device> richer;
-  if (device.structure.kind == StructureKind::plate) return richer;
   for (const int n : more) {
     if (device.structure.modes + n > std::min(most, most_modes_of(device.structure))) break;
     richer.push_back(device);

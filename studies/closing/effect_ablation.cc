@@ -41,7 +41,7 @@ Metrics closing(const PreparedScene& p, const Watch& watch, double done = 0, dou
 void add_omissible_structure(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
   const Structure& s = d.structure;
-  if (s.kind != StructureKind::plate && s.modes > 1) {
+  if (!s.is_rigid() && s.modes > 1) {
     list.push_back({.effect = "structure.modes",
                     .magnitude = {.name = "highest mode",
                                   .unit = "rad/s",
@@ -58,17 +58,18 @@ void add_omissible_structure(const PreparedScene& prepared, std::vector<Omissibl
                     .group = {.name = "damping ratio", .value = s.damping_ratio},
                     .instead = 0.0});
   }
-  if (s.kind == StructureKind::clamped_clamped && s.stretching) {
+  const auto* const bridge = s.find<Bridge>();
+  if (bridge != nullptr && bridge->stretches) {
     list.push_back({.effect = "structure.stretching",
                     .magnitude = {.name = "contact gap", .unit = "m", .value = d.gap.contact},
                     .group = {.name = "(gap / thickness)^2", .value = std::pow(d.gap.contact / s.thickness, 2)},
                     .instead = false});
   }
-  if (s.kind == StructureKind::clamped_clamped && s.residual_stress != 0) {
+  if (bridge != nullptr && bridge->residual_stress != 0) {
     Device without = d;
-    without.structure.residual_stress = 0;
+    part_of<Bridge>(without.structure).residual_stress = 0;
     list.push_back({.effect = "structure.residual_stress",
-                    .magnitude = {.name = "stress", .unit = "Pa", .value = s.residual_stress},
+                    .magnitude = {.name = "stress", .unit = "Pa", .value = bridge->residual_stress},
                     .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(without) - 1},
                     .instead = 0.0});
   }

@@ -66,7 +66,7 @@ Ensemble::Ensemble(const PreparedScene& nominal, std::uint64_t size, std::functi
     return fmt::format("{}: there is no [spread]: nothing tells how devices differ (see softland new)",
                        nominal.scene.file.name());
   });
-  reads_anew_ = nominal.scene.device.structure.kind == StructureKind::plate;  // its length follows its area and width
+  reads_anew_ = nominal.scene.device.structure.is_rigid();  // its length follows its area and width
   for (const SpreadVariable& variable : nominal.scene.spread.variables) {
     for (const VariedKey& key : variable.keys) reads_anew_ = reads_anew_ || (!key.member && !key.drive);
   }

@@ -33,7 +33,7 @@ PreparedScene prepared(SceneFile file) {
 }
 
 void add_modes(SceneFile& file, const Scene& scene, int more) {
-  require(scene.device.structure.kind != StructureKind::plate,
+  require(!scene.device.structure.is_rigid(),
           [&] { return fmt::format("modes=+{}: {}: a plate has one", more, scene.file.name()); });
   file.assign("structure.modes", scene.device.structure.modes + more);
 }

@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(Examples, BadFile, testing::Values(
 
 INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
     Edit{"thickness =", "thicknes =", R"(x.toml:6: structure.thicknes = "4 um": unknown key (did you mean 'thickness'?))"},
-    Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio, residual_stress, biaxial, stretching, file, axis, direction, length_unit, mass_unit, mass, mass_normalised, clamp, positions, frequencies, shapes, frequency_factor, stiffness, area))"},
+    Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio, residual_stress, biaxial, stretching, mass, stiffness, area, file, axis, direction, length_unit, mass_unit, mass_normalised, clamp, positions, frequencies, shapes, frequency_factor))"},
     Edit{"title =", "titel =", R"(x.toml:1: titel = "small": unknown key (did you mean 'title'?))"},
     Edit{"[gas]", "[gass]", "x.toml:14: [gass]: unknown section (did you mean 'gas'?)"},
     Edit{"[gas]", "[weather]", "x.toml:14: [weather]: unknown section (known: structure, gap, electrode, gas, contact, dispersion, surface, piezo, waveform, driver, simulate, metrics, spread, calibration)"},
@@ -290,7 +290,7 @@ INSTANTIATE_TEST_SUITE_P(Plates, BadPlate, testing::Values(
     Edit{"area = \"6e3", "area = \"6e4", R"(x.toml:12: electrode.main.area = "6e4 um^2": must not exceed structure.area = "1e4 um^2")"},
     Edit{"thickness = \"3 um\"\n", "", R"(x.toml:10: [electrode.main]: fringing = "meijs-fokkema" needs structure.width and structure.thickness on a plate; fringing = "none" does not)"},
     Edit{"width = \"100 um\"\nthickness = \"3 um\"\n[gap]\nelectrode = \"3.8 um\"\ncontact = \"2.6 um\"\n[electrode.main]", "[gap]\nelectrode = \"3.8 um\"\ncontact = \"2.6 um\"\n[electrode.main]\nfringing = \"none\"", R"(x.toml:13: gas.model = "strip": needs structure.width on a plate)"},
-    Edit{"[gas]", "[piezo]\nspan = [\"0 um\", \"9 um\"]\nthickness = \"1 um\"\nyoungs_modulus = \"61 GPa\"\ndensity = \"7750 kg/m^3\"\nd31 = \"-171 pm/V\"\n[gas]", "x.toml:13: [piezo]: a plate does not bend; a layer needs a beam"},
+    Edit{"[gas]", "[piezo]\nspan = [\"0 um\", \"9 um\"]\nthickness = \"1 um\"\nyoungs_modulus = \"61 GPa\"\ndensity = \"7750 kg/m^3\"\nd31 = \"-171 pm/V\"\n[gas]", "x.toml:13: [piezo]: a rigid plate does not bend; a layer needs a beam"},
     Edit{"model = \"strip\"\nviscosity = \"1.86e-5 Pa s\"\n[contact]\nmodel = \"linear\"\nstiffness = \"312 N/m\"", "model = \"reynolds\"\n[contact]\nmodel = \"rigid\"\nrestitution = 0.5", R"(x.toml:16: contact.model = "rigid": not with gas.model = "reynolds", whose film still flows under a plate that rests)"},
     Edit{"stiffness = \"312 N/m\"", "stiffness = \"312 N/m\"\ndistribution = \"pad\"", R"(x.toml:19: contact.distribution = "pad": a plate touches with all of its pad at once, as at the centre)"},
     Edit{"stiffness = \"312 N/m\"", "stiffness = \"312 N/m\"\npad_length = \"1 mm\"", R"(x.toml:19: contact.pad_length = "1 mm": must be less than structure.area / structure.width)"}));

@@ -9,7 +9,7 @@
 #include "base/require.h"
 #include "config/assumed_spread.h"
 #include "config/scene.h"
-#include "model/tabulated_modes.h"
+#include "model/structure/tabulated_modes.h"
 #include "tests/config/small_scene.h"
 #include "tests/exchange/mode_samples.h"
 #include "tests/support/temporary_folder.h"
@@ -71,14 +71,15 @@ class ModalScene : public testing::Test {
 
 TEST_F(ModalScene, TakesLengthWidthAndModesFromItsFile) {
   const Structure s = scene(std::string(modes_scene)).device.structure;
-  EXPECT_EQ(s.kind, StructureKind::modes);
+  const auto* const modal = s.find<ModalStructure>();
+  ASSERT_NE(modal, nullptr);
   EXPECT_EQ(s.length, 1e-4);
   EXPECT_EQ(s.width, 1e-5);
   EXPECT_EQ(s.thickness, 2e-6);
   EXPECT_EQ(s.modes, 3);
-  EXPECT_EQ(s.frequency_factor, 1);
-  ASSERT_NE(s.table, nullptr);
-  EXPECT_EQ(s.table->frequencies().front(), 25000.25);
+  EXPECT_EQ(modal->frequency_factor, 1);
+  ASSERT_NE(modal->table, nullptr);
+  EXPECT_EQ(modal->table->frequencies().front(), 25000.25);
   const Scene with_two = scene(std::string(modes_scene), {"structure.modes=2"});
   EXPECT_EQ(with_two.device.structure.modes, 2);
   EXPECT_EQ(with_two.device.electrodes[0].pads(1e-4)[0].end, 1e-4);
@@ -108,7 +109,7 @@ TEST_F(ModalScene, ResolvedHoldsItsTable) {
   const SceneFile held = resolved(first, {});
   EXPECT_THAT(held.text(), testing::Not(HasSubstr("modes.csv")));
   const Scene again = read_scene(SceneFile::parse(held.text(), "elsewhere.toml"));
-  EXPECT_TRUE(*again.device.structure.table == *first.device.structure.table);
+  EXPECT_TRUE(*part_of<ModalStructure>(again.device.structure).table == *part_of<ModalStructure>(first.device.structure).table);
   EXPECT_EQ(again.device.structure.width, first.device.structure.width);
   EXPECT_EQ(again.device.structure.length, first.device.structure.length);
   EXPECT_EQ(resolved(again, {}).text(), held.text());

@@ -55,8 +55,8 @@ TEST(Scene, EverySectionOfTheSmallSceneArrives) {
   EXPECT_EQ(structure.length, 250e-6);
   EXPECT_EQ(structure.width, 20e-6);
   EXPECT_EQ(structure.thickness, 4e-6);
-  EXPECT_EQ(structure.youngs_modulus, 78e9);
-  EXPECT_EQ(structure.density, 19300);
+  EXPECT_EQ(part_of<Beam>(structure).youngs_modulus, 78e9);
+  EXPECT_EQ(part_of<Beam>(structure).density, 19300);
   EXPECT_EQ(scene.device.gap.electrode, 3.5e-6);
   EXPECT_EQ(scene.device.gap.contact, 2e-6);
   ASSERT_EQ(scene.device.electrodes.size(), 1U);
@@ -181,8 +181,8 @@ TEST(Scene, WhatIsNotGivenTakesTheDefaultsOfTheStructs) {
   const Scene scene = read(edited(small_scene, "[simulate]\naccuracy = 1e-5\n", ""));
   EXPECT_EQ(scene.device.structure.modes, Structure{}.modes);
   EXPECT_EQ(scene.device.structure.damping_ratio, Structure{}.damping_ratio);
-  EXPECT_EQ(scene.device.structure.plate_strain, Structure{}.plate_strain);
-  EXPECT_TRUE(std::isnan(scene.device.structure.poissons_ratio));
+  EXPECT_EQ(part_of<Beam>(scene.device.structure).plate_strain, Beam{}.plate_strain);
+  EXPECT_TRUE(std::isnan(part_of<Beam>(scene.device.structure).poissons_ratio));
   EXPECT_EQ(scene.device.electrodes[0].fringing, Electrode{}.fringing);
   EXPECT_EQ(scene.simulate.duration, SimulateOptions{}.duration);
   EXPECT_EQ(scene.simulate.accuracy, SimulateOptions{}.accuracy);
@@ -197,8 +197,8 @@ TEST(Scene, OptionalKeysArrive) {
   const Scene scene = read(text);
   EXPECT_EQ(scene.device.structure.modes, 7);
   EXPECT_EQ(scene.device.structure.damping_ratio, 0.02);
-  EXPECT_TRUE(scene.device.structure.plate_strain);
-  EXPECT_EQ(scene.device.structure.poissons_ratio, 0.44);
+  EXPECT_TRUE(part_of<Beam>(scene.device.structure).plate_strain);
+  EXPECT_EQ(part_of<Beam>(scene.device.structure).poissons_ratio, 0.44);
   EXPECT_EQ(scene.simulate.duration, 600e-6);
   EXPECT_EQ(scene.simulate.tolerance, 1e-9);
   EXPECT_EQ(scene.metrics.significant_rebound, 2e-9);
@@ -207,8 +207,9 @@ TEST(Scene, OptionalKeysArrive) {
 TEST(Scene, OfTheGapClosingActuatorIsThatOfTheComparison) {
   constexpr double written = 2e-4;  // relative: digits of the scene
   const Device scene = read_file("gap-closing-actuator.toml").device, d = test::gap_closing_actuator(76.5e-6);
-  EXPECT_NEAR(scene.structure.mass, d.structure.mass, written * d.structure.mass);
-  EXPECT_NEAR(scene.structure.stiffness, d.structure.stiffness, written * d.structure.stiffness);
+  EXPECT_NEAR(part_of<Plate>(scene.structure).mass, part_of<Plate>(d.structure).mass, written * part_of<Plate>(d.structure).mass);
+  EXPECT_NEAR(part_of<Plate>(scene.structure).stiffness, part_of<Plate>(d.structure).stiffness,
+              written * part_of<Plate>(d.structure).stiffness);
   EXPECT_NEAR(scene.structure.length, d.structure.length, written * d.structure.length);
   EXPECT_NEAR(scene.structure.thickness, d.structure.thickness, written * d.structure.thickness);
   EXPECT_NEAR(scene.gap.contact, d.gap.contact, 1e-12);
@@ -221,11 +222,11 @@ TEST(Scene, OfTheGapClosingActuatorIsThatOfTheComparison) {
 }
 
 TEST(Scene, ABeamBetweenTwoClampsHasItsStress) {
-  const Structure s = read_file("hung-senturia.toml").device.structure;
-  EXPECT_EQ(s.kind, StructureKind::clamped_clamped);
-  EXPECT_EQ(s.residual_stress, -3.7e6);
-  EXPECT_FALSE(s.biaxial);
-  EXPECT_FALSE(s.stretching);
+  const auto bridge_of = [](const Scene& scene) { return std::get<Bridge>(scene.device.structure.kind); };
+  const Bridge senturia = bridge_of(read_file("hung-senturia.toml"));
+  EXPECT_EQ(senturia.residual_stress, -3.7e6);
+  EXPECT_FALSE(senturia.biaxial);
+  EXPECT_FALSE(senturia.stretches);
   constexpr std::string_view bridge = R"([structure]
 kind = "clamped-clamped"
 length = "250 um"
@@ -237,13 +238,12 @@ density = "19300 kg/m^3"
 electrode = "3.5 um"
 contact = "2 um"
 )";
-  const Structure plain = read(std::string(bridge)).device.structure;
-  EXPECT_EQ(plain.residual_stress, Structure{}.residual_stress);
-  EXPECT_EQ(plain.biaxial, Structure{}.biaxial);
-  EXPECT_EQ(plain.stretching, Structure{}.stretching);
-  const Structure film =
-      read(edited(bridge, "[gap]", "biaxial = true\npoissons_ratio = 0.44\nresidual_stress = \"100 MPa\"\n[gap]"))
-          .device.structure;
+  const Bridge plain = bridge_of(read(std::string(bridge)));
+  EXPECT_EQ(plain.residual_stress, Bridge{}.residual_stress);
+  EXPECT_EQ(plain.biaxial, Bridge{}.biaxial);
+  EXPECT_EQ(plain.stretches, Bridge{}.stretches);
+  const Bridge film =
+      bridge_of(read(edited(bridge, "[gap]", "biaxial = true\npoissons_ratio = 0.44\nresidual_stress = \"100 MPa\"\n[gap]")));
   EXPECT_TRUE(film.biaxial);
   EXPECT_EQ(film.residual_stress, 100e6);
   EXPECT_EQ(film.poissons_ratio, 0.44);
@@ -258,9 +258,9 @@ TEST(Scene, ModesMayBeLeftToTheStudies) {
 
 TEST(Scene, APlateIsAStripOfItsAreaAndWidth) {
   const Device d = read_file("purdue-nickel.toml").device;
-  EXPECT_EQ(d.structure.kind, StructureKind::plate);
-  EXPECT_EQ(d.structure.mass, 9.2371e-10);
-  EXPECT_EQ(d.structure.stiffness, 91.303);
+  ASSERT_NE(d.structure.find<Plate>(), nullptr);
+  EXPECT_EQ(part_of<Plate>(d.structure).mass, 9.2371e-10);
+  EXPECT_EQ(part_of<Plate>(d.structure).stiffness, 91.303);
   EXPECT_EQ(d.structure.width, 123e-6);
   EXPECT_DOUBLE_EQ(d.structure.length, 510e-6);
   EXPECT_EQ(d.structure.modes, 1);

@@ -51,13 +51,13 @@ TEST(Schema, EveryKeySetsAMemberOrIsKnownToSetNone) {
       if (!is_bound(key.bound)) without_member.push_back(fmt::format("{}.{}", section.name, key.name));
     }
   }
-  // The areas decide lengths together with a width, the models which law is there to have members. What is said of a file of
-  // modes makes a table.
+  // The areas decide lengths together with a width, the models and the kind what is there to have members. What is said of a file
+  // of modes makes a table.
   EXPECT_THAT(without_member,
-              UnorderedElementsAre("structure.area", "electrode.area", "contact.model", "gas.model", "structure.file",
-                                   "structure.axis", "structure.direction", "structure.length_unit", "structure.mass_unit",
-                                   "structure.mass", "structure.mass_normalised", "structure.clamp", "structure.positions",
-                                   "structure.frequencies", "structure.shapes"));
+              UnorderedElementsAre("structure.area", "electrode.area", "contact.model", "gas.model", "structure.kind",
+                                   "structure.file", "structure.axis", "structure.direction", "structure.length_unit",
+                                   "structure.mass_unit", "structure.mass", "structure.mass_normalised", "structure.clamp",
+                                   "structure.positions", "structure.frequencies", "structure.shapes"));
 }
 
 TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {
@@ -163,7 +163,7 @@ TEST(Assign, GivesANumberInTheUnitOfItsKey) {
   EXPECT_EQ(after.device.structure.length, 1.5 * before.device.structure.length);
   EXPECT_EQ(after.device.structure.modes, 2);
   EXPECT_EQ(after.device.structure.damping_ratio, 0.25);
-  EXPECT_TRUE(after.device.structure.plate_strain);
+  EXPECT_TRUE(part_of<Beam>(after.device.structure).plate_strain);
   EXPECT_EQ(after.device.electrodes[0].fringing, Fringing::none);
 }
 

@@ -22,7 +22,7 @@ constexpr double side = 100_um, pad_length = 50_um;
 
 /// A soft plate far from its electrode: without attraction the contact comes before the fold.
 Device soft_plate(double stiffness) {
-  return {.structure = {.kind = StructureKind::plate, .length = side, .width = side, .mass = 1e-10, .stiffness = stiffness},
+  return {.structure = {.length = side, .width = side, .kind = Plate{.mass = 1e-10, .stiffness = stiffness}},
           .gap = {.electrode = 10_um, .contact = 2_um},
           .electrodes = {{.name = "main", .begin = 0, .end = side, .fringing = Fringing::none}},
           .contact = Contact{.model = AdhesiveRepulsiveSurfaces(), .pad_length = pad_length}};
@@ -55,7 +55,8 @@ Scan extreme(F&& f, double begin, double end, double sign) {
 double square(const Device& d, const ContactLaw& law, double s) {
   const double depth = s - d.gap.contact;
   const double push = depth > -contact_reach(law) ? contact_force(law, depth) : 0;
-  return 2 * std::pow(d.gap.electrode - s, 2) * (d.structure.stiffness * s + push) / (vacuum_permittivity * side * side);
+  return 2 * std::pow(d.gap.electrode - s, 2) * (part_of<Plate>(d.structure).stiffness * s + push) /
+         (vacuum_permittivity * side * side);
 }
 
 constexpr double scanned = 1e-7;  // relative: a scan of 200 000 places near a flat extremum
@@ -86,7 +87,7 @@ TEST(AdhesiveRepulsive, DynamicPullInGoesOverItsPass) {
   const auto needed = [&](double s) {
     const double depth = s - d.gap.contact;
     const double stored = depth > -model.contact_reach() ? contact_energy(model.contact(), depth) : 0;
-    return 2 * (d.structure.stiffness * s * s / 2 + stored) / (area / (g - s) - area / g);
+    return 2 * (part_of<Plate>(d.structure).stiffness * s * s / 2 + stored) / (area / (g - s) - area / g);
   };
   const Scan pass = extreme(needed, 0.1_um, d.gap.contact, 1);
   EXPECT_LT(pass.at, d.gap.contact - 10_nm) << "the attraction takes over before the plane";

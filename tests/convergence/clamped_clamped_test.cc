@@ -24,8 +24,8 @@ constexpr double reference_beta = 70.09505;  // full-length electrode, no fringi
 /// The ideal beam of the pull-in literature between two clamps, without stretching.
 Device bridge(int modes, double gap_over_width = 0.1, Fringing fringing = Fringing::none) {
   Device d = test::device({.modes = modes, .fringing = fringing, .gap_over_width = gap_over_width});
-  d.structure.kind = StructureKind::clamped_clamped;
-  d.structure.stretching = false;
+  d.structure.kind = Bridge{part_of<Beam>(d.structure)};
+  part_of<Bridge>(d.structure).stretches = false;
   return d;
 }
 
@@ -95,18 +95,15 @@ TEST(ClampedClamped, StaticPullInWithStressAndStretchingIsTheReference) {
         Beam{350_um, -25e6, false, 12.7534104}, Beam{350_um, -25e6, true, 13.3144148}, Beam{250_um, 0, false, 39.3383431},
         Beam{250_um, 100e6, false, 57.9969891}, Beam{250_um, 100e6, true, 57.0660756}, Beam{250_um, -25e6, false, 32.8670907},
         Beam{250_um, -25e6, true, 33.2937698}}) {
-    const Device d{.structure = {.kind = StructureKind::clamped_clamped,
-                                 .length = length,
-                                 .width = 50_um,
-                                 .thickness = 3_um,
-                                 .youngs_modulus = 169_GPa,
-                                 .density = 2330_kg_m3,
-                                 .modes = 13,
-                                 .poissons_ratio = 0.06,
-                                 .residual_stress = stress,
-                                 .biaxial = biaxial},
-                   .gap = {.electrode = 1_um, .contact = 0.95_um},
-                   .electrodes = {{.name = "full", .begin = 0, .end = length, .fringing = Fringing::linear}}};
+    const Device d{
+        .structure = {.length = length,
+                      .width = 50_um,
+                      .thickness = 3_um,
+                      .modes = 13,
+                      .kind =
+                          Bridge{{.youngs_modulus = 169_GPa, .density = 2330_kg_m3, .poissons_ratio = 0.06}, stress, biaxial}},
+        .gap = {.electrode = 1_um, .contact = 0.95_um},
+        .electrodes = {{.name = "full", .begin = 0, .end = length, .fringing = Fringing::linear}}};
     EXPECT_NEAR(bridge_fold(d).voltage, volts, shooting_digits * volts)
         << length << " m, " << stress << " Pa, biaxial " << biaxial;
   }
@@ -124,8 +121,8 @@ TEST(ClampedClamped, StaticPullInOfTheHungSenturiaBeamIsTheReference) {
                          Row{0, false, Fringing::none, 13.5629112}, Row{0, true, Fringing::none, 14.4956069}}) {
     Device d = test::hung_senturia();
     d.structure.modes = converged_bridge_modes;
-    d.structure.residual_stress = row.stress;
-    d.structure.stretching = row.stretching;
+    part_of<Bridge>(d.structure).residual_stress = row.stress;
+    part_of<Bridge>(d.structure).stretches = row.stretching;
     d.electrodes[0].fringing = row.fringing;
     EXPECT_NEAR(bridge_fold(d).voltage, row.volts, shooting_digits * row.volts)
         << row.stress << " Pa, stretching " << row.stretching;

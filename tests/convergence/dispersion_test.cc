@@ -20,7 +20,7 @@ using test::IdealCantilever;
 
 constexpr double printed_digits = 1e-6;  // absolute: the reference prints six decimals
 
-double rigidity(const Structure& s) { return s.youngs_modulus * s.width * std::pow(s.thickness, 3) / 12; }
+double rigidity(const Structure& s) { return part_of<Beam>(s).youngs_modulus * s.width * std::pow(s.thickness, 3) / 12; }
 
 /// al4 = pi^2 hbar c a L^4 / (240 g^5 EI)
 double casimir_parameter(const Device& d) {
@@ -70,8 +70,8 @@ TEST(Dispersion, VanDerWaalsForceBeyondTheReferenceParameterCollapsesTheCantilev
 TEST(Dispersion, BeamsBetweenTwoClampsBearTheReferenceParameters) {
   constexpr double printed = 1e-6;  // relative: the reference has seven digits
   Device d = casimir_cantilever();
-  d.structure.kind = StructureKind::clamped_clamped;
-  d.structure.stretching = false;
+  d.structure.kind = Bridge{part_of<Beam>(d.structure)};
+  part_of<Bridge>(d.structure).stretches = false;
   d.structure.modes = 20;  // ten of them symmetric
   const ForceFold retarded = fold_of_the_force(d);
   EXPECT_NEAR(retarded.factor * casimir_parameter(d), 39.01398, printed * 39.01398);
@@ -116,8 +116,7 @@ TEST(Dispersion, DetachmentLengthsOfFreestandingBeamsAreTheReference) {
     Device d{.structure = {.length = 1_um,
                            .width = 200_nm,
                            .thickness = row.thickness,
-                           .youngs_modulus = row.youngs_modulus,
-                           .density = 5000_kg_m3},
+                           .kind = Cantilever{{.youngs_modulus = row.youngs_modulus, .density = 5000_kg_m3}}},
              .gap = {.electrode = row.gap, .contact = 0.9 * row.gap}};
     for (const auto& [model, length] : {std::pair{DispersionModel::casimir, row.casimir_length},
                                         std::pair{DispersionModel::van_der_waals, row.van_der_waals_length}}) {
@@ -148,7 +147,10 @@ TEST(Dispersion, AtRestTheBendingBalancesTheForce) {
 TEST(Dispersion, DoesNotNeedAFinerQuadratureAtGapsOfNanometres) {
   // A tip that rests half way down a gap of 5 nm under the van der Waals force with its repulsion.
   constexpr double converged = 1e-9;
-  Device d{.structure = {.length = 300_nm, .width = 200_nm, .thickness = 30_nm, .youngs_modulus = 220_GPa, .density = 5400_kg_m3},
+  Device d{.structure = {.length = 300_nm,
+                         .width = 200_nm,
+                         .thickness = 30_nm,
+                         .kind = Cantilever{{.youngs_modulus = 220_GPa, .density = 5400_kg_m3}}},
            .gap = {.electrode = 5_nm, .contact = 4_nm},
            .electrodes = {{.name = "main", .begin = 0, .end = 300_nm}},
            .dispersion =

@@ -27,9 +27,8 @@ struct IdealCantilever {
   return {.structure = {.length = length,
                         .width = gap / ideal.gap_over_width,
                         .thickness = 3_um,
-                        .youngs_modulus = 100_GPa,
-                        .density = 2000_kg_m3,
-                        .modes = ideal.modes},
+                        .modes = ideal.modes,
+                        .kind = Cantilever{{.youngs_modulus = 100_GPa, .density = 2000_kg_m3}}},
           .gap = {.electrode = gap, .contact = ideal.contact_over_gap * gap},
           .electrodes = {{.name = "ideal",
                           .begin = ideal.electrode_begin * length,
@@ -40,7 +39,7 @@ struct IdealCantilever {
 /// beta = eps0 a V^2 L^4 / (2 E I g^3), the voltage parameter of the literature.
 [[nodiscard]] inline double beta(const Device& d, double volts) {
   const Structure& s = d.structure;
-  const double rigidity = s.youngs_modulus * s.width * std::pow(s.thickness, 3) / 12;
+  const double rigidity = part_of<Beam>(s).youngs_modulus * s.width * std::pow(s.thickness, 3) / 12;
   return vacuum_permittivity * s.width * volts * volts * std::pow(s.length, 4) / (2 * rigidity * std::pow(d.gap.electrode, 3));
 }
 

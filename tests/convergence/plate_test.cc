@@ -22,19 +22,18 @@ using namespace literals;
 constexpr double plate_gap = 3_um, plate_side = 100_um;
 
 Device plate(double contact_over_gap, double damping_ratio = 0) {
-  return {.structure = {.kind = StructureKind::plate,
-                        .length = plate_side,
+  return {.structure = {.length = plate_side,
                         .width = plate_side,
-                        .mass = 2e-9,
-                        .stiffness = 50,
-                        .damping_ratio = damping_ratio},
+                        .damping_ratio = damping_ratio,
+                        .kind = Plate{.mass = 2e-9, .stiffness = 50}},
           .gap = {.electrode = plate_gap, .contact = contact_over_gap * plate_gap},
           .electrodes = {{.name = "whole", .begin = 0, .end = plate_side, .fringing = Fringing::none}}};
 }
 
 /// sqrt(8 k g^3 / (27 eps0 A)).
 double static_voltage(const Device& d) {
-  return std::sqrt(8 * d.structure.stiffness * std::pow(plate_gap, 3) / (27 * vacuum_permittivity * plate_side * plate_side));
+  return std::sqrt(8 * part_of<Plate>(d.structure).stiffness * std::pow(plate_gap, 3) /
+                   (27 * vacuum_permittivity * plate_side * plate_side));
 }
 
 TEST(Plate, PullsInAtAThirdOfTheGap) {
@@ -59,7 +58,7 @@ TEST(Plate, DispersionForcesCollapseItAtAFifthAndAQuarterOfTheGap) {
   constexpr double factor_digits = 1e-9, deflection_digits = 1e-6;  // relative; the fold is flat
   Device d = plate(0.9);
   d.electrodes.clear();
-  const double spring = d.structure.stiffness * plate_gap, area = plate_side * plate_side;
+  const double spring = part_of<Plate>(d.structure).stiffness * plate_gap, area = plate_side * plate_side;
   d.dispersion = Dispersion{.model = DispersionModel::casimir};
   const StaticPullIn retarded = static_pull_in(Switch(d), 0);
   const double casimir = IdealCasimir{}.pressure(plate_gap) * area / spring;  // at factor 1

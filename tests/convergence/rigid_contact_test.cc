@@ -24,7 +24,7 @@ constexpr double digits = 1e-7;  // of the electrode's force along 1 um of 100 m
 
 /// A plate under a constant force, its electrode being far away, on springs that carry a thousandth of it.
 Device falling(double restitution) {
-  return {.structure = {.kind = StructureKind::plate, .length = 100_um, .width = 100_um, .mass = mass, .stiffness = stiffness},
+  return {.structure = {.length = 100_um, .width = 100_um, .kind = Plate{.mass = mass, .stiffness = stiffness}},
           .gap = {.electrode = electrode, .contact = gap},
           .electrodes = {{.name = "main", .begin = 0, .end = 100_um, .fringing = Fringing::none}},
           .contact = Contact{.model = RigidStop{.restitution = restitution}}};

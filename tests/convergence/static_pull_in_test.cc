@@ -102,9 +102,8 @@ TEST(StaticPullIn, OfPublishedBeamsWithEveryFringingFactorIsTheReference) {
       const Device d{.structure = {.length = beam.length,
                                    .width = beam.width,
                                    .thickness = beam.thickness,
-                                   .youngs_modulus = beam.youngs_modulus,
-                                   .density = 2300_kg_m3,
-                                   .modes = converged_modes},
+                                   .modes = converged_modes,
+                                   .kind = Cantilever{{.youngs_modulus = beam.youngs_modulus, .density = 2300_kg_m3}}},
                      .gap = {.electrode = beam.gap, .contact = 0.95 * beam.gap},
                      .electrodes = {{.name = "full", .begin = 0, .end = beam.length, .fringing = fringing[f]}}};
       const StaticPullIn found = static_pull_in(Switch(d), 0);

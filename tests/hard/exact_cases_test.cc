@@ -29,7 +29,7 @@ const double dynamic = std::sqrt(stiffness * gap * gap * gap / (4 * vacuum_permi
 const double statically = std::sqrt(8 * stiffness * gap * gap * gap / (27 * vacuum_permittivity * area));
 
 Device plate(double contact, std::optional<Contact> law = Contact{.model = LinearSpring{.stiffness = 1e7}}) {
-  return {.structure = {.kind = StructureKind::plate, .length = 100_um, .width = 100_um, .mass = mass, .stiffness = stiffness},
+  return {.structure = {.length = 100_um, .width = 100_um, .kind = Plate{.mass = mass, .stiffness = stiffness}},
           .gap = {.electrode = gap, .contact = contact},
           .electrodes = {{.name = "main", .begin = 0, .end = 100_um, .fringing = Fringing::none}},
           .contact = law};

@@ -149,7 +149,7 @@ TEST(EnergyBalance, ClosesBetweenTwoClamps) {
     for (const bool stretching : {false, true}) {
       Device d = test::gold_bridge();
       if (!gas) d.gas.reset();
-      d.structure.stretching = stretching;
+      part_of<Bridge>(d.structure).stretches = stretching;
       const Switch model(d);
       const std::vector<Signal> drives{Signal::constant(static_pull_in(model, 0).voltage),
                                        signal(Pulse{.levels = {30_V, 0_V}, .times = {2_us}, .edge = 0.5_us})};

@@ -116,7 +116,7 @@ TEST(StaticPullIn, AtTheContactIsWhatABiasLeavesOfTheBalance) {
   d.gap.contact = 1_um;  // before the fold
   for (Electrode& e : d.electrodes) e.fringing = Fringing::none;
   const double bias = 3, x = d.gap.contact, A = 70_um * 100_um, B = 30_um * 100_um;
-  const double both = 2 * d.structure.stiffness * x * std::pow(d.gap.electrode - x, 2) / vacuum_permittivity;
+  const double both = 2 * part_of<Plate>(d.structure).stiffness * x * std::pow(d.gap.electrode - x, 2) / vacuum_permittivity;
   const StaticPullIn found = static_pull_in(Switch(d), 0, std::vector<double>{0, bias});
   EXPECT_EQ(found.kind, StaticKind::contact);
   EXPECT_NEAR(found.voltage, std::sqrt((both - B * bias * bias) / A), 1e-9 * found.voltage);
@@ -126,14 +126,14 @@ TEST(StaticPullIn, DoesNotDependOnGasDampingOrDensity) {
   Device d = test::gold_cantilever();
   d.gas.reset();
   d.structure.damping_ratio = 0.3;
-  d.structure.density *= 2;
+  part_of<Beam>(d.structure).density *= 2;
   const double reference = static_pull_in(gold(), 0).voltage;
   EXPECT_NEAR(static_pull_in(Switch(d), 0).voltage, reference, 1e-9 * reference);
 }
 
 TEST(StaticPullIn, ScalesWithTheRootOfTheModulus) {
   Device d = test::gold_cantilever();
-  d.structure.youngs_modulus *= 4;
+  part_of<Beam>(d.structure).youngs_modulus *= 4;
   const double reference = static_pull_in(gold(), 0).voltage;
   EXPECT_NEAR(static_pull_in(Switch(d), 0).voltage, 2 * reference, 1e-9 * reference);
 }
@@ -219,7 +219,7 @@ TEST(StaticPullIn, OfFacesOnBothSidesIsTheMaximumOfTheBalance) {
   Device d = test::full_plate();
   d.gas.reset();
   d.electrodes = {{.name = "main", .begin = 0, .end = 70_um, .fringing = Fringing::none, .side = Side::both, .gap = 5_um}};
-  const double g = d.gap.electrode, G = 5_um, factor = vacuum_permittivity * 7e-9 / (2 * d.structure.stiffness);
+  const double g = d.gap.electrode, G = 5_um, factor = vacuum_permittivity * 7e-9 / (2 * part_of<Plate>(d.structure).stiffness);
   double most = 0;
   for (int i = 1; i < 100000; ++i) {
     const double x = 0.6 * g * i / 100000;

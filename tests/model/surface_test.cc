@@ -23,9 +23,8 @@ Device silicon(double thickness, SurfaceFaces faces = SurfaceFaces::wide) {
   return {.structure = {.length = 500_nm,
                         .width = 100_nm,
                         .thickness = thickness,
-                        .youngs_modulus = 169_GPa,
-                        .density = 2330_kg_m3,
-                        .modes = 4},
+                        .modes = 4,
+                        .kind = Cantilever{{.youngs_modulus = 169_GPa, .density = 2330_kg_m3}}},
           .gap = {.electrode = 20_nm, .contact = 18_nm},
           .electrodes = {{.name = "main", .begin = 0, .end = 500_nm, .fringing = Fringing::none}},
           .surface = Surface{.elastic_modulus = -10.654, .residual_stress = 0.6048, .faces = faces}};
@@ -99,11 +98,11 @@ TEST(Surface, ResidualCompressionSoftensACantileverUntilItBuckles) {
 
 TEST(Surface, ResidualStressIsATensionBetweenTwoClamps) {
   Device d = silicon(30_nm);
-  d.structure.kind = StructureKind::clamped_clamped;
+  d.structure.kind = Bridge{part_of<Beam>(d.structure)};
   d.surface->elastic_modulus = 0;
   const Switch by_surface(d);
   d.surface.reset();
-  d.structure.residual_stress = 2 * 0.6048 / 30_nm;
+  part_of<Bridge>(d.structure).residual_stress = 2 * 0.6048 / 30_nm;
   const Switch by_stress(d);
   for (int i = 0; i < 4; ++i) {
     EXPECT_NEAR(by_surface.basis().angular_frequencies()[i], by_stress.basis().angular_frequencies()[i],
@@ -130,7 +129,7 @@ TEST(Surface, IsRefusedWhereItMeansNothing) {
   soft.surface->elastic_modulus = -1000;
   EXPECT_EQ(refused(soft).substr(0, 38), "surface: leaves a bending rigidity of ") << refused(soft);
   Device bridge = silicon(30_nm);
-  bridge.structure.kind = StructureKind::clamped_clamped;
+  bridge.structure.kind = Bridge{part_of<Beam>(bridge.structure)};
   EXPECT_EQ(refused(bridge), "");
   bridge.surface->cantilever_load = ResidualLoad::compression;
   EXPECT_EQ(refused(bridge), "surface: cantilever_load is for a cantilever; between two clamps residual_stress is a tension");

@@ -67,8 +67,8 @@ std::vector<Combination> combinations() {
     for (const bool stretching : {false, true}) {
       for (const double stress : {-1e6, 0.0, 20e6}) {
         Device bridge = test::gold_bridge();
-        bridge.structure.stretching = stretching;
-        bridge.structure.residual_stress = stress;
+        part_of<Bridge>(bridge.structure).stretches = stretching;
+        part_of<Bridge>(bridge.structure).residual_stress = stress;
         if (!gas) bridge.gas.reset();
         all.push_back({fmt::format("bridge, gas {}, stretching {}, stress {}", gas, stretching, stress), bridge});
       }
@@ -212,14 +212,19 @@ void expect_same(const Switch& a, const Switch& b, bool in_bits) {
 TEST(Switch, BuiltLikeAnotherIsTheSameSwitch) {
   const std::vector<void (*)(Device&)> changes{
       [](Device& d) { d.structure.thickness *= 1.02; },
-      [](Device& d) { d.structure.width *= 0.98, d.structure.youngs_modulus *= 1.03, d.structure.density *= 1.01; },
+      [](Device& d) {
+        d.structure.width *= 0.98;
+        if (Beam* const beam = d.structure.find<Beam>()) beam->youngs_modulus *= 1.03, beam->density *= 1.01;
+      },
       [](Device& d) { d.gap.electrode *= 1.02, d.gap.contact *= 1.02; },
       [](Device& d) { d.structure.length *= 1.01; },
       [](Device& d) { d.electrodes[0].begin.value += 0.01 * d.structure.length; },
       [](Device& d) { d.contact->pad_length *= 1.1; },
       [](Device& d) { d.structure.modes = 3; },
       [](Device& d) { d.piezo.reset(); },
-      [](Device& d) { d.structure.residual_stress = 1e6; },
+      [](Device& d) {
+        if (Bridge* const bridge = d.structure.find<Bridge>()) bridge->residual_stress = 1e6;
+      },
   };
   const std::vector<Combination> all = combinations();
   for (std::size_t i = 0; i < all.size(); i += 5) {  // each takes as long as twenty closings
@@ -230,8 +235,8 @@ TEST(Switch, BuiltLikeAnotherIsTheSameSwitch) {
       if (changed.electrodes.empty() || !changed.contact) continue;
       changes[k](changed);
       SCOPED_TRACE(fmt::format("{}, change {}", c.name, k));
-      const bool one_shape = changed.structure.kind == StructureKind::plate ||
-                             (changed.structure.kind == StructureKind::cantilever && !c.device.piezo && !changed.surface);
+      const bool one_shape = changed.structure.is_rigid() ||
+                             (changed.structure.find<Cantilever>() != nullptr && !c.device.piezo && !changed.surface);
       expect_same(Switch(changed, {}, &nominal), Switch(changed), one_shape);
     }
     expect_same(Switch(c.device, {.points_per_length = 17}, &nominal), Switch(c.device, {.points_per_length = 17}), true);
@@ -458,9 +463,9 @@ TEST(Stretching, OfOneModeIsTheIntegralOfTheSlopes) {
   // Held in the shape of its first mode the beam stores EA/(8 L) (int y'^2)^2.
   Device d = test::gold_bridge();
   d.structure.modes = 1;
-  d.structure.residual_stress = 0;
+  part_of<Bridge>(d.structure).residual_stress = 0;
   const Switch stretched(d);
-  d.structure.stretching = false;
+  part_of<Bridge>(d.structure).stretches = false;
   const Switch plain(d);
   const BeamModes beam(beam_sections(d), 1, beam_support(d.structure));
   const double middle = 1.5_um, q = middle / beam.value(125_um)[0];

@@ -1,5 +1,5 @@
 // A structure of modes from a table against the beam whose modes they are.
-#include "model/tabulated_modes.h"
+#include "model/structure/tabulated_modes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,8 +33,8 @@ std::shared_ptr<const ModalTable> modal_table_of(const Device& device, int modes
 }
 
 Device by_modes(Device device, std::shared_ptr<const ModalTable> table) {
-  device.structure.kind = StructureKind::modes;
-  device.structure.table = std::move(table);
+  device.structure.kind = ModalStructure{};
+  part_of<ModalStructure>(device.structure).table = std::move(table);
   return device;
 }
 
@@ -100,7 +100,7 @@ TEST(TabulatedModes, OfSwitchesOfOneTableShareTheirQuadrature) {
   const Device device = by_modes(test::gold_cantilever(), modal_table_of(test::gold_cantilever(), 4, table_places));
   const Switch nominal(device);
   Device stiffer = device;
-  stiffer.structure.frequency_factor = 1.1;
+  part_of<ModalStructure>(stiffer.structure).frequency_factor = 1.1;
   const Switch built(stiffer), quickly(stiffer, {}, &nominal);
   EXPECT_EQ(built.quadrature().shapes(), quickly.quadrature().shapes());
   EXPECT_EQ(built.basis().angular_frequencies(), quickly.basis().angular_frequencies());
@@ -131,7 +131,7 @@ TEST(ModeShapes, OfATableAreThoseOfItsBeam) {
   EXPECT_EQ(table.places[places - 1], device.structure.length);
   EXPECT_LT((table.shapes - beam.shapes).cwiseAbs().maxCoeff(), interpolated * beam.shapes(places - 1, 0));
   EXPECT_LT(beam.shapes.row(0).norm(), 1e-12 * beam.shapes(places - 1, 0)) << "the clamp";
-  EXPECT_NEAR(beam.shapes(places - 1, 0), BeamModes(beam_sections(device), 1).value(device.structure.length)[0],
+  EXPECT_NEAR(beam.shapes(places - 1, 0), BeamModes(beam_sections(test::gold_cantilever()), 1).value(device.structure.length)[0],
               1e-12 * beam.shapes(places - 1, 0));
   EXPECT_THROW((void)mode_shapes(Switch(device), 1), InvalidInput);
 }
@@ -140,7 +140,8 @@ TEST(ModeShapes, OfAPlateAreItsMotion) {
   const Device plate = test::full_plate();
   const ModeShapes shapes = mode_shapes(Switch(plate), 2);
   EXPECT_EQ(shapes.shapes.cols(), 1);
-  for (const double shape : shapes.shapes.reshaped()) EXPECT_DOUBLE_EQ(shape, 1 / std::sqrt(plate.structure.mass));
+  for (const double shape : shapes.shapes.reshaped())
+    EXPECT_DOUBLE_EQ(shape, 1 / std::sqrt(part_of<Plate>(plate.structure).mass));
 }
 
 TEST(TabulatedModes, AreRefusedWithTheRule) {

@@ -18,15 +18,10 @@ using testing::SizeIs;
 
 constexpr double poissons_ratio = 0.3, shear_coefficient = 5.0 / 6;
 
-Structure beam(StructureKind kind, double thickness, int modes) {
-  return {.kind = kind,
-          .length = 1,
-          .width = 1,
-          .thickness = thickness,
-          .youngs_modulus = 1,
-          .density = 1,
-          .modes = modes,
-          .poissons_ratio = poissons_ratio};
+constexpr Beam unit_beam{.youngs_modulus = 1, .density = 1, .poissons_ratio = poissons_ratio};
+
+Structure beam(const StructureKind& kind, double thickness, int modes) {
+  return {.length = 1, .width = 1, .thickness = thickness, .modes = modes, .kind = kind};
 }
 
 // Wave numbers of Euler-Bernoulli's beam: Blevins, Formulas for Natural Frequency and Mode Shape, 1979, table 8-1.
@@ -35,12 +30,12 @@ constexpr std::array clamped_clamped{4.73004074, 7.85320462, 10.99560784, 14.137
 
 // Huang 1961, eqs. for clamped-free and clamped-clamped beams, over the largest of their terms; b in units of sqrt(E I / (rho A
 // L^4)).
-double frequency_equation(StructureKind kind, double b, double thickness) {
+double frequency_equation(bool far_clamp, double b, double thickness) {
   const double r2 = thickness * thickness / 12, s2 = r2 * 2 * (1 + poissons_ratio) / shear_coefficient;
   const double root = std::sqrt((r2 - s2) * (r2 - s2) + 4 / (b * b));
   const double alpha = std::sqrt((root - r2 - s2) / 2), beta = std::sqrt((root + r2 + s2) / 2);
   const double decay = 1 / std::cosh(b * alpha), tanh = std::tanh(b * alpha), through = std::sqrt(1 - b * b * r2 * s2);
-  if (kind == StructureKind::cantilever) {
+  if (!far_clamp) {
     return 2 * decay + (b * b * (r2 - s2) * (r2 - s2) + 2) * std::cos(b * beta) -
            b * (r2 + s2) / through * tanh * std::sin(b * beta);
   }
@@ -50,15 +45,16 @@ double frequency_equation(StructureKind kind, double b, double thickness) {
 
 TEST(Timoshenko, FrequenciesAreZerosOfTheFrequencyEquations) {
   constexpr double close = 1e-7;  // relative: the equation changes sign within this of the frequency
-  for (const StructureKind kind : {StructureKind::cantilever, StructureKind::clamped_clamped}) {
-    const auto& euler = kind == StructureKind::cantilever ? clamped_free : clamped_clamped;
+  for (const StructureKind& kind : {StructureKind(Cantilever{unit_beam}), StructureKind(Bridge{unit_beam})}) {
+    const bool far_clamp = beam(kind, 0, 1).has_far_clamp();
+    const auto& euler = far_clamp ? clamped_clamped : clamped_free;
     for (const double thickness : {0.02, 0.05, 0.1, 0.2}) {
       const std::vector<double> excess = frequency_excess(beam(kind, thickness, 5));
       ASSERT_THAT(excess, SizeIs(5));
       for (std::size_t i = 0; i < excess.size(); ++i) {
         const double b = euler[i] * euler[i] / (1 + excess[i]);
-        const double below = frequency_equation(kind, b * (1 - close), thickness);
-        const double above = frequency_equation(kind, b * (1 + close), thickness);
+        const double below = frequency_equation(far_clamp, b * (1 - close), thickness);
+        const double above = frequency_equation(far_clamp, b * (1 + close), thickness);
         if (!(b * b * thickness * thickness / 12 * thickness * thickness / 12 * 3.12 < 1)) continue;  // beyond its validity
         EXPECT_LT(below * above, 0) << "mode " << i + 1 << ", thickness " << thickness;
       }
@@ -70,7 +66,7 @@ TEST(Timoshenko, FrequenciesAreZerosOfTheFrequencyEquations) {
 TEST(Timoshenko, FrequenciesAreThosePublished) {
   constexpr double printed = 1e-5;  // relative, of six digits
   const auto expect = [&](double thickness, const std::vector<double>& published) {
-    const std::vector<double> excess = frequency_excess(beam(StructureKind::clamped_clamped, thickness, 5));
+    const std::vector<double> excess = frequency_excess(beam(Bridge{unit_beam}, thickness, 5));
     for (std::size_t i = 0; i < published.size(); ++i) {
       EXPECT_NEAR(clamped_clamped[i] / std::sqrt(1 + excess[i]), published[i], printed * published[i]) << i + 1;
     }
@@ -81,7 +77,7 @@ TEST(Timoshenko, FrequenciesAreThosePublished) {
 
 // Rotary inertia and shear to first order in (thickness / length)^2, for high modes, whose ends do not count.
 TEST(Timoshenko, ExcessOfSlenderBeamsGoesWithTheSquareOfThickness) {
-  const auto last = [](double thickness) { return frequency_excess(beam(StructureKind::cantilever, thickness, 12)).back(); };
+  const auto last = [](double thickness) { return frequency_excess(beam(Cantilever{unit_beam}, thickness, 12)).back(); };
   const double beta = 11.5 * pi, first_order = (1 + 2 * (1 + poissons_ratio) / shear_coefficient) / 24;
   constexpr double of_the_ends = 0.2;  // of it, at the twelfth mode
   EXPECT_NEAR(last(1e-3) / std::pow(beta * 1e-3, 2), first_order, of_the_ends * first_order);
@@ -91,13 +87,13 @@ TEST(Timoshenko, ExcessOfSlenderBeamsGoesWithTheSquareOfThickness) {
 }
 
 TEST(Timoshenko, WarnsByModeWhereTheBeamIsNotSlender) {
-  EXPECT_THAT(slenderness_warning(beam(StructureKind::cantilever, 0.1, 4)),
+  EXPECT_THAT(slenderness_warning(beam(Cantilever{unit_beam}, 0.1, 4)),
               HasSubstr("length / thickness = 10: shear and rotary inertia are left out, which makes the natural frequencies too "
                         "high by about 5.4 % (mode 2), 12 % (mode 3), 21 % (mode 4)"));
-  EXPECT_THAT(slenderness_warning(beam(StructureKind::cantilever, 0.1, 1)), IsEmpty()) << "the first mode alone is nearly right";
-  EXPECT_THAT(slenderness_warning(beam(StructureKind::cantilever, 0.008, 4)), IsEmpty());
-  EXPECT_THAT(slenderness_warning(beam(StructureKind::clamped_clamped, 0.1, 1)), HasSubstr("6.7 % (mode 1)"));
-  EXPECT_THAT(frequency_excess({.kind = StructureKind::plate}), IsEmpty());
+  EXPECT_THAT(slenderness_warning(beam(Cantilever{unit_beam}, 0.1, 1)), IsEmpty()) << "the first mode alone is nearly right";
+  EXPECT_THAT(slenderness_warning(beam(Cantilever{unit_beam}, 0.008, 4)), IsEmpty());
+  EXPECT_THAT(slenderness_warning(beam(Bridge{unit_beam}, 0.1, 1)), HasSubstr("6.7 % (mode 1)"));
+  EXPECT_THAT(frequency_excess({.kind = Plate{}}), IsEmpty());
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ TEST(PurdueNickel, TouchesWithTheSpeedOfItsEnergy) {
   const Trajectory t = closing(d);
   ASSERT_EQ(t.touches.size(), 1u);
   const double g = d.gap.electrode, x = d.gap.contact, eps_a = vacuum_permittivity * d.structure.length * d.structure.width;
-  const double energy = level * level / 2 * eps_a * (1 / (g - x) - 1 / g) - d.structure.stiffness * x * x / 2;
-  const double speed = std::sqrt(2 * energy / d.structure.mass);
+  const double energy = level * level / 2 * eps_a * (1 / (g - x) - 1 / g) - part_of<Plate>(d.structure).stiffness * x * x / 2;
+  const double speed = std::sqrt(2 * energy / part_of<Plate>(d.structure).mass);
   EXPECT_NEAR(t.touches[0].impact_velocity, speed, 1e-8 * speed);
 }
 
@@ -45,8 +45,9 @@ TEST(PurdueNickel, ThePublishedTimeAndSpeedAreThoseAtTheEndOfTheStepThatPasses) 
   const Device d = test::nickel_plate();
   const auto acceleration = [&](double x) {
     const double field = level / (d.gap.electrode - x);
-    return (vacuum_permittivity * d.structure.length * d.structure.width / 2 * field * field - d.structure.stiffness * x) /
-           d.structure.mass;
+    return (vacuum_permittivity * d.structure.length * d.structure.width / 2 * field * field -
+            part_of<Plate>(d.structure).stiffness * x) /
+           part_of<Plate>(d.structure).mass;
   };
   constexpr double h = 5e-9;
   double time = 0, x = 0, v = 0;

@@ -75,7 +75,7 @@ TEST(LimitReport, SaysForWhichModelALeastTimeIsABound) {
   EXPECT_EQ(of_plate.at("modes"), 1);
   EXPECT_THAT(limit_text(of_a_plate()), Not(HasSubstr("mode,")));
   Limit of_beam = of_a_plate();
-  of_beam.given.scene.device.structure.kind = StructureKind::cantilever;
+  of_beam.given.scene.device.structure.kind = Cantilever{};
   EXPECT_THAT(limit_text(of_beam), HasSubstr("in this model of 1 mode,"));
   EXPECT_THAT(limit_svg(of_beam), HasSubstr("with 1 mode<"));
 }

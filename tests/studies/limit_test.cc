@@ -23,7 +23,7 @@ namespace {
 // Full voltage to x_s, 0 V from there: the plate arrives at the contact with speed v. The field's work is the energy there.
 double bang_bang(const Structure& s, const Gap& gap, double volts, double v) {
   const double area = s.width * s.length, force = vacuum_permittivity * area * volts * volts / 2;
-  const double mass = s.mass, k = s.stiffness;
+  const double mass = part_of<Plate>(s).mass, k = part_of<Plate>(s).stiffness;
   const auto work = [&](double x) { return force * (1 / (gap.electrode - x) - 1 / gap.electrode); };
   const double energy = (k * gap.contact * gap.contact + mass * v * v) / 2;
   const double x_s = gap.electrode - 1 / (energy / force + 1 / gap.electrode);
@@ -96,7 +96,8 @@ TEST(LeastTime, OfAPiezoIsFoundAndShorterWithSixModes_slow) {
 // Pulled from rest to its first turn, let go to the other side, pulled from there to x_s and let go again: it arrives with speed
 // v. A plate that one pull does not close; the quickest way may turn a little earlier or later than this one.
 double two_swings(const Structure& s, const Gap& gap, double volts, double v) {
-  const double force = vacuum_permittivity * s.width * s.length * volts * volts / 2, m = s.mass, k = s.stiffness;
+  const double force = vacuum_permittivity * s.width * s.length * volts * volts / 2, m = part_of<Plate>(s).mass,
+               k = part_of<Plate>(s).stiffness;
   const double omega = std::sqrt(k / m), d = gap.electrode, g = gap.contact;
   const auto work = [&](double x) { return force * (1 / (d - x) - 1 / d); };
   const double x1 = bracketed_zero([&](double x) { return work(x) - k * x * x / 2; }, 1e-9, 0.4 * d);
@@ -233,7 +234,8 @@ TEST(FreeFlight, LandsUnderTheVoltageThatHoldsWithoutPressing) {
   const Structure& s = p.scene.device.structure;
   const Gap& gap = p.scene.device.gap;
   const double open = gap.electrode - gap.contact;
-  const double balance = std::sqrt(2 * s.stiffness * gap.contact * open * open / (vacuum_permittivity * s.width * s.length));
+  const double balance =
+      std::sqrt(2 * part_of<Plate>(s).stiffness * gap.contact * open * open / (vacuum_permittivity * s.width * s.length));
   EXPECT_NEAR(landing->controls[0] * 120, balance, 1e-6 * balance);
   EXPECT_NEAR(landing->state[0], 1, 1e-9);
 }

@@ -24,7 +24,8 @@ struct ExactOpening {
 };
 
 ExactOpening exact_opening(const Structure& s, const Gap& gap, double contact_stiffness, double volts) {
-  const double force = vacuum_permittivity * s.width * s.length * volts * volts / 2, m = s.mass, k = s.stiffness;
+  const double force = vacuum_permittivity * s.width * s.length * volts * volts / 2, m = part_of<Plate>(s).mass,
+               k = part_of<Plate>(s).stiffness;
   const double g = gap.contact, d = gap.electrode, both = k + contact_stiffness;
   double x0 = g;  // k x + k_c (x - g) = F / (d - x)^2
   for (int i = 0; i < 100; ++i) x0 = (force / ((d - x0) * (d - x0)) + contact_stiffness * g) / both;

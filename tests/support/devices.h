@@ -19,8 +19,11 @@ namespace softland::test {
 [[nodiscard]] inline Device gold_cantilever() {
   using namespace literals;
   return {
-      .structure =
-          {.length = 250_um, .width = 20_um, .thickness = 2_um, .youngs_modulus = 78_GPa, .density = 19300_kg_m3, .modes = 4},
+      .structure = {.length = 250_um,
+                    .width = 20_um,
+                    .thickness = 2_um,
+                    .modes = 4,
+                    .kind = Cantilever{{.youngs_modulus = 78_GPa, .density = 19300_kg_m3}}},
       .gap = {.electrode = 3.5_um, .contact = 2_um},
       .electrodes = {{.name = "main", .begin = 60_um, .end = 240_um, .fringing = Fringing::meijs_fokkema}},
       .gas = StripGas{.film = {.viscosity = 1.86e-5_Pa_s}},
@@ -110,15 +113,11 @@ template <class Law>
 /// Polysilicon beam between two clamps of Hung and Senturia 1999: the device of scenes/hung-senturia.toml, without its gas.
 [[nodiscard]] inline Device hung_senturia() {
   using namespace literals;
-  return {.structure = {.kind = StructureKind::clamped_clamped,
-                        .length = 610_um,
+  return {.structure = {.length = 610_um,
                         .width = 40_um,
                         .thickness = 2.2_um,
-                        .youngs_modulus = 149_GPa,
-                        .density = 2330_kg_m3,
                         .modes = 5,
-                        .residual_stress = -3.7e6,
-                        .stretching = false},
+                        .kind = Bridge{{.youngs_modulus = 149_GPa, .density = 2330_kg_m3}, -3.7e6, false, false}},
           .gap = {.electrode = 2.3_um, .contact = 2.07_um},
           .electrodes = {{.name = "main", .begin = 0, .end = 610_um, .fringing = Fringing::none}}};
 }
@@ -126,9 +125,9 @@ template <class Law>
 /// A gold bridge in tension with everything a beam between two clamps can have: stretching, two electrodes, film, contact.
 [[nodiscard]] inline Device gold_bridge() {
   Device device = gold_cantilever();
-  device.structure.kind = StructureKind::clamped_clamped;
+  device.structure.kind = Bridge{part_of<Beam>(device.structure)};
   device.structure.modes = 5;
-  device.structure.residual_stress = 2e6;
+  part_of<Bridge>(device.structure).residual_stress = 2e6;
   device.electrodes.push_back({.name = "second", .begin = 0, .end = 60e-6, .fringing = Fringing::linear});
   return device;
 }
@@ -136,27 +135,21 @@ template <class Law>
 /// Nickel switch lumped to a plate on springs: the device of scenes/purdue-nickel.toml. 510 x 123 um.
 [[nodiscard]] inline Device nickel_plate() {
   using namespace literals;
-  return {.structure = {.kind = StructureKind::plate,
-                        .length = 510_um,
-                        .width = 123_um,
-                        .thickness = 4_um,
-                        .mass = 9.2371e-10,
-                        .stiffness = 91.303},
-          .gap = {.electrode = 3.49_um, .contact = 3.14_um},
-          .electrodes = {{.name = "main", .begin = 0, .end = 510_um, .fringing = Fringing::none}}};
+  return {
+      .structure = {.length = 510_um, .width = 123_um, .thickness = 4_um, .kind = Plate{.mass = 9.2371e-10, .stiffness = 91.303}},
+      .gap = {.electrode = 3.49_um, .contact = 3.14_um},
+      .electrodes = {{.name = "main", .begin = 0, .end = 510_um, .fringing = Fringing::none}}};
 }
 
 /// A plate on springs with everything a plate can have: two electrodes, film, linear contact.
 [[nodiscard]] inline Device full_plate() {
   using namespace literals;
-  return {
-      .structure =
-          {.kind = StructureKind::plate, .length = 100_um, .width = 100_um, .thickness = 3_um, .mass = 2.4e-9, .stiffness = 42},
-      .gap = {.electrode = 3.8_um, .contact = 2.6_um},
-      .electrodes = {{.name = "main", .begin = 0, .end = 70_um, .fringing = Fringing::meijs_fokkema},
-                     {.name = "second", .begin = 0, .end = 30_um, .fringing = Fringing::linear}},
-      .gas = StripGas{.film = {.viscosity = 1e-6_Pa_s}},
-      .contact = Contact{.model = LinearSpring{.stiffness = 1e4_N_m}}};
+  return {.structure = {.length = 100_um, .width = 100_um, .thickness = 3_um, .kind = Plate{.mass = 2.4e-9, .stiffness = 42}},
+          .gap = {.electrode = 3.8_um, .contact = 2.6_um},
+          .electrodes = {{.name = "main", .begin = 0, .end = 70_um, .fringing = Fringing::meijs_fokkema},
+                         {.name = "second", .begin = 0, .end = 30_um, .fringing = Fringing::linear}},
+          .gas = StripGas{.film = {.viscosity = 1e-6_Pa_s}},
+          .contact = Contact{.model = LinearSpring{.stiffness = 1e4_N_m}}};
 }
 
 /// Titanium nitride nano-cantilever: the device of scenes/nem-tin.toml.
@@ -166,10 +159,9 @@ template <class Law>
       .structure = {.length = 300_nm,
                     .width = 200_nm,
                     .thickness = 30_nm,
-                    .youngs_modulus = 220_GPa,
-                    .density = 5400_kg_m3,
                     .modes = 4,
-                    .damping_ratio = 0.01},
+                    .damping_ratio = 0.01,
+                    .kind = Cantilever{{.youngs_modulus = 220_GPa, .density = 5400_kg_m3}}},
       .gap = {.electrode = 20_nm, .contact = 15_nm},
       .electrodes = {{.name = "main", .begin = 0, .end = 300_nm, .fringing = Fringing::meijs_fokkema}},
       .contact =
@@ -187,10 +179,9 @@ template <class Law>
       .structure = {.length = 5.1_um,
                     .width = 1_um,
                     .thickness = 50_nm,
-                    .youngs_modulus = 78_GPa,
-                    .density = 19300_kg_m3,
                     .modes = 4,
-                    .damping_ratio = 0.01},
+                    .damping_ratio = 0.01,
+                    .kind = Cantilever{{.youngs_modulus = 78_GPa, .density = 19300_kg_m3}}},
       .gap = {.electrode = 50_nm, .contact = 30_nm},
       .contact =
           Contact{.model = UniformAsperities{.summits = {.radius = 20_nm, .density = 1e14_per_m2, .effective_modulus = 48_GPa},

@@ -25,12 +25,11 @@ inline constexpr double published_undercut = 0.4e-6, textbook_modulus = 169e9;
   const double stops = 2 * (10_um - 2 * undercut) * (45_um - undercut);
   const double spring = spring_width - 2 * undercut, facing = overlap - undercut;
   const double moving = spine + stops + fingers * (facing + root) * finger;
-  return {.structure = {.kind = StructureKind::plate,
-                        .length = fingers * facing,
+  return {.structure = {.length = fingers * facing,
                         .width = layer,
                         .thickness = finger,
-                        .mass = density * layer * (moving + 2 * 13.0 / 35 * spring * spring_length),
-                        .stiffness = 2 * modulus * std::pow(spring / spring_length, 3) * layer},
+                        .kind = Plate{.mass = density * layer * (moving + 2 * 13.0 / 35 * spring * spring_length),
+                                      .stiffness = 2 * modulus * std::pow(spring / spring_length, 3) * layer}},
           .gap = {.electrode = 4.83_um + 2 * undercut, .contact = 3.83_um + 2 * undercut},
           .electrodes = {{.name = "main",
                           .begin = 0,

@@ -72,7 +72,7 @@ void vary_structure(SceneFile& file, Dice& dice) {
     multiply(file, "structure", key, dice.about());
   }
   const Device d = device_of(file);
-  if (d.structure.kind == StructureKind::plate) {
+  if (d.structure.is_rigid()) {
     // What gas, fringing fields and asperities need.
     const double area = d.structure.length * d.structure.width;
     if (!has_width(file)) put(file, "structure.width", std::sqrt(area), "m");
@@ -99,7 +99,7 @@ void vary_layer(SceneFile& file, Dice& dice) {
 
 void vary_electrodes(SceneFile& file, Dice& dice) {
   const Device d = device_of(file);
-  const bool plate = d.structure.kind == StructureKind::plate;
+  const bool plate = d.structure.is_rigid();
   for (const Electrode& e : d.electrodes) {
     const std::string section = "electrode." + e.name;
     put(file, section + ".fringing", std::string(dice.one_of(names_of(fringing_laws))));
@@ -217,7 +217,7 @@ void vary_contact(SceneFile& file, Dice& dice) {
   const double stiffness = 2 * open.bending_energy() / (d.gap.contact * d.gap.contact);
   std::vector<std::string> models{"linear",   "asperity-uniform", "asperity-uniform", "asperity-gaussian",
                                   "adhesive", "hysteretic",       "elastic-plastic"};
-  if (d.structure.kind == StructureKind::plate && !open.film_states()) models.emplace_back("rigid");
+  if (d.structure.is_rigid() && !open.film_states()) models.emplace_back("rigid");
   if (d.gap.contact > 1.2e-6) models.emplace_back("adhesive-repulsive");
   const std::vector<std::string> others = other_contacts();
   models.insert(models.end(), others.begin(), others.end());
@@ -240,8 +240,7 @@ void vary_contact(SceneFile& file, Dice& dice) {
     put_summits(file, dice, d, model, stiffness * d.gap.contact);
   }
   const bool without_memory = model == "linear" || model == "adhesive" || model.starts_with("asperity");
-  if (without_memory && d.structure.kind == StructureKind::cantilever && dice.chance(0.3))
-    put(file, "contact.distribution", "pad");
+  if (without_memory && d.structure.find<Cantilever>() != nullptr && dice.chance(0.3)) put(file, "contact.distribution", "pad");
   if (without_memory && model != "adhesive" && dice.chance(0.4)) {
     put(file, "contact.damping", dice.log_between(0.02, 2) / (open.basis().angular_frequencies()[0] * d.gap.contact), "s/m");
   }

@@ -133,7 +133,7 @@ TEST(RestingPlate, ReboundsByTheRestitution) {
   EXPECT_FALSE(impact.rests);
   EXPECT_NEAR(p.model.contact_deflection(here.state.data() + 1), -0.1, 1e-12);
   EXPECT_DOUBLE_EQ(p.model.contact_deflection(here.state.data()), p.device.gap.contact);
-  EXPECT_NEAR(impact.energy, p.device.structure.mass * 0.04 / 2, 1e-9 * impact.energy);
+  EXPECT_NEAR(impact.energy, part_of<Plate>(p.device.structure).mass * 0.04 / 2, 1e-9 * impact.energy);
   EXPECT_NEAR(impact.lost, 0.75 * impact.energy, 1e-12 * impact.energy);
 }
 

@@ -1,4 +1,4 @@
-#include "model/tabulated_modes.h"
+#include "model/structure/tabulated_modes.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,10 @@
 #include <cmath>
 #include <utility>
 
+#include "base/engineering.h"
 #include "base/require.h"
 #include "model/constants.h"
+#include "model/structure/structure.h"
 
 namespace softland {
 namespace {
@@ -78,6 +80,42 @@ double TabulatedModes::Shapes::pinned_inverse_square(double x, std::optional<dou
     (sum > 0 ? high : low) = middle;
   }
   return 1 / low;
+}
+
+int ModalStructure::most_modes() const { return table ? std::min(Structure::most_modes, table->count()) : Structure::most_modes; }
+
+std::string ModalStructure::why_invalid(double length, int modes) const {
+  if (table == nullptr) return "structure.kind = modes: there is no table of modes";
+  if (length != table->length()) {
+    return fmt::format("structure.length = {}: must be the length of the table of modes, {}", engineering(length, "m"),
+                       engineering(table->length(), "m"));
+  }
+  if (table->is_held_at_both_ends()) {
+    return "structure.kind = modes: the far end stands still in every mode; between two clamps bending stretches the structure, "
+           "which modes do not hold: kind = clamped-clamped does";
+  }
+  if (modes > table->count())
+    return fmt::format("structure.modes = {}: must not exceed {}, the modes of the file", modes, table->count());
+  return {};
+}
+
+std::shared_ptr<const ModalTable> ModalStructure::example_table() {
+  static const auto table = [] {
+    constexpr int places = 40;
+    constexpr double length = 250e-6, mass = 19300 * 20e-6 * 2e-6 * length;
+    constexpr std::array roots{1.87510406871, 4.69409113297}, frequencies{10394.0, 65139.0};  // of a beam with a free end
+    std::vector<double> x;
+    std::vector<std::vector<double>> shapes(roots.size());
+    for (int i = 0; i <= places; ++i) {
+      x.push_back(length * i / places);
+      for (std::size_t k = 0; k < roots.size(); ++k) {
+        const double b = roots[k], z = b * i / places, sigma = (std::cosh(b) + std::cos(b)) / (std::sinh(b) + std::sin(b));
+        shapes[k].push_back(((std::cosh(z) - std::cos(z)) - sigma * (std::sinh(z) - std::sin(z))) / std::sqrt(mass));
+      }
+    }
+    return std::make_shared<const ModalTable>(x, std::vector<double>(frequencies.begin(), frequencies.end()), shapes);
+  }();
+  return table;
 }
 
 TabulatedModes::TabulatedModes(std::shared_ptr<const ModalTable> table, int modes, double frequency_factor) {

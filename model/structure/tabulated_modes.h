@@ -10,11 +10,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/clamped_spline.h"
+#include "model/structure/kind.h"
 
 namespace softland {
 
@@ -76,6 +80,55 @@ class TabulatedModes {
  private:
   Shapes shapes_;
   Eigen::VectorXd frequencies_;
+};
+
+/// The kind "modes": of constant width, clamped at x = 0 and free at its far end.
+struct ModalStructure {
+  static constexpr std::string_view name = "modes", whose = "beside the modes of a file",
+                                    length_is = "the {} of the modes' table",
+                                    why_no_layer =
+                                        "a layer changes the modes, which a file cannot follow; a layer needs a cantilever",
+                                    why_no_skins = "skins change the modes, which a file cannot follow; a surface needs a beam";
+  static constexpr std::array usual_spread{UsualSpread{"frequency_factor", "3.5 %", true}};
+
+  std::shared_ptr<const ModalTable> table = {};
+  double frequency_factor = 1;  ///< of all natural frequencies, over those of the table
+
+  /// Keys that say where the table is, and how it is read, stand in config/modal_table.h.
+  template <class S>
+  static consteval auto fields() {
+    constexpr std::string_view follows_no_size = "the modes of a file do not follow it; vary structure.frequency_factor";
+    // clang-format off
+    return std::to_array<Field<S>>({
+        S::damping(),
+        {.key = "frequency_factor", .about = "of all natural frequencies, over those of the file", .in = within<S, ModalStructure, &ModalStructure::frequency_factor>, .range = {.least = 0.01, .most = 100}, .fallback = "1.0"},
+        {.key = "width", .unit = "m", .about = "across the axis, the same everywhere; absent: that of the file", .in = reach<S, &S::width>, .why_fixed = follows_no_size},
+        {.key = "thickness", .unit = "m", .about = "needed by fringing and gas laws that depend on it, and by nothing else", .in = reach<S, &S::thickness>, .why_fixed = follows_no_size},
+        {.key = "modes", .about = "number of modes kept; absent: all of the file", .count = reach<S, &S::modes>, .range = {.least = 1, .most = S::most_modes}},
+    });
+    // clang-format on
+  }
+  template <class S>
+  [[nodiscard]] static S example() {
+    return {.length = example_table()->length(),
+            .width = 20e-6,
+            .thickness = 2e-6,
+            .modes = 2,
+            .kind = ModalStructure{.table = example_table()}};
+  }
+  /// Two modes of a beam as heavy as a gold cantilever.
+  [[nodiscard]] static std::shared_ptr<const ModalTable> example_table();
+
+  template <class Device, class Known>
+  [[nodiscard]] TabulatedModes modes(const Device& device, const Known&) const {
+    return {table, device.structure.modes, frequency_factor};
+  }
+  template <class Device>
+  [[nodiscard]] std::string why_invalid(const Device& device) const {
+    return why_invalid(device.structure.length, device.structure.modes);
+  }
+  [[nodiscard]] std::string why_invalid(double length, int modes) const;
+  [[nodiscard]] int most_modes() const;
 };
 
 }  // namespace softland

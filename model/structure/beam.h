@@ -1,0 +1,92 @@
+// Beams of rectangular section (Euler-Bernoulli), clamped at x = 0: parameters of the kinds "cantilever" and "clamped-clamped".
+// Their modes: model/beam.h.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "model/structure/kind.h"
+
+namespace softland {
+
+/// What both kinds of beams have beside length, width and thickness.
+struct Beam {
+  double youngs_modulus = 0;  ///< E [Pa], used as given unless plate_strain
+  double density = 0;         ///< rho [kg/m^3]
+  bool plate_strain = false;  ///< use E / (1 - nu^2)
+  double poissons_ratio = not_given;
+
+  static constexpr std::array usual_spread{UsualSpread{"thickness", "2 %"}, UsualSpread{"youngs_modulus", "3 %"}};
+
+  template <class S>
+  static consteval auto fields() {
+    constexpr Range possible_ratio{.least = -1, .most = 0.5, .least_open = true, .most_open = true};
+    // clang-format off
+    return std::to_array<Field<S>>({
+        {.key = "length", .unit = "m", .about = "along the beam", .in = reach<S, &S::length>, .required = true, .such_as = "250 um"},
+        {.key = "width", .unit = "m", .about = "across the beam", .in = reach<S, &S::width>, .required = true, .such_as = "20 um"},
+        {.key = "thickness", .unit = "m", .about = "in the direction of motion", .in = reach<S, &S::thickness>, .required = true},
+        {.key = "youngs_modulus", .unit = "Pa", .about = "used as given unless plate_strain is on", .in = within<S, Beam, &Beam::youngs_modulus>, .required = true},
+        {.key = "density", .unit = "kg/m^3", .about = "of the beam", .in = within<S, Beam, &Beam::density>, .required = true},
+        {.key = "modes", .about = "number of modes kept; auto: until the figures stop moving", .count = reach<S, &S::modes>, .or_word = "auto", .range = {.least = 1, .most = S::most_modes}, .fallback = "4"},
+        S::damping(),
+        {.key = "plate_strain", .about = "use E / (1 - nu^2) for a wide beam", .flag = within<S, Beam, &Beam::plate_strain>, .fallback = "false"},
+        {.key = "poissons_ratio", .about = "needed by plate_strain and biaxial", .in = within<S, Beam, &Beam::poissons_ratio>, .range = possible_ratio},
+    });
+    // clang-format on
+  }
+  template <class Device, class Known>
+  [[nodiscard]] auto modes(const Device& device, const Known& known) const {
+    return beam_modes(device, known);
+  }
+  template <class Device>
+  [[nodiscard]] std::string why_invalid(const Device& device) const {
+    return why_no_beam(device);
+  }
+};
+
+struct Cantilever : Beam {
+  static constexpr std::string_view name = "cantilever";
+
+  template <class S>
+  [[nodiscard]] static S example() {
+    return {.length = 250e-6, .width = 20e-6, .thickness = 2e-6, .kind = Cantilever{{.youngs_modulus = 78e9, .density = 19300}}};
+  }
+};
+
+/// A beam between two clamps.
+struct Bridge : Beam {
+  static constexpr std::string_view name = "clamped-clamped";
+  static constexpr bool has_far_clamp = true;
+  static constexpr std::string_view why_no_layer =
+      "between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off its middle "
+      "line; a layer needs a cantilever";
+
+  double residual_stress = 0;  ///< before the beam bends, positive in tension [Pa]
+  bool biaxial = false;        ///< residual_stress is that of a film: the beam keeps residual_stress (1 - nu)
+  bool stretches = true;       ///< bending stretches the beam
+
+  template <class S>
+  static consteval auto fields() {
+    // clang-format off
+    return joined(Beam::fields<S>(), std::to_array<Field<S>>({
+        {.key = "residual_stress", .unit = "Pa", .about = "along the beam before it bends, positive in tension", .in = within<S, Bridge, &Bridge::residual_stress>, .range = {}, .fallback = "'0 Pa'", .such_as = "20 MPa"},
+        {.key = "biaxial", .about = "residual_stress is that of the unreleased film: the beam keeps residual_stress (1 - nu)", .flag = within<S, Bridge, &Bridge::biaxial>, .fallback = "false"},
+        {.key = "stretching", .about = "bending stretches the beam: a cubic stiffness", .flag = within<S, Bridge, &Bridge::stretches>, .fallback = "true"},
+    }));
+    // clang-format on
+  }
+  template <class S>
+  [[nodiscard]] static S example() {
+    return {.length = 400e-6, .width = 20e-6, .thickness = 2e-6, .kind = Bridge{{.youngs_modulus = 78e9, .density = 19300}, 2e6}};
+  }
+  /// None where bending does not stretch it.
+  template <class Modes, class S>
+  [[nodiscard]] auto stretching(const Modes& modes, const S& structure) const {
+    return stretches ? std::optional(stretching_of(modes, structure)) : std::nullopt;
+  }
+};
+
+}  // namespace softland

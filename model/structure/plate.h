@@ -1,0 +1,86 @@
+// A rigid plate on springs: one degree of freedom, the soft-landing literature's switch.
+//
+//   m x'' = -k x - 2 zeta sqrt(k m) x' + forces      phi = 1 / sqrt(m),   omega = sqrt(k / m)
+//
+// m moving mass [kg], k stiffness of all springs together [N/m], x deflection [m], zeta damping ratio; phi is the mass-normalised
+// mode [kg^(-1/2)], the same everywhere: the plate stays flat and parallel. It answers what BeamModes answers, so that laws
+// per length act on it as on a beam: a strip as wide as the plate whose length is area / width. Valid while springs are linear
+// and tilting and bending modes lie far above omega. Source: any textbook on electrostatic actuators, e.g. Senturia, Microsystem
+// Design, 2001, ch. 6.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "model/structure/kind.h"
+
+namespace softland {
+
+class RigidPlate {
+ public:
+  /// The one mode, normalised: 1 everywhere.
+  struct FlatMode {
+    [[nodiscard]] Eigen::VectorXd value(double) const { return Eigen::VectorXd::Ones(1); }
+    [[nodiscard]] Eigen::VectorXd slope(double) const { return Eigen::VectorXd::Zero(1); }
+    /// Held at its contact a rigid plate cannot move at all. Its own frequency stands in: a rebound takes no longer than that.
+    [[nodiscard]] double pinned_inverse_square(double, std::optional<double> = {}) const { return 1; }
+  };
+
+  /// Length [m], moving mass [kg], stiffness [N/m].
+  RigidPlate(double length, double mass, double stiffness)
+      : length_(length), scale_(1 / std::sqrt(mass)), frequency_scale_(std::sqrt(stiffness / mass)) {}
+
+  [[nodiscard]] Eigen::VectorXd angular_frequencies() const {
+    return Eigen::VectorXd::Constant(1, frequency_scale_);
+  }                                                                          ///< [rad/s]
+  [[nodiscard]] double length() const { return length_; }                    ///< [m]
+  [[nodiscard]] double scale() const { return scale_; }                      ///< phi [kg^(-1/2)]
+  [[nodiscard]] double frequency_scale() const { return frequency_scale_; }  ///< [rad/s]
+  [[nodiscard]] const FlatMode* normalised() const { return &mode_; }
+
+ private:
+  double length_, scale_, frequency_scale_;
+  FlatMode mode_;
+};
+
+/// The kind "plate": its length is its area over its width.
+struct Plate {
+  static constexpr std::string_view name = "plate", whose = "on a plate",
+                                    why_no_layer = "a rigid plate does not bend; a layer needs a beam",
+                                    why_no_skins = "a rigid plate does not bend; a surface needs a beam",
+                                    length_is = "structure.area / structure.width";
+  static constexpr bool is_rigid = true;
+  static constexpr std::array usual_spread{UsualSpread{"stiffness", "6.7 %"}};
+
+  double mass = 0;       ///< moving mass [kg]
+  double stiffness = 0;  ///< of all springs together [N/m]
+
+  template <class S>
+  static consteval auto fields() {
+    // clang-format off
+    return std::to_array<Field<S>>({
+        S::damping(),
+        {.key = "mass", .unit = "kg", .about = "moving mass", .in = within<S, Plate, &Plate::mass>, .required = true},
+        {.key = "stiffness", .unit = "N/m", .about = "of all springs together", .in = within<S, Plate, &Plate::stiffness>, .required = true},
+        {.key = "area", .unit = "m^2", .about = "of the plate", .required = true},
+        {.key = "width", .unit = "m", .about = "needed by gas films, fringing and rough contacts; the length is area / width", .in = reach<S, &S::width>, .such_as = "100 um"},
+        {.key = "thickness", .unit = "m", .about = "needed by fringing laws that depend on it", .in = reach<S, &S::thickness>},
+    });
+    // clang-format on
+  }
+  template <class S>
+  [[nodiscard]] static S example() {
+    return {.length = 100e-6, .width = 100e-6, .thickness = 3e-6, .modes = 1, .kind = Plate{.mass = 2.4e-9, .stiffness = 42}};
+  }
+  template <class Device, class Known>
+  [[nodiscard]] RigidPlate modes(const Device& device, const Known&) const {
+    return {device.structure.length, mass, stiffness};
+  }
+  [[nodiscard]] static int most_modes() { return 1; }
+};
+
+}  // namespace softland

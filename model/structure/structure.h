@@ -1,0 +1,134 @@
+// What moves: one of the kinds of structures, with what all of them have. A new kind is its header (model/structure/beam.h says
+// what is in it) and a row here.
+#pragma once
+
+#include <concepts>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/field.h"
+#include "model/structure/beam.h"
+#include "model/structure/plate.h"
+#include "model/structure/tabulated_modes.h"
+
+namespace softland {
+
+/// The most modes of a beam that stands still: see SwitchOptions::modes.
+inline constexpr int most_static_modes = 40;
+
+/// The kinds, in the order of messages and tables.
+using StructureKind = std::variant<Cantilever, Bridge, Plate, ModalStructure>;
+
+struct Structure {
+  /// The most modes of a beam that moves.
+  static constexpr int most_modes = 20;
+
+  double length = 0;             ///< L [m]; plate: its area over its width; of a table of modes: that of the table
+  double width = 0;              ///< a [m]
+  double thickness = not_given;  ///< b [m]
+  int modes = 4;                 ///< plate: has one, whatever is said here
+  double damping_ratio = 0;      ///< zeta of every mode
+  StructureKind kind = Cantilever{};
+
+  /// The kind in force where it is, or derives from, a `Part`; else null.
+  template <class Part>
+  [[nodiscard]] constexpr Part* find() {
+    return std::visit(
+        []<class Kind>(Kind& own) -> Part* {
+          if constexpr (std::derived_from<Kind, Part>) return &own;
+          return nullptr;
+        },
+        kind);
+  }
+  template <class Part>
+  [[nodiscard]] constexpr const Part* find() const {
+    return const_cast<Structure*>(this)->find<Part>();  // which changes nothing
+  }
+  /// The key of the damping ratio, which every kind has.
+  [[nodiscard]] static consteval Field<Structure> damping();
+
+  /// It moves as one: there is one mode, and no place along it differs from another.
+  [[nodiscard]] bool is_rigid() const;
+  /// Its far end is held as its near end is.
+  [[nodiscard]] bool has_far_clamp() const;
+  /// Why it cannot have a piezo layer, or skins; empty where it can.
+  [[nodiscard]] std::string_view why_no_layer() const;
+  [[nodiscard]] std::string_view why_no_skins() const;
+  /// Ends the message that a scene must give something of it: "on a plate". Empty where a scene always gives all.
+  [[nodiscard]] std::string_view whose() const;
+};
+
+inline constexpr int most_modes = Structure::most_modes;
+
+consteval Field<Structure> Structure::damping() {
+  return {.key = "damping_ratio",
+          .about = "modal, the same for every mode",
+          .in = reach<Structure, &Structure::damping_ratio>,
+          .range = below_one,
+          .fallback = "0.0",
+          .beyond = "for more give [gas] model = \"linear\" and quality_factor = 1 / (2 damping_ratio)"};
+}
+
+/// The fields of a kind, made once.
+template <class Kind>
+inline constexpr auto structure_fields = Kind::template fields<Structure>();
+/// Those of the kind in force.
+[[nodiscard]] inline std::span<const Field<Structure>> fields_in_force(const Structure& s) {
+  return std::visit([]<class Kind>(const Kind&) -> std::span<const Field<Structure>> { return structure_fields<Kind>; }, s.kind);
+}
+
+inline bool Structure::is_rigid() const {
+  return std::visit(
+      []<class Kind>(const Kind&) {
+        return requires { Kind::is_rigid; };
+      },
+      kind);
+}
+inline bool Structure::has_far_clamp() const {
+  return std::visit(
+      []<class Kind>(const Kind&) {
+        return requires { Kind::has_far_clamp; };
+      },
+      kind);
+}
+inline std::string_view Structure::why_no_layer() const {
+  return std::visit(
+      []<class Kind>(const Kind&) -> std::string_view {
+        if constexpr (requires { Kind::why_no_layer; }) return Kind::why_no_layer;
+        return {};
+      },
+      kind);
+}
+inline std::string_view Structure::why_no_skins() const {
+  return std::visit(
+      []<class Kind>(const Kind&) -> std::string_view {
+        if constexpr (requires { Kind::why_no_skins; }) return Kind::why_no_skins;
+        return {};
+      },
+      kind);
+}
+inline std::string_view Structure::whose() const {
+  return std::visit(
+      []<class Kind>(const Kind&) -> std::string_view {
+        if constexpr (requires { Kind::whose; }) return Kind::whose;
+        return {};
+      },
+      kind);
+}
+
+/// The most modes that a structure can have: of a plate 1, of a table those in it.
+[[nodiscard]] inline int most_modes_of(const Structure& structure) {
+  return std::visit(
+      []<class Kind>(const Kind& kind) {
+        if constexpr (requires { kind.most_modes(); }) return kind.most_modes();
+        return Structure::most_modes;
+      },
+      structure.kind);
+}
+
+}  // namespace softland
