@@ -68,13 +68,10 @@ void take_width(Structure& s, const ModeTable& table, const SectionReader& in) {
              fmt::format("the file says that the width is {}", engineering(high, "m", digits)));
 }
 
-void require_straight(const ModeTable& table, const SectionReader& in) {
-  const auto bent = std::find_if(table.rest_offsets.begin(), table.rest_offsets.end(), [](double offset) { return offset != 0; });
-  if (bent == table.rest_offsets.end()) return;
-  const auto at = static_cast<std::size_t>(bent - table.rest_offsets.begin());
-  in.file().fail(in.path(keys::file), fmt::format("the face towards the electrode is {} off at {} from the clamp: only "
-                                                  "structures that are straight at rest are simulated",
-                                                  engineering(*bent, "m", 3), engineering(table.positions[at], "m", 4)));
+// Empty where the face is straight.
+std::vector<double> offsets_of(ModeTable& table) {
+  const bool is_straight = std::ranges::all_of(table.rest_offsets, [](double offset) { return offset == 0; });
+  return is_straight ? std::vector<double>() : std::move(table.rest_offsets);
 }
 
 std::shared_ptr<const ModalTable> table_of_file(Scene& scene, const SectionReader& in) {
@@ -87,10 +84,11 @@ std::shared_ptr<const ModalTable> table_of_file(Scene& scene, const SectionReade
   } catch (const InvalidInput& error) {
     in.file().fail(in.path(keys::file), error.what());
   }
-  require_straight(table, in);
   take_width(scene.device.structure, table, in);
   if (table.nodes > 0) scene.file_notes.push_back(fmt::format("{}: {}", in.written(keys::file), summary(table)));
-  return std::make_shared<const ModalTable>(std::move(table.positions), std::move(table.frequencies), std::move(table.shapes));
+  std::vector<double> offsets = offsets_of(table);
+  return std::make_shared<const ModalTable>(std::move(table.positions), std::move(table.frequencies), std::move(table.shapes),
+                                            std::move(offsets));
 }
 
 std::shared_ptr<const ModalTable> table_of_scene(const SectionReader& in) {
@@ -111,8 +109,12 @@ std::shared_ptr<const ModalTable> table_of_scene(const SectionReader& in) {
     const auto begin = all.begin() + static_cast<std::ptrdiff_t>(k * positions.size());
     shapes.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(positions.size()));
   }
+  std::vector<double> offsets;
+  if (in.is_given(keys::rest_offsets)) offsets = in.numbers(keys::rest_offsets);
+  in.require(offsets.empty() || offsets.size() == positions.size(), keys::rest_offsets, "must hold a number per position");
   try {
-    return std::make_shared<const ModalTable>(std::move(positions), std::move(frequencies), std::move(shapes));
+    return std::make_shared<const ModalTable>(std::move(positions), std::move(frequencies), std::move(shapes),
+                                              std::move(offsets));
   } catch (const InvalidInput& error) {
     in.file().fail(in.path(keys::shapes), error.what());
   }
@@ -121,6 +123,7 @@ std::shared_ptr<const ModalTable> table_of_scene(const SectionReader& in) {
 }  // namespace
 
 std::vector<Key> modal_table_keys() {
+  constexpr std::string_view rest_is_of_file = "it belongs to the modes";
   Key shapes = numbers(keys::shapes, {dimension::none}, any, "a list per mode: mass-normalised, in 1/sqrt(kg), at the positions");
   shapes.is_nested = true;
   Key normalised{
@@ -144,6 +147,9 @@ std::vector<Key> modal_table_keys() {
       numbers(keys::frequencies, {dimension::frequency}, positive,
               "of the modes at these positions, or of a file that does not hold them"),
       std::move(shapes),
+      numbers(keys::rest_offsets, {dimension::length}, any,
+              "of the face at the positions, towards the near electrode; absent: it is straight at rest")
+          .fixed(rest_is_of_file),
   };
 }
 
@@ -153,7 +159,8 @@ void read_modal_table(Scene& scene, const SectionReader& in) {
   if (in.is_given(keys::positions)) {
     table = table_of_scene(in);
   } else {
-    in.require(!in.is_given(keys::shapes), keys::shapes, "stands beside positions, not beside a file");
+    for (const std::string_view key : {keys::shapes, keys::rest_offsets})
+      in.require(!in.is_given(key), key, "stands beside positions, not beside a file");
     table = table_of_file(scene, in);
   }
   s.length = table->length();
@@ -165,8 +172,9 @@ void hold_table(toml::table& root, const Structure& s) {
   const auto* const modal = s.find<ModalStructure>();
   if (modal == nullptr) return;
   toml::table& section = *root["structure"].as_table();
-  for (const std::string_view key : {keys::file, keys::axis, keys::direction, keys::length_unit, keys::mass_unit, keys::mass,
-                                     keys::mass_normalised, keys::clamp, keys::positions, keys::frequencies, keys::shapes})
+  for (const std::string_view key :
+       {keys::file, keys::axis, keys::direction, keys::length_unit, keys::mass_unit, keys::mass, keys::mass_normalised,
+        keys::clamp, keys::positions, keys::frequencies, keys::shapes, keys::rest_offsets})
     section.erase(key);
   toml::array positions, frequencies, shapes;
   for (const double x : modal->table->positions()) positions.push_back(quantity_text(x, dimension::length));
@@ -179,6 +187,11 @@ void hold_table(toml::table& root, const Structure& s) {
   section.insert_or_assign(keys::positions, std::move(positions));
   section.insert_or_assign(keys::frequencies, std::move(frequencies));
   section.insert_or_assign(keys::shapes, std::move(shapes));
+  if (const std::vector<double>& offsets = modal->table->rest_offsets(); !offsets.empty()) {
+    toml::array all;
+    for (const double offset : offsets) all.push_back(quantity_text(offset, dimension::length));
+    section.insert_or_assign(keys::rest_offsets, std::move(all));
+  }
   if (!section.contains("width")) section.insert("width", quantity_text(s.width, dimension::length));
 }
 

@@ -13,7 +13,8 @@ namespace softland::internal {
 namespace modal_keys {
 inline constexpr std::string_view file = "file", axis = "axis", direction = "direction", length_unit = "length_unit",
                                   mass_unit = "mass_unit", mass = "mass", mass_normalised = "mass_normalised", clamp = "clamp",
-                                  positions = "positions", frequencies = "frequencies", shapes = "shapes";
+                                  positions = "positions", frequencies = "frequencies", shapes = "shapes",
+                                  rest_offsets = "rest_offsets";
 }  // namespace modal_keys
 
 /// These keys, which stand before the fields of a ModalStructure.
@@ -21,7 +22,7 @@ inline constexpr std::string_view file = "file", axis = "axis", direction = "dir
 
 /// Sets table, length, width and the number of modes of the structure; what was taken from a file of another program becomes a
 /// note of the scene. Throws InvalidInput with key, file and rule for what cannot be read, and for a structure that is no beam of
-/// constant width, straight at rest.
+/// constant width.
 void read_modal_table(Scene& scene, const SectionReader& in);
 
 /// Puts the table itself where a scene names its file, so that the scene needs no other file: it reads back to the same bits.

@@ -112,6 +112,7 @@ constexpr std::array names{
     Name{dimension::energy, "an energy", "J", "1 fJ"},
     Name{dimension::power, "a power", "W", "1 uW"},
     Name{dimension::pressure, "a pressure", "Pa", "78 GPa"},
+    Name{dimension::stress_gradient, "a stress gradient", "Pa/m", "0.5 MPa/um"},
     Name{dimension::viscosity, "a viscosity", "Pa s", "1.86e-5 Pa s"},
     Name{dimension::stiffness, "a stiffness", "N/m", "100 N/m"},
     Name{dimension::slowness, "an inverse velocity", "s/m", "0.3 s/m"},

@@ -44,6 +44,7 @@ inline constexpr Dimension force{{1, 1, -2}};
 inline constexpr Dimension energy{{2, 1, -2}};
 inline constexpr Dimension power{{2, 1, -3}};
 inline constexpr Dimension pressure{{-1, 1, -2}};
+inline constexpr Dimension stress_gradient{{-2, 1, -2}};
 inline constexpr Dimension viscosity{{-1, 1, -1}};
 inline constexpr Dimension stiffness{{0, 1, -2}};
 inline constexpr Dimension slowness{{-1, 0, 1}};

@@ -345,6 +345,18 @@ BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const 
   frequencies_ = frequency_scale_ / normalised_->inverse_squares().array().sqrt();
 }
 
+double curl(const Device& device, double gradient, double x) {
+  const Structure& s = device.structure;
+  const double moment = gradient * s.width * std::pow(s.thickness, 3) / 12;
+  double offset = 0;
+  for (const BeamSection& section : beam_sections(device)) {
+    if (section.begin >= x) break;
+    const double near = x - section.begin, far = std::max(0.0, x - section.end);  // arms of its turn, from its begin and its end
+    offset += moment / section.rigidity * (near * near - far * far) / 2;
+  }
+  return offset;
+}
+
 MidPlaneStretching stretching_of(const BeamModes& beam, const Structure& s) {
   const Eigen::MatrixXd slopes = beam.slope_products();
   return {.modes = static_cast<std::size_t>(slopes.rows()),

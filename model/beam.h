@@ -159,6 +159,12 @@ class BeamModes {
   Eigen::VectorXd frequencies_;
 };
 
+/// How far a cantilever curls at x from its clamp [m], positive away from the near electrode, when the axial stress before
+/// release grows by `gradient` [Pa/m] over its thickness, in the direction away from that electrode. The stress turns every
+/// section by M = gradient a b^3/12, so that the curvature is M/EI, gradient/E of a plain beam and less where a layer stiffens
+/// it. Source: W. Fang & J. A. Wickert 1996, J. Micromech. Microeng. 6, 301. Valid for slopes well below 1.
+[[nodiscard]] double curl(const Device& device, double gradient, double x);
+
 /// Stretching of a beam between two clamps.
 [[nodiscard]] MidPlaneStretching stretching_of(const BeamModes& modes, const Structure& structure);
 

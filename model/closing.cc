@@ -25,7 +25,7 @@ class Run {
       : model_(model),
         options_(options),
         signals_(signals),
-        plane_(model.device().gap.contact),
+        plane_(model.contact_gap()),
         parts_(model, signals, options, observer),
         stepping_(parts_),
         audit_(model, parts_.drives, parts_.phase, parts_.equations, stepping_.here()) {

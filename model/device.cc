@@ -98,6 +98,25 @@ void check_gap_and_electrodes(const Device& d) {
   }
 }
 
+/// A structure that is not straight at rest touches nothing there.
+void check_rest_shape(const Device& d) {
+  constexpr int places = 64;
+  double lowest = 0;
+  for (int k = 1; k <= places; ++k) lowest = std::min(lowest, d.rest_offset(d.structure.length * k / places));
+  require(lowest > -0.99 * d.gap.electrode, [&] {
+    return fmt::format("structure: rests {} nearer to the electrode than a straight one: it would touch it at rest",
+                       engineering(-lowest, "m", 4));
+  });
+  require(d.contact_gap() > 0 && d.contact_gap() < 1, [&] {
+    return fmt::format(
+        "structure: its contact point rests {} nearer to the contact than that of a straight one, gap.contact = {}: "
+        "it would be closed at rest",
+        engineering(d.gap.contact - d.contact_gap(), "m", 4), engineering(d.gap.contact, "m"));
+  });
+  require(!d.touches_along_pad() || d.rest_offset(d.structure.length) == 0,
+          "contact.distribution = pad: not with a structure that is curled at rest, whose pad is tilted before it moves");
+}
+
 void check_gas(const Gas& g, const Structure& s) {
   if (limits_of(g).needs_thickness) positive(s.thickness, "m", "structure.thickness");
   std::visit([](const auto& law) { check_fields("gas", law); }, g);
@@ -121,8 +140,8 @@ void check_contact(const Device& d) {
   std::visit(
       [&](const auto& law) {
         check_fields("contact", law);
-        if constexpr (requires { law.why_invalid(d.gap.contact); }) {
-          const std::string wrong = law.why_invalid(d.gap.contact);
+        if constexpr (requires { law.why_invalid(d.contact_gap()); }) {
+          const std::string wrong = law.why_invalid(d.contact_gap());
           require(wrong.empty(), wrong);
         }
       },
@@ -163,6 +182,15 @@ double Device::contact_position() const {
   if (structure.has_far_clamp()) return structure.length / 2;
   if (!contact || contact->distribution == ContactDistribution::pad) return structure.length;
   return structure.length - contact->pad_length / 2;
+}
+
+double Device::rest_offset(double x) const {
+  return std::visit(
+      [&](const auto& kind) {
+        if constexpr (requires { kind.rest_offset(*this, x); }) return kind.rest_offset(*this, x);
+        return 0.0;
+      },
+      structure.kind);
 }
 
 std::vector<Stretch> Electrode::pads(double length) const {
@@ -225,6 +253,7 @@ std::string why_not_along_pad(const Structure& structure, const Contact& contact
 void validate(const Device& d) {
   check_structure(d);
   check_gap_and_electrodes(d);
+  check_rest_shape(d);
   if (d.gas) check_gas(*d.gas, d.structure);
   if (d.contact) check_contact(d);
   if (d.piezo) check_piezo(*d.piezo, d.structure);

@@ -136,6 +136,10 @@ struct Device {
   /// end, or lies about the middle of a beam between two clamps. Without contact: the free end, or the middle. Of a contact along
   /// the pad: the free end, which touches first.
   [[nodiscard]] double contact_position() const;
+  /// How far the structure rests from the straight shape at x, away from the near electrode [m].
+  [[nodiscard]] double rest_offset(double x) const;
+  /// Rest distance of the contact point to the contact plane [m]: gap.contact of the straight shape and what the rest shape adds.
+  [[nodiscard]] double contact_gap() const { return gap.contact + rest_offset(contact_position()); }
   /// Whether the contact acts along its pad, not at one place.
   [[nodiscard]] bool touches_along_pad() const { return contact && contact->distribution == ContactDistribution::pad; }
   /// Where the pad begins and ends [m]; of a device with a contact.

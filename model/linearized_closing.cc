@@ -303,7 +303,7 @@ void LinearizedClosing::set_node(Node& node, double t, const double* q, const do
   }
   node.inputs.col(dent_).setZero();
   if (contact.active && contact.unloading) {
-    const double d = model_.contact_deflection(q) - model_.device().gap.contact, step = 1e-5 * (std::abs(d) + contact.shift);
+    const double d = model_.contact_deflection(q) - model_.contact_gap(), step = 1e-5 * (std::abs(d) + contact.shift);
     const auto force = [&](double shift) {
       ContactState moved = contact;
       moved.shift = shift;
@@ -424,7 +424,7 @@ LinearizedClosing::Jump LinearizedClosing::at_rest(const Arc& before) const {
 // A contact with memory that unloads from here on keeps the dent of its deepest interference.
 LinearizedClosing::Jump LinearizedClosing::turned(const Arc& before) const {
   Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
-  const double deepest = model_.contact_deflection(before.q.data()) - model_.device().gap.contact, step = 1e-5 * deepest;
+  const double deepest = model_.contact_deflection(before.q.data()) - model_.contact_gap(), step = 1e-5 * deepest;
   const auto shift = [&](double d) { return dent(model_.contact(), d).shift; };
   const double slope = (shift(deepest + step) - shift(deepest - step)) / (2 * step);
   jump.matrix->bottomRows<1>().setZero();
@@ -461,7 +461,7 @@ LinearizedClosing::Jump LinearizedClosing::crossed(const RecordedMotion::PhaseEv
   const VectorXd to = rates(passage.time, before.q.data(), v.data(), change.after);
   const VectorXd lost = (from - to) / approach;
   matrix.topLeftCorner(size_, size_) -= lost * normal.transpose();
-  const double level = change.level - model_.device().gap.contact;
+  const double level = change.level - model_.contact_gap();
   for (Index j = 0; j < moving_; ++j) {
     const auto parameter = static_cast<std::size_t>(j);
     jump.by_device.col(j).head(size_) -=

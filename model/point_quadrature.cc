@@ -4,10 +4,13 @@
 
 namespace softland {
 
-PointQuadrature::PointQuadrature(Eigen::ArrayXd positions, Eigen::ArrayXd weights, const Eigen::MatrixXd& shapes, double open_gap)
-    : positions_(std::move(positions)), weights_(std::move(weights)), open_gap_(open_gap) {
+PointQuadrature::PointQuadrature(Eigen::ArrayXd positions, Eigen::ArrayXd weights, const Eigen::MatrixXd& shapes,
+                                 const Eigen::ArrayXd& rest_gaps)
+    : positions_(std::move(positions)), weights_(std::move(weights)), largest_rest_gap_(rest_gaps.maxCoeff()) {
   const Eigen::Index n = points();
   shapes_ = weighted_shapes_ = Eigen::MatrixXd::Zero((n + block - 1) / block * block, shapes.cols());
+  rest_gaps_ = Eigen::ArrayXd::Constant(shapes_.rows(), largest_rest_gap_);
+  rest_gaps_.head(n) = rest_gaps;
   shapes_.topRows(n) = shapes;
   weighted_shapes_.topRows(n) = weights_.matrix().asDiagonal() * shapes_.topRows(n);
   const auto rows = static_cast<std::size_t>(shapes_.rows()), modes = static_cast<std::size_t>(shapes_.cols());

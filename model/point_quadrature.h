@@ -17,12 +17,15 @@ namespace softland {
 class PointQuadrature {
  public:
   PointQuadrature() = default;
-  /// Positions and weights [m], shapes of the modes there (points x modes) [kg^(-1/2)], and the gap of the straight beam [m].
-  PointQuadrature(Eigen::ArrayXd positions, Eigen::ArrayXd weights, const Eigen::MatrixXd& shapes, double open_gap);
+  /// Positions and weights [m], shapes of the modes there (points x modes) [kg^(-1/2)], and the rest gaps there [m].
+  PointQuadrature(Eigen::ArrayXd positions, Eigen::ArrayXd weights, const Eigen::MatrixXd& shapes,
+                  const Eigen::ArrayXd& rest_gaps);
 
   [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
   [[nodiscard]] const Eigen::ArrayXd& positions() const { return positions_; }  ///< [m]
   [[nodiscard]] const Eigen::ArrayXd& weights() const { return weights_; }      ///< [m]
+  /// At the points, and the largest of them at the idle ones behind [m].
+  [[nodiscard]] const Eigen::ArrayXd& rest_gaps() const { return rest_gaps_; }
   /// phi_i(x_p), a row per point and some of no motion behind them, which fill the last block [kg^(-1/2)].
   [[nodiscard]] const Eigen::MatrixXd& shapes() const { return shapes_; }
   [[nodiscard]] const Eigen::MatrixXd& weighted_shapes() const { return weighted_shapes_; }  ///< w_p phi_i(x_p)
@@ -30,7 +33,7 @@ class PointQuadrature {
   void set_gap(const double* q, GapField& field) const {
     // noalias: no temporary, so no allocation in the hot path.
     field.gap.matrix().noalias() = shapes_ * Eigen::Map<const Eigen::VectorXd>(q, shapes_.cols());
-    field.gap = open_gap_ - field.gap;
+    field.gap = rest_gaps_ - field.gap;
   }
   /// Gap, velocity and smallest gap.
   [[gnu::always_inline]] void set_field(const double* q, const double* v, GapField& field) const {
@@ -67,11 +70,11 @@ class PointQuadrature {
     const double* shapes = shapes_.data() + first * points;
     Lane at[Modes], rate[Modes];
     for (int i = 0; i < Modes; ++i) at[i].setConstant(q[first + i]), rate[i].setConstant(v[first + i]);
-    const double open = open_gap_;
-    Block smallest = Block::Constant(open);
+    const double* rest = rest_gaps_.data();
+    Block smallest = Block::Constant(largest_rest_gap_);
     for (Eigen::Index p = 0; p < points; p += block) {
       Eigen::Map<Block> all_gap(field.gap.data() + p), all_velocity(field.velocity.data() + p);
-      Block gap = Block::Constant(open), velocity = Block::Zero();
+      Block gap = Eigen::Map<const Block>(rest + p), velocity = Block::Zero();
       if (first > 0) gap = all_gap, velocity = all_velocity;
       for (int i = 0; i < Modes; ++i) {
         const Eigen::Map<const Block> shape(shapes + i * points + p);
@@ -88,7 +91,8 @@ class PointQuadrature {
   Eigen::ArrayXd positions_, weights_;
   Eigen::MatrixXd shapes_, weighted_shapes_;
   std::vector<double> weighted_lanes_;  // the latter, for each whole lane of modes point by point
-  double open_gap_ = 0;
+  Eigen::ArrayXd rest_gaps_;
+  double largest_rest_gap_ = 0;
 };
 
 }  // namespace softland

@@ -46,7 +46,7 @@ class Statics {
     some[drive] = model_.value_of_strength(drive, scale);
     none[drive] = model_.value_of_strength(drive, 0);
     const Eigen::VectorXd& shape = model_.basis().contact_shape();
-    const double d = s - model_.device().gap.contact;
+    const double d = s - model_.contact_gap();
     const bool acts = model_.has_contact() && !model_.has_pad_contact() && d > -model_.contact_reach();
     const double push = acts ? contact_force(model_.contact(), d) : 0;
     Eigen::VectorXd others;
@@ -287,7 +287,7 @@ class StepTrial {
   // gets there. The pass is the unstable equilibrium, or the state held at the plane where that comes first. Where the contact
   // point is on it no shape has less energy, so its deflection tells the two sides apart.
   Pass pass(double value, std::span<const double> all) {
-    const double plane = model_.device().gap.contact, strength = model_.strength(drive_, value);
+    const double plane = model_.contact_gap(), strength = model_.strength(drive_, value);
     if (static_.kind == StaticKind::fold && branch_(plane) < strength) {
       const double s = bracketed_zero([&](double x) { return branch_(x) - strength; }, static_.deflection, plane);
       branch_(s);
@@ -324,7 +324,7 @@ StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
   const std::optional<Eigen::VectorXd> rest = model.open_equilibrium(at_begin);
   if (!rest) return {.status = Status::collapsed_at_rest};
   EquilibriumBranch branch(model, drive, bias);
-  const double end = model.device().gap.contact;
+  const double end = model.contact_gap();
   const double begin = model.contact_deflection(rest->data());
   const auto place = [&](double k) { return begin + (end - begin) * k / branch_steps; };
   double best = 0;
@@ -365,7 +365,7 @@ ReleasePoint released_at(double square, double deflection) {
 
 std::optional<HeldEquilibrium> held_by_drive(const Switch& model, std::size_t drive, double deflection, Bias bias) {
   EquilibriumBranch branch(model, drive, bias);
-  const double plane = model.device().gap.contact;
+  const double plane = model.contact_gap();
   double last = nan;
   const auto follow = [&](double from, double to) {
     for (int k = 1; k <= branch_steps; ++k) last = branch(from + (to - from) * k / branch_steps);
@@ -379,7 +379,7 @@ std::optional<HeldEquilibrium> held_by_drive(const Switch& model, std::size_t dr
 ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
   if (!model.has_contact() || !pulls_in(model.device(), drive)) return {};
   EquilibriumBranch branch(model, drive, bias);
-  const double plane = model.device().gap.contact;
+  const double plane = model.contact_gap();
   follow_to_plane(branch, plane);
   if (model.rigid_contact() != nullptr) return released_at(branch(plane), plane);
   if (model.contact_reach() > 0) {
@@ -448,7 +448,7 @@ std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bi
   const std::optional<Eigen::VectorXd> rest = model.open_equilibrium(values);
   if (!rest) return std::nullopt;
   EquilibriumBranch branch(model, drive, bias);
-  const double begin = model.contact_deflection(rest->data()), end = model.device().gap.contact;
+  const double begin = model.contact_deflection(rest->data()), end = model.contact_gap();
   StablePath path{.deflections = {begin}, .values = {0.0}};
   double direction = 0;  // in which the value moves
   for (int k = 1; k <= steps; ++k) {
@@ -503,7 +503,7 @@ double static_push(const Switch& model, const Eigen::VectorXd& q) {
 std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::span<const double> volts) {
   if (!model.has_contact()) return std::nullopt;
   Statics statics(model);
-  const double plane = model.device().gap.contact, step = model.penetration_scale() / 16;
+  const double plane = model.contact_gap(), step = model.penetration_scale() / 16;
   if (model.rigid_contact() != nullptr) {
     const auto held = statics.pinned(volts, plane);
     if (!held || !(held->unknown > 0)) return std::nullopt;
@@ -532,7 +532,7 @@ namespace {
 std::optional<ClosedEquilibrium> closed_by_newton(const Switch& model, std::span<const double> volts,
                                                   const ClosedEquilibrium& near) {
   Statics statics(model);
-  const double plane = model.device().gap.contact;
+  const double plane = model.contact_gap();
   std::optional<ClosedEquilibrium> found;
   if (model.rigid_contact() != nullptr) {
     const auto held = statics.pinned(volts, plane, {.q = near.q, .unknown = near.contact_force});

@@ -57,7 +57,7 @@ std::vector<double> held_slopes(const Switch& model, SwitchSlopes& by, std::size
   volts.resize(model.drives(), 0.0);
   volts[drive] = held->voltage;
   const bool acts = model.has_pad_contact() || (model.has_contact() && model.rigid_contact() == nullptr &&
-                                                deflection > model.device().gap.contact - model.contact_reach());
+                                                deflection > model.contact_gap() - model.contact_reach());
   const ContactState contact = acts;
   const Tangent tangent(model, held->q, volts, contact);
   const Eigen::Index n = model.modes();
@@ -118,7 +118,7 @@ VectorXd motion_by_voltage(const Switch& model, const Tangent& tangent, std::siz
 double small_step(const Switch& model, const VectorXd& direction) {
   constexpr double share = 1e-5;  // of the gap
   const double moved = std::abs(model.contact_deflection(direction.data()));
-  return moved > 0 ? share * model.device().gap.contact / moved : 1;
+  return moved > 0 ? share * model.contact_gap() / moved : 1;
 }
 
 double capacitance_at(const Switch& model, std::size_t drive, const VectorXd& q) {

@@ -72,8 +72,9 @@ void Switch::set_modes(const Modes& structure, double points_per_length, int few
   basis_ = ModalBasis(structure.angular_frequencies(),
                       {.length = structure.length(), .shape = structure.scale(), .frequency = structure.frequency_scale()},
                       *sampled_, device_);
-  quadrature_ =
-      PointQuadrature(sampled_->positions, sampled_->weights, structure.scale() * sampled_->shapes, device_.gap.electrode);
+  Eigen::ArrayXd gaps = Eigen::ArrayXd::Constant(sampled_->positions.size(), device_.gap.electrode);
+  for (Eigen::Index p = 0; p < gaps.size(); ++p) gaps[p] += device_.rest_offset(sampled_->positions[p]);
+  quadrature_ = PointQuadrature(sampled_->positions, sampled_->weights, structure.scale() * sampled_->shapes, gaps);
   if (device_.touches_along_pad()) pad_.emplace(device_.contact->pad_length);
 }
 
@@ -85,6 +86,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
             [&] { return fmt::format("modes = {}: must be from 1 to {}", *options.modes, most); });
     device_.structure.modes = *options.modes;
   }
+  contact_gap_ = device_.contact_gap();
   const Structure& s = device_.structure;
   std::visit(
       [&]<class Kind>(const Kind& kind) {
@@ -140,8 +142,8 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
   }
   // What bends the beam by the contact gap at x_c.
   const double compliance = basis_.contact_shape().cwiseAbs2().cwiseQuotient(basis_.squares()).sum();
-  const double force = device_.gap.contact / compliance;
-  bending_energy_ = force * device_.gap.contact / 2;
+  const double force = contact_gap_ / compliance;
+  bending_energy_ = force * contact_gap_ / 2;
   if (device_.contact) {
     contact_ = contact_law(*device_.contact, s.width);
     penetration_scale_ = penetration_under(force);
@@ -152,7 +154,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
 
 // The interference that carries a force, by bisection: laws grow. A pad is tilted as by that force at the contact point.
 double Switch::penetration_under(double force) const {
-  const double plane = device_.gap.contact;
+  const double plane = contact_gap_;
   const Eigen::VectorXd pushed = basis_.contact_shape().cwiseQuotient(basis_.squares()), still = Eigen::VectorXd::Zero(modes());
   const auto carried = [&](double depth) {
     if (!pad_) return contact_force(*contact_, depth);
@@ -216,7 +218,7 @@ std::optional<Eigen::VectorXd> Switch::equilibrium_from(Eigen::VectorXd q, std::
     const Eigen::VectorXd step = moved->cwiseQuotient(basis_.angular_frequencies());
     q += step;
     if (step.cwiseProduct(basis_.contact_shape()).cwiseAbs().sum() < rounding * device_.gap.electrode) {
-      return contact_deflection(q.data()) < device_.gap.contact ? std::optional(q) : std::nullopt;
+      return contact_deflection(q.data()) < contact_gap_ ? std::optional(q) : std::nullopt;
     }
   }
   return std::nullopt;
@@ -241,7 +243,7 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
 
   double push = 0;
   if (contact.active && !pad_) {
-    const double d = contact_deflection(q) - device_.gap.contact;
+    const double d = contact_deflection(q) - contact_gap_;
     const auto rate = [&] { return contact_deflection(v); };
     push = visit_inline([&](const auto& law) { return force_of(law, d, contact, rate); }, *contact_);
   }
@@ -314,7 +316,7 @@ void Switch::add_film_derivatives(const double* state, const Workspace& work, Ei
 }
 
 double Switch::film_scale() const {
-  return 2 * bending_energy_ / (device_.gap.contact * device_.structure.width * device_.structure.length * film_->ambient());
+  return 2 * bending_energy_ / (contact_gap_ * device_.structure.width * device_.structure.length * film_->ambient());
 }
 
 double Switch::film_energy(const double* state, Workspace& work) const {
@@ -367,7 +369,7 @@ double Switch::dissipated_power(const double* v, Workspace& work, const double* 
 
 template <class F>
 void Switch::for_contact_points(const double* q, F&& f) const {
-  const double d = contact_deflection(q) - device_.gap.contact;
+  const double d = contact_deflection(q) - contact_gap_;
   if (!pad_) return f(0.0, 1.0, d);
   pad_->over_contact(d, basis_.pad_tilt(q), f);
 }

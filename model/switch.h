@@ -77,12 +77,14 @@ class Switch {
   /// State of a contact that has not been touched yet: it acts only within its reach.
   [[nodiscard]] ContactState untouched(const double* q) const {
     const double reach = contact_reach();
-    return has_pad_contact() || (reach > 0 && contact_deflection(q) > device_.gap.contact - reach);
+    return has_pad_contact() || (reach > 0 && contact_deflection(q) > contact_gap_ - reach);
   }
   /// Null unless the contact is rigid.
   [[nodiscard]] const RigidContact* rigid_contact() const { return contact_ ? std::get_if<RigidContact>(&*contact_) : nullptr; }
   [[nodiscard]] const std::optional<GasLaw>& gas() const { return gas_; }
   [[nodiscard]] const std::optional<MidPlaneStretching>& stretching() const { return stretching_; }
+  /// Rest distance of the contact point to the contact plane [m].
+  [[nodiscard]] double contact_gap() const { return contact_gap_; }
   /// Gap below which every law is continued by its tangent and a run counts as having touched the electrode: a hundredth of d0
   /// [m].
   [[nodiscard]] double gap_floor() const { return device_.gap.electrode / 100; }
@@ -212,6 +214,7 @@ class Switch {
   std::optional<MidPlaneStretching> stretching_;
   std::optional<Eigen::VectorXd> rest_;
   double most_gap_ = std::numeric_limits<double>::infinity();  // to the near electrode, where something is on the far side [m]
+  double contact_gap_ = 0;                                     // [m]
   double penetration_scale_ = 0;
   double bending_energy_ = 0;
 };

@@ -29,7 +29,7 @@ SwitchSlopes::SwitchSlopes(const Switch& model, std::vector<std::optional<Neighb
 }
 
 double SwitchSlopes::interference(std::size_t j, const double* q) const {
-  const auto of = [&](const Switch& s) { return s.contact_deflection(q) - s.device().gap.contact; };
+  const auto of = [&](const Switch& s) { return s.contact_deflection(q) - s.contact_gap(); };
   return (of(neighbours_[j].above) - of(neighbours_[j].below)) / neighbours_[j].distance;
 }
 
@@ -57,11 +57,11 @@ void SwitchSlopes::accelerations(std::size_t j, const double* q, const double* v
     result.setZero();
     return;
   }
-  const double wanted = model_.contact_deflection(q) - model_.device().gap.contact;
+  const double wanted = model_.contact_deflection(q) - model_.contact_gap();
   // How far along the static deflection a neighbour has the same interference.
   const auto along = [&](const Switch& s) {
     if (!contact.active) return 0.0;
-    return (wanted + s.device().gap.contact - s.contact_deflection(q)) / s.contact_deflection(deflection_.data());
+    return (wanted + s.contact_gap() - s.contact_deflection(q)) / s.contact_deflection(deflection_.data());
   };
   using Modal = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_modes, 1>;
   const Eigen::Map<const Modal> here(q, n);

@@ -37,7 +37,7 @@ class SlopeFinder {
         motion_(motion),
         options_(options),
         shape_(model.basis().contact_shape()),
-        plane_(model.device().gap.contact),
+        plane_(model.contact_gap()),
         zero_(VectorXd::Zero(model.modes())),
         work_(model.workspace()) {}
 

@@ -78,7 +78,7 @@ class Maker {
     const Eigen::VectorXd omega = model_.basis().angular_frequencies(), phi = model_.basis().contact_shape();
     unit_ = std::abs(phi[0]);
     c_.tau = 1 / omega[0];
-    c_.gap = device_.gap.contact;
+    c_.gap = device_.contact_gap();
     c_.force_scale = c_.gap / (c_.tau * c_.tau * unit_ * unit_);
     const std::optional<Eigen::VectorXd> rest = p_.rest();
     require(rest.has_value(), "a model of this switch for circuits: it has no rest under what its drives stand at before t = 0");
@@ -132,7 +132,7 @@ class Maker {
       const Formula gap = Formula(c_.gap) * max(d_.variable(fmt::format("h{}", p)), Formula(model_.gap_floor() / c_.gap));
       const Formula velocity = Formula(c_.gap / c_.tau) * d_.variable(fmt::format("w{}", p));
       const Formula load = load_at(x, gap, velocity, weight, charges);
-      c_.points.push_back({.gap = sum_of(d_, 'y', -shape, device_.gap.electrode / c_.gap),
+      c_.points.push_back({.gap = sum_of(d_, 'y', -shape, (device_.gap.electrode + device_.rest_offset(x)) / c_.gap),
                            .velocity = sum_of(d_, 'u', shape, 0),
                            .load = (Formula(scale * weight) * load).text(),
                            .share = {shape.begin(), shape.end()}});

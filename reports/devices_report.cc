@@ -284,7 +284,7 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
   d.step_delay = found.step_delay;
   if (!found.courses.gaps.empty()) {
     constexpr double units = 5000;  // in the gap of the contact
-    const double unit = found.varied.model.device().gap.contact / units;
+    const double unit = found.varied.model.contact_gap() / units;
     const auto whole = [unit](const GapCourses& courses) {
       std::vector<std::vector<int>> all;
       for (const std::vector<double>& gap : courses.gaps) {

@@ -35,6 +35,7 @@ constexpr std::array extents{
     Extent{dimension::angular_frequency, 1e-6, 1e15},
     Extent{dimension::energy, 1e-30, 1},
     Extent{dimension::pressure, 1e-12, 1e15},
+    Extent{dimension::stress_gradient, 1e-6, 1e18},
     Extent{dimension::viscosity, 1e-18, 1e6},
     Extent{dimension::stiffness, 1e-12, 1e12},
     Extent{dimension::resistance, 1e-6, 1e15},

@@ -4,7 +4,7 @@ namespace softland {
 
 ContactPhase::ContactPhase(const Switch& model)
     : model_(model),
-      plane_(model.device().gap.contact),
+      plane_(model.contact_gap()),
       reach_(model.contact_reach()),
       has_contact_(model.has_contact()),
       acts_along_pad_(model.has_pad_contact()),

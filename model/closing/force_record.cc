@@ -67,7 +67,7 @@ double ForceRecord::least() const {
 
 void ForceRecord::take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law) {
   if (!law.active || model_.has_pad_contact()) return take_line(from, to);
-  const double plane = model_.device().gap.contact;
+  const double plane = model_.contact_gap();
   const auto force = [&](double t) { return contact_force(model_.contact(), tip.position(t) - plane, law, tip.velocity(t)); };
   if (!(from.velocity * to.velocity < 0)) return follow_way(force, from.time, from.contact_force, to.time, to.contact_force);
   const double turn = tip.turn(), there = force(turn);

@@ -20,7 +20,7 @@ double RestingPlate::press(const Knot& here, double t) {
 // A plate has one mode.
 RestingPlate::Impact RestingPlate::strike(Knot& here) {
   const RigidContact& contact = *model_.rigid_contact();
-  const double shape = model_.basis().contact_shape()[0], plane = model_.device().gap.contact;
+  const double shape = model_.basis().contact_shape()[0], plane = model_.contact_gap();
   double &q = here.state[0], &v = here.state[1];
   Impact impact{.energy = model_.basis().kinetic_energy(&v)};
   const double speed = contact.restitution * std::max(0.0, v * shape);

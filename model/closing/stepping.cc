@@ -66,7 +66,7 @@ void ClosingParts::record(const TipMotion& tip, const TrajectoryPoint& from, con
 Stepping::Stepping(ClosingParts& parts)
     : parts_(parts),
       n_(static_cast<std::size_t>(parts.model.modes())),
-      plane_(parts.model.device().gap.contact),
+      plane_(parts.model.contact_gap()),
       fastest_(parts.model.basis().angular_frequencies().maxCoeff()),
       tolerances_(parts.model, parts.options.tolerance),
       motion_(parts.model, parts.options.tolerance),

@@ -56,7 +56,7 @@ struct ClosingParts {
         course(model.device(), closing_observer),
         observer(closing_observer) {
     if (!rest || !begins_closed(options)) return;
-    phase.begin_closed(model.contact_deflection(rest->data()) - model.device().gap.contact);
+    phase.begin_closed(model.contact_deflection(rest->data()) - model.contact_gap());
     if (phase.in_contact()) touches.begin_closed();
   }
   ClosingParts(const ClosingParts&) = delete;

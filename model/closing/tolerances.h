@@ -22,7 +22,7 @@ struct Tolerances {
     // itself, of the first in proportion).
     constexpr double flight_fraction = 1.0 / 30;   // of the contact gap
     constexpr double penetrations_in_contact = 1;  // of the static interference that bends the beam by the contact gap
-    const double gap = model.device().gap.contact;
+    const double gap = model.contact_gap();
     const auto n = static_cast<std::size_t>(model.modes());
     const Eigen::VectorXd &omega = model.basis().angular_frequencies(), &shape = model.basis().contact_shape();
     const double largest = shape.cwiseAbs().maxCoeff();

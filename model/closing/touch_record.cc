@@ -19,7 +19,7 @@ double peak(double begin, double middle, double end) {
 }  // namespace
 
 TouchRecord::TouchRecord(const Switch& model, const ContactPhase& phase, ClosingObserver& observer)
-    : model_(model), phase_(phase), observer_(observer), plane_(model.device().gap.contact), first_begin_(none) {}
+    : model_(model), phase_(phase), observer_(observer), plane_(model.contact_gap()), first_begin_(none) {}
 
 void TouchRecord::begin(double time, double velocity) {
   if (count_ > 0) observer_.touch(touch_);

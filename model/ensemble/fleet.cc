@@ -214,8 +214,8 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   const Device& device = model.device();
   const ElasticContact contact = *lane_contact(model);
   LaneSwitch s{.modes = model.modes(),
-               .open = device.gap.electrode,
-               .plane = device.gap.contact,
+               .open = model.quadrature().rest_gaps().maxCoeff(),
+               .plane = model.contact_gap(),
                .floor = model.gap_floor(),
                .width = device.structure.width,
                .thickness = device.structure.thickness,
@@ -239,7 +239,10 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
     s.flying[i] = tolerances.in_flight[k], s.touching[i] = tolerances.touching[k], s.speed[i] = tolerances.in_flight[n + k];
     for (Eigen::Index p = 0; p < model.quadrature().points(); ++p) s.shape[p][i] = model.quadrature().shapes()(p, i);
   }
-  for (Eigen::Index p = 0; p < model.quadrature().points(); ++p) s.weight[p] = model.quadrature().weights()[p];
+  for (Eigen::Index p = 0; p < model.quadrature().points(); ++p) {
+    s.weight[p] = model.quadrature().weights()[p];
+    s.rest_gap[p] = model.quadrature().rest_gaps()[p];
+  }
   return s;
 }
 

@@ -43,10 +43,11 @@ struct LaneLayout {
 /// One switch as numbers. Modes that it does not have stand still.
 struct LaneSwitch {
   int modes = 0;
-  double open = 0, plane = 0, floor = 0;                                 // [m]
+  double open = 0, plane = 0, floor = 0;                                 // the largest rest gap, the contact's, the least [m]
   double omega[most_modes] = {}, at_contact[most_modes] = {};            // [rad/s], [kg^(-1/2)]
   double piezo[most_modes] = {}, friction[most_modes] = {};              // [N kg^(-1/2) / V], [1/s]
   double shape[most_points][most_modes] = {}, weight[most_points] = {};  // [kg^(-1/2)], [m]
+  double rest_gap[most_points] = {};                                     // [m]
   double flying[most_modes] = {}, touching[most_modes] = {};             // absolute tolerances of coordinates
   double speed[most_modes] = {};                                         // and of velocities
   double width = 0, thickness = 0, viscosity = 0;                        // [m], [m], [Pa s]

@@ -47,7 +47,7 @@ class UsualLaws {
   /// Lane `l` is of this switch from here on.
   void take(const LaneSwitch& s, std::size_t l) {
     for (int p = 0; p < layout_.points; ++p) {
-      weight_[p][l] = s.weight[p];
+      weight_[p][l] = s.weight[p], rest_gap_[p][l] = s.rest_gap[p];
       for (int i = 0; i < capacity; ++i) shape_[p][i][l] = s.shape[p][i];
     }
     open_[l] = s.open, floor_[l] = s.floor;
@@ -68,7 +68,7 @@ class UsualLaws {
   [[gnu::always_inline]] void add(const V* __restrict q, const V* __restrict v, const V* volts, V* sum, V& least) {
     V smallest = open_;
     const auto field = [&](int p, V& gap, V& velocity) __attribute__((always_inline)) {
-      gap = open_ - shape_[p][0] * q[0];
+      gap = rest_gap_[p] - shape_[p][0] * q[0];
       velocity = shape_[p][0] * v[0];
       for (int i = 1; i < capacity; ++i) gap -= shape_[p][i] * q[i], velocity += shape_[p][i] * v[i];
       smallest = min(smallest, gap);
@@ -125,7 +125,7 @@ class UsualLaws {
 
  private:
   const LaneLayout& layout_;
-  V shape_[most_points][capacity], weight_[most_points];
+  V shape_[most_points][capacity], weight_[most_points], rest_gap_[most_points];
   V open_, floor_, width_, thickness_, viscosity_, strength_, height_;
   Force force_;
   Film film_;
@@ -144,7 +144,7 @@ class AnyLaws {
 
   void take(const LaneSwitch& s, std::size_t l) {
     for (int p = 0; p < layout_.points; ++p) {
-      weight_[p][l] = s.weight[p];
+      weight_[p][l] = s.weight[p], rest_gap_[p][l] = s.rest_gap[p];
       for (int i = 0; i < modes_; ++i) shape_[p * modes_ + i][l] = s.shape[p][i];
     }
     open_[l] = s.open, floor_[l] = s.floor, most_gap_[l] = s.most_gap;
@@ -213,11 +213,11 @@ class AnyLaws {
   void find_field_of(const V* __restrict q, const V* __restrict v, V& least) {
     V at[n], rate[n];
     for (int i = 0; i < n; ++i) at[i] = q[i], rate[i] = v[i];
-    const V open = open_, floor = floor_;
-    V smallest = open, largest = open;
+    const V floor = floor_;
+    V smallest = open_, largest = open_;
     for (int p = 0; p < layout_.points; ++p) {
       const V* shape = shape_ + p * n;
-      V gap = open - shape[0] * at[0], velocity = shape[0] * rate[0];
+      V gap = rest_gap_[p] - shape[0] * at[0], velocity = shape[0] * rate[0];
       for (int i = 1; i < n; ++i) gap -= shape[i] * at[i], velocity += shape[i] * rate[i];
       smallest = min(smallest, gap), largest = max(largest, gap);
       gap_[p] = max(gap, floor), velocity_[p] = velocity, load_[p] = 0;
@@ -338,7 +338,7 @@ class AnyLaws {
 
   const LaneLayout& layout_;
   const int modes_;
-  V shape_[most_points * capacity], weight_[most_points];
+  V shape_[most_points * capacity], weight_[most_points], rest_gap_[most_points];
   V gap_[most_points], far_gap_[most_points], velocity_[most_points], load_[most_points];
   V open_, floor_, most_gap_, width_, thickness_;
   V viscosity_, mean_free_path_, slit_height_, slit_length_, damping_;

@@ -30,7 +30,7 @@ double squeeze_number(const FilmState& gas, double width, double gap, double rat
 }
 
 double squeeze_number(const Device& device, const TrajectoryPoint& point) {
-  const double h = device.gap.electrode - point.position;
+  const double h = device.gap.electrode + device.rest_offset(device.contact_position()) - point.position;
   if (!device.gas || !std::isfinite(limits_of(*device.gas).most_squeeze) || !(h > 0)) return 0;
   return squeeze_number(*film_of(*device.gas), device.structure.width, h, std::abs(point.velocity) / h);
 }

@@ -50,6 +50,21 @@ struct Beam {
 struct Cantilever : Beam {
   static constexpr std::string_view name = "cantilever";
 
+  double stress_gradient = 0;  ///< over the thickness: positive curls the free end away from the near electrode [Pa/m]
+
+  template <class S>
+  static consteval auto fields() {
+    // clang-format off
+    return joined(Beam::fields<S>(), std::to_array<Field<S>>({
+        {.key = "stress_gradient", .unit = "Pa/m", .about = "of the released film over its thickness; positive: the free end rests further from the electrode", .in = within<S, Cantilever, &Cantilever::stress_gradient>, .range = {}, .such_as = "0.5 MPa/um"},
+    }));
+    // clang-format on
+  }
+  template <class Device>
+  [[nodiscard]] double rest_offset(const Device& device, double x) const {
+    return stress_gradient == 0 ? 0 : curl(device, stress_gradient, x);
+  }
+
   template <class S>
   [[nodiscard]] static S example() {
     return {.length = 250e-6, .width = 20e-6, .thickness = 2e-6, .kind = Cantilever{{.youngs_modulus = 78e9, .density = 19300}}};

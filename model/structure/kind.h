@@ -10,10 +10,11 @@
 //
 //   std::string why_invalid(device) const;              the rule that it breaks, with the quantity; empty: none
 //   int most_modes() const;                             fewer than Structure::most_modes
-//   auto stretching(modes, structure) const;            an optional stiffness of stretching
-//   static constexpr bool is_rigid, has_far_clamp;      where they are true
-//   static constexpr std::string_view why_no_layer, why_no_skins;    why [piezo] or [surface] cannot be
-//   static constexpr std::string_view whose, length_is; for messages: "on a plate", and its length in words, {} for the value
+//   double rest_offset(device, x) const;                how far it rests from the straight shape at x, away from the near
+//   electrode auto stretching(modes, structure) const;            an optional stiffness of stretching static constexpr bool
+//   is_rigid, has_far_clamp;      where they are true static constexpr std::string_view why_no_layer, why_no_skins;    why
+//   [piezo] or [surface] cannot be static constexpr std::string_view whose, length_is; for messages: "on a plate", and its length
+//   in words, {} for the value
 //
 // Functions that take a device are templates of its type: a device is made of structures. `Structure`
 // (model/structure/structure.h) answers for the kind in force.

@@ -29,20 +29,35 @@ bool is_finite(const std::vector<double>& values) {
 
 }  // namespace
 
-ModalTable::ModalTable(std::vector<double> positions, std::vector<double> frequencies, std::vector<std::vector<double>> shapes)
-    : positions_(std::move(positions)), frequencies_(std::move(frequencies)), shapes_(std::move(shapes)) {
+ModalTable::ModalTable(std::vector<double> positions, std::vector<double> frequencies, std::vector<std::vector<double>> shapes,
+                       std::vector<double> rest_offsets)
+    : positions_(std::move(positions)),
+      frequencies_(std::move(frequencies)),
+      shapes_(std::move(shapes)),
+      rest_offsets_(std::move(rest_offsets)) {
   constexpr std::size_t fewest = 3;
   require_table(positions_.size() >= fewest && positions_.front() == 0 && rises(positions_) && is_finite(positions_),
                 "three positions at least must rise from 0, the clamp");
   require_table(!frequencies_.empty() && frequencies_.front() > 0 && rises(frequencies_) && is_finite(frequencies_),
                 "the frequencies must be positive and rise");
   require_table(shapes_.size() == frequencies_.size(), "there must be as many shapes as frequencies");
+  require_table(rest_offsets_.empty() || (rest_offsets_.size() == positions_.size() && is_finite(rest_offsets_)),
+                "there must be a rest offset per position, and finite, or none");
   for (const std::vector<double>& shape : shapes_) {
     require_table(shape.size() == positions_.size(), "a shape must have a value per position");
     require_table(is_finite(shape) && shape.front() == 0, "a shape must be 0 at the clamp, and finite");
     require_table(std::any_of(shape.begin(), shape.end(), [](double v) { return v != 0; }), "a shape must move");
     splines_.emplace_back(positions_, shape);
   }
+}
+
+double ModalTable::rest_offset(double x) const {
+  if (rest_offsets_.empty()) return 0;
+  const auto next = std::clamp<std::ptrdiff_t>(std::ranges::upper_bound(positions_, x) - positions_.begin(), 1,
+                                               static_cast<std::ptrdiff_t>(positions_.size()) - 1);
+  const auto k = static_cast<std::size_t>(next);
+  const double share = (x - positions_[k - 1]) / (positions_[k] - positions_[k - 1]);
+  return rest_offsets_.front() - std::lerp(rest_offsets_[k - 1], rest_offsets_[k], share);
 }
 
 bool ModalTable::is_held_at_both_ends() const {

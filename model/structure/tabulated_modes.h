@@ -27,7 +27,10 @@ class ModalTable {
  public:
   /// `positions` [m] rise from 0, `frequencies` [Hz] rise, a shape [kg^(-1/2)] per frequency and a value in it per position, 0 at
   /// the first one. Throws InvalidInput with the rule unless that holds, with three positions at least.
-  ModalTable(std::vector<double> positions, std::vector<double> frequencies, std::vector<std::vector<double>> shapes);
+  /// `rest_offsets` [m], one per position or none of a straight structure, are those of its face, positive towards the near
+  /// electrode.
+  ModalTable(std::vector<double> positions, std::vector<double> frequencies, std::vector<std::vector<double>> shapes,
+             std::vector<double> rest_offsets = {});
 
   [[nodiscard]] int count() const { return static_cast<int>(frequencies_.size()); }
   [[nodiscard]] double length() const { return positions_.back(); }                         ///< [m]
@@ -38,15 +41,20 @@ class ModalTable {
     return splines_[static_cast<std::size_t>(mode)].value(x);
   }  ///< x in [m]
   [[nodiscard]] double slope(int mode, double x) const { return splines_[static_cast<std::size_t>(mode)].slope(x); }
+  [[nodiscard]] const std::vector<double>& rest_offsets() const { return rest_offsets_; }  ///< [m]
+  /// How far the face rests from where it is at the clamp, away from the near electrode [m]: a straight line between positions.
+  [[nodiscard]] double rest_offset(double x) const;
   /// Whether the last place stands still in every mode: the far end is clamped as well.
   [[nodiscard]] bool is_held_at_both_ends() const;
   [[nodiscard]] bool operator==(const ModalTable& other) const {
-    return positions_ == other.positions_ && frequencies_ == other.frequencies_ && shapes_ == other.shapes_;
+    return positions_ == other.positions_ && frequencies_ == other.frequencies_ && shapes_ == other.shapes_ &&
+           rest_offsets_ == other.rest_offsets_;
   }
 
  private:
   std::vector<double> positions_, frequencies_;
   std::vector<std::vector<double>> shapes_;
+  std::vector<double> rest_offsets_;
   std::vector<ClampedSpline> splines_;
 };
 
@@ -126,6 +134,10 @@ struct ModalStructure {
   template <class Device>
   [[nodiscard]] std::string why_invalid(const Device& device) const {
     return why_invalid(device.structure.length, device.structure.modes);
+  }
+  template <class Device>
+  [[nodiscard]] double rest_offset(const Device&, double x) const {
+    return table->rest_offset(x);
   }
   [[nodiscard]] std::string why_invalid(double length, int modes) const;
   [[nodiscard]] int most_modes() const;

@@ -47,7 +47,7 @@ Judgement judged(const SceneFile& file, int modes, const Watch& watch) {
   with.assign("simulate.effects",
               std::string("all"));  // every number of modes is judged on the same effects; they are chosen after
   const PreparedScene p = prepare(with, false, watch, pull_in_to_be_judged);
-  const double omega = p.model.basis().angular_frequencies()[0], gap = p.scene.device.gap.contact;
+  const double omega = p.model.basis().angular_frequencies()[0], gap = p.scene.device.contact_gap();
   const Trajectory t = simulate_closing(p.model, p.signals(),
                                         {.duration = p.duration,
                                          .tolerance = std::max(run_tolerance, p.tolerance),

@@ -61,8 +61,8 @@ void add_omissible_structure(const PreparedScene& prepared, std::vector<Omissibl
   const auto* const bridge = s.find<Bridge>();
   if (bridge != nullptr && bridge->stretches) {
     list.push_back({.effect = "structure.stretching",
-                    .magnitude = {.name = "contact gap", .unit = "m", .value = d.gap.contact},
-                    .group = {.name = "(gap / thickness)^2", .value = std::pow(d.gap.contact / s.thickness, 2)},
+                    .magnitude = {.name = "contact gap", .unit = "m", .value = d.contact_gap()},
+                    .group = {.name = "(gap / thickness)^2", .value = std::pow(d.contact_gap() / s.thickness, 2)},
                     .instead = false});
   }
   if (bridge != nullptr && bridge->residual_stress != 0) {
@@ -71,6 +71,12 @@ void add_omissible_structure(const PreparedScene& prepared, std::vector<Omissibl
     list.push_back({.effect = "structure.residual_stress",
                     .magnitude = {.name = "stress", .unit = "Pa", .value = bridge->residual_stress},
                     .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(without) - 1},
+                    .instead = 0.0});
+  }
+  if (const auto* const cantilever = s.find<Cantilever>(); cantilever != nullptr && cantilever->stress_gradient != 0) {
+    list.push_back({.effect = "structure.stress_gradient",
+                    .magnitude = {.name = "rise of the contact point", .unit = "m", .value = d.contact_gap() - d.gap.contact},
+                    .group = {.name = "over the contact gap", .value = d.contact_gap() / d.gap.contact - 1},
                     .instead = 0.0});
   }
   if (d.surface) {
@@ -127,7 +133,7 @@ void add_omissible_contact(const PreparedScene& prepared, std::vector<OmissibleE
   const Device& d = prepared.scene.device;
   const Contact& contact = *d.contact;
   if (contact.distribution == ContactDistribution::pad) {
-    const double rise = 1.5 * d.gap.contact / d.structure.length * contact.pad_length;  // of a uniform beam bent by its end
+    const double rise = 1.5 * d.contact_gap() / d.structure.length * contact.pad_length;  // of a uniform beam bent by its end
     list.push_back({.effect = "contact.distribution",
                     .magnitude = {.name = "tilt of the pad", .unit = "m", .value = rise},
                     .group = {.name = "over the interference", .value = rise / prepared.model.penetration_scale()},
@@ -152,10 +158,11 @@ std::vector<OmissibleEffect> omissible_effects(const PreparedScene& prepared) {
   if (d.gas) add_omissible_gas(prepared, list);
   if (d.contact) add_omissible_contact(prepared, list);
   if (d.dispersion && !prepared.drives.at(dispersion_drive).waveform) {
-    const double bent = prepared.model.rest() ? prepared.model.contact_deflection(prepared.model.rest()->data()) : d.gap.contact;
+    const double bent =
+        prepared.model.rest() ? prepared.model.contact_deflection(prepared.model.rest()->data()) : d.contact_gap();
     list.push_back({.effect = "dispersion",
                     .magnitude = {.name = "deflection at rest", .unit = "m", .value = bent},
-                    .group = {.name = "over the contact gap", .value = bent / d.gap.contact},
+                    .group = {.name = "over the contact gap", .value = bent / d.contact_gap()},
                     .instead = {}});
   }
   const SceneFile scene = prepared.resolved();

@@ -28,7 +28,7 @@ Eigen::MatrixXd loads_at(const Switch& model, const Eigen::VectorXd& q) {
 
 // The beam as it touches: held at the contact plane by each drive that can, else by a force at the contact.
 std::vector<Eigen::VectorXd> at_touch(const Switch& model) {
-  const double plane = model.device().gap.contact;
+  const double plane = model.contact_gap();
   std::vector<Eigen::VectorXd> states;
   for (std::size_t k = 0; k < model.device().electrodes.size(); ++k) {
     if (!pulls_in(model.device(), k)) continue;

@@ -162,7 +162,7 @@ class ClosingRuns {
     const std::string what =
         count_++ == 0 ? "closing" : fmt::format("closing again at tolerance {}, for its errors", engineering(tolerance, "", 1));
     const Hold hold = hold_of(model, signals_);
-    CourseRecorder recorder(prepared_.scene.device.gap.contact, prepared_.scene.metrics);
+    CourseRecorder recorder(prepared_.scene.device.contact_gap(), prepared_.scene.metrics);
     r.trajectory = observe_closing(model, signals_,
                                    {.duration = prepared_.duration,
                                     .tolerance = tolerance,
@@ -241,7 +241,7 @@ std::string in_telling_digits(double above, double bound) {
 void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared, bool may_tighten) {
   const Run &own = run.own, &judge = run.judge;
   const bool is_tighter = judge.tolerance < own.tolerance;
-  c.errors = difference(own.metrics, judge.metrics, own.tolerance, prepared.scene.device.gap.contact);
+  c.errors = difference(own.metrics, judge.metrics, own.tolerance, prepared.scene.device.contact_gap());
   forget_what_is_chaotic(c.errors, own, judge, prepared.scene.metrics);
   for (const Figure& figure : all_figures) c.errors[figure] *= stated_safety;
   allow_for_residual(c.errors, own.trajectory);
@@ -356,7 +356,7 @@ void allow_for_residual(FigureValues& errors, const Trajectory& run) {
 
 double least_peak_force(const PreparedScene& prepared) {
   constexpr double share = 0.01;
-  return share * 2 * prepared.model.bending_energy() / prepared.scene.device.gap.contact;
+  return share * 2 * prepared.model.bending_energy() / prepared.scene.device.contact_gap();
 }
 
 Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watch& watch) {

@@ -31,7 +31,7 @@ double touching_share(const Law& law, double d) {
 std::optional<SummitsAtHold> summits_at_hold(const Switch& model, const ClosedEquilibrium& closed) {
   const Device& device = model.device();
   if (!device.contact || device.touches_along_pad()) return std::nullopt;
-  const double d = model.contact_deflection(closed.q.data()) - device.gap.contact;
+  const double d = model.contact_deflection(closed.q.data()) - device.contact_gap();
   return std::visit(
       [&]<class Law>(const Law& law) -> std::optional<SummitsAtHold> {
         if constexpr (requires { law.summits.density; }) {

@@ -25,7 +25,7 @@ double right_hand_side_seconds(const Switch& model, const std::vector<Signal>& s
   std::vector<char> touching(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double* q = &states[size * i];
-    touching[i] = model.has_contact() && (model.contact_deflection(q) > model.device().gap.contact || model.untouched(q).active);
+    touching[i] = model.has_contact() && (model.contact_deflection(q) > model.contact_gap() || model.untouched(q).active);
   }
   const std::vector<double> volts = hold_levels(signals);
   Switch::Workspace work = model.workspace();

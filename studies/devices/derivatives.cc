@@ -68,7 +68,7 @@ struct Changes {
 
 NominalClosing close_nominal(const PreparedScene& nominal, const std::vector<Signal>& signals, const Changes& by,
                              const DerivativeOptions& options, const Watch& watch) {
-  MetricsObserver observer(nominal.model.device().gap.contact, nominal.scene.metrics);
+  MetricsObserver observer(nominal.model.contact_gap(), nominal.scene.metrics);
   RecordedMotion tape(observer);
   const Trajectory end = observe_closing(
       nominal.model, signals, {.duration = nominal.duration, .tolerance = options.tolerance, .stop = watch.stop}, tape);

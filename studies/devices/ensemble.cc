@@ -38,7 +38,7 @@ class LaneFigures final : public LandingObserver {
   [[nodiscard]] DeviceOutcome outcome(const Switch& model, const FleetEnd& end) {
     course_.last_time = end.time;
     const Trajectory run{.status = Status::done,
-                         .contact_gap = model.device().gap.contact,
+                         .contact_gap = model.contact_gap(),
                          .in_contact_period = model.basis().in_contact_period(),
                          .steady_force_time = end.steady_force_time,
                          .least_force_after_touch = end.least_force_after_touch,
@@ -203,9 +203,7 @@ DeviceUnits DeviceMeter::told_by(double time) const {
   return {.volts = volts, .time = 1, .volts_by_time = slope / volts};
 }
 
-double DeviceMeter::piezo_unit(const Switch& model) {
-  return std::abs(model.basis().piezo_deflection()) / model.device().gap.contact;
-}
+double DeviceMeter::piezo_unit(const Switch& model) { return std::abs(model.basis().piezo_deflection()) / model.contact_gap(); }
 
 double DeviceMeter::frequency() const { return nominal_->model.basis().angular_frequencies()[0] / (2 * pi); }
 
@@ -354,7 +352,7 @@ double DeviceOutcome::of(const Figure& figure) const {
 DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal>& signals, const MetricsOptions& options,
                            const ClosingOptions& run) {
   if (!device.model) return {.metrics = {}, .failure = device.refusal};
-  MetricsObserver observer(device.model->device().gap.contact, options);
+  MetricsObserver observer(device.model->contact_gap(), options);
   const Trajectory end = observe_closing(*device.model, signals, run, observer);
   DeviceOutcome outcome{.metrics = observer.metrics(end)};
   if (outcome.metrics.status == Status::numerical_failure || outcome.metrics.status == Status::collapsed_at_rest)

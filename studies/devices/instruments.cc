@@ -208,7 +208,7 @@ DeviceReader::Reading DeviceReader::touch(const Instrument& instrument, bool wit
   near_.drive_by(drive);
   const std::vector<Signal> signals = near_.signals();
   const double window = last_breakpoint(signals) + duration();
-  EdgeRecorder edges(model_->device().gap.contact);
+  EdgeRecorder edges(model_->contact_gap());
   RecordedMotion tape(edges);
   const Trajectory run =
       observe_closing(*model_, signals, {.duration = window, .tolerance = tolerance_of_readings, .after_contact = 0}, tape);
@@ -237,7 +237,7 @@ VectorXd DeviceReader::followed(const Instrument& instrument, const Switch& mode
     constexpr double beyond = 1.0001;
     return run(beyond * instrument.times.back(), std::numeric_limits<double>::infinity(), points) ? points.values() : unknown;
   }
-  EdgeRecorder edges(model.device().gap.contact);
+  EdgeRecorder edges(model.contact_gap());
   const double after = instrument.edges == 1 ? 0 : 2 * pi / nominal_.model.basis().angular_frequencies()[0];
   return run(window, after, edges) ? edges.first(instrument.size()) : unknown;
 }

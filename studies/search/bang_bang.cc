@@ -52,7 +52,7 @@ std::optional<BangBang> bang_bang(const Switch& model, const std::vector<double>
                                   std::span<const double> before) {
   const auto n = static_cast<std::size_t>(model.modes());
   const double shape = model.basis().contact_shape()[0];
-  const double contact = model.device().gap.contact;
+  const double contact = model.contact_gap();
   Switch::Workspace work = model.workspace();
   const auto potential = [&](const std::vector<double>& values) {
     return [&, values](double x) {

@@ -26,7 +26,7 @@ using Eigen::VectorXd;
 FreeFlight::FreeFlight(const PreparedScene& prepared, Actuator actuator, double peak)
     : model_(prepared.model),
       modes_(prepared.model.modes()),
-      gap_(prepared.scene.device.gap.contact),
+      gap_(prepared.scene.device.contact_gap()),
       omega_(prepared.model.basis().angular_frequencies()),
       work_(prepared.model.workspace()) {
   require(model_.film_states() == 0, "the least time is not known where the gas film is compressible: gas.model = strip or none");

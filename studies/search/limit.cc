@@ -265,7 +265,7 @@ class LeastTimeSearch {
       result_.simulated_velocity = touch.velocity;
       const double apart = std::abs(touch.time - result_.time);
       const double missed = apart * std::max(touch.velocity, result_.impact_velocity);
-      bool near = apart <= agreement * result_.time || missed <= agreement * prepared_.scene.device.gap.contact;
+      bool near = apart <= agreement * result_.time || missed <= agreement * prepared_.scene.device.contact_gap();
       const bool as_soft = touch.velocity <= result_.impact_velocity + softness * options_.impact_velocity;
       // A contact point that comes to rest beside its plane may graze it before.
       near = near || (options_.at_rest && as_soft && touch.time < result_.time);

@@ -66,7 +66,7 @@ class ReleaseSearch {
   ReleaseSearch(const PreparedScene& given, const OpeningOptions& options)
       : given_(given),
         options_(options),
-        gap_(given.scene.device.gap.contact),
+        gap_(given.scene.device.contact_gap()),
         period_(2 * pi / given.model.basis().angular_frequencies()[0]),
         names_(given.drive_names()),
         told_holds_(hold_levels(signals_of(given.waveforms()))) {
@@ -347,7 +347,7 @@ OpeningResult search_opening(const SceneFile& file, const OpeningOptions& option
   require(given.model.has_contact(), "release needs a [contact] section to open from, and the scene has none");
   require(given.model.rest().has_value(), "with every drive at 0 V the switch has no stable open state: it cannot be opened");
   const ReleaseSearch search(given, options);
-  const double gap = given.scene.device.gap.contact;
+  const double gap = given.scene.device.contact_gap();
   r.holds = hold_levels(given.signals());
   r.open_position = given.model.contact_deflection(given.model.rest()->data());
   r.band = options.band * gap;

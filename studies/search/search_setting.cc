@@ -32,7 +32,7 @@ constexpr double golden_ratio = 1.618033988749895;
 
 // A hold level that a plain step does not close with may still close with a throw: what a closing of this beam would be like.
 Metrics imagined_step(const PreparedScene& given, double period) {
-  const double gap = given.scene.device.gap.contact;
+  const double gap = given.scene.device.contact_gap();
   Metrics step;
   step.initial_contact_time = period / 2;
   step.largest_impact_velocity = gap * given.model.basis().angular_frequencies()[0];
@@ -329,7 +329,7 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
   const double period = 2 * pi / given.model.basis().angular_frequencies()[0];
   CostScale scale{.step = {},
                   .score_window = std::max(period, 3 * given.model.basis().in_contact_period()),
-                  .contact_gap = given.scene.device.gap.contact,
+                  .contact_gap = given.scene.device.contact_gap(),
                   .free_touch = actuator == Actuator::pzt ? braked_touch : driven_touch,
                   .judges_hardness = !(broken(beside, baseline.metrics) > 0)};
   ClosingOptions run{.duration = given.duration, .tolerance = search_tolerance, .after_contact = scale.score_window};

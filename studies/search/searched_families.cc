@@ -44,7 +44,7 @@ void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
     s.starts.push_back(x);
   };
   if (s.drive == piezo_drive) {
-    const double gap = p.scene.device.gap.contact;
+    const double gap = p.scene.device.contact_gap();
     line([](double) { return 0; }, 1.5, 1);
     // Pull towards the contact, brake, let go.
     line([&](double part) { return lifting_voltage(p, (part < 0.5 ? -0.4 : 0.3) * gap); }, 2, 1);

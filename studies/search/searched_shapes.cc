@@ -69,7 +69,7 @@ void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0) {
       {"level_1_V", s.limits.min_voltage, s.limits.max_voltage}, {"dwell_1_s", 0.01 * t0, 3 * t0}, {"edge_s", 0.01 * t0, 3 * t0}};
   if (s.drive == piezo_drive) {
     for (const double lift : {-0.1, 0.3})
-      s.starts.push_back({inside(s, lifting_voltage(p, lift * p.scene.device.gap.contact)), t0, 0.3 * period});
+      s.starts.push_back({inside(s, lifting_voltage(p, lift * p.scene.device.contact_gap())), t0, 0.3 * period});
   } else if (s.brakes) {
     for (const double brake : {0.3, 0.6}) s.starts.push_back({inside(s, brake * s.limits.max_voltage), 0.5 * t0, 0.3 * t0});
   } else {
@@ -179,7 +179,7 @@ void add_bspline(DriveSearch& s, const PreparedScene& p, double t0) {
   };
   const double hold = s.hold, low = s.limits.min_voltage, high = s.limits.max_voltage;
   if (s.drive == piezo_drive) {
-    const double gap = p.scene.device.gap.contact;
+    const double gap = p.scene.device.contact_gap();
     curve([](double) { return 0; }, 1.5);
     curve([&](double part) { return lifting_voltage(p, (part < 0.5 ? -0.4 : 0.3) * gap); }, 2);
   } else if (s.brakes) {
@@ -230,7 +230,7 @@ void add_sines(DriveSearch& s, const PreparedScene& p, double t0) {
     s.starts.push_back(x);
   };
   if (s.drive == piezo_drive) {
-    const double volts = std::abs(lifting_voltage(p, 0.3 * p.scene.device.gap.contact)),
+    const double volts = std::abs(lifting_voltage(p, 0.3 * p.scene.device.contact_gap())),
                  sign = lifting_voltage(p, 1) > 0 ? 1 : -1;
     start(0, -sign * std::min(volts, 0.4 * range), 2);
     start(sign * std::min(volts, 0.4 * range), 0, 2);

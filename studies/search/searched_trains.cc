@@ -51,7 +51,7 @@ void add_pulse(DriveSearch& s, const PreparedScene& p, double t0) {
   add_variables(s, p, t0);
   if (s.drive == piezo_drive) {
     // Brake late in the flight and let go at touch: lifts of a part of the contact gap.
-    const double gap = p.scene.device.gap.contact;
+    const double gap = p.scene.device.contact_gap();
     for (const double brake : {0.3, 0.6}) {
       s.starts.push_back({inside(s, lifting_voltage(p, 0.1 * gap)), inside(s, lifting_voltage(p, brake * gap)), 0.9 * t0,
                           0.7 * t0, 0.05 * period});
@@ -74,7 +74,7 @@ void add_catch(DriveSearch& s, const PreparedScene& p, double t0) {
   const double period = first_period(p), low = s.limits.min_voltage, high = s.limits.max_voltage;
   add_variables(s, p, t0);
   if (s.drive == piezo_drive) {
-    const double gap = p.scene.device.gap.contact;
+    const double gap = p.scene.device.contact_gap();
     for (const double brake : {0.3, 0.6})
       s.starts.push_back({inside(s, lifting_voltage(p, -0.2 * gap)), inside(s, lifting_voltage(p, brake * gap)), inside(s, 0),
                           0.9 * t0, 0.7 * t0, t0, 0.05 * period});
@@ -102,7 +102,7 @@ void add_staircase(DriveSearch& s, const PreparedScene& p, double t0) {
     s.starts.push_back(x);
   };
   if (s.drive == piezo_drive) {
-    const double gap = p.scene.device.gap.contact;
+    const double gap = p.scene.device.contact_gap();
     climb(0, 0, 0.5, 0.05);
     climb(lifting_voltage(p, -0.3 * gap), lifting_voltage(p, 0.3 * gap), 0.5, 0.05);
   } else {
@@ -116,7 +116,8 @@ void add_coast(DriveSearch& s, const PreparedScene& p, double t0) {
   add_variables(s, p, t0);
   if (s.drive == piezo_drive) {
     for (const double brake : {0.3, 0.6})
-      s.starts.push_back({inside(s, lifting_voltage(p, brake * p.scene.device.gap.contact)), 1.4 * t0, 0.5 * t0, 0.05 * period});
+      s.starts.push_back(
+          {inside(s, lifting_voltage(p, brake * p.scene.device.contact_gap())), 1.4 * t0, 0.5 * t0, 0.05 * period});
   } else if (s.brakes) {
     for (const double brake : {0.5, 0.8})
       s.starts.push_back({inside(s, brake * s.limits.max_voltage), 0.5 * t0, 0.5 * t0, 0.01 * period});
@@ -143,7 +144,7 @@ void add_pulses(DriveSearch& s, const PreparedScene& p, double t0) {
     s.starts.push_back(x);
   };
   if (s.drive == piezo_drive) {
-    const double gap = p.scene.device.gap.contact;
+    const double gap = p.scene.device.contact_gap();
     for (const double brake : {0.3, 0.6})
       start(lifting_voltage(p, -0.2 * gap), lifting_voltage(p, brake * gap), 0.8 * t0, 0.7 * t0, 0.05 * t0, 0.05);
   } else if (s.brakes) {

@@ -31,7 +31,7 @@ class PullAndRelease {
 
   Flight fly(double release_at) {
     const Index n = model_.modes();
-    const double gap = model_.device().gap.contact;
+    const double gap = model_.contact_gap();
     Flight flight;
     VectorXd x(2 * n), k1(2 * n), k2 = k1, k3 = k1, k4 = k1;
     x << rest_, VectorXd::Zero(n);

@@ -175,7 +175,7 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
   require(!closing.touches.empty(),
           [&] { return fmt::format("{}: its hold levels do not close the switch: there is no closing to tune", file.name()); });
   scales_ = {.closing_time = closing.touches.front().begin,
-             .gap = nominal_.scene.device.gap.contact,
+             .gap = nominal_.scene.device.contact_gap(),
              .rebound = nominal_.scene.metrics.significant_rebound};
   if (stable_approach(nominal_, options.actuator)) {
     const Metrics step = metrics(simulate_closing(
@@ -301,7 +301,7 @@ std::vector<ImaginedClosing> TunedScene::close(std::span<const ImaginedShot> sho
         closing = std::move(landings[places[k]].closing);
         closing.followed = true;
       } else {
-        SingleClosing single(fleet[k].model->device().gap.contact);
+        SingleClosing single(fleet[k].model->contact_gap());
         const Trajectory run = observe_closing(*fleet[k].model, fleet[k].drives,
                                                {.duration = fleet[k].duration,
                                                 .tolerance = nominal_.tolerance,

@@ -151,8 +151,19 @@ TEST_F(ModalScene, RefusesByNameWhatItCannotDo) {
   EXPECT_THAT(refusal(edited(text, "modes.csv", "none.csv")), HasSubstr("x.toml:3: structure.file = \"none.csv\""));
   write("modes.csv", modes_csv("2e-05"));
   EXPECT_THAT(refusal(text), HasSubstr("the width runs from 10 um to 20 um along the axis"));
+}
+
+// The face of row 7 of 10 is 100 nm nearer to the electrode.
+TEST_F(ModalScene, TakesTheRestShapeOfItsFile) {
   write("modes.csv", modes_csv("1e-05", "1e-7"));
-  EXPECT_THAT(refusal(text), HasSubstr("the face towards the electrode is 100 nm off at 70 um"));
+  const Scene bent = scene(std::string(modes_scene));
+  EXPECT_DOUBLE_EQ(bent.device.rest_offset(70e-6), -1e-7);
+  EXPECT_NEAR(bent.device.rest_offset(65e-6), -5e-8, 1e-20);
+  EXPECT_EQ(bent.device.rest_offset(60e-6), 0);
+  EXPECT_EQ(bent.device.rest_offset(100e-6), 0);
+  const std::string held = resolved(bent, {}).text();
+  EXPECT_THAT(held, HasSubstr("rest_offsets"));
+  EXPECT_EQ(scene(held).device.rest_offset(68e-6), bent.device.rest_offset(68e-6));
 }
 
 TEST_F(ModalScene, RefusesListsThatAreNoTable) {
@@ -162,6 +173,8 @@ TEST_F(ModalScene, RefusesListsThatAreNoTable) {
   const std::string right =
       "positions = [\"0 m\", \"50 um\", \"100 um\"]\nfrequencies = [\"25 kHz\"]\nshapes = [[0, 3e5, 1e6]]\n";
   EXPECT_EQ(refusal(held(right)), "accepted");
+  EXPECT_EQ(refusal(held(right + "rest_offsets = [\"0 m\", \"10 nm\", \"30 nm\"]\n")), "accepted");
+  EXPECT_THAT(refusal(held(right + "rest_offsets = [\"0 m\"]\n")), HasSubstr("must hold a number per position"));
   EXPECT_THAT(refusal(held(edited(right, "3e5, ", ""))), HasSubstr("must hold 1 lists of 3 numbers"));
   EXPECT_THAT(refusal(held(edited(right, "\"50 um\"", "\"150 um\""))), HasSubstr("three positions at least must rise from 0"));
   EXPECT_THAT(refusal(held(edited(right, "[[0,", "[[1,"))), HasSubstr("a shape must be 0 at the clamp"));

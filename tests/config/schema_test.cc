@@ -57,7 +57,7 @@ TEST(Schema, EveryKeySetsAMemberOrIsKnownToSetNone) {
               UnorderedElementsAre("structure.area", "electrode.area", "contact.model", "gas.model", "structure.kind",
                                    "structure.file", "structure.axis", "structure.direction", "structure.length_unit",
                                    "structure.mass_unit", "structure.mass", "structure.mass_normalised", "structure.clamp",
-                                   "structure.positions", "structure.frequencies", "structure.shapes"));
+                                   "structure.positions", "structure.frequencies", "structure.shapes", "structure.rest_offsets"));
 }
 
 TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {

@@ -32,7 +32,7 @@ class Energy {
       potentials_ = after;
       time_ = t;
     }
-    const double d = device_.contact_deflection(q) - device_.device().gap.contact;
+    const double d = device_.contact_deflection(q) - device_.contact_gap();
     const double open = device_.potential(q, volts_, false, work_), kinetic = device_.basis().kinetic_energy(v);
     // What a contact with memory stores is positive, and the least that it can be is enough.
     double contact = 0;

@@ -240,10 +240,19 @@ void vary_contact(SceneFile& file, Dice& dice) {
     put_summits(file, dice, d, model, stiffness * d.gap.contact);
   }
   const bool without_memory = model == "linear" || model == "adhesive" || model.starts_with("asperity");
-  if (without_memory && d.structure.find<Cantilever>() != nullptr && dice.chance(0.3)) put(file, "contact.distribution", "pad");
+  if (without_memory && d.structure.find<Cantilever>() != nullptr && d.rest_offset(d.structure.length) == 0 && dice.chance(0.3))
+    put(file, "contact.distribution", "pad");
   if (without_memory && model != "adhesive" && dice.chance(0.4)) {
     put(file, "contact.damping", dice.log_between(0.02, 2) / (open.basis().angular_frequencies()[0] * d.gap.contact), "s/m");
   }
+}
+
+/// The free end of three cantilevers in ten rises or sinks by up to a third of the contact gap.
+void vary_rest_shape(SceneFile& file, Dice dice) {
+  const Device d = device_of(file);
+  if (d.structure.find<Cantilever>() == nullptr || d.touches_along_pad() || !dice.chance(0.3)) return;
+  const double curvature = dice.between(-0.6, 0.6) * d.gap.contact / (d.structure.length * d.structure.length);
+  put(file, "structure.stress_gradient", curvature * part_of<Beam>(d.structure).youngs_modulus, "Pa/m");
 }
 
 Waveform waveform(Dice& dice, double level, double period) {
@@ -366,6 +375,7 @@ SceneFile random_scene(std::uint64_t seed, std::uint64_t index) {
       vary_gas(file, dice);
       vary_dispersion(file, dice);
       vary_contact(file, dice);
+      vary_rest_shape(file, Dice(seed, index, most_draws + 1 + static_cast<std::uint64_t>(draw)));
       put_waveforms(file, dice);
       const bool stands_open = prepare(file).model.rest().has_value();
       if (stands_open || dice.chance(0.1)) return file;  // of those that collapse at rest a few are enough
