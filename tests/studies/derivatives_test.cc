@@ -197,6 +197,14 @@ TEST(Derivatives, OfAGoldCantilever_optimized) {
                     with(beam, {"gas.viscosity", "contact.pad_length", "contact.asperity_height", "contact.effective_modulus"})},
                    2);
 }
+TEST(Derivatives, OfACurledCantilever_optimized) {
+  expect_agreement({"mem-gold.toml",
+                    Actuator::electrostatic,
+                    "pulse",
+                    {in_100_us, "structure.stress_gradient=0.3 MPa/um"},
+                    with(beam, {"structure.stress_gradient", "contact.pad_length"})},
+                   1);
+}
 TEST(Derivatives, OfAStructureByItsModes_optimized) {
   expect_agreement({"mem-gold-modes.toml",
                     Actuator::electrostatic,

@@ -174,6 +174,9 @@ std::vector<Case> cases() {
                                                  "[\"165 um\", \"180 um\"], [\"185 um\", \"240 um\"]]"})});
   all.push_back({"piezo", gold_pzt({"waveform.piezo={family=\"step\", level=\"-0.2 V\", rise_time=\"30 us\"}",
                                     "simulate.duration=60 us"})});  // later it is chaotic
+  all.push_back({"curled up", gold_at_17_volts({"structure.stress_gradient=0.2 MPa/um"})});
+  all.push_back({"curled down over a film on either side",
+                 gold_at_17_volts({"structure.stress_gradient=-0.2 MPa/um", "gas.far_gap=2 um"})});
   all.push_back({"six modes", gold_at_17_volts({"structure.modes=6"})});
   all.push_back({"modes of a file", scene("mem-gold-modes.toml", {"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V",
                                                                   "simulate.duration=100 us", "simulate.accuracy=1e-4"})});
