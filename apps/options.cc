@@ -43,7 +43,7 @@ void Verb::with_scene(bool required, bool or_result) {
   with_quiet();
 }
 
-void Verb::with_scene(const char* what) { positional("SCENE", common_.scene, what); }
+void Verb::with_scene(const char* word, const char* what, bool required) { positional(word, common_.scene, what, required); }
 
 void Verb::with_set(const std::string& about) { repeated("--set", common_.set, "KEY=VALUE", about + "; may be repeated"); }
 

@@ -48,8 +48,8 @@ class Verb {
 
   /// SCENE, --set and --quiet.
   void with_scene(bool required = true, bool or_result = false);
-  /// SCENE alone; `what` it may be.
-  void with_scene(const char* what);
+  /// The scene alone by its word in --help; `what` it may be.
+  void with_scene(const char* word, const char* what, bool required = true);
   void with_set(const std::string& about);
   void with_quiet();
   void with_json();
