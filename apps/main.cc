@@ -92,8 +92,6 @@ int run(int argc, char** argv) {
   for (const verbs::Study& study : verbs::all_studies()) {
     const auto* const own = std::ranges::find(runs, study.name, &RunRow::name);
     add_study(add(study.name, study.about), study, own == runs.end() ? nullptr : own->run);
-    if (study.name == std::string_view("optimize"))
-      for (const VerbRow& row : first_verbs) row.add(add(row.name, row.about));
   }
   for (const VerbRow& row : other_verbs) row.add(add(row.name, row.about));
   if (!parse(app, words, names)) return exit_done;

@@ -83,6 +83,7 @@ int run_study(const verbs::Study& study, const Common& c, const verbs::Told& tol
             [&] { return fmt::format("--{0} and --out belong together: the {0} is written into that folder", study.leaving); });
   const bool takes_results = study.scene != verbs::scene_alone;
   const SceneFile file = takes_results ? load_scene_or_result(c) : load_scene(c);
+  static_cast<void>(read_scene(file));  // an output must not replace a table that it names
   std::optional<ResultFolder> folder = claim_places(c, study.files);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const Watch& watch = work->watch();

@@ -1,4 +1,4 @@
-// The verbs that look at one scene (verbs/study.h), on the command line.
+// The verbs of verbs/study.h on the command line.
 #pragma once
 
 #include "apps/options.h"

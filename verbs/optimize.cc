@@ -39,6 +39,9 @@ struct OptimizeVerb : Usual, OptimizeRequest {
                         scene = scene_alone,
                         leaves = "folder for the report, the waveform found and all data (default: softland-out)",
                         place = "softland-out";
+  static constexpr auto in_python =
+      "\n\n        The result has the keys of result.json, and `files` such as best.toml. `softland optimize --help` lists the "
+      "optimizers.";
   static constexpr Takes takes{.scene = false};
   static std::string remarks() {
     return "Without a scene: scenes/mem-gold-pzt.toml. The hold level is the scene's own; its [driver.*] limits are never left.\n"

@@ -56,9 +56,9 @@ struct OptionRow {
   bool is_positional = false;
 };
 
-/// How Python has an option; what is empty follows from its kind.
+/// How Python has an option; what is not said follows from its kind. Without a value it must be given.
 struct InPython {
-  const char *keyword = "", *type = "", *value = "", *told = "";
+  std::optional<std::string> keyword = {}, type = {}, value = {}, told = {};
   bool is_positional = false;
 };
 
@@ -107,8 +107,8 @@ class OptionList {
         "float | str | None", "None", fmt::format("_quantity({{}}, \"{}\")", unit));
   }
   template <class T>
-  void whole(const char* name, T&, Range, const std::string& about) {
-    add({.name = name, .word = "N", .about = about, .may_be_empty = true}, "int | None", "None", "_whole({})");
+  void whole(const char* name, T&, Range, const std::string& about, const char* word = "N") {
+    add({.name = name, .word = word, .about = about, .may_be_empty = true}, "int | None", "None", "_whole({})");
   }
   void file(const char* name, std::optional<std::string>&, const std::string& about) {
     add({.name = name, .word = "FILE", .about = about}, "str | os.PathLike[str] | None", "None", "_path({})");
@@ -181,13 +181,12 @@ class OptionList {
 
  private:
   /// `told` has {} for the keyword.
-  void add(OptionRow row, std::string type, std::string value, const std::string& told) {
+  void add(OptionRow row, const std::string& type, const std::string& value, const std::string& told) {
     const auto [door, form] = std::exchange(next_, {});
-    const auto or_else = [](const char* own, std::string usual) { return *own != '\0' ? std::string(own) : std::move(usual); };
     row.door = door;
-    row.keyword = or_else(form.keyword, row.keyword.empty() ? keyword_of(row.name) : row.keyword);
-    row.type = or_else(form.type, std::move(type)), row.value = or_else(form.value, std::move(value));
-    row.told = fmt::format(fmt::runtime(or_else(form.told, told)), row.keyword);
+    row.keyword = form.keyword.value_or(row.keyword.empty() ? keyword_of(row.name) : row.keyword);
+    row.type = form.type.value_or(type), row.value = form.value.value_or(value);
+    row.told = fmt::format(fmt::runtime(form.told.value_or(told)), row.keyword);
     row.is_positional = row.is_positional || form.is_positional;
     all_.push_back(std::move(row));
   }
@@ -238,7 +237,7 @@ class OptionReader {
     if (const std::string* const text = find(name)) value = quantity_of(name, *text, wanted);
   }
   template <class T>
-  void whole(const char* name, T& value, Range range, const std::string&) {
+  void whole(const char* name, T& value, Range range, const std::string&, const char* = "N") {
     const std::string* const text = find(name);
     if (text == nullptr) return;
     value = whole_number<typename Held<T>::type>(requested(name), *text, range);

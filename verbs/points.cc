@@ -92,7 +92,7 @@ OtherStudy::Record record_of(const Study& study, const SceneFile& scene, const O
 const OtherStudies& studies_of_points() {
   static const OtherStudies all = [] {
     OtherStudies others;
-    for (const Study& study : all_studies()) {
+    for (const Study& study : scene_studies()) {
       if (!study.is_explorable) continue;
       others.push_back(
           {.name = study.name,

@@ -24,14 +24,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from ._closing import Closing
 from ._outcome import Outcome
 from ._progress import Progress
-from ._studying import Studying, Told, _assigned, _flag, _joined, _pairs, _path, _paths, _quantity, _text, _whole
+from ._studying import Studying, Told, _assigned, _flag, _joined, _pairs, _path, _paths, _quantity, _settings, _text, _whole
 from ._tuning import PracticeDevice, Tuning
 from ._waveform import OwnWaveform, Waveform
+
+if TYPE_CHECKING:
+    from ._results import Store
 
 
 class Studies(Studying):

@@ -26,10 +26,19 @@ std::string Study::keyword(std::string_view option) const {
   return row == options.end() ? keyword_of(option) : row->keyword;
 }
 
+const std::vector<Study>& scene_studies() {
+  static const std::vector<Study> all{check_study(),   pull_in_study(),    effects_study(), accuracy_study(), limit_study(),
+                                      release_study(), robustness_study(), fit_study(),     calibrate_study()};
+  return all;
+}
+
 const std::vector<Study>& all_studies() {
-  static const std::vector<Study> all{simulate_study(),  optimize_study(), check_study(),   pull_in_study(),    effects_study(),
-                                      accuracy_study(),  limit_study(),    release_study(), robustness_study(), fit_study(),
-                                      calibrate_study(), tune_study(),     device_study(),  export_study()};
+  static const std::vector<Study> all = [] {
+    std::vector<Study> studies{simulate_study(), optimize_study(), explore_study()};
+    studies.insert(studies.end(), scene_studies().begin(), scene_studies().end());
+    for (Study (*one)() : {tune_study, device_study, export_study}) studies.push_back(one());
+    return studies;
+  }();
   return all;
 }
 

@@ -156,6 +156,7 @@ template <class Request>
 [[nodiscard]] Study check_study();
 [[nodiscard]] Study device_study();
 [[nodiscard]] Study effects_study();
+[[nodiscard]] Study explore_study();
 [[nodiscard]] Study export_study();
 [[nodiscard]] Study fit_study();
 [[nodiscard]] Study limit_study();
@@ -166,7 +167,8 @@ template <class Request>
 [[nodiscard]] Study simulate_study();
 [[nodiscard]] Study tune_study();
 
-/// All of them, in the order of --help.
+/// Those of a scene alone, and all of them, in the order of --help.
+[[nodiscard]] const std::vector<Study>& scene_studies();
 [[nodiscard]] const std::vector<Study>& all_studies();
 /// Throws InvalidInput where there is none of this name.
 [[nodiscard]] const Study& study_named(std::string_view name);

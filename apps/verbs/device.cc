@@ -14,7 +14,6 @@
 #include "apps/line_reader.h"
 #include "apps/scenes.h"
 #include "apps/streams.h"
-#include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
 #include "base/trimmed.h"

@@ -30,6 +30,8 @@
 #include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/report_files.h"
+#include "reports/result_document.h"
+#include "reports/result_json.h"
 #include "reports/result_maker.h"
 #include "reports/robustness_words.h"
 #include "reports/search_report.h"
@@ -174,7 +176,8 @@ int run_search(const Asked& asked) {
   if (search.devices() == 0 && !c.quiet) {
     for (const std::string& broken : best.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
   }
-  print_result(c, result, words_on_devices(asked, report, place) + left_in(place, left));
+  print_json_or(c, summary_json(result_json(result)),
+                terminal_text(result_document(result)) + words_on_devices(asked, report, place) + left_in(place, left));
   return status_of(report.found);
 }
 

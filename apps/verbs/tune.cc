@@ -20,7 +20,6 @@
 #include "apps/scenes.h"
 #include "apps/streams.h"
 #include "apps/tuning_lab.h"
-#include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
 #include "base/shell_word.h"

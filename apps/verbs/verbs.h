@@ -1,5 +1,5 @@
-// The verbs of the command line that are no studies of a scene, in the order of --help: each is a file here that says what it may
-// be told and does it.
+// What the command line alone runs: the verbs of verbs/study.h without a computation, and in the order of --help those that it
+// alone has, each a file here that says what it may be told and does it.
 #pragma once
 
 #include <array>
@@ -10,7 +10,6 @@
 namespace softland::apps {
 
 void add_modes(Verb& verb);
-void add_explore(Verb& verb);
 void add_table(Verb& verb);
 void add_status(Verb& verb);
 void add_merge(Verb& verb);
@@ -21,6 +20,7 @@ void add_read(Verb& verb);
 
 // Verbs of verbs/study.h that the program runs in its own way.
 [[nodiscard]] int run_optimize(const Common& common, const verbs::Told& told);
+[[nodiscard]] int run_explore(const Common& common, const verbs::Told& told);
 [[nodiscard]] int run_tune(const Common& common, const verbs::Told& told);
 [[nodiscard]] int run_device(const Common& common, const verbs::Told& told);
 
@@ -28,7 +28,8 @@ struct RunRow {
   std::string_view name;
   RunTold run;
 };
-inline constexpr std::array runs{RunRow{"optimize", run_optimize}, RunRow{"tune", run_tune}, RunRow{"device", run_device}};
+inline constexpr std::array runs{RunRow{"optimize", run_optimize}, RunRow{"explore", run_explore}, RunRow{"tune", run_tune},
+                                 RunRow{"device", run_device}};
 
 struct VerbRow {
   const char* name;
@@ -36,10 +37,7 @@ struct VerbRow {
   void (*add)(Verb& verb);  ///< says what the verb may be told, and what it runs
 };
 
-/// In --help the studies (verbs/study.h) stand between these and the others.
-inline constexpr std::array first_verbs{
-    VerbRow{"explore", "compute many points of a design space into a store", add_explore},
-};
+/// In --help they stand behind those of verbs/study.h.
 inline constexpr std::array other_verbs{
     VerbRow{"modes", "natural frequencies; modes of another program as a table for a scene", add_modes},
     VerbRow{"table", "print the rows of a store, as CSV or for people", add_table},

@@ -25,9 +25,6 @@ from ._tuning import Device
 from ._units import units
 from ._waveform import Waveform
 
-if TYPE_CHECKING:
-    from ._results import Store
-
 Array = npt.NDArray[np.float64]
 Value = Union[str, float, int, bool, Sequence[Any], Mapping[str, Any]]
 
@@ -65,10 +62,6 @@ def _holds_quantity(native: _softland.Scene, key: str) -> bool:
         return bool(_softland.units(native.written(key) or "")[1])
     except ValueError:
         return False
-
-
-def _jobs(jobs: int | None) -> int:
-    return jobs if jobs is not None else os.cpu_count() or 1
 
 
 class Waveforms(Mapping[str, Waveform]):
@@ -188,43 +181,6 @@ class Scene(Studies, MutableMapping[str, Any]):
     def modes(self, places: int = 101) -> Modes:
         """Natural frequencies and mode shapes."""
         return Modes(self._native.frequencies(), *self._native.shapes(places))
-
-    def explore(
-        self,
-        vary: Mapping[str, str] | Sequence[str],
-        out: str | os.PathLike[str] = "softland-out.sqlite",
-        *,
-        study: Literal["simulate", "pull-in", "robustness", "optimize", "limit", "release", "effects", "check"] = "simulate",
-        sample: str = "",
-        pareto: Sequence[str] = (),
-        options: Mapping[str, Any] | None = None,
-        resume: bool = False,
-        shard: str = "",
-        seed: int = 1,
-        jobs: int | None = None,
-        progress: bool | Progress | None = None,
-    ) -> Store:
-        """An exploration of the design space, as `softland explore`: a row in the store `out` for every point, which is returned.
-
-        vary: what varies, {"gap.contact": "1.6 um:2.4 um:7"}: LOW:HIGH:N, with :log in equal ratios, or A,B,C; "gap.electrode*gap.contact" by one
-            factor; all combinations.
-        sample: "sobol:256" or "lhs:256" points in the box of LOW:HIGH instead.
-        pareto: figures of which the front is searched: ["initial_contact_time", "max:bounce_free"]; sample "nsga2:N" says with how many points.
-        study: what is asked of every point; options: of it, by their names on the command line: {"certify": True}, {"samples": 200}, {"target": "energy"}.
-        resume: go on with the store: points that it holds are not computed again. shard: "2/8", the second of eight parts.
-        Ctrl-C raises KeyboardInterrupt; the rows that are done are in the store.
-        """
-        from ._results import Store
-
-        words = [f"{key}={values}" for key, values in vary.items()] if isinstance(vary, Mapping) else list(vary)
-        given = {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in (options or {}).items()}
-        request = {
-            "vary": words, "out": os.fspath(out), "study": study, "sample": sample, "pareto": ",".join(pareto), "options": given,
-            "resume": resume, "shard": shard, "seed": seed, "jobs": _jobs(jobs), "command": command(),
-        }  # fmt: skip
-        with shown(progress) as tell:
-            _softland.explore(self._native, {**request, "progress": tell})
-        return Store(Path(out))
 
     def tune(
         self,

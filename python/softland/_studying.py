@@ -8,15 +8,19 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _softland
 from ._bench import bench_of
 from ._closing import Closing
+from ._errors import InvalidInput
 from ._outcome import Outcome
 from ._progress import Progress, shown
 from ._tuning import PracticeDevice, Tuning
 from ._waveform import OwnWaveform, Waveform
+
+if TYPE_CHECKING:
+    from ._results import Store
 
 Told = Mapping[str, "Sequence[Any] | None"]
 
@@ -58,6 +62,13 @@ def _pairs(values: Mapping[str, float | str] | None, between: str) -> list[str] 
 
 def _assigned(values: Mapping[str, float | str] | None) -> list[str] | None:
     return [f"{key}={one if isinstance(one, str) else f'{float(one)!r} V'}" for key, one in values.items()] if values else None
+
+
+def _settings(values: Mapping[str, Any] | Sequence[str] | None) -> list[str] | None:
+    """KEY=VALUE of a mapping, or as they are written."""
+    if not isinstance(values, Mapping):
+        return None if values is None else list(values)
+    return [f"{key}={str(one).lower() if isinstance(one, bool) else one}" for key, one in values.items()]
 
 
 def _errors(errors: Mapping[str, float | str] | None, *more: str) -> dict[str, list[str] | None]:
@@ -112,6 +123,15 @@ class Studying:
         }
         with shown(progress) as tell:
             return Outcome(_softland.optimize(self._native, texts(told), {**objects, "progress": tell}))
+
+    def _explore(self, told: Told, progress: bool | Progress | None) -> Store:
+        from ._results import Store
+
+        if not told["vary"]:
+            raise InvalidInput('vary: nothing varies: give {"gap.contact": "1.6 um:2.4 um:7"}')
+        with shown(progress) as tell:
+            _softland.explore(self._native, texts(told), command(), tell)
+        return Store(Path((told["out"] or [""])[0]))
 
     def _export(self, told: Told, progress: bool | Progress | None, waveforms: Mapping[str, Waveform] | None) -> str:
         """Warns where the switch does not close under the samples as well as under the waveform itself."""
