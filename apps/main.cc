@@ -89,8 +89,10 @@ int run(int argc, char** argv) {
     names.emplace_back(name);
     return declared.emplace_back(*app.add_subcommand(name, about)->group("Verbs"), common);
   };
-  for (const VerbRow& row : first_verbs) row.add(add(row.name, row.about));
-  for (const verbs::Study& study : verbs::all_studies()) add_study(add(study.name, study.about), study);
+  for (const verbs::Study& study : verbs::all_studies()) {
+    const auto* const own = std::ranges::find(runs, study.name, &RunRow::name);
+    add_study(add(study.name, study.about), study, own == runs.end() ? nullptr : own->run);
+  }
   for (const VerbRow& row : other_verbs) row.add(add(row.name, row.about));
   if (!parse(app, words, names)) return exit_done;
 

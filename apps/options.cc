@@ -36,14 +36,7 @@ void Verb::flag(const char* name, bool& value, const std::string& about) { optio
 
 void Verb::footer(const std::string& text) { options_.footer(text); }
 
-void Verb::with_scene(bool required, bool or_result) {
-  positional("SCENE", common_.scene,
-             or_result ? "scene file (TOML), folder that --out named, or result.json" : "scene file (TOML)", required);
-  with_set("change one key: --set gap.contact=\"1.8 um\"");
-  with_quiet();
-}
-
-void Verb::with_scene(const char* what) { positional("SCENE", common_.scene, what); }
+void Verb::with_scene(const char* word, const char* what, bool required) { positional(word, common_.scene, what, required); }
 
 void Verb::with_set(const std::string& about) { repeated("--set", common_.set, "KEY=VALUE", about + "; may be repeated"); }
 
@@ -57,16 +50,6 @@ void Verb::with_out(const std::string& about) { option("--out", common_.out, "FO
 
 void Verb::with_out_file(const std::string& about) { option("--out", common_.out, "FILE", about); }
 
-void Verb::with_samples(std::optional<std::string>& value, const std::string& about) { optional("--samples", value, "N", about); }
-
-void Verb::with_seed(std::optional<std::string>& value, const std::string& same) {
-  optional("--seed", value, "N", "whole number from 0 on (default 1): same seed, " + same);
-}
-
-void Verb::with_jobs(std::optional<std::string>& value, const std::string& about) { optional("--jobs", value, "N", about); }
-
 bool Verb::chosen() const { return options_.parsed(); }
-
-std::string first_is_default(std::string names) { return names.insert(names.find(','), " (default)"); }
 
 }  // namespace softland::apps

@@ -38,7 +38,7 @@ class Verb {
   void more(const char* name, std::vector<std::string>& values, const std::string& about);
   /// `word` stands for the value in --help. Empty text is never meant: it comes from an unset shell variable.
   void option(const char* name, std::string& value, const char* word, const std::string& about);
-  /// An option whose empty text is looked at with the value (apps/values.h).
+  /// An option whose empty text is looked at with the value.
   void optional(const char* name, std::optional<std::string>& value, const char* word, const std::string& about);
   /// An option with one value that may be given several times.
   void repeated(const char* name, std::vector<std::string>& values, const char* word, const std::string& about);
@@ -46,20 +46,13 @@ class Verb {
   /// Remarks and examples below the options.
   void footer(const std::string& text);
 
-  /// SCENE, --set and --quiet.
-  void with_scene(bool required = true, bool or_result = false);
-  /// SCENE alone; `what` it may be.
-  void with_scene(const char* what);
+  /// The scene alone by its word in --help; `what` it may be.
+  void with_scene(const char* word, const char* what, bool required = true);
   void with_set(const std::string& about);
   void with_quiet();
   void with_json();
   void with_out(const std::string& about);
   void with_out_file(const std::string& about);
-  void with_samples(std::optional<std::string>& value, const std::string& about);
-  /// `same`: what the same seed gives again.
-  void with_seed(std::optional<std::string>& value, const std::string& same);
-  void with_jobs(std::optional<std::string>& value,
-                 const std::string& about = "threads (default: one per core); the result does not depend on them");
 
   /// What the verb does; the number is the exit status (apps/exit_status.h). What keeps it from its end is an exception: see
   /// apps/failure.h.
@@ -73,8 +66,5 @@ class Verb {
   Common& common_;
   std::function<int(const Common&)> run_;
 };
-
-/// "bounce, count or energy" with the first as the one that is taken when nothing is said.
-[[nodiscard]] std::string first_is_default(std::string names);
 
 }  // namespace softland::apps

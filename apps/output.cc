@@ -11,9 +11,7 @@
 #include "base/companion.h"
 #include "base/require.h"
 #include "reports/files.h"
-#include "reports/result_document.h"
 #include "reports/result_json.h"
-#include "reports/svg.h"
 #include "reports/text.h"
 
 namespace softland::apps {
@@ -55,10 +53,6 @@ std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std:
   return folder;
 }
 
-void print_result(const Common& c, const Result& result, const std::string& left) {
-  print_json_or(c, summary_json(result_json(result)), terminal_text(result_document(result)) + left);
-}
-
 std::string left_in(const fs::path& folder, const std::vector<std::string>& files) {
   return "\n" + wrapped(fmt::format("In {}: {}", folder.string(), fmt::join(files, ", "))) + "\n";
 }
@@ -81,7 +75,5 @@ int exit_status_of(verbs::Ending ending) {
   }
   return exit_interrupted;
 }
-
-int exit_status_of(Status status) { return exit_status_of(verbs::ending_of(status)); }
 
 }  // namespace softland::apps

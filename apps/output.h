@@ -8,11 +8,7 @@
 #include <vector>
 
 #include "apps/options.h"
-#include "model/status.h"
-#include "reports/report_files.h"
-#include "reports/result.h"
 #include "reports/result_folder.h"
-#include "reports/result_json.h"
 #include "verbs/study.h"
 
 namespace softland::apps {
@@ -24,23 +20,13 @@ namespace softland::apps {
 [[nodiscard]] std::optional<ResultFolder> claim_places(const Common& common, const std::vector<std::string>& files,
                                                        const std::vector<std::string>& kept = {});
 
-/// The files of a report (reports/report_files.h).
-template <class Report>
-void write_files(ResultFolder& folder, const Report& report) {
-  for (const ReportFile<Report>& file : files_of(report)) folder.write(file.name, file.text(report));
-}
-
-/// The whole result as --json asks for, or else as text on standard output, with what `left` says about files.
-void print_result(const Common& common, const Result& result, const std::string& left);
-
 /// "In FOLDER: these files".
 [[nodiscard]] std::string left_in(const std::filesystem::path& folder, const std::vector<std::string>& files);
 
 /// Data as --json asks for, or else `text` on standard output.
 void print_json_or(const Common& common, const nlohmann::json& data, const std::string& text);
 
-/// The exit status of a verb, and of one whose closing has this status.
+/// The exit status of a verb.
 [[nodiscard]] int exit_status_of(verbs::Ending ending);
-[[nodiscard]] int exit_status_of(Status status);
 
 }  // namespace softland::apps

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/values.h"
 #include "base/read_file.h"
 #include "base/require.h"
 #include "reports/result_reader.h"

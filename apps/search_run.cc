@@ -10,7 +10,6 @@
 
 #include "apps/scenes.h"
 #include "apps/streams.h"
-#include "apps/values.h"
 #include "base/read_file.h"
 #include "base/require.h"
 #include "reports/quantity.h"
@@ -22,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-AskedSearch asked(const Common& c, const OptimizeRequest& request) {
-  AskedSearch asked{.request = request, .set = c.set, .jobs = job_count(request.jobs), .stop = c.stop};
+AskedSearch asked(const Common& c, const verbs::OptimizeRequest& request) {
+  AskedSearch asked{.request = request, .set = c.set, .jobs = request.jobs, .stop = c.stop};
   if (!c.scene.empty()) {
     asked.given = {.file = c.scene, .folder = fs::absolute(c.scene).parent_path(), .text = read_file(c.scene)};
     asked.scene = load_scene(c);
@@ -56,7 +55,7 @@ std::vector<std::string> shaped_in(const std::vector<std::string>& variables) {
 
 }  // namespace
 
-StoredSearch asked_or_known(const Common& c, const OptimizeRequest& request, std::optional<KnownSearch>& known) {
+StoredSearch asked_or_known(const Common& c, const verbs::OptimizeRequest& request, std::optional<KnownSearch>& known) {
   const std::vector<fs::path> stores = request.resume ? ResultFolder::places(c.out, evaluations_file) : std::vector<fs::path>();
   require(!stores.empty() || !c.scene.empty(), [&] { return fmt::format("--resume: {} holds no search to go on with", c.out); });
   return stored_search(asked(c, request), stores, known);

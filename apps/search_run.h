@@ -9,21 +9,14 @@
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "reports/search_session.h"
+#include "verbs/optimize.h"
 
 namespace softland::apps {
-
-/// What the command line says; what was not given is empty.
-struct OptimizeRequest : SearchRequest {
-  std::vector<std::string> starts;  ///< results and scenes to begin with
-  std::optional<std::string> jobs;  ///< default: one per core
-  bool resume = false;
-  bool limit = false;  ///< compare the winner with the least time of any waveform, however long that takes
-};
 
 /// What the command line asks for, as a search that goes on with one in the folder of --out where it says --resume and there is
 /// one, which is then `known`. Throws InvalidInput with option, value and rule, and where no search in the folder is the one that
 /// is asked for, with what differs.
-[[nodiscard]] StoredSearch asked_or_known(const Common& common, const OptimizeRequest& request,
+[[nodiscard]] StoredSearch asked_or_known(const Common& common, const verbs::OptimizeRequest& request,
                                           std::optional<KnownSearch>& known);
 
 /// The folder of --out.

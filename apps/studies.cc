@@ -76,16 +76,14 @@ std::string leave(ResultFolder& folder, const verbs::Outcome& outcome) {
   return text;
 }
 
-int run_study(const verbs::Study& study, const Common& given, const Given& options) {
-  Common c = given;
-  if (c.out.empty() && study.place != nullptr) c.out = study.place;
-  const verbs::Told told = options.told();
+int run_study(const verbs::Study& study, const Common& c, const verbs::Told& told) {
   const auto run = study.ask(told);
   if (study.leaving != nullptr)
     require(told.contains(study.leaving) == !c.out.empty(),
             [&] { return fmt::format("--{0} and --out belong together: the {0} is written into that folder", study.leaving); });
   const bool takes_results = study.scene != verbs::scene_alone;
   const SceneFile file = takes_results ? load_scene_or_result(c) : load_scene(c);
+  static_cast<void>(read_scene(file));  // an output must not replace a table that it names
   std::optional<ResultFolder> folder = claim_places(c, study.files);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const Watch& watch = work->watch();
@@ -100,13 +98,13 @@ int run_study(const verbs::Study& study, const Common& given, const Given& optio
                               .load = scene_of_result,
                               .waveforms_of = [&](const std::string& result,
                                                   const PreparedScene& nominal) { return waveforms_of(result, nominal, watch); },
-                              .text = [&] { return c.set.empty() ? read_file(c.scene) : file.text(); }});
+                              .text = [&] { return c.set.empty() ? read_file(c.scene) : file.text(); },
+                              .note = c.quiet ? std::function<void(const std::string&)>()
+                                              : [](const std::string& line) { say(with_fields(line, "--")); }});
   work.reset();
-  for (const std::string& note : found.notes) {
-    if (!c.quiet) say(note);
-  }
   if (folder && !found.files.empty()) found.text += leave(*folder, found);
   print_json_or(c, found.json, found.text + found.last);
+  if (!found.fault.empty()) say(found.fault);
   return exit_status_of(found.ending);
 }
 
@@ -120,6 +118,7 @@ void declare(Verb& verb, const OptionRow& option, Given& given) {
     case OptionRow::Kind::further:
       return verb.more(option.name.c_str(), given.repeated[option.name], option.about);
     case OptionRow::Kind::text:
+    case OptionRow::Kind::object:
       break;
   }
   if (option.may_be_empty)
@@ -130,22 +129,27 @@ void declare(Verb& verb, const OptionRow& option, Given& given) {
 
 }  // namespace
 
-void add_study(Verb& verb, const verbs::Study& study) {
+void add_study(Verb& verb, const verbs::Study& study, RunTold run) {
   const auto given = std::make_shared<Given>();
   const auto declare_those = [&](bool behind_the_scene) {
     for (const OptionRow& option : study.options) {
-      if ((option.kind == OptionRow::Kind::further) == behind_the_scene) declare(verb, option, *given);
+      if (option.door != OptionRow::Door::python && (option.kind == OptionRow::Kind::further) == behind_the_scene)
+        declare(verb, option, *given);
     }
   };
-  verb.with_scene(study.scene);
+  verb.with_scene(study.subject, study.scene, study.takes.scene);
   declare_those(true);
-  verb.with_set(study.changes);
-  verb.with_quiet();
-  verb.with_json();
+  if (study.takes.set) verb.with_set(study.changes);
+  if (study.takes.quiet) verb.with_quiet();
+  if (study.takes.json) verb.with_json();
   declare_those(false);
   if (study.leaves != nullptr) verb.with_out(study.leaves);
   verb.footer(study.remarks);
-  verb.runs([&study, given](const Common& common) { return run_study(study, common, *given); });
+  verb.runs([&study, given, run](const Common& common) {
+    Common c = common;
+    if (c.out.empty() && study.place != nullptr) c.out = study.place;
+    return study.ask ? run_study(study, c, given->told()) : run(c, given->told());
+  });
 }
 
 }  // namespace softland::apps

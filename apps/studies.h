@@ -1,4 +1,4 @@
-// The verbs that look at one scene (verbs/study.h), on the command line.
+// The verbs of verbs/study.h on the command line.
 #pragma once
 
 #include "apps/options.h"
@@ -6,7 +6,10 @@
 
 namespace softland::apps {
 
-/// Declares what the verb may be told, and runs it. Keeps a reference to `study`.
-void add_study(Verb& verb, const verbs::Study& study);
+/// Runs a verb that is not the same for all doors.
+using RunTold = int (*)(const Common&, const verbs::Told&);
+
+/// Declares what the verb may be told, and runs it: by `run` where the study has no computation. Keeps a reference to `study`.
+void add_study(Verb& verb, const verbs::Study& study, RunTold run = nullptr);
 
 }  // namespace softland::apps

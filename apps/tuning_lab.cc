@@ -15,7 +15,6 @@
 #include "apps/child_process.h"
 #include "apps/line_reader.h"
 #include "apps/streams.h"
-#include "apps/values.h"
 #include "base/csv.h"
 #include "base/read_file.h"
 #include "base/require.h"
@@ -24,6 +23,7 @@
 #include "reports/files.h"
 #include "reports/quantity.h"
 #include "reports/scene_export.h"
+#include "verbs/options.h"
 
 namespace softland::apps {
 namespace {
@@ -148,7 +148,7 @@ class HandLab final : public TuningLab {
 
   static std::optional<int> count(const std::string& text) {
     if (text == "?") return std::nullopt;
-    return whole_number("bounces:", text, 0);
+    return verbs::whole_number<int>("bounces:", text, {.least = 0});
   }
 
   template <class Answer>

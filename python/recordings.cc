@@ -14,7 +14,6 @@
 #include "exchange/recording.h"
 #include "python/scene.h"
 #include "reports/recording_report.h"
-#include "reports/scene_export.h"
 
 namespace softland::python {
 
@@ -72,27 +71,6 @@ py::array_t<double> edges(const Column& times, const Column& volts, double thres
   return rows;
 }
 
-// The text, and what is to be known of it.
-py::tuple exported(const PyScene& scene, const py::dict& given, const py::object& progress) {
-  const auto text = [&](const char* key) { return given[key].cast<std::optional<std::string>>(); };
-  const ExportRequest request{.format = *text("format"),
-                              .signal = *text("signal"),
-                              .measured = *text("measured"),
-                              .sampling = {.rate = text("sample_rate"),
-                                           .bits = text("bits"),
-                                           .drive = *text("drive"),
-                                           .amplifier = text("amplifier"),
-                                           .marker = text("marker")},
-                              .jobs = given["jobs"].cast<int>()};
-  const SceneFile file = scene.file;
-  std::vector<std::string> said;
-  Run run(progress);
-  const std::string found = run([&](const Watch& watch) {
-    return exported_text(file, request, watch, [&](const std::string& line) { said.push_back(with_fields(line, "")); });
-  });
-  return py::make_tuple(found, said);
-}
-
 }  // namespace
 
 void bind_recordings(py::module_& m) {
@@ -108,7 +86,6 @@ void bind_recordings(py::module_& m) {
       .def_property_readonly("text", [](const Recording& r) { return recording_text(r); })
       .def_property_readonly("svg", [](const Recording& r) { return recording_svg(r); });
   m.def("contact_edges", &edges);
-  m.def("export", &exported);
 }
 
 }  // namespace softland::python

@@ -14,13 +14,10 @@
 #include "config/units.h"
 #include "model/mode_shapes.h"
 #include "model/recorded_motion.h"
-#include "reports/files.h"
-#include "reports/result_document.h"
 #include "reports/result_json.h"
 #include "reports/result_maker.h"
-#include "reports/svg.h"
 #include "studies/closing/auto_settings.h"
-#include "studies/closing/certify.h"
+#include "verbs/report_outcome.h"
 #include "waveforms/export.h"
 
 namespace softland::python {
@@ -155,15 +152,6 @@ py::tuple shapes_of(const PreparedScene& p, int places) {
 
 Result result_of(const PyClosing& c) { return softland::result_of(*c.prepared, c.closing, {.command = c.command}); }
 
-std::map<std::string, std::function<std::string()>> files_of(const Result& result) {
-  const auto kept = std::make_shared<const Result>(result);
-  std::map<std::string, std::function<std::string()>> files{{"result.json", [kept] { return json_text(result_json(*kept)); }},
-                                                            {"report.html", [kept] { return page_html(result_document(*kept)); }},
-                                                            {"gap.svg", [kept] { return svg_gap_chart(*kept); }}};
-  if (kept->best.figures) files["trajectory.csv"] = [kept] { return trajectory_csv(kept->best.curve); };
-  return files;
-}
-
 // quantity -> (value, error, unit), in the order of the table; yes or no without error and unit.
 py::dict figures_of(const Closing& closing) {
   py::dict all;
@@ -176,16 +164,17 @@ py::dict figures_of(const Closing& closing) {
   return all;
 }
 
-PyClosing simulate(PyScene& scene, bool errors, bool certified, int jobs, const py::dict& waveforms, std::string command,
+PyClosing simulate(PyScene& scene, const verbs::Told& told, const py::dict& waveforms, std::string command,
                    const py::object& progress) {
-  Run run(progress);
-  const auto prepared = driven_by(scene.ready(false, run), waveforms_of(waveforms, run));
-  return run([&](const Watch& watch) {
-    PyClosing found{.prepared = prepared,
-                    .closing = certified ? certify(*prepared, watch, jobs) : softland::simulate(*prepared, errors, watch),
-                    .command = std::move(command)};
-    watch.throw_if_stopped();
-    return found;
+  return in_keywords("simulate", [&] {
+    const verbs::SimulateRequest request = verbs::simulate_request(told);
+    Run run(progress);
+    const auto prepared = driven_by(scene.ready(false, run), waveforms_of(waveforms, run));
+    return run([&](const Watch& watch) {
+      PyClosing found{{verbs::simulated(prepared, request, watch)}, std::move(command)};
+      watch.throw_if_stopped();
+      return found;
+    });
   });
 }
 
@@ -194,6 +183,8 @@ PyClosing simulate(PyScene& scene, bool errors, bool certified, int jobs, const 
 void bind_scene(py::module_& m) {
   py::class_<Outcome>(m, "Outcome")
       .def_readonly("json", &Outcome::json)
+      .def_readonly("text", &Outcome::text)
+      .def_readonly("notes", &Outcome::notes)
       .def_property_readonly("files",
                              [](const Outcome& o) {
                                std::vector<std::string> names;
@@ -229,8 +220,8 @@ void bind_scene(py::module_& m) {
            })
       .def("shapes", [](const PyClosing& c, int places) { return shapes_of(*c.prepared, places); })
       .def("outcome", [](const PyClosing& c) {
-        const Result result = result_of(c);
-        return Outcome{.json = json_text(result_json(result)), .files = files_of(result)};
+        const auto result = std::make_shared<const Result>(result_of(c));
+        return python_outcome(result_json(*result), verbs::files_of_report(result));
       });
   py::class_<PyScene>(m, "Scene")
       .def_static("load",

@@ -13,8 +13,7 @@
 #include "config/scene.h"
 #include "python/run.h"
 #include "studies/closing/prepared.h"
-#include "studies/closing/simulate.h"
-#include "verbs/options.h"
+#include "verbs/simulate.h"
 
 namespace softland::python {
 
@@ -36,12 +35,14 @@ struct PyScene {
 struct Outcome {
   std::string json;
   std::map<std::string, std::function<std::string()>> files = {};
+  std::string text = {};
+  std::vector<std::string> notes = {};
 };
 
+[[nodiscard]] Outcome python_outcome(const nlohmann::json& data, const std::vector<verbs::Outcome::File>& files);
+
 /// One closing, with what it is of.
-struct PyClosing {
-  std::shared_ptr<const PreparedScene> prepared;
-  Closing closing;
+struct PyClosing : verbs::Simulated {
   std::string command;
 };
 
@@ -61,6 +62,17 @@ struct PyWaveform {
 /// What stands in the place of a scene's waveforms, by drive.
 /// From a Python dict of softland._softland.Waveform.
 [[nodiscard]] DriveWaveforms waveforms_of(const pybind11::dict& given, Run& run);
+
+/// What `work` gives. Messages about a request have its options in the words of Python.
+template <class Work>
+auto in_keywords(const char* verb, Work&& work) {
+  try {
+    return work();
+  } catch (const InvalidRequest& error) {
+    const verbs::Study& study = verbs::study_named(verb);
+    throw InvalidInput(verbs::spelled(error, [&](std::string_view option) { return study.keyword(option); }));
+  }
+}
 
 /// Asks a study (verbs/study.h) of a scene. `waveforms` are those of others, by name and drive.
 [[nodiscard]] Outcome study(PyScene& scene, const std::string& verb, const verbs::Told& told, const pybind11::dict& waveforms,

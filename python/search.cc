@@ -10,10 +10,11 @@
 
 #include "python/own.h"
 #include "python/scene.h"
-#include "reports/report_files.h"
 #include "reports/result_json.h"
 #include "reports/search_report.h"
 #include "reports/search_session.h"
+#include "verbs/optimize.h"
+#include "verbs/report_outcome.h"
 
 namespace softland::python {
 
@@ -21,17 +22,15 @@ namespace py = pybind11;
 
 namespace {
 
-// What a search is asked for, as Python has it; what is not given is as in the program.
+// What a search is asked for, and what no text can hold.
 struct Request {
-  SearchRequest words;
+  verbs::OptimizeRequest words;
   std::shared_ptr<PythonObjective> objective;
   std::vector<std::shared_ptr<PythonWaveform>> own_waveforms;
   std::vector<py::dict> starts;
-  int jobs = 1;
   py::object callback, progress;
   std::string command;
   std::string out;  // empty: nothing is kept
-  bool resume = false;
 };
 
 PlannedSearch planned_search(const Request& request, const SceneFile& file, Run& run) {
@@ -41,7 +40,7 @@ PlannedSearch planned_search(const Request& request, const SceneFile& file, Run&
   require(
       !search.for_devices || request.own_waveforms.empty(),
       "own_waveforms: a search for devices works on scene files, which cannot hold one: ask for robust=\"none\" or a measure");
-  search.options.jobs = request.jobs;
+  search.options.jobs = request.words.jobs;
   search.options.stop = run.stop();
   for (const py::dict& start : request.starts) {
     search.options.starts.push_back(
@@ -57,14 +56,15 @@ StoredSearch kept_search(const Request& request, const PyScene& scene, std::opti
   AskedSearch asked{.request = request.words,
                     .given = GivenText{.file = scene.file.name(), .folder = scene.directory, .text = scene.file.text()},
                     .scene = scene.file,
-                    .jobs = request.jobs,
+                    .jobs = request.words.jobs,
                     .stop = run.stop()};
   for (const py::dict& start : request.starts) {
     SceneFile begun = scene.file;
     for (const auto& [drive, waveform] : waveforms_of(start, run)) begun.set_waveform(drive, waveform);
     asked.starts.push_back({.name = fmt::format("start {}", asked.starts.size() + 1), .scene = std::move(begun)});
   }
-  const auto stores = request.resume ? ResultFolder::places(request.out, evaluations_file) : std::vector<std::filesystem::path>();
+  const auto stores =
+      request.words.resume ? ResultFolder::places(request.out, evaluations_file) : std::vector<std::filesystem::path>();
   return stored_search(asked, stores, known);
 }
 
@@ -100,13 +100,6 @@ void listen(PlannedSearch& search, const Request& request, Run& run, SearchSessi
   options.on_progress = [&run](const OptimizeProgress& progress) {
     run.watch().tell(fmt::format("search, {} evaluations", progress.evaluations), 0);
   };
-}
-
-std::map<std::string, std::function<std::string()>> files_of(const std::shared_ptr<const SearchReport>& report) {
-  std::map<std::string, std::function<std::string()>> files;
-  for (ReportFile<SearchReport>& file : softland::files_of(*report))
-    files[file.name] = [report, text = std::move(file.text)] { return text(*report); };
-  return files;
 }
 
 // The first error of a Python function comes before what the library made of it.
@@ -162,7 +155,7 @@ Outcome search(PyScene& scene, const Request& request) {
     add_devices(*report, search, request.command, watch);
     running.throw_if_given_up();
     add_result(*report, search, "", {.command = request.command});
-    return Outcome{.json = json_text(result_json(report->result)), .files = files_of(report)};
+    return python_outcome(result_json(report->result), verbs::files_of_report<SearchReport>(report));
   });
 }
 
@@ -185,32 +178,27 @@ Outcome search_in_folder(PyScene& scene, const Request& request) {
     add_result(*report, search, session.destination(*report), {.command = request.command});
     session.add_log(report->result, *report);
     session.leave(*report);
-    return Outcome{.json = json_text(result_json(report->result)), .files = files_of(report)};
+    return python_outcome(result_json(report->result), verbs::files_of_report<SearchReport>(report));
   });
 }
 
 }  // namespace
 
 void bind_search(py::module_& m) {
-  m.def("optimize", [](PyScene& scene, const py::dict& given) {
-    Request request{.objective = given["objective"].cast<std::shared_ptr<PythonObjective>>(),
-                    .own_waveforms = given["own_waveforms"].cast<std::vector<std::shared_ptr<PythonWaveform>>>(),
-                    .starts = given["starts"].cast<std::vector<py::dict>>(),
-                    .jobs = given["jobs"].cast<int>(),
-                    .callback = given["callback"],
-                    .progress = given["progress"],
-                    .command = given["command"].cast<std::string>(),
-                    .out = given["out"].cast<std::string>(),
-                    .resume = given["resume"].cast<bool>()};
-    visit_words(
-        [&](std::string_view name, auto& word) {
-          const py::str key{std::string(name)};
-          if (given.contains(key) && !given[key].is_none()) word = py::str(given[key]).cast<std::string>();
-        },
-        request.words);
-    request.words.constrain = given["constrain"].cast<std::vector<std::string>>();
-    require(!request.resume || !request.out.empty(), "resume: needs `out`, the folder of the search that is gone on with");
-    return request.out.empty() ? search(scene, request) : search_in_folder(scene, request);
+  m.def("optimize", [](PyScene& scene, const verbs::Told& told, const py::dict& given) {
+    return in_keywords("optimize", [&] {
+      const Request request{.words = verbs::optimize_request(told),
+                            .objective = given["objective"].cast<std::shared_ptr<PythonObjective>>(),
+                            .own_waveforms = given["own_waveforms"].cast<std::vector<std::shared_ptr<PythonWaveform>>>(),
+                            .starts = given["starts"].cast<std::vector<py::dict>>(),
+                            .callback = given["callback"],
+                            .progress = given["progress"],
+                            .command = given["command"].cast<std::string>(),
+                            .out = given["out"].cast<std::string>()};
+      require(!request.words.resume || !request.out.empty(),
+              "resume: needs `out`, the folder of the search that is gone on with");
+      return request.out.empty() ? search(scene, request) : search_in_folder(scene, request);
+    });
   });
 }
 

@@ -1,8 +1,6 @@
-// The verbs that look at a scene (verbs/study.h), in Python: its methods are made of their descriptions by the build, and checked
-// and worded as the options of the program.
+// The verbs that look at a scene (verbs/study.h), in Python: its methods are made of their descriptions by the build.
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -19,27 +17,6 @@ namespace py = pybind11;
 
 namespace {
 
-// A message with the names of options as Python has them.
-std::string in_keywords(const verbs::Study& study, const InvalidRequest& error) {
-  constexpr char before_option = '\x02';
-  std::string text;
-  const std::string marked = error.with_fields(std::string(1, before_option));
-  for (std::size_t i = 0; i < marked.size(); ++i) {
-    if (marked[i] != before_option) {
-      text += marked[i];
-      continue;
-    }
-    const std::string_view rest = std::string_view(marked).substr(i + 1);
-    const auto option = std::ranges::find_if(study.options, [&](const verbs::OptionRow& one) {
-      return rest.starts_with(one.name + ' ') || rest.starts_with(one.name + ':');
-    });
-    if (option == study.options.end()) continue;
-    text += option->keyword;
-    i += option->name.size();
-  }
-  return text;
-}
-
 // Waveforms of others, by the names of the user.
 std::map<std::string, DriveWaveforms> others_of(const py::dict& given, Run& run) {
   std::map<std::string, DriveWaveforms> others;
@@ -50,24 +27,25 @@ std::map<std::string, DriveWaveforms> others_of(const py::dict& given, Run& run)
 
 }  // namespace
 
+Outcome python_outcome(const nlohmann::json& data, const std::vector<verbs::Outcome::File>& files) {
+  Outcome outcome{.json = json_text(data)};
+  for (const verbs::Outcome::File& one : files) outcome.files[one.name] = one.text;
+  return outcome;
+}
+
 Outcome study(PyScene& scene, const std::string& verb, const verbs::Told& told, const py::dict& waveforms, std::string command,
               const py::object& progress) {
-  const std::vector<verbs::Study>& all = verbs::all_studies();
-  const auto found = std::ranges::find_if(all, [&](const verbs::Study& one) { return one.name == verb; });
-  require(found != all.end(), [&] { return "there is no verb '" + verb + "'"; });
-  const auto in_python = [&](const auto& work) {
-    try {
-      return work();
-    } catch (const InvalidRequest& error) {
-      throw InvalidInput(in_keywords(*found, error));
-    }
+  const verbs::Study& asked = verbs::study_named(verb);
+  const auto ask = in_keywords(verb.c_str(), [&] { return asked.ask(told); });
+  std::vector<std::string> notes;
+  const auto note = [&](const std::string& line) {
+    notes.push_back(verbs::spelled(line, [&](std::string_view option) { return asked.keyword(option); }));
   };
-  const auto ask = in_python([&] { return found->ask(told); });
   Run run(progress);
   const std::map<std::string, DriveWaveforms> others = others_of(waveforms, run);
   const SceneFile file = scene.file;  // another Python thread may change it meanwhile
   std::shared_ptr<const PreparedScene> plain = scene.plain, limited = scene.limited;
-  const auto outcome = in_python([&] {
+  const auto outcome = in_keywords(verb.c_str(), [&] {
     return run([&](const Watch& watch) {
       const auto prepared = [&](bool default_limits) {
         std::shared_ptr<const PreparedScene>& kept = default_limits ? limited : plain;
@@ -87,14 +65,15 @@ Outcome study(PyScene& scene, const std::string& verb, const verbs::Told& told, 
                                       .prepared = prepared,
                                       .load = [](const std::string& path) { return SceneFile::load(path); },
                                       .waveforms_of = driven,
-                                      .text = [&] { return file.text(); }});
+                                      .text = [&] { return file.text(); },
+                                      .note = note});
       watch.throw_if_stopped();
       return all_of_it;
     });
   });
   scene.plain = plain, scene.limited = limited;
-  Outcome result{.json = json_text(outcome.json)};
-  for (const verbs::Outcome::File& one : outcome.files) result.files[one.name] = one.text;
+  Outcome result = python_outcome(outcome.json, outcome.files);
+  result.text = outcome.text, result.notes = std::move(notes);
   return result;
 }
 

@@ -7,37 +7,18 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "config/criterion.h"
 #include "python/scene.h"
 #include "reports/result_json.h"
 #include "reports/tuning_lines.h"
 #include "reports/tuning_session.h"
-#include "studies/tuning/practice_device.h"
+#include "verbs/device.h"
+#include "verbs/tune.h"
 
 namespace softland::python {
 
 namespace py = pybind11;
 
 namespace {
-
-// A simulated laboratory has a trigger delay of its own, and expects none.
-enum class Laboratory { expected, simulated };
-
-LaboratoryErrors errors_of(const SceneFile& file, const py::dict& given, Laboratory which) {
-  LaboratoryErrors errors = usual_errors(file);
-  const auto take = [&](double& value, const char* name) {
-    const auto told = given[name].cast<std::optional<double>>();
-    if (!told) return;
-    require(*told >= 0, [&] { return fmt::format("{}: must be at least 0", name); });
-    value = *told;
-  };
-  take(errors.edge_error, "edge_error");
-  take(errors.unseen, "unseen");
-  take(errors.gain_error, "gain_error");
-  take(errors.shot_error, "shot_error");
-  if (which == Laboratory::expected) take(errors.trigger_delay, "trigger_delay");
-  return errors;
-}
 
 // A session and what it was begun by.
 struct PyTuning {
@@ -47,33 +28,11 @@ struct PyTuning {
   [[nodiscard]] Provenance provenance() const { return {.command = command}; }
 };
 
-TunerOptions options_of(const SceneFile& file, const py::dict& given) {
-  const auto name = given["actuator"].cast<std::string>();
-  const Named<Actuator>* actuator = find_named(actuators, name);
-  require(actuator != nullptr, [&] { return fmt::format("actuator {}: must be {}", name, listed(actuators)); });
-  TunerOptions options{.actuator = actuator->value,
-                       .seed = given["seed"].cast<std::uint64_t>(),
-                       .jobs = given["jobs"].cast<int>(),
-                       .laboratory = errors_of(file, given, Laboratory::expected)};
-  if (const auto touch = given["constrain"].cast<std::string>(); !touch.empty()) {
-    try {
-      options.touch = parse_criterion(touch, all_figures);
-    } catch (const InvalidInput& error) {
-      throw InvalidInput(fmt::format("constrain: {}", error.what()));
-    }
-  }
-  if (const auto recipes = given["recipes"].cast<std::optional<int>>()) options.most_recipes = *recipes;
-  if (const auto effort = given["effort"].cast<std::optional<double>>()) options.effort = *effort;
-  check(options);
-  return options;
-}
-
-std::unique_ptr<PyTuning> made(const PyScene& scene, const py::dict& given, const std::string& log, bool resume,
+std::unique_ptr<PyTuning> made(const PyScene& scene, const verbs::Told& told, const std::string& log, std::string command,
                                const py::object& progress) {
-  auto tuning = std::make_unique<PyTuning>(PyTuning{
-      .session = TuningSession(scene.file, options_of(scene.file, given), given["wafer"].cast<std::vector<std::string>>()),
-      .command = given["command"].cast<std::string>()});
-  if (!log.empty()) static_cast<void>(tuning->session.keep(log, resume));
+  const verbs::TuneRequest request = in_keywords("tune", [&] { return verbs::tune_request(told); });
+  auto tuning = std::make_unique<PyTuning>(PyTuning{.session = request.session(scene.file), .command = std::move(command)});
+  if (!log.empty()) static_cast<void>(tuning->session.keep(log, request.resume));
   Run run(progress);
   run([&](const Watch& watch) {
     tuning->session.begin(watch);
@@ -109,19 +68,10 @@ Outcome outcome_of(const PyTuning& tuning, const std::string& name) {
   return outcome;
 }
 
-std::unique_ptr<PracticeDevice> practice(const PyScene& scene, const py::dict& given) {
+std::unique_ptr<PracticeDevice> practice(const PyScene& scene, const verbs::Told& told, const py::object& progress) {
   const SceneFile file = scene.file;
-  PracticeOptions options{.seed = given["seed"].cast<std::uint64_t>(),
-                          .laboratory = errors_of(file, given, Laboratory::simulated),
-                          .drift = given["drift"].cast<double>(),
-                          .trigger_delay = given["trigger_delay"].cast<double>(),
-                          .model = {.more_modes = given["more_modes"].cast<int>(),
-                                    .gas = given["gas"].cast<std::string>(),
-                                    .stiffness = given["stiffness"].cast<double>(),
-                                    .set = given["set"].cast<std::vector<std::string>>()}};
-  require(options.model.more_modes >= 0, "more_modes: must be at least 0");
-  require(options.model.stiffness > 0, "stiffness: must be above 0");
-  Run run;
+  const PracticeOptions options = in_keywords("device", [&] { return verbs::device_request(told).options(file); });
+  Run run(progress);
   return run([&](const Watch&) { return std::make_unique<PracticeDevice>(file, options); });
 }
 

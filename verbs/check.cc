@@ -127,6 +127,7 @@ nlohmann::json check_json(const PreparedScene& p, const std::map<std::string, nl
 }
 
 struct CheckRequest : Usual {
+  static constexpr bool is_explorable = true;
   static constexpr auto name = "check", about = "validate a scene and print derived numbers and warnings", python = "checked",
                         remarks = "Examples:\n  softland check my-switch.toml\n  softland check my-switch.toml --json -";
 };

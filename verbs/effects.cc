@@ -8,6 +8,7 @@ namespace softland::verbs {
 namespace {
 
 struct EffectsRequest : Usual {
+  static constexpr bool is_explorable = true;
   static constexpr auto name = "effects", about = "which effects matter in a scene, by how much, and what each costs",
                         python = "effects",
                         remarks = "Example:\n  softland effects scenes/mem-gold.toml --set gas.pressure=\"1 kPa\"";

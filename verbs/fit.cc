@@ -67,7 +67,7 @@ Outcome run(const Setting& setting, const FitRequest& request) {
   }
   outcome.files.push_back({"fit.html", [document] { return page_html(*document); }, "fit.html"});
   outcome.files.push_back({"fit.json", [json = outcome.json] { return json_text(json, 1) + "\n"; }, "fit.json"});
-  if (found->spread_assumed) outcome.notes.emplace_back(assumed_words);
+  if (found->spread_assumed && setting.note) setting.note(std::string(assumed_words));
   outcome.ending = !found->found ? Ending::numerical_failure : found->doubts.empty() ? Ending::done : Ending::no_success;
   return outcome;
 }

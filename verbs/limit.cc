@@ -15,6 +15,7 @@ namespace softland::verbs {
 namespace {
 
 struct LimitRequest : Usual {
+  static constexpr bool is_explorable = true;
   static constexpr auto name = "limit", about = "the least time in which any waveform can close the switch softly",
                         python = "limit", leaves = "folder for limit.json, limit.svg and the landing as best.toml and best.csv";
   static constexpr auto remarks =

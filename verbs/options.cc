@@ -2,6 +2,8 @@
 
 #include <thread>
 
+#include "config/told_quantity.h"
+
 namespace softland::verbs {
 
 std::string keyword_of(std::string_view name) {
@@ -10,14 +12,27 @@ std::string keyword_of(std::string_view name) {
   return keyword;
 }
 
-std::string_view unit_of(const Dimension& dimension) {
-  if (dimension == dimension::velocity) return "m/s";
-  if (dimension == dimension::time) return "s";
-  if (dimension == dimension::voltage) return "V";
-  return "";
+std::string spelled(std::string_view marked, const Spelling& spelling) {
+  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz-";
+  constexpr char mark = '\x02', end_mark = '\x03';
+  std::string text;
+  for (std::size_t begin = 0; begin < marked.size();) {
+    const std::size_t name = std::min(marked.find(mark, begin), marked.size());
+    text += marked.substr(begin, name - begin);
+    if (name == marked.size()) break;
+    const std::size_t end = std::min(marked.find_first_not_of(letters, name + 1), marked.size());
+    text += spelling(marked.substr(name + 1, end - name - 1));
+    begin = end < marked.size() && marked[end] == end_mark ? end + 1 : end;
+  }
+  return text;
+}
+
+std::string spelled(const InvalidRequest& error, const Spelling& spelling) {
+  return spelled(error.with_fields("\x02"), spelling);  // which leaves out the ends of names
 }
 
 double OptionReader::quantity_of(const char* name, const std::string& text, const Wanted& wanted) const {
+  if (wanted.rule.empty()) return told_quantity(requested(name), text, wanted.dimension);
   const auto rule = [&](bool ok) {
     require_request(ok, [&] { return fmt::format("{} {}: must be {}", requested(name), visible(text), wanted.rule); });
   };

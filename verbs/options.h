@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/choice.h"
@@ -27,19 +30,21 @@ namespace softland::verbs {
 /// The texts that the user gave, by option, in their order. A flag has one empty text.
 using Told = std::map<std::string, std::vector<std::string>, std::less<>>;
 
-/// A quantity as an option takes it; `rule` ends the sentence "must be ...".
+/// A quantity as an option takes it; `rule` ends the sentence "must be ...". Without a range and a rule it is at least 0.
 struct Wanted {
   Dimension dimension;
-  Range range;
-  std::string rule;
+  Range range = {};
+  std::string rule = {};
 };
 
 /// An option as the command line and Python declare it.
 struct OptionRow {
-  enum class Kind { text, flag, repeated, further };  ///< further: words behind the scene
+  enum class Kind { text, flag, repeated, further, object };  ///< further: words behind the scene; object: no text can hold it
+  enum class Door { both, program, python };
 
   std::string name, word, about;  ///< "impact-velocity", "SPEED"; `about` begins in lower case
   Kind kind = Kind::text;
+  Door door = Door::both;     ///< an object is one of Python alone
   bool may_be_empty = false;  ///< else the door refuses an empty text
 
   // In Python:
@@ -51,11 +56,19 @@ struct OptionRow {
   bool is_positional = false;
 };
 
+/// How Python has an option; what is not said follows from its kind. Without a value it must be given.
+struct InPython {
+  std::optional<std::string> keyword = {}, type = {}, value = {}, told = {};
+  bool is_positional = false;
+};
+
 /// "impact_velocity".
 [[nodiscard]] std::string keyword_of(std::string_view name);
-/// The unit in which a number without one counts.
-[[nodiscard]] std::string_view unit_of(const Dimension& dimension);
-
+/// How a door spells the name of an option: "--impact-velocity", "impact_velocity".
+using Spelling = std::function<std::string(std::string_view)>;
+/// Words whose options are spelled so: those that requested() has marked, whichever library wrote them.
+[[nodiscard]] std::string spelled(std::string_view marked, const Spelling& spelling);
+[[nodiscard]] std::string spelled(const InvalidRequest& error, const Spelling& spelling);
 /// The type that an optional holds, or the type itself.
 template <class T>
 struct Held {
@@ -69,6 +82,13 @@ struct Held<std::optional<T>> {
 /// Lists the options.
 class OptionList {
  public:
+  /// The program alone has the next option.
+  OptionList& program() { return next_.door = OptionRow::Door::program, *this; }
+  /// Python alone has the next option.
+  OptionList& python() { return next_.door = OptionRow::Door::python, *this; }
+  /// Python has the next option in this form.
+  OptionList& as(const InPython& form) { return next_.form = form, *this; }
+
   template <class T, class Names>
   void choice(const char* name, T& value, const Names& names, const std::string& about) {
     std::string list = listed(names), type;
@@ -78,7 +98,7 @@ class OptionList {
   }
   template <class T>
   void quantity(const char* name, T&, const Wanted& wanted, const char* word, const std::string& about) {
-    const std::string_view unit = unit_of(wanted.dimension);
+    const std::string unit = unit_symbol(wanted.dimension);
     add({.name = name,
          .word = word,
          .about = about,
@@ -87,14 +107,18 @@ class OptionList {
         "float | str | None", "None", fmt::format("_quantity({{}}, \"{}\")", unit));
   }
   template <class T>
-  void whole(const char* name, T&, Range, const std::string& about) {
-    add({.name = name, .word = "N", .about = about, .may_be_empty = true}, "int | None", "None", "_whole({})");
+  void whole(const char* name, T&, Range, const std::string& about, const char* word = "N") {
+    add({.name = name, .word = word, .about = about, .may_be_empty = true}, "int | None", "None", "_whole({})");
   }
   void file(const char* name, std::optional<std::string>&, const std::string& about) {
     add({.name = name, .word = "FILE", .about = about}, "str | os.PathLike[str] | None", "None", "_path({})");
   }
-  void text(const char* name, std::string&, const char* word, const std::string& about) {
-    add({.name = name, .word = word, .about = about}, "str", "\"\"", "_text({})");
+  void text(const char* name, const std::string& value, const char* word, const std::string& about) {
+    add({.name = name, .word = word, .about = about}, "str", fmt::format("\"{}\"", value), "_text({})");
+  }
+  /// An option whose empty text is looked at with the value.
+  void text(const char* name, const std::optional<std::string>&, const char* word, const std::string& about) {
+    add({.name = name, .word = word, .about = about, .may_be_empty = true}, "str | None", "None", "_text({})");
   }
   /// An option with a text of its own form. Python has a list for "1.1,1.25" and a mapping for "Vdp:1 %,time:0.5 %".
   template <class T, class Parse>
@@ -110,7 +134,7 @@ class OptionList {
     add({.name = name, .word = word, .about = about, .kind = OptionRow::Kind::repeated}, "Mapping[str, float | str] | None",
         "None", "_assigned({})");
   }
-  void repeated(const char* name, std::vector<std::string>&, const char* word, const std::string& about, const char* keyword,
+  void repeated(const char* name, std::vector<std::string>&, const char* word, const std::string& about, const char* keyword = "",
                 bool is_positional = false) {
     add({.name = name,
          .word = word,
@@ -138,6 +162,10 @@ class OptionList {
   void flag(const char* name, bool&, const std::string& about) {
     add({.name = name, .word = "", .about = about, .kind = OptionRow::Kind::flag}, "bool", "False", "_flag({})");
   }
+  /// A function or another object of Python, which is handed on as it is.
+  void object(const char* keyword, const char* type, const char* value, const std::string& about) {
+    python().add({.name = keyword, .word = "", .about = about, .kind = OptionRow::Kind::object}, type, value, "");
+  }
   /// A member that is true unless the flag "no-NAME" is told.
   void unless(const char* name, bool&, const std::string& about) {
     constexpr std::string_view no = "no-";
@@ -153,12 +181,20 @@ class OptionList {
 
  private:
   /// `told` has {} for the keyword.
-  void add(OptionRow row, std::string type, std::string value, const std::string& told) {
-    if (row.keyword.empty()) row.keyword = keyword_of(row.name);
-    row.type = std::move(type), row.value = std::move(value);
-    row.told = fmt::format(fmt::runtime(told), row.keyword);
+  void add(OptionRow row, const std::string& type, const std::string& value, const std::string& told) {
+    const auto [door, form] = std::exchange(next_, {});
+    row.door = door;
+    row.keyword = form.keyword.value_or(row.keyword.empty() ? keyword_of(row.name) : row.keyword);
+    row.type = form.type.value_or(type), row.value = form.value.value_or(value);
+    row.told = fmt::format(fmt::runtime(form.told.value_or(told)), row.keyword);
+    row.is_positional = row.is_positional || form.is_positional;
     all_.push_back(std::move(row));
   }
+  struct Next {
+    OptionRow::Door door = OptionRow::Door::both;
+    InPython form = {};
+  };
+  Next next_;
   std::vector<OptionRow> all_;
 };
 
@@ -184,6 +220,10 @@ class OptionReader {
  public:
   explicit OptionReader(const Told& told) : told_(told) {}
 
+  OptionReader& program() { return *this; }
+  OptionReader& python() { return *this; }
+  OptionReader& as(const InPython&) { return *this; }
+
   template <class T, class Names>
   void choice(const char* name, T& value, const Names& names, const std::string&) {
     const std::string* const text = find(name);
@@ -197,7 +237,7 @@ class OptionReader {
     if (const std::string* const text = find(name)) value = quantity_of(name, *text, wanted);
   }
   template <class T>
-  void whole(const char* name, T& value, Range range, const std::string&) {
+  void whole(const char* name, T& value, Range range, const std::string&, const char* = "N") {
     const std::string* const text = find(name);
     if (text == nullptr) return;
     value = whole_number<typename Held<T>::type>(requested(name), *text, range);
@@ -208,7 +248,8 @@ class OptionReader {
     require_request(!text->empty(), [&] { return fmt::format("{}: must not be empty", requested(name)); });
     value = *text;
   }
-  void text(const char* name, std::string& value, const char*, const std::string&) {
+  template <class Text>
+  void text(const char* name, Text& value, const char*, const std::string&) {
     if (const std::string* const text = find(name)) value = *text;
   }
   template <class T, class Parse>
@@ -216,7 +257,8 @@ class OptionReader {
     if (const std::string* const text = find(name)) parse(requested(name), *text, value);
   }
   void assignments(const char* name, std::vector<std::string>& values, const char*, const std::string&) { all(name, values); }
-  void repeated(const char* name, std::vector<std::string>& values, const char*, const std::string&, const char*, bool = false) {
+  void repeated(const char* name, std::vector<std::string>& values, const char*, const std::string&, const char* = "",
+                bool = false) {
     all(name, values);
   }
   void results(const char* name, std::vector<std::string>& values, const std::string&) { all(name, values); }
@@ -227,6 +269,7 @@ class OptionReader {
     value = *text;
   }
   void flag(const char* name, bool& value, const std::string&) { value = value || told_.contains(name); }
+  void object(const char*, const char*, const char*, const std::string&) {}
   void unless(const char* name, bool& value, const std::string&) { value = value && !told_.contains(name); }
 
  private:
@@ -245,11 +288,16 @@ class OptionReader {
 // Options that several verbs have.
 template <class Archive, class Seed>
 void seed_option(Archive& a, Seed& seed, const std::string& same) {
-  a.whole("seed", seed, {.least = 0}, "whole number from 0 on (default 1): same seed, " + same);
+  const std::string about = "whole number from 0 on (default 1): same seed, " + same;
+  if constexpr (std::is_same_v<Seed, std::optional<std::string>>)  // which is read elsewhere
+    a.text("seed", seed, "N", about);
+  else
+    a.whole("seed", seed, {.least = 0}, about);
 }
 template <class Archive>
-void jobs_option(Archive& a, int& jobs) {
-  a.whole("jobs", jobs, {.least = 1}, "threads (default: one per core); the result does not depend on them");
+void jobs_option(Archive& a, int& jobs,
+                 const std::string& about = "threads (default: one per core); the result does not depend on them") {
+  a.whole("jobs", jobs, {.least = 1}, about);
 }
 template <class Archive>
 void samples_option(Archive& a, std::uint64_t& samples, Range range, const std::string& about) {

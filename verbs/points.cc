@@ -16,7 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 4> explorable{"limit", "release", "effects", "check"};
 // Members that are no result of the point: its scene and drives, who made it, times of the machine, and tables by the number of
 // modes.
 constexpr std::array<std::string_view, 10> left_out{
@@ -93,8 +92,8 @@ OtherStudy::Record record_of(const Study& study, const SceneFile& scene, const O
 const OtherStudies& studies_of_points() {
   static const OtherStudies all = [] {
     OtherStudies others;
-    for (const Study& study : all_studies()) {
-      if (std::ranges::find(explorable, study.name) == explorable.end()) continue;
+    for (const Study& study : scene_studies()) {
+      if (!study.is_explorable) continue;
       others.push_back(
           {.name = study.name,
            .check = [&study](const OtherStudy::Options& options) { static_cast<void>(study.ask(told_of(study, options))); },

@@ -23,13 +23,18 @@ constexpr std::string_view head =
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
+from ._closing import Closing
 from ._outcome import Outcome
 from ._progress import Progress
-from ._studying import Studying, Told, _assigned, _flag, _joined, _pairs, _path, _quantity, _text, _whole
-from ._waveform import Waveform
+from ._studying import Studying, Told, _assigned, _flag, _joined, _pairs, _path, _paths, _quantity, _settings, _text, _whole
+from ._tuning import PracticeDevice, Tuning
+from ._waveform import OwnWaveform, Waveform
+
+if TYPE_CHECKING:
+    from ._results import Store
 
 
 class Studies(Studying):
@@ -48,25 +53,44 @@ std::string parameter(const OptionRow& one) {
   return fmt::format("        {}: {}{},\n", one.keyword, one.type, one.value.empty() ? "" : " = " + one.value);
 }
 
-std::string method(const Study& study) {
-  std::string positional, named, told, explained, waveforms;
+// Words of the program with its options as Python has them: "threads of certify".
+std::string in_keywords(std::string words, const Study& study) {
   for (const OptionRow& one : study.options) {
+    const std::string option = "--" + one.name;
+    for (std::size_t at = words.find(option); at != std::string::npos; at = words.find(option, at + 1)) {
+      const std::size_t end = at + option.size();
+      if (end == words.size() || (words[end] != '-' && std::islower(static_cast<unsigned char>(words[end])) == 0))
+        words.replace(at, option.size(), one.keyword);
+    }
+  }
+  return words;
+}
+
+// A verb that this module runs in its own way is handed what was told, and objects as they are.
+std::string call(const Study& study, const std::string& told, const std::string& objects) {
+  return study.ask && study.returns == std::string_view("Outcome")
+             ? fmt::format("self._study(\"{}\", {}, progress{})", study.name, told, objects)
+             : fmt::format("self._{}({}, progress{})", study.python, told, objects);
+}
+
+std::string method(const Study& study) {
+  std::string positional, named, told, explained, objects;
+  for (const OptionRow& one : study.options) {
+    if (one.door == OptionRow::Door::program) continue;
     (one.is_positional ? positional : named) += parameter(one);
-    told += fmt::format("            \"{}\": {},\n", one.name, one.told);
-    explained += paragraph(one.keyword + ": " + one.note + one.about);
-    if (one.kind == OptionRow::Kind::further) waveforms = ", " + one.keyword;
+    explained += paragraph(one.keyword + ": " + one.note + in_keywords(one.about, study));
+    if (one.kind != OptionRow::Kind::object) told += fmt::format("            \"{}\": {},\n", one.name, one.told);
+    if (one.kind == OptionRow::Kind::object || one.kind == OptionRow::Kind::further) objects += ", " + one.keyword;
   }
   std::string about = study.about;
   about.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(about.front())));
-  std::string text = fmt::format("    def {}(\n        self,\n{}        *,\n{}        progress: bool | Progress | None = None,\n",
-                                 study.python, positional, named);
-  text += fmt::format("    ) -> Outcome:\n        \"\"\"{}, as `softland {}`. Raises InvalidInput.{}\"\"\"\n", about, study.name,
-                      explained.empty() ? explained : "\n\n" + explained + "        ");
-  return text +
-         (told.empty()
-              ? fmt::format("        return self._study(\"{}\", {{}}, progress{})\n", study.name, waveforms)
-              : fmt::format("        told: Told = {{\n{}        }}\n        return self._study(\"{}\", told, progress{})\n", told,
-                            study.name, waveforms));
+  std::string text = fmt::format("    def {}(\n        self,\n{}        *,\n{}        progress: bool | Progress | None = {},\n",
+                                 study.python, positional, named, study.progress);
+  text += fmt::format("    ) -> {}:\n        \"\"\"{}, as `softland {}`. Raises InvalidInput.{}{}\"\"\"\n", study.returns, about,
+                      study.name, study.in_python, explained.empty() ? explained : "\n\n" + explained + "        ");
+  return text + (told.empty() ? fmt::format("        return {}\n", call(study, "{}", objects))
+                              : fmt::format("        told: Told = {{\n{}        }}\n        return {}\n", told,
+                                            call(study, "told", objects)));
 }
 
 }  // namespace

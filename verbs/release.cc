@@ -12,6 +12,7 @@ namespace softland::verbs {
 namespace {
 
 struct ReleaseRequest : Usual {
+  static constexpr bool is_explorable = true;
   static constexpr auto name = "release",
                         about = "search the drive waveform that opens the closed switch without leaving it to swing",
                         python = "opening",

@@ -1,5 +1,6 @@
 // A study is a verb that looks at one scene. Its options, its computation and its files are said once, for the command line and
-// for Python.
+// for Python. A verb that a door runs in its own way, such as a tuning on instruments or on a function of Python, is one without
+// a computation: both doors take name, options and help from it.
 #pragma once
 
 #include <functional>
@@ -33,9 +34,9 @@ struct Outcome {
   nlohmann::json json;
   std::string text;  ///< shown on a terminal
   std::vector<File> files = {};
-  std::string next = {};                ///< below the files; "{}" stands for the scene in their folder that `export` takes
-  std::string last = {};                ///< below all
-  std::vector<std::string> notes = {};  ///< written to standard error
+  std::string next = {};   ///< below the files; "{}" stands for the scene in their folder that `export` takes
+  std::string last = {};   ///< below all
+  std::string fault = {};  ///< why it is not done, for standard error even of a quiet run
   Ending ending = Ending::done;
 };
 
@@ -53,21 +54,35 @@ struct Setting {
   std::function<DriveWaveforms(const std::string& result, const PreparedScene& nominal)> waveforms_of;
   /// The scene as it is written, with its comments.
   std::function<std::string()> text;
+  /// Takes a line about the scene or the result while the verb runs; empty: nobody listens. It names options as requested() does.
+  std::function<void(const std::string&)> note = {};
+};
+
+/// What a verb takes besides its own options.
+struct Takes {
+  bool scene = true;                           ///< it cannot do without
+  bool set = true, quiet = true, json = true;  ///< options of the program
 };
 
 struct Study {
   const char *name, *about;
-  const char* python;   ///< the method of a scene in Python
-  const char* scene;    ///< --help describes the scene by it
+  const char *python, *returns, *progress;  ///< the method of a scene in Python, the type of its value, and a default
+  const char* in_python;                    ///< what its docstring says besides
+  const char *subject, *scene;              ///< --help has the scene by this word, and describes it
+  Takes takes;
+  bool is_explorable;   ///< an exploration may ask it of every point
   const char* leaves;   ///< description of the files in --out; null: there are none
   const char* place;    ///< the folder where --out names none; null: then none is written
   const char* leaving;  ///< the option that files are of, which --out asks for and which asks for --out; null: they are of all
   const char* changes;  ///< an example of --set
-  const char* remarks;
+  std::string remarks;
   std::vector<std::string> files;  ///< names of files that --out may hold
   std::vector<OptionRow> options;
-  /// Reads what was told; the study itself runs when that is called. Throws InvalidRequest.
-  std::function<std::function<Outcome(const Setting&)>(const Told&)> ask;
+  /// Reads what was told; the study itself runs when that is called. Throws InvalidRequest. Empty where a door runs the verb.
+  std::function<std::function<Outcome(const Setting&)>(const Told&)> ask = {};
+
+  /// The name of an option in Python.
+  [[nodiscard]] std::string keyword(std::string_view option) const;
 };
 
 inline constexpr auto scene_or_result = "scene file (TOML), folder that --out named, or result.json";
@@ -77,49 +92,85 @@ inline constexpr auto usual_change = "change one key: --set gap.contact=\"1.8 um
 
 /// Defaults for the members of a request that describe its verb.
 struct Usual {
-  static constexpr const char *scene = scene_or_result, *leaves = nullptr, *place = nullptr, *leaving = nullptr,
+  static constexpr const char *returns = "Outcome", *progress = "None", *in_python = "", *subject = "SCENE",
+                              *scene = scene_or_result, *leaves = nullptr, *place = nullptr, *leaving = nullptr,
                               *changes = usual_change;
+  static constexpr Takes takes{};
+  static constexpr bool is_explorable = false;
   static std::vector<std::string> files() { return {}; }
 };
 
-/// The study of a request: a struct with name, about, python and remarks, a template options(archive, request), and
-/// run(setting, request).
+/// A request of what was told. Throws InvalidRequest.
 template <class Request>
-[[nodiscard]] Study study_of() {
+[[nodiscard]] Request read_options(const Told& told) {
+  Request request;
+  OptionReader reader(told);
+  options(reader, request);
+  return request;
+}
+
+/// The description of a request: a struct with name, about, python and remarks, and a template options(archive, request).
+template <class Request>
+[[nodiscard]] Study described() {
   OptionList list;
   Request defaults;
   options(list, defaults);
   return {.name = Request::name,
           .about = Request::about,
           .python = Request::python,
+          .returns = Request::returns,
+          .progress = Request::progress,
+          .in_python = Request::in_python,
+          .subject = Request::subject,
           .scene = Request::scene,
+          .takes = Request::takes,
+          .is_explorable = Request::is_explorable,
           .leaves = Request::leaves,
           .place = Request::place,
           .leaving = Request::leaving,
           .changes = Request::changes,
-          .remarks = Request::remarks,
+          .remarks =
+              [] {
+                if constexpr (requires { Request::remarks(); })
+                  return Request::remarks();
+                else
+                  return Request::remarks;
+              }(),
           .files = Request::files(),
-          .options = list.all(),
-          .ask = [](const Told& told) -> std::function<Outcome(const Setting&)> {
-            Request request;
-            OptionReader reader(told);
-            options(reader, request);
-            return [request](const Setting& setting) { return run(setting, request); };
-          }};
+          .options = list.all()};
+}
+
+/// The study of a request that has a function run(setting, request), too.
+template <class Request>
+[[nodiscard]] Study study_of() {
+  Study study = described<Request>();
+  study.ask = [](const Told& told) -> std::function<Outcome(const Setting&)> {
+    return [request = read_options<Request>(told)](const Setting& setting) { return run(setting, request); };
+  };
+  return study;
 }
 
 // One file each.
 [[nodiscard]] Study accuracy_study();
 [[nodiscard]] Study calibrate_study();
 [[nodiscard]] Study check_study();
+[[nodiscard]] Study device_study();
 [[nodiscard]] Study effects_study();
+[[nodiscard]] Study explore_study();
+[[nodiscard]] Study export_study();
 [[nodiscard]] Study fit_study();
 [[nodiscard]] Study limit_study();
+[[nodiscard]] Study optimize_study();
 [[nodiscard]] Study pull_in_study();
 [[nodiscard]] Study release_study();
 [[nodiscard]] Study robustness_study();
+[[nodiscard]] Study simulate_study();
+[[nodiscard]] Study tune_study();
 
-/// All of them, in the order of --help.
+/// Those of a scene alone, and all of them, in the order of --help.
+[[nodiscard]] const std::vector<Study>& scene_studies();
 [[nodiscard]] const std::vector<Study>& all_studies();
+/// Throws InvalidInput where there is none of this name.
+[[nodiscard]] const Study& study_named(std::string_view name);
 
 }  // namespace softland::verbs

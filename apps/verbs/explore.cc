@@ -1,3 +1,5 @@
+#include "verbs/explore.h"
+
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -9,14 +11,13 @@
 #include <utility>
 
 #include "apps/exit_status.h"
-#include "apps/explore_request.h"
 #include "apps/output.h"
 #include "apps/overview.h"
 #include "apps/pace.h"
 #include "apps/progress.h"
+#include "apps/scenes.h"
 #include "apps/stores.h"
 #include "apps/streams.h"
-#include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/companion.h"
 #include "base/printable.h"
@@ -38,6 +39,7 @@ namespace softland::apps {
 namespace {
 
 using nlohmann::json;
+using verbs::ExploreRequest;
 
 int status_of(const Overview& found, bool interrupted) {
   if (interrupted) return exit_interrupted;
@@ -45,12 +47,28 @@ int status_of(const Overview& found, bool interrupted) {
   return found.has_figures ? exit_done : exit_no_success;
 }
 
-// The scene of one point, as `simulate` takes it.
-int print_point(const Common& c, const ExploreRequest& r) {
-  const auto k = whole_number<std::uint64_t>("--point", r.point.value(), 0);
+// The plan of a scene and options, of a plan file, or of a store that is gone on with.
+PlanRequest plan_request(const Common& c, const ExploreRequest& r) {
+  const bool of_store = is_store(c.scene);
+  if (!of_store && !is_plan(SceneFile::load(c.scene)))
+    return r.plan(load_scene(c), [](std::string_view option) { return "--" + std::string(option); });
+  const std::map<std::string, std::string> given = r.of_plan();
+  require(given.empty() && c.set.empty(), [&] {
+    return fmt::format("{}: holds the whole plan: --{} is not for it", c.scene, given.empty() ? "set" : given.begin()->first);
+  });
+  return of_store ? exploration_in(StudyReader(c.scene)) : read_plan(SceneFile::load(c.scene));
+}
+
+PlanRequest completed_request(const Common& c, const ExploreRequest& r) {
   PlanRequest request = plan_request(c, r);
   complete(request, verbs::studies_of_points());
-  const Plan plan(request);
+  return request;
+}
+
+// The scene of one point, as `simulate` takes it.
+int print_point(const Common& c, const ExploreRequest& r) {
+  const std::uint64_t k = r.point.value();
+  const Plan plan(completed_request(c, r));
   require(k < plan.points(), [&] { return fmt::format("--point {}: the plan has {} points, counted from 0", k, plan.points()); });
   const bool is_optimized = plan.study() == name_of(point_studies, PointStudy::optimize);
   std::optional<StoredRow> found;
@@ -147,8 +165,8 @@ int search_the_front(const Common& c, const ExploreRequest& r, Exploration& expl
                     whole(static_cast<std::int64_t>(known.size())), plan.study(), out));
   }
   ShownProgress<FrontFound> progress(c.quiet);
-  const FrontFound front = search_front(exploration, store, std::move(known), aims,
-                                        {.jobs = job_count(r.jobs), .stop = c.stop, .on_point = std::ref(progress)});
+  const FrontFound front =
+      search_front(exploration, store, std::move(known), aims, {.jobs = r.jobs, .stop = c.stop, .on_point = std::ref(progress)});
   progress.close(front);
   store.close();
 
@@ -172,13 +190,14 @@ int search_the_front(const Common& c, const ExploreRequest& r, Exploration& expl
   return status_of(found, interrupted);
 }
 
-int explore_verb(const Common& c, const ExploreRequest& r) {
+}  // namespace
+
+int run_explore(const Common& c, const verbs::Told& told) {
+  const ExploreRequest r = verbs::explore_request(told);
   if (r.point) return print_point(c, r);
-  const int jobs = job_count(r.jobs);
   const bool goes_on = is_store(c.scene);
-  const Shard shard = shard_of(r, goes_on ? c.scene : std::string());
-  PlanRequest request = plan_request(c, r);
-  complete(request, verbs::studies_of_points());
+  const Shard shard = goes_on && r.shard.empty() ? StudyReader(c.scene).plan().shard : r.part();
+  const Plan plan(completed_request(c, r));
   require(!goes_on || (r.resume && r.out.empty()),
           [&] { return fmt::format("{}: is a store already: --resume goes on with it, and --out is not for that", c.scene); });
   const std::string out = goes_on ? c.scene : r.out.empty() ? "softland-out.sqlite" : r.out;
@@ -188,7 +207,7 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   require(c.json.empty() || !is_companion(c.json, out),
           [&] { return fmt::format("--json {}: is a file that the store {} has beside it; name another", c.json, out); });
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  Exploration exploration(Plan(request), work->watch(), verbs::studies_of_points());
+  Exploration exploration = exploration_for(plan, out, work->watch(), verbs::studies_of_points());
   work.reset();
 
   require_part(exploration, shard);
@@ -196,7 +215,7 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   if (exploration.plan().is_search()) return search_the_front(c, r, exploration, out);
   StudyStore store = opened(out, exploration, shard, c, r.resume);
   ShownProgress<Explored> progress(c.quiet);
-  const ExploringOptions options{.shard = shard, .jobs = jobs, .stop = c.stop, .on_point = std::ref(progress)};
+  const ExploringOptions options{.shard = shard, .jobs = r.jobs, .stop = c.stop, .on_point = std::ref(progress)};
   Exploring exploring(exploration, store, options);
   if (!c.quiet) {
     const Explored before = exploring.explored();
@@ -215,65 +234,6 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   j.update({{"store", out}});
   print_json_or(c, with_origin(std::move(j), c.command), explored_text(e, out) + overview_text(reader.plan(), found));
   return status_of(found, e.remaining() > 0);
-}
-
-}  // namespace
-
-namespace {
-
-// "simulate (default), pull-in, ... or release"
-std::string studies_listed() {
-  std::vector<std::string> names;
-  for (const std::string_view name : names_of(point_studies)) names.emplace_back(name);
-  for (const OtherStudy& one : verbs::studies_of_points()) names.push_back(one.name);
-  return first_is_default(in_words(names, " or "));
-}
-
-}  // namespace
-
-void add_explore(Verb& verb) {
-  const auto request = std::make_shared<ExploreRequest>();
-  verb.with_scene();
-  verb.repeated("--vary", request->vary, "KEY=VALUES",
-                "what varies: KEY=LOW:HIGH:N, with :log in equal ratios, or KEY=A,B,C; KEY*KEY=... by one factor; KEY[2] is an "
-                "element of a list; may be repeated: all combinations");
-  verb.option("--sample", request->sample, "SET", "sobol:N or lhs:N points in the box of --vary KEY=LOW:HIGH");
-  verb.option(
-      "--pareto", request->pareto, "FIGURES",
-      "search the points that no other one beats in all of these figures, \"initial_contact_time,impact_velocity\", in the box "
-      "of --vary KEY=LOW:HIGH by NSGA-II; max:FIGURE is to be large; --sample nsga2:N for N points (default: 2000)");
-  verb.option("--list", request->list, "FILE", "points of a CSV file, whose header names keys with units: structure.length [um]");
-  verb.option("--study", request->study, "NAME", "study at every point: " + studies_listed());
-  verb.repeated("--option", request->options, "NAME=VALUE",
-                "option of the study, as its verb has it, where explore has none: \"impact-velocity=1 mm/s\"; may be repeated");
-  verb.flag("--certify", request->certify, "simulate: the errors of the figures too");
-  verb.with_samples(request->samples, "robustness: devices (default: 500)");
-  verb.option("--target", request->target, "NAME", "optimize: as there");
-  verb.option("--actuator", request->actuator, "NAME", "optimize: as there");
-  verb.option("--waveform", request->waveform, "NAME", "optimize: as there");
-  verb.option("--optimizer", request->optimizer, "NAME", "optimize: as there");
-  verb.optional("--budget", request->budget, "N", "optimize: evaluations of every search (default: as there)");
-  verb.option("--out", request->out, "FILE", "store for the rows (default: softland-out.sqlite); with --point the scene");
-  verb.flag("--resume", request->resume,
-            "go on with a store: points that it holds are not computed again, nor, of another plan, those of the same content");
-  verb.option("--shard", request->shard, "I/N", "part I of N of the points, for as many stores, which softland merge makes one");
-  verb.optional("--point", request->point, "K", "print the scene of point K, as simulate takes it, instead of exploring");
-  verb.with_seed(request->seed, "same rows, whatever --jobs is");
-  verb.with_jobs(request->jobs, "threads (default: one per core)");
-  verb.with_json();
-  verb.footer(
-      "SCENE is a scene, a plan file (docs/explore.md), or with --resume or --point a store, which holds its plan.\n"
-      "Ctrl-C ends a run with what there is; --resume goes on, after a power cut too.\n"
-      "Examples:\n  softland explore scenes/mem-gold.toml --vary \"structure.length=245 um:275 um:7\" --vary \"gap.contact=1.6 "
-      "um:2.4 um:20\"\n"
-      "  softland explore scenes/mem-gold.toml --vary \"waveform.main.level=1.05 Vdp:1.6 Vdp:40\" --out level.sqlite\n"
-      "  softland explore scenes/mem-gold.toml --vary \"gap.electrode*gap.contact=0.9:1.1\" --sample sobol:256 --study "
-      "robustness\n"
-      "  softland explore scenes/mem-gold.toml --vary \"gap.contact=1.6 um:2.4 um\" --vary \"waveform.main.level=1.05 Vdp:1.6 "
-      "Vdp\" --pareto initial_contact_time,impact_velocity,peak_voltage\n"
-      "  softland explore softland-out.sqlite --resume\n"
-      "  softland explore softland-out.sqlite --point 17 --out point17.toml");
-  verb.runs([request](const Common& common) { return explore_verb(common, *request); });
 }
 
 }  // namespace softland::apps

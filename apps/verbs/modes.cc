@@ -12,11 +12,11 @@
 #include "apps/progress.h"
 #include "apps/scenes.h"
 #include "apps/streams.h"
-#include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
 #include "base/shell_word.h"
 #include "base/split.h"
+#include "config/told_quantity.h"
 #include "config/units.h"
 #include "exchange/mode_table.h"
 #include "model/constants.h"
@@ -58,7 +58,7 @@ int frequencies_of_scene(const Common& c) {
 /// One of a unit, which the option names alone, such as "mm".
 std::optional<double> unit_of(const char* option, const std::string& unit, const Dimension& due) {
   if (unit.empty()) return std::nullopt;
-  const double size = quantity_of(option, "1 " + unit, due);
+  const double size = told_quantity(option, "1 " + unit, due);
   require(size > 0, [&] { return fmt::format("{} {}: must be greater than 0", option, unit); });
   return size;
 }
@@ -70,16 +70,16 @@ ModeKeys keys_of(const ModesRequest& r) {
   // A tonne is the mass of models in mm, s and N.
   keys.mass_unit = r.mass_unit == "t" ? std::optional(1e3) : unit_of("--mass-unit", r.mass_unit, dimension::mass);
   if (!r.mass.empty()) {
-    keys.mass = quantity_of("--mass", r.mass, dimension::mass);
+    keys.mass = told_quantity("--mass", r.mass, dimension::mass);
     require(*keys.mass > 0, [&] { return fmt::format("--mass {}: must be greater than 0", r.mass); });
   }
   if (!r.clamp.empty()) {
     const bool is_negative = r.clamp.starts_with('-');
-    keys.clamp = quantity_of("--clamp", is_negative ? r.clamp.substr(1) : r.clamp, dimension::length) * (is_negative ? -1 : 1);
+    keys.clamp = told_quantity("--clamp", is_negative ? r.clamp.substr(1) : r.clamp, dimension::length) * (is_negative ? -1 : 1);
   }
   if (!r.frequencies.empty()) {
     for (const std::string& one : split(r.frequencies, ','))
-      keys.frequencies.push_back(quantity_of("--frequencies", one, dimension::frequency));
+      keys.frequencies.push_back(told_quantity("--frequencies", one, dimension::frequency));
   }
   return keys;
 }
@@ -142,7 +142,9 @@ int modes_verb(const Common& c, const ModesRequest& r) {
 
 void add_modes(Verb& verb) {
   const auto r = std::make_shared<ModesRequest>();
-  verb.with_scene(false, true);
+  verb.with_scene("SCENE", verbs::scene_or_result, false);
+  verb.with_set(verbs::usual_change);
+  verb.with_quiet();
   verb.option("--from", r->from, "FILE",
               "instead of a scene: modes of a table of softland, CalculiX .frd, an export of COMSOL, UFF 55 or ANSYS .rom "
               "(docs/modes.md)");

@@ -30,6 +30,8 @@
 #include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/report_files.h"
+#include "reports/result_document.h"
+#include "reports/result_json.h"
 #include "reports/result_maker.h"
 #include "reports/robustness_words.h"
 #include "reports/search_report.h"
@@ -47,9 +49,6 @@ namespace fs = std::filesystem;
 using internal::percent;
 using internal::quantity;
 using nlohmann::json;
-
-/// Of a search that the least time of any waveform, a second or two, does not make much longer.
-constexpr long evaluations_worth_a_limit = 1000;
 
 // How a winner does on devices of its scene's spread, beside the plain step, in a sentence; empty where nothing varies, or when
 // asked to stop.
@@ -105,7 +104,7 @@ struct Asked {
 bool takes_little(const Asked& asked, const OptimizeResult& result) {
   constexpr double widest_band = 40;  // the highest natural frequency over the lowest
   const Eigen::VectorXd& omega = result.best_scene->model.basis().angular_frequencies();
-  return asked.search.options.max_evaluations >= evaluations_worth_a_limit &&
+  return asked.search.options.max_evaluations >= verbs::evaluations_worth_a_limit &&
          omega.maxCoeff() <= widest_band * omega.minCoeff() &&
          std::ranges::none_of(result.best_scene->drives,
                               [](const Drive& one) { return one.limits && std::isfinite(one.limits->max_slew); });
@@ -177,7 +176,8 @@ int run_search(const Asked& asked) {
   if (search.devices() == 0 && !c.quiet) {
     for (const std::string& broken : best.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
   }
-  print_result(c, result, words_on_devices(asked, report, place) + left_in(place, left));
+  print_json_or(c, summary_json(result_json(result)),
+                terminal_text(result_document(result)) + words_on_devices(asked, report, place) + left_in(place, left));
   return status_of(report.found);
 }
 
@@ -264,9 +264,11 @@ void tell_of_another_scene(const fs::path& folder, const SceneFile& scene) {
   }
 }
 
-int optimize_verb(const Common& given, const OptimizeRequest& request) {
+}  // namespace
+
+int run_optimize(const Common& given, const verbs::Told& told) {
+  const verbs::OptimizeRequest request = verbs::optimize_request(told);
   Common c = given;
-  if (c.out.empty()) c.out = "softland-out";
   if (c.scene.empty() && !request.resume) c.scene = shipped_scene("mem-gold-pzt.toml").string();
   std::optional<KnownSearch> known;
   StoredSearch search = asked_or_known(c, request, known);
@@ -275,111 +277,6 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   if (known && !c.quiet) tell_of_other_programs((known->place / evaluations_file).string());
   return search.seeds > 1 ? run_seeds(c, search, known, output, request.limit)
                           : run_search({.c = c, .search = search, .known = known, .output = output, .limit = request.limit});
-}
-
-// "settling, impact and energy"
-std::string targets_with_own_cost() {
-  std::vector<std::string_view> names;
-  for (const TargetRow& row : targets) {
-    if (row.has_own_cost) names.push_back(row.name);
-  }
-  const std::string_view last = names.back();
-  names.pop_back();
-  return fmt::format("{} and {}", fmt::join(names, ", "), last);
-}
-
-std::string optimizer_help() {
-  std::string text = "\nOptimizers:\n";
-  for (const std::string_view name : optimizer_names()) {
-    text += "  " + std::string(name) + std::string(14 - std::min<std::size_t>(13, name.size()), ' ') +
-            std::string(optimizer_description(name)) + "\n";
-  }
-  return text;
-}
-
-}  // namespace
-
-void add_optimize(Verb& verb) {
-  const auto request = std::make_shared<OptimizeRequest>();
-  verb.with_scene(false);
-  verb.with_json();
-  verb.option("--target", request->target, "NAME",
-              first_is_default(listed(targets)) +
-                  ", or a weighted sum such as \"0.7 bounce + 0.3 energy\"; the goal of each asks for no significant rebound");
-  verb.option("--actuator", request->actuator, "NAME",
-              "drives that the search may shape: " + listed(actuators) +
-                  "; default: all that the scene has, and with --robust none or a measure electrostatic");
-  verb.option(
-      "--waveform", request->waveform, "NAME",
-      "family to search: " + listed_searched_families() +
-          ", with a number of levels, knots, pulses or sines: knots:8; for each drive its own: main=step,pzt=pulse; several, "
-          "each "
-          "begun where those before it ended, of which the best goes on: " +
-          fmt::format(
-              "{} (default), {} (for both, and electrodes on both sides), {} (for pzt); with a measure of --robust knots, "
-              "with --calibrate catch; quasi-static moves all drives and is searched over devices",
-              default_families(Shaped::electrode), default_families(Shaped::several), default_families(Shaped::piezo)));
-  verb.option(
-      "--robust", request->robust, "MEASURE",
-      "devices that differ as [spread] says: auto (default, but for --seeds; where the scene has no [spread] one is "
-      "assumed) races measures and families over devices and searches for the drawing beside it; none searches for the drawing "
-      "alone; one measure alone: yield (as many devices as possible without a rebound), yield:\"bounce_count == 0\", "
-      "cvar:0.9 (the mean of the worst tenth), quantile:0.95, mean+2sigma, worst");
-  verb.repeated(
-      "--constrain", request->constrain, "CONDITION",
-      "condition that the winner on the drawing, and 95 % of the devices, have to fulfil: \"permanent_contact_time < 60 us\"; "
-      "may be repeated");
-  verb.option("--hold-step", request->hold_step, "chosen|fixed",
-              "with --actuator pzt, when the plain step of the electrode comes: at an instant that is searched, after a slow "
-              "approach by the piezo (chosen, default), or at t = 0 (fixed)");
-  verb.option("--calibrate", request->calibrate, "LIST",
-              "measured on every device before it is driven, whose waveform is then in its own units: \"Vdp,frequency\" or, with "
-              "errors, \"Vdp:1 %,frequency:0.5 %\"; piezo, the deflection per volt on it over the contact gap, as well; "
-              "\"Vdp,frequency in 8 classes\": sorted by it, one waveform for each class; none: "
-              "not even what [calibration] says");
-  verb.with_samples(request->samples,
-                    "devices that a search by one measure looks at (default: 128), or fresh ones of the verdict (default: 2000)");
-  verb.option("--optimizer", request->optimizer, "NAME", "auto (default), or another of the names below");
-  verb.repeated("--start", request->starts, "FILE",
-                "begin with the waveform of this scene or result (of softland limit, say), which must be of the searched drives; "
-                "from another family, with the nearest waveform of the searched one; it stays the best unless a better one is "
-                "found, and without --robust the search never ends worse; may be repeated");
-  verb.optional(
-      "--budget", request->budget, "N|TIME",
-      fmt::format(
-          "evaluations, or time (\"90 s\"); default: {} for an electrode, {} for several drives, {} for a "
-          "piezo, half as much again for {}; and {} closings of devices, up to twice as many where many land, fewer where "
-          "closings take more work than usual, which the first line says; with --robust auto all closings together, with a "
-          "measure closings of devices, {}",
-          default_budget(Target::bounce, Shaped::electrode), default_budget(Target::bounce, Shaped::several),
-          default_budget(Target::bounce, Shaped::piezo), targets_with_own_cost(), race_closings, default_closings));
-  verb.with_seed(request->seed, "same result, whatever --jobs is");
-  verb.optional("--seeds", request->seeds, "N",
-                "search from N seeds, --seed and those after it, as one study: the best is reported, and how the others spread");
-  verb.flag(
-      "--resume", request->resume,
-      "go on with the search in the folder of --out that was interrupted, or ended by its budget; what it has evaluated is not "
-      "simulated again, and options that are not given are those it began with");
-  verb.flag("--limit", request->limit,
-            fmt::format(
-                "tell how near the winner's touch comes to the least time of any waveform of these drives also where a "
-                "driver has a max_slew or a cantilever more than four modes, which may take minutes, and with a budget below {}",
-                evaluations_worth_a_limit));
-  verb.with_jobs(request->jobs, "threads (default: one per core)");
-  verb.with_out("folder for the report, the waveform found and all data (default: softland-out)");
-  verb.footer(
-      "Without a scene: scenes/mem-gold-pzt.toml. The hold level is the scene's own; its [driver.*] limits are never left.\n"
-      "A scene that holds a landing already (best.toml of an earlier search) is refined and, without --robust, never ends "
-      "worse.\n" +
-      optimizer_help() +
-      "\nExamples:\n  softland optimize --target bounce --actuator pzt\n"
-      "  softland optimize scenes/mem-gold.toml --seeds 8 --out seeds\n"
-      "  softland optimize --resume --out seeds --budget 5000\n"
-      "  softland optimize my.toml --start run1/best.toml --out run2\n"
-      "  softland optimize scenes/mem-gold.toml --actuator electrostatic --waveform pulse --seed 3 --out run3\n"
-      "  softland optimize scenes/mem-gold.toml --robust cvar:0.9 --constrain \"initial_contact_time < 65 us\"\n"
-      "  softland optimize scenes/mem-gold.toml --robust cvar:0.9 --waveform catch --calibrate \"Vdp:1 %,frequency:0.5 %\"");
-  verb.runs([request](const Common& common) { return optimize_verb(common, *request); });
 }
 
 }  // namespace softland::apps

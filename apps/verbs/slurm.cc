@@ -10,13 +10,13 @@
 #include "apps/exit_status.h"
 #include "apps/stores.h"
 #include "apps/streams.h"
-#include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
 #include "base/shell_word.h"
 #include "config/plan.h"
 #include "store/study_store.h"
 #include "studies/exploration/stored_exploration.h"
+#include "verbs/options.h"
 #include "verbs/points.h"
 
 namespace softland::apps {
@@ -108,8 +108,9 @@ printf 'parts: job %s, merge: job %s, logs in %s\n' "$array" "${merge%%;*}" "$pa
 
 int slurm_verb(const Common& c, const SlurmRequest& request) {
   require(request.tasks.has_value(), "--tasks is required: how many parts the study has");
-  const auto tasks = whole_number<std::uint64_t>("--tasks", *request.tasks, 1);
-  const auto processors = request.processors ? whole_number<std::uint64_t>("--cpus", *request.processors, 1) : 1;
+  const auto tasks = verbs::whole_number<std::uint64_t>("--tasks", *request.tasks, {.least = 1});
+  const auto processors =
+      request.processors ? verbs::whole_number<std::uint64_t>("--cpus", *request.processors, {.least = 1}) : 1;
   const Plan plan = plan_of(request.plan);
   require(tasks == 1 || !plan.is_search(), "--tasks: a search for a front goes from point to point and cannot be divided");
   require(tasks <= most_tasks && tasks <= plan.points(), [&] {

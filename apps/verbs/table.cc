@@ -14,7 +14,6 @@
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/streams.h"
-#include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/printable.h"
 #include "base/require.h"

@@ -1,27 +1,35 @@
-// The verbs of the command line that are no studies of a scene, in the order of --help: each is a file here that says what it may
-// be told and does it.
+// What the command line alone runs: the verbs of verbs/study.h without a computation, and in the order of --help those that it
+// alone has, each a file here that says what it may be told and does it.
 #pragma once
 
 #include <array>
+#include <string_view>
 
-#include "apps/options.h"
+#include "apps/studies.h"
 
 namespace softland::apps {
 
-void add_simulate(Verb& verb);
 void add_modes(Verb& verb);
-void add_optimize(Verb& verb);
-void add_explore(Verb& verb);
-void add_tune(Verb& verb);
-void add_device(Verb& verb);
 void add_table(Verb& verb);
 void add_status(Verb& verb);
 void add_merge(Verb& verb);
 void add_slurm(Verb& verb);
 void add_new(Verb& verb);
-void add_export(Verb& verb);
 void add_report(Verb& verb);
 void add_read(Verb& verb);
+
+// Verbs of verbs/study.h that the program runs in its own way.
+[[nodiscard]] int run_optimize(const Common& common, const verbs::Told& told);
+[[nodiscard]] int run_explore(const Common& common, const verbs::Told& told);
+[[nodiscard]] int run_tune(const Common& common, const verbs::Told& told);
+[[nodiscard]] int run_device(const Common& common, const verbs::Told& told);
+
+struct RunRow {
+  std::string_view name;
+  RunTold run;
+};
+inline constexpr std::array runs{RunRow{"optimize", run_optimize}, RunRow{"explore", run_explore}, RunRow{"tune", run_tune},
+                                 RunRow{"device", run_device}};
 
 struct VerbRow {
   const char* name;
@@ -29,22 +37,14 @@ struct VerbRow {
   void (*add)(Verb& verb);  ///< says what the verb may be told, and what it runs
 };
 
-/// In --help the studies (verbs/study.h) stand between these and the others.
-inline constexpr std::array first_verbs{
-    VerbRow{"simulate", "simulate the closing that a scene describes", add_simulate},
-    VerbRow{"optimize", "search the drive waveform that closes without bounce", add_optimize},
-    VerbRow{"explore", "compute many points of a design space into a store", add_explore},
-};
+/// In --help they stand behind those of verbs/study.h.
 inline constexpr std::array other_verbs{
     VerbRow{"modes", "natural frequencies; modes of another program as a table for a scene", add_modes},
-    VerbRow{"tune", "tune the waveform on a device, by nothing but the state of its contact", add_tune},
-    VerbRow{"device", "a simulated device that answers as one in a laboratory, to practise on", add_device},
     VerbRow{"table", "print the rows of a store, as CSV or for people", add_table},
     VerbRow{"status", "how far studies are, and who writes into their stores", add_status},
     VerbRow{"merge", "make one store of the parts of a study", add_merge},
     VerbRow{"slurm", "print the script of a study for a cluster with Slurm", add_slurm},
     VerbRow{"new", "print a commented scene to start from", add_new},
-    VerbRow{"export", "print the waveforms of a result for a generator or a circuit simulator", add_export},
     VerbRow{"report", "make the report of a result.json again, or the page of an exploration", add_report},
     VerbRow{"read", "what a file of an oscilloscope or another instrument holds", add_read},
 };

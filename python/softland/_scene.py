@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import sys
-import warnings
 from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -15,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _softland
-from ._closing import Closing
 from ._evaluator import Evaluator
 from ._files import write_whole
 from ._outcome import Outcome
@@ -23,16 +21,12 @@ from ._progress import Progress, shown
 from ._records import Quantity, read
 from ._studies import Studies
 from ._studying import command, natives
-from ._tuning import Device, PracticeDevice, Tuning, laboratory, tuning_of
-from ._units import number, units
-from ._waveform import OwnWaveform, Waveform
-
-if TYPE_CHECKING:
-    from ._results import Store
+from ._tuning import Device
+from ._units import units
+from ._waveform import Waveform
 
 Array = npt.NDArray[np.float64]
 Value = Union[str, float, int, bool, Sequence[Any], Mapping[str, Any]]
-Actuator = Literal["electrostatic", "pzt", "both"]
 
 
 def _toml(value: Any) -> str:
@@ -68,15 +62,6 @@ def _holds_quantity(native: _softland.Scene, key: str) -> bool:
         return bool(_softland.units(native.written(key) or "")[1])
     except ValueError:
         return False
-
-
-def _told(value: float | str | None, unit: str) -> str | None:
-    """As an option of the program is told it."""
-    return value if value is None or isinstance(value, str) else f"{float(value)!r} {unit}"
-
-
-def _jobs(jobs: int | None) -> int:
-    return jobs if jobs is not None else os.cpu_count() or 1
 
 
 class Waveforms(Mapping[str, Waveform]):
@@ -193,194 +178,9 @@ class Scene(Studies, MutableMapping[str, Any]):
 
     # The verbs of the program; Studies has the others.
 
-    def simulate(
-        self,
-        *,
-        errors: bool = True,
-        certify: bool = False,
-        waveforms: Mapping[str, Waveform] | None = None,
-        jobs: int | None = None,
-        progress: bool | Progress | None = False,
-    ) -> Closing:
-        """The closing under the scene's waveforms, as `softland simulate` runs it, to the same bits.
-
-        errors: a second, tighter run measures the error of each figure, and refines the first where the scene asks for more accuracy.
-        certify: errors that cover the true ones, and clouds of runs for ill-conditioned figures.
-        waveforms: of some drives other ones than the scene's, in volts; own waveforms too.
-        jobs: threads of a certified run; they change nothing.
-        Numerical trouble is the status of the closing. Raises InvalidInput.
-        """
-        with shown(progress) as tell:
-            return Closing(self._native.simulate(errors, certify, _jobs(jobs), natives(waveforms), command(), tell))
-
     def modes(self, places: int = 101) -> Modes:
         """Natural frequencies and mode shapes."""
         return Modes(self._native.frequencies(), *self._native.shapes(places))
-
-    def optimize(
-        self,
-        *,
-        target: str = "bounce",
-        actuator: Actuator | None = None,
-        robust: str = "auto",
-        waveform: str = "",
-        objective: Callable[[dict[str, Any], dict[str, float]], Any] | None = None,
-        lands_first: bool = True,
-        own_waveforms: Sequence[OwnWaveform] = (),
-        constrain: Sequence[str] = (),
-        start: Sequence[Mapping[str, Waveform]] = (),
-        optimizer: str = "",
-        hold_step: str = "",
-        calibrate: str = "",
-        budget: int | str | None = None,
-        samples: int | None = None,
-        seed: int = 1,
-        jobs: int | None = None,
-        out: str | os.PathLike[str] | None = None,
-        resume: bool = False,
-        callback: Callable[[int, float, float, float], Any] | None = None,
-        progress: bool | Progress | None = None,
-    ) -> Outcome:
-        """The search for a waveform, as `softland optimize`; its result has the same keys as result.json, and `files` such as best.toml.
-
-        target: "bounce", "settling", "rebound", "count", "impact", "energy", "force", "drive", "steady", or a sum "0.7 bounce + 0.3 energy".
-        actuator: without one all drives that the scene has, and with another `robust` than "auto" the electrode.
-        robust: "auto", for the drawing and for devices; "none", for the drawing alone; a measure such as "cvar:0.9", for devices by it alone.
-        waveform: a family, or several "pulse+knots"; names of `own_waveforms` too.
-        objective: (closing, step) -> F in the place of a target: both are dicts of figures [SI], of a candidate and of the plain step; F >= 0, about 1
-            for the step, is minimised. lands_first: among waveforms that land without a significant rebound. Over devices it is called once for a
-            candidate: the figures of `closing` are arrays (devices,) of those that close, and it returns an array; of the drawing they are floats.
-        constrain: conditions, "peak_contact_force < 20 uN".
-        start: waveforms by drive [V] to begin with.
-        hold_step: with actuator "pzt", "chosen" (the instant of the electrode's plain step is searched) or "fixed" (t = 0).
-        optimizer: a method, where it is not to be "auto"; calibrate: what is measured on every device, "Vdp:1 %,frequency".
-        budget: evaluations, or closings of devices; or time, "90 s". samples: devices.
-        out: folder in which all evaluations are kept while the search runs, and its files when it ends. resume: goes on with the search in that
-            folder, of Python or of the program, that was interrupted or ended by its budget; nothing is simulated twice.
-        callback: (evaluations, best cost, cost of the plain step, cost now) after each evaluation on record; one that returns True ends the search, of
-            which the best so far is then the result.
-        """
-        request = {
-            "target": target, "actuator": actuator, "robust": robust, "waveform": waveform,
-            "objective": None if objective is None else _softland.PythonObjective(getattr(objective, "__name__", "own"), objective, lands_first),
-            "own_waveforms": [one._function for one in own_waveforms], "constrain": list(constrain), "starts": [natives(one) for one in start],
-            "optimizer": optimizer, "hold-step": hold_step, "calibrate": calibrate, "budget": budget, "samples": samples, "seed": seed, "jobs": _jobs(jobs), "callback": callback, "command": command(),
-            "out": "" if out is None else os.fspath(out), "resume": resume,
-        }  # fmt: skip
-        with shown(progress) as tell:
-            return Outcome(_softland.optimize(self._native, {**request, "progress": tell}))
-
-    def explore(
-        self,
-        vary: Mapping[str, str] | Sequence[str],
-        out: str | os.PathLike[str] = "softland-out.sqlite",
-        *,
-        study: Literal["simulate", "pull-in", "robustness", "optimize", "limit", "release", "effects", "check"] = "simulate",
-        sample: str = "",
-        pareto: Sequence[str] = (),
-        options: Mapping[str, Any] | None = None,
-        resume: bool = False,
-        shard: str = "",
-        seed: int = 1,
-        jobs: int | None = None,
-        progress: bool | Progress | None = None,
-    ) -> Store:
-        """An exploration of the design space, as `softland explore`: a row in the store `out` for every point, which is returned.
-
-        vary: what varies, {"gap.contact": "1.6 um:2.4 um:7"}: LOW:HIGH:N, with :log in equal ratios, or A,B,C; "gap.electrode*gap.contact" by one
-            factor; all combinations.
-        sample: "sobol:256" or "lhs:256" points in the box of LOW:HIGH instead.
-        pareto: figures of which the front is searched: ["initial_contact_time", "max:bounce_free"]; sample "nsga2:N" says with how many points.
-        study: what is asked of every point; options: of it, by their names on the command line: {"certify": True}, {"samples": 200}, {"target": "energy"}.
-        resume: go on with the store: points that it holds are not computed again. shard: "2/8", the second of eight parts.
-        Ctrl-C raises KeyboardInterrupt; the rows that are done are in the store.
-        """
-        from ._results import Store
-
-        words = [f"{key}={values}" for key, values in vary.items()] if isinstance(vary, Mapping) else list(vary)
-        given = {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in (options or {}).items()}
-        request = {
-            "vary": words, "out": os.fspath(out), "study": study, "sample": sample, "pareto": ",".join(pareto), "options": given,
-            "resume": resume, "shard": shard, "seed": seed, "jobs": _jobs(jobs), "command": command(),
-        }  # fmt: skip
-        with shown(progress) as tell:
-            _softland.explore(self._native, {**request, "progress": tell})
-        return Store(Path(out))
-
-    def export(
-        self,
-        format: str = "csv",
-        *,
-        waveforms: Mapping[str, Waveform] | None = None,
-        drive: str = "",
-        signal: Literal["told", "output"] = "told",
-        sample_rate: float | str | None = None,
-        bits: int | None = None,
-        amplifier: float | None = None,
-        marker: float | str | None = None,
-        measured: Mapping[str, str] | None = None,
-        jobs: int | None = None,
-        progress: bool | Progress | None = False,
-    ) -> str:
-        """The scene's waveforms as the text of a file for others, as `softland export`.
-
-        format: "csv"; of generators "keysight-arb", "siglent-csv", "tektronix-csv", "rigol-csv", "digilent-csv"; "codes", samples as integers; of circuit
-            simulators "spice-pwl", and the switch itself, "spice-model", "spice-bench", "verilog-a".
-        waveforms: in the place of some of the scene's, in volts; own waveforms as tables. drive: of several this one.
-        signal: what the source is told, or its output. sample_rate [Hz], bits: instead of those of [driver].
-        amplifier: volts at the switch per volt of the generator, instead of that of [driver]. marker: when the sync output falls [s] (keysight-arb).
-        measured: {"Vdp": "54.2 V", "frequency": "10.2 kHz"} of a device that gets its own waveform.
-        Warns where the switch does not close under the samples as well as under the waveform itself. Raises InvalidInput.
-        """
-        scene = self
-        if waveforms:
-            scene = self.copy()
-            for name, waveform in waveforms.items():
-                own = waveform.family not in _softland.families
-                scene.waveforms[name] = Waveform.table(*waveform.points(self._native.duration())) if own else waveform
-        request = {
-            "format": format, "signal": signal, "drive": drive, "sample_rate": _told(sample_rate, "Hz"), "bits": None if bits is None else str(bits),
-            "amplifier": None if amplifier is None else repr(float(amplifier)), "marker": _told(marker, "s"),
-            "measured": ",".join(f"{key}={value}" for key, value in (measured or {}).items()), "jobs": _jobs(jobs),
-        }  # fmt: skip
-        with shown(progress) as tell:
-            text, said = _softland.export(scene._native, request, tell)
-        for line in said:
-            if not line.startswith(("as sampled", "amplifier of drive")):
-                warnings.warn(line.removeprefix("warning: "), stacklevel=2)
-        return text
-
-    def tuning(
-        self,
-        *,
-        actuator: Actuator = "electrostatic",
-        constrain: str = "",
-        errors: Mapping[str, float | str] | None = None,
-        recipes: int | None = None,
-        effort: float | None = None,
-        wafer: Sequence[str | os.PathLike[str]] = (),
-        out: str | os.PathLike[str] | None = None,
-        resume: bool = False,
-        seed: int = 1,
-        jobs: int | None = None,
-        progress: bool | Progress | None = None,
-    ) -> Tuning:
-        """A tuning on one device that is ready for its first shot: the waveform for the drawing is searched, which takes half a minute or so.
-
-        actuator: which drives are shaped. constrain: "initial_contact_time < 33 us", or "< 1.1 step".
-        errors: of the instruments, one standard deviation: edge_error [s], unseen [s], gain_error, shot_error, and trigger_delay [s], by which records may
-            begin later or earlier than the drives; default: the usual ones (docs/tune.md).
-        recipes: waveforms searched before the first closing, 1 to 5. effort: evaluations of every search, over the usual.
-        wafer: folders of tunings of devices of the same wafer that have ended.
-        out: folder for closings.jsonl, where each closing is before the next is fired, and for the files of the program. resume: goes on with the
-            closings there, none of which is fired again; scene and options as before. Program and Python may go on with each other's.
-        Same answers, same proposals, whatever `jobs` is. Raises InvalidInput.
-        """
-        request = {
-            "actuator": actuator, "constrain": constrain, **laboratory(errors, "trigger_delay"), "recipes": recipes, "effort": effort,
-            "wafer": [os.fspath(one) for one in wafer], "seed": seed, "jobs": _jobs(jobs), "command": command(),
-        }  # fmt: skip
-        return tuning_of(self._native, request, out, resume, progress)
 
     def tune(
         self,
@@ -407,30 +207,6 @@ class Scene(Studies, MutableMapping[str, Any]):
             with suppress(AttributeError):  # of an exception that takes no attributes
                 error.tuning = tuning  # type: ignore[attr-defined]
             raise
-
-    def device(
-        self,
-        *,
-        seed: int = 1,
-        errors: Mapping[str, float | str] | None = None,
-        drift: float = 0.0,
-        trigger_delay: float | str = 0.0,
-        more_modes: int = 0,
-        gas: str = "",
-        stiffness: float = 1.0,
-        set: Mapping[str, str] | None = None,
-    ) -> PracticeDevice:
-        """A simulated device to practise on, as `softland device`: one of the scene's [spread], or of the usual one, chosen by `seed`.
-
-        errors: of its instruments, as in `tuning`, but for trigger_delay. drift: share by which all volts change from one shot to the next.
-        trigger_delay: by how much its records begin later than the drives [s]; earlier where it is below 0.
-        more_modes, gas, stiffness (a factor, of the contact) and set ({"gap.contact": "2.05 um"}): a physics that the scene does not know.
-        """
-        request = {
-            **laboratory(errors), "seed": seed, "drift": drift, "trigger_delay": float(number(trigger_delay)), "more_modes": more_modes, "gas": gas,
-            "stiffness": stiffness, "set": [f"{key}={value}" for key, value in (set or {}).items()],
-        }  # fmt: skip
-        return PracticeDevice(_softland.PracticeDevice(self._native, request))
 
     def evaluator(
         self,

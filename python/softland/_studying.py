@@ -4,15 +4,23 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from . import _softland
 from ._bench import bench_of
+from ._closing import Closing
+from ._errors import InvalidInput
 from ._outcome import Outcome
 from ._progress import Progress, shown
-from ._waveform import Waveform
+from ._tuning import PracticeDevice, Tuning
+from ._waveform import OwnWaveform, Waveform
+
+if TYPE_CHECKING:
+    from ._results import Store
 
 Told = Mapping[str, "Sequence[Any] | None"]
 
@@ -26,12 +34,16 @@ def _whole(value: int | None) -> list[str] | None:
     return None if value is None else [str(int(value))]
 
 
-def _text(value: str) -> list[str] | None:
-    return [value] if value else None
+def _text(value: str | int | None) -> list[str] | None:
+    return None if value is None or value == "" else [str(value)]
 
 
 def _path(value: str | os.PathLike[str] | None) -> list[str] | None:
     return None if value is None else [os.fspath(value)]
+
+
+def _paths(values: Sequence[str | os.PathLike[str]]) -> list[str]:
+    return [os.fspath(one) for one in values]
 
 
 def _flag(value: bool) -> list[str] | None:
@@ -52,6 +64,22 @@ def _assigned(values: Mapping[str, float | str] | None) -> list[str] | None:
     return [f"{key}={one if isinstance(one, str) else f'{float(one)!r} V'}" for key, one in values.items()] if values else None
 
 
+def _settings(values: Mapping[str, Any] | Sequence[str] | None) -> list[str] | None:
+    """KEY=VALUE of a mapping, or as they are written."""
+    if not isinstance(values, Mapping):
+        return None if values is None else list(values)
+    return [f"{key}={str(one).lower() if isinstance(one, bool) else one}" for key, one in values.items()]
+
+
+def _errors(errors: Mapping[str, float | str] | None, *more: str) -> dict[str, list[str] | None]:
+    """Errors of instruments as the options of their names."""
+    units = {"edge_error": "s", "unseen": "s", "gain_error": "", "shot_error": "", **dict.fromkeys(more, "s")}
+    for name in errors or {}:
+        if name not in units:
+            raise ValueError(f"errors: no {name!r}; there are {', '.join(units)}")
+    return {name.replace("_", "-"): _quantity(value, units[name]) for name, value in (errors or {}).items()}
+
+
 def command() -> str:
     return f"python3 {sys.argv[0]}".strip() if sys.argv and sys.argv[0] not in ("", "-c") else "python3"
 
@@ -60,10 +88,83 @@ def natives(waveforms: Mapping[str, Waveform] | None) -> dict[str, Any]:
     return {drive: waveform._native for drive, waveform in (waveforms or {}).items()}
 
 
+def texts(told: Told) -> dict[str, list[str]]:
+    return {option: list(values) for option, values in told.items() if values}
+
+
 class Studying:
     """A scene that can be asked."""
 
     _native: _softland.Scene
+
+    def _simulate(self, told: Told, progress: bool | Progress | None, waveforms: Mapping[str, Waveform] | None) -> Closing:
+        with shown(progress) as tell:
+            return Closing(self._native.simulate(texts(told), natives(waveforms), command(), tell))
+
+    def _optimize(
+        self,
+        told: Told,
+        progress: bool | Progress | None,
+        objective: Callable[[dict[str, Any], dict[str, float]], Any] | None,
+        lands_first: bool,
+        own_waveforms: Sequence[OwnWaveform],
+        start: Sequence[Mapping[str, Waveform]],
+        out: str | os.PathLike[str] | None,
+        callback: Callable[[int, float, float, float], Any] | None,
+    ) -> Outcome:
+        name = getattr(objective, "__name__", "own")
+        objects = {
+            "objective": None if objective is None else _softland.PythonObjective(name, objective, lands_first),
+            "own_waveforms": [one._function for one in own_waveforms],
+            "starts": [natives(one) for one in start],
+            "out": "" if out is None else os.fspath(out),
+            "callback": callback,
+            "command": command(),
+        }
+        with shown(progress) as tell:
+            return Outcome(_softland.optimize(self._native, texts(told), {**objects, "progress": tell}))
+
+    def _explore(self, told: Told, progress: bool | Progress | None) -> Store:
+        from ._results import Store
+
+        if not told["vary"]:
+            raise InvalidInput('vary: nothing varies: give {"gap.contact": "1.6 um:2.4 um:7"}')
+        with shown(progress) as tell:
+            _softland.explore(self._native, texts(told), command(), tell)
+        return Store(Path((told["out"] or [""])[0]))
+
+    def _export(self, told: Told, progress: bool | Progress | None, waveforms: Mapping[str, Waveform] | None) -> str:
+        """Warns where the switch does not close under the samples as well as under the waveform itself."""
+        scene = self._native.copy() if waveforms else self._native
+        for drive, one in (waveforms or {}).items():
+            is_own = one.family not in _softland.families
+            scene.set_waveform(drive, (Waveform.table(*one.points(self._native.duration())) if is_own else one)._native)
+        with shown(progress) as tell:
+            found = scene.study("export", texts(told), {}, command(), tell)
+        for line in found.notes:
+            if not line.startswith(("as sampled", "amplifier of drive")):
+                warnings.warn(line.removeprefix("warning: "), stacklevel=4)
+        return found.text
+
+    def _device(self, told: Told, progress: bool | Progress | None, errors: Mapping[str, float | str] | None) -> PracticeDevice:
+        with shown(progress) as tell:
+            return PracticeDevice(_softland.PracticeDevice(self._native, texts({**told, **_errors(errors)}), tell))
+
+    def _tuning(
+        self,
+        told: Told,
+        progress: bool | Progress | None,
+        errors: Mapping[str, float | str] | None,
+        out: str | os.PathLike[str] | None,
+    ) -> Tuning:
+        folder = None if out is None else Path(out)
+        if folder is not None:
+            folder.mkdir(parents=True, exist_ok=True)
+        elif told["resume"]:
+            raise ValueError("resume: goes on with the closings in the folder `out`, which is missing")
+        log = "" if folder is None else str(folder / "closings.jsonl")
+        with shown(progress) as tell:
+            return Tuning(_softland.Tuning(self._native, texts({**told, **_errors(errors, "trigger_delay")}), log, command(), tell), folder)
 
     def _study(
         self, verb: str, told: Told, progress: bool | Progress | None, waveforms: Mapping[str, Mapping[str, Waveform]] | None = None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -170,36 +169,6 @@ def _plain(value: Any) -> Any:
     if isinstance(value, np.generic):
         return value.item()
     raise TypeError(f"{value!r} cannot be part of an answer")
-
-
-def tuning_of(
-    scene: _softland.Scene,
-    request: Mapping[str, Any],
-    out: str | os.PathLike[str] | None,
-    resume: bool,
-    progress: bool | Progress | None,
-) -> Tuning:
-    """The tuning of a request, its closings kept in `out`."""
-    folder = None if out is None else Path(out)
-    if folder is not None:
-        folder.mkdir(parents=True, exist_ok=True)
-    elif resume:
-        raise ValueError("resume: goes on with the closings in the folder `out`, which is missing")
-    with shown(progress) as tell:
-        native = _softland.Tuning(scene, dict(request), "" if folder is None else str(folder / "closings.jsonl"), resume, tell)
-    return Tuning(native, folder)
-
-
-def laboratory(errors: Mapping[str, float | str] | None, *expected: str) -> dict[str, Any]:
-    """Errors of instruments by name, and those that are only `expected` of them, None where they are the usual ones."""
-    from ._units import number
-
-    names = ("edge_error", "unseen", "gain_error", "shot_error", *expected)
-    given = dict(errors or {})
-    unknown = [name for name in given if name not in names]
-    if unknown:
-        raise ValueError(f"errors: no {unknown[0]!r}; there are {', '.join(names)}")
-    return {name: None if name not in given else float(number(given[name])) for name in names}
 
 
 __all__ = ["Device", "PracticeDevice", "Shot", "Tuning"]

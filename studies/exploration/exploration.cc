@@ -256,11 +256,13 @@ void complete(PlanRequest& request, const OtherStudies& others) {
   }
 }
 
-Exploration::Exploration(Plan plan, const Watch& watch, const OtherStudies& others) : plan_(std::move(plan)) {
+Exploration::Exploration(Plan plan, const Watch& watch, const OtherStudies& others, std::vector<PointFigure> columns)
+    : plan_(std::move(plan)) {
   if (const auto* const row = find_named(point_studies, plan_.study())) {
     study_ = row->value;
   } else {
     other_ = *std::ranges::find(others, plan_.study(), &OtherStudy::name);
+    figures_ = std::move(columns);
   }
   for (const PlanVariable& variable : plan_.variables()) {
     for (const PlanKey& key : variable.keys) {
@@ -268,7 +270,7 @@ Exploration::Exploration(Plan plan, const Watch& watch, const OtherStudies& othe
                          key.path.starts_with("spread.") || key.path.starts_with("metrics.") || key.path == "simulate.duration";
     }
   }
-  list_figures(watch);
+  if (figures_.empty()) list_figures(watch);
 }
 
 void Exploration::list_figures(const Watch& watch) {

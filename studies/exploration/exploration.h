@@ -84,8 +84,10 @@ void complete(PlanRequest& request, const OtherStudies& others = {});
 
 class Exploration {
  public:
-  /// The plan's study must be complete. Throws InvalidInput where the scene of the plan lacks what the study needs.
-  explicit Exploration(Plan plan, const Watch& watch = {}, const OtherStudies& others = {});
+  /// The plan's study must be complete. `columns`: those of the record of another study, where they are known; without them the
+  /// record of the plan's own scene is made for them. Throws InvalidInput where the scene of the plan lacks what the study needs.
+  explicit Exploration(Plan plan, const Watch& watch = {}, const OtherStudies& others = {},
+                       std::vector<PointFigure> columns = {});
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const std::vector<PointFigure>& figures() const { return figures_; }

@@ -26,6 +26,18 @@ StoredPlan stored_plan(const Exploration& exploration, const Shard& shard) {
   return stored;
 }
 
+Exploration exploration_for(Plan plan, const std::filesystem::path& store, const Watch& watch, const OtherStudies& others) {
+  std::vector<PointFigure> columns;
+  if (is_store(store)) {
+    const StoredPlan held = StudyReader(store).plan();
+    for (const StoredColumn& column : held.text == plan.text() ? held.columns : std::vector<StoredColumn>()) {
+      if (column.kind == ColumnKind::figure)
+        columns.push_back({.quantity = column.name, .name = column.name, .unit = column.unit});
+    }
+  }
+  return Exploration(std::move(plan), watch, others, std::move(columns));
+}
+
 void require_part(const Exploration& exploration, const Shard& shard) {
   const std::uint64_t points = exploration.plan().points();
   require_field(static_cast<std::uint64_t>(shard.count) <= points, "shard", fmt::format("{}/{}", shard.index, shard.count),

@@ -13,6 +13,9 @@ namespace softland {
 
 /// What its store holds of the plan.
 [[nodiscard]] StoredPlan stored_plan(const Exploration& exploration, const Shard& shard);
+/// The exploration that `store` is for. Where it holds one of this plan already, the columns are those there.
+[[nodiscard]] Exploration exploration_for(Plan plan, const std::filesystem::path& store, const Watch& watch = {},
+                                          const OtherStudies& others = {});
 /// Throws InvalidRequest of the field `shard` where the exploration has no such part: a search for a front cannot be divided.
 void require_part(const Exploration& exploration, const Shard& shard);
 /// The plan of the exploration that a store holds. Throws InvalidInput where it holds a search.

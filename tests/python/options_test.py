@@ -36,7 +36,6 @@ PROGRAM_ALONE = {
     "explore": {
         "list": "an Evaluator takes rows",
         "point": "Store has the points",
-        **{name: "of the study at every point: options" for name in ("certify", "samples", "target", "actuator", "waveform", "optimizer", "budget", "option")},
     },
     "tune": {
         **{name: "the device is a function in Python" for name in ("device", "by-hand", "format", "sample-rate", "bits", "amplifier", "contact", "timeout")},
@@ -50,12 +49,12 @@ PYTHON_ALONE = {
     "": {"progress": "a function may be told"},
     "simulate": {"errors": "a loop may leave out the second run", "waveforms": "functions of Python may drive"},
     "optimize": {name: "a function or an object of Python" for name in ("objective", "lands_first", "own_waveforms", "callback")} | {"out": "evaluations are kept there while it runs"},
-    "explore": {"options": "of the study at every point", "out": "the store"},
+    "explore": {"out": "the store"},
     "tune": {"errors": "the four options of instruments", "out": "closings are kept there while it runs"},
     "device": {"errors": "the four options of instruments", "more_modes": "--model", "gas": "--model", "stiffness": "--model", "set": "--model"},
     "export": {"waveforms": "in the place of the scene's", "jobs": "the program takes all cores"},
 }
-RENAMED = {("fit", "unknown"): "unknowns", ("limit", "no-curves"): "curves", ("calibrate", "error"): "errors", ("robustness", "RESULT"): "waveforms"}
+RENAMED = {("explore", "option"): "options", ("fit", "unknown"): "unknowns", ("limit", "no-curves"): "curves", ("calibrate", "error"): "errors", ("robustness", "RESULT"): "waveforms"}
 
 
 def options_of(verb: str) -> set[str]:
@@ -93,6 +92,12 @@ class Options(unittest.TestCase):
             scene.calibrate(errors={"Vdp": 2})
         with self.assertRaisesRegex(softland.InvalidInput, r"^bias nix=1.0 V: no such drive"):
             scene.pull_in(bias={"nix": 1})
+        with self.assertRaisesRegex(softland.InvalidInput, r"^hold_step late: must be chosen or fixed"):
+            scene.optimize(hold_step="late")
+        with self.assertRaisesRegex(softland.InvalidInput, r"^budget many: must be a whole number"):
+            scene.explore({"gap.contact": "1.6 um:2.4 um:3"}, "no.sqlite", study="optimize", options={"budget": "many"})
+        with self.assertRaisesRegex(softland.InvalidInput, r"^unseen 1 V: must be a time"):
+            scene.tuning(errors={"unseen": "1 V"})
 
 
 if __name__ == "__main__":

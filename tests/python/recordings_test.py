@@ -168,7 +168,7 @@ class Exports(unittest.TestCase):
         scene.waveforms["main"] = softland.Waveform("pulse", levels=[20.9, 1.7, scene.waveforms["main"].hold_level], times=["16.3 us", "35.9 us"], edge="1 us")
         with self.assertWarnsRegex(UserWarning, "Vdp.*taken to be right"):
             scene.export(measured={"Vdp": "14.3 V"})
-        with self.assertRaisesRegex(softland.InvalidInput, "sample-rate"):
+        with self.assertRaisesRegex(softland.InvalidInput, "sample_rate"):
             scene.export("rigol-csv")
         with self.assertRaisesRegex(softland.InvalidInput, "format"):
             scene.export("wav")

@@ -17,7 +17,9 @@
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/certify.h"
 #include "studies/devices/robustness.h"
+#include "studies/exploration/stored_exploration.h"
 #include "studies/search/optimize.h"
+#include "tests/support/temporary_folder.h"
 
 namespace softland {
 namespace {
@@ -273,6 +275,32 @@ TEST(Exploration, ChecksTheOptionsOfItsStudy) {
                  return asked;
                }()),
                InvalidInput);
+}
+
+// The columns of a study that is known from outside are those of the record of the plan's scene, which is made once for a store.
+TEST(Exploration, TakesItsColumnsFromAStoreOfItsPlan) {
+  int records = 0;
+  const OtherStudies others{
+      {.name = "other",
+       .check = [](const OtherStudy::Options&) {},
+       .record =
+           [&](const SceneFile&, const OtherStudy::Options&, std::uint64_t, int, const Watch&) {
+             ++records;
+             return OtherStudy::Record{.status = "done", .numbers = {{"touch.least_time_s", 2e-5}, {"share", 0.5}}};
+           }}};
+  const Plan plan(request("other", {"gap.contact=1.8 um,2 um"}));
+  const test::TemporaryFolder folder;
+  const std::filesystem::path store = folder.path() / "other.sqlite";
+  Exploration fresh = exploration_for(plan, store, {}, others);
+  EXPECT_EQ(records, 1);
+  StudyStore(store, stored_plan(fresh, {}), {.program = "test"}, StudyStore::Opening::fresh).close();
+
+  Exploration resumed = exploration_for(plan, store, {}, others);
+  EXPECT_EQ(records, 1);
+  EXPECT_EQ(stored_plan(resumed, {}).columns, stored_plan(fresh, {}).columns);
+  expect_same(row_of(resumed, 1).figures, {2e-5, 0.5});
+  (void)exploration_for(Plan(request("other", {"gap.contact=1.9 um"})), store, {}, others);
+  EXPECT_EQ(records, 3);  // one of the row, and one of the other plan
 }
 
 }  // namespace

@@ -1,0 +1,19 @@
+// Verb `device`: a simulated device that answers as one in a laboratory does, to practise on.
+#pragma once
+
+#include "studies/tuning/practice_device.h"
+#include "verbs/laboratory.h"
+#include "verbs/study.h"
+
+namespace softland::verbs {
+
+struct DeviceRequest {
+  ToldErrors laboratory;
+  PracticeOptions practice;
+
+  [[nodiscard]] PracticeOptions options(const SceneFile& file) const;
+};
+/// Throws InvalidRequest.
+[[nodiscard]] DeviceRequest device_request(const Told& told);
+
+}  // namespace softland::verbs

@@ -1,0 +1,35 @@
+// Verb `explore`: many points of a design space, computed into a store.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/plan.h"
+#include "store/study_store.h"
+#include "verbs/study.h"
+
+namespace softland::verbs {
+
+/// What is not told is empty.
+struct ExploreRequest {
+  std::vector<std::string> vary, options;
+  std::string sample, pareto, list, study, target, actuator, waveform, optimizer, shard, out;
+  std::optional<std::string> samples, budget;
+  std::optional<std::uint64_t> seed, point;
+  int jobs = one_per_core();
+  bool certify = false, resume = false;
+
+  /// What belongs to a plan, by the name of its option.
+  [[nodiscard]] std::map<std::string, std::string> of_plan() const;
+  /// The plan of this scene. Messages begin with an option as `spelling` has it. Throws InvalidInput.
+  [[nodiscard]] PlanRequest plan(SceneFile scene, const Spelling& spelling) const;
+  /// The part of it. Throws InvalidRequest.
+  [[nodiscard]] Shard part() const;
+};
+/// Throws InvalidRequest.
+[[nodiscard]] ExploreRequest explore_request(const Told& told);
+
+}  // namespace softland::verbs

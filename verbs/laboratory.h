@@ -1,0 +1,36 @@
+// What the verbs of a laboratory are told about its instruments, in one wording: `device` simulates these errors, `tune` expects
+// them.
+#pragma once
+
+#include <optional>
+
+#include "config/scene.h"
+#include "studies/tuning/contact_record.h"
+#include "verbs/options.h"
+
+namespace softland::verbs {
+
+/// Errors that are not told are the usual ones of the scene.
+struct ToldErrors {
+  std::optional<double> edge_error = {}, unseen = {}, gain_error = {}, shot_error = {};
+  std::optional<double> trigger_delay = {};  ///< expected by `tune`, which alone has the option
+
+  /// Throws InvalidInput for a scene that cannot be read.
+  [[nodiscard]] LaboratoryErrors errors(const SceneFile& file) const;
+};
+
+template <class Archive>
+void laboratory_options(Archive& a, ToldErrors& r) {
+  a.program().quantity("edge-error", r.edge_error, {dimension::time}, "TIME",
+                       "error of the time of an edge of the contact, one standard deviation (default: 50 ns, at most "
+                       "a 200th of the period of the first mode)");
+  a.program().quantity("unseen", r.unseen, {dimension::time}, "TIME",
+                       "openings of the contact shorter than this are not seen (default: 100 ns, "
+                       "at most a 100th of that period)");
+  a.program().quantity("gain-error", r.gain_error, {dimension::none}, "SHARE",
+                       "error of the gain of a source, constant but unknown, one standard deviation (default: 0.5 %)");
+  a.program().quantity("shot-error", r.shot_error, {dimension::none}, "SHARE",
+                       "scatter of the gain from shot to shot, one standard deviation (default: 0.02 %)");
+}
+
+}  // namespace softland::verbs

@@ -1,0 +1,80 @@
+#include "verbs/simulate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "reports/quantity.h"
+#include "reports/result_document.h"
+#include "reports/result_json.h"
+#include "reports/result_maker.h"
+#include "reports/text.h"
+#include "studies/closing/certify.h"
+#include "studies/closing/timing.h"
+#include "verbs/report_outcome.h"
+
+namespace softland::verbs {
+namespace {
+
+struct SimulateVerb : Usual, SimulateRequest {
+  static constexpr auto name = "simulate", about = "simulate the closing that a scene describes", python = "simulate",
+                        returns = "Closing", progress = "False",
+                        leaves = "folder for report.html, gap.svg, result.json and trajectory.csv";
+  static constexpr auto in_python = " Numerical trouble is the status of the closing.";
+  static constexpr auto remarks =
+      "Example:\n  softland simulate scenes/mem-gold.toml --set waveform.main.level=\"1.1 Vdp\" --json -";
+  static std::vector<std::string> files() { return {"report.html", "gap.svg", "result.json", "trajectory.csv"}; }
+};
+
+template <class Archive>
+void options(Archive& a, SimulateVerb& r) {
+  a.python().unless(
+      "no-errors", r.errors,
+      "omit the second, tighter run, which measures the errors and refines the first run where the scene asks for it");
+  a.flag("certify", r.certified, "errors that cover the true ones, and clouds of runs for ill-conditioned figures");
+  a.object("waveforms", "Mapping[str, Waveform] | None", "None",
+           "waveforms of some drives in the place of the scene's, in volts; own waveforms too");
+  jobs_option(a, r.jobs, "threads of --certify (default: one per core); the result does not depend on them");
+}
+
+// effects = "auto": what leaving effects out has saved.
+std::string time_saved(const PreparedScene& chosen) {
+  PreparedScene whole = chosen;
+  whole.scene.device = chosen.effects->described.device;
+  whole.model = Switch(whole.scene.device, whole.quadrature);
+  const auto seconds = [](const PreparedScene& p) { return right_hand_side_seconds(p.model, p.signals(), p.duration); };
+  const double with = seconds(whole), without = seconds(chosen);
+  return fmt::format("effects = \"auto\": a right-hand side takes {} instead of {}, {} less", internal::quantity(without, "s"),
+                     internal::quantity(with, "s"), internal::percent(std::max(0.0, 1 - without / with)));
+}
+
+Outcome run(const Setting& setting, const SimulateVerb& request) {
+  const auto [prepared, closing] = simulated(setting.prepared(false), request, setting.watch);
+  const auto result = std::make_shared<const Result>(result_of(*prepared, closing, {.command = setting.command}));
+  const Status status = closing.metrics.status;
+  Outcome outcome{.json = summary_json(result_json(*result)), .text = terminal_text(result_document(*result))};
+  outcome.files = files_of_report(result);
+  outcome.fault =
+      closing.trajectory.message.empty() ? std::string() : fmt::format("{} ({})", closing.trajectory.message, to_string(status));
+  if (status != Status::interrupted && prepared->effects && !prepared->effects->choice.left_out.empty() && setting.note)
+    setting.note(time_saved(*prepared));
+  const bool is_lost = status == Status::not_settled && closing.is_pulled_through;
+  outcome.ending = is_lost ? Ending::no_success : ending_of(status);
+  return outcome;
+}
+
+}  // namespace
+
+SimulateRequest simulate_request(const Told& told) { return read_options<SimulateVerb>(told); }
+
+Simulated simulated(std::shared_ptr<const PreparedScene> prepared, const SimulateRequest& request, const Watch& watch) {
+  Closing closing = request.certified ? certify(*prepared, watch, request.jobs) : simulate(*prepared, request.errors, watch);
+  return {.prepared = std::move(prepared), .closing = std::move(closing)};
+}
+
+Study simulate_study() { return study_of<SimulateVerb>(); }
+
+}  // namespace softland::verbs

@@ -1,0 +1,27 @@
+// Verb `simulate`: the closing that a scene describes.
+#pragma once
+
+#include <memory>
+
+#include "studies/closing/simulate.h"
+#include "verbs/study.h"
+
+namespace softland::verbs {
+
+struct SimulateRequest {
+  bool errors = true;
+  bool certified = false;
+  int jobs = one_per_core();  ///< threads of a certified run
+};
+/// Throws InvalidRequest.
+[[nodiscard]] SimulateRequest simulate_request(const Told& told);
+
+/// A closing, and what it is of.
+struct Simulated {
+  std::shared_ptr<const PreparedScene> prepared;
+  Closing closing;
+};
+[[nodiscard]] Simulated simulated(std::shared_ptr<const PreparedScene> prepared, const SimulateRequest& request,
+                                  const Watch& watch);
+
+}  // namespace softland::verbs
