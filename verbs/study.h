@@ -68,6 +68,8 @@ struct Study {
   std::vector<OptionRow> options;
   /// Reads what was told; the study itself runs when that is called. Throws InvalidRequest.
   std::function<std::function<Outcome(const Setting&)>(const Told&)> ask;
+  /// Makes of the JSON of an outcome what can be made of it again: its text and files. Throws InvalidInput for other JSON.
+  std::function<Outcome(const nlohmann::json&)> shown_again;
 };
 
 inline constexpr auto scene_or_result = "scene file (TOML), folder that --out named, or result.json";
@@ -82,8 +84,8 @@ struct Usual {
   static std::vector<std::string> files() { return {}; }
 };
 
-/// The study of a request: a struct with name, about, python and remarks, a template options(archive, request), and
-/// run(setting, request).
+/// The study of a request: a struct with name, about, python and remarks, a template options(archive, request),
+/// run(setting, request), and shown_again(json).
 template <class Request>
 [[nodiscard]] Study study_of() {
   OptionList list;
@@ -105,7 +107,8 @@ template <class Request>
             OptionReader reader(told);
             options(reader, request);
             return [request](const Setting& setting) { return run(setting, request); };
-          }};
+          },
+          .shown_again = Request::shown_again};
 }
 
 // One file each.
