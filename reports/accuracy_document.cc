@@ -274,11 +274,19 @@ std::vector<KeyNumber> reference_keys(const AccuracyStudy& study) {
   return keys;
 }
 
+// The accuracy that the scene asks for.
+double asked_accuracy(const Origin& origin) {
+  const auto simulate = origin.scene.find("simulate");
+  const bool is_written = simulate != origin.scene.end() && simulate->is_object() && simulate->contains("accuracy");
+  return is_written && (*simulate)["accuracy"].is_number() ? (*simulate)["accuracy"].get<double>() : SimulateOptions{}.accuracy;
+}
+
 // What the accuracy takes that is nearest to the one the scene asks for.
-std::pair<std::string, std::string> headline(const PreparedScene& prepared, const AccuracyStudy& study) {
+std::pair<std::string, std::string> headline(const AccuracyRecord& record) {
+  const AccuracyStudy& study = record.found;
   const std::string figures = symbols(study, true);
   if (figures.empty() || study.recommendations.empty()) return {recommendations(study).front(), ""};
-  const double asked = std::log(prepared.scene.simulate.accuracy);
+  const double asked = std::log(asked_accuracy(record.origin));
   const auto& r =
       *std::min_element(study.recommendations.begin(), study.recommendations.end(), [&](const auto& a, const auto& b) {
         return std::abs(std::log(a.accuracy) - asked) < std::abs(std::log(b.accuracy) - asked);
@@ -292,8 +300,9 @@ std::pair<std::string, std::string> headline(const PreparedScene& prepared, cons
 
 }  // namespace
 
-Document accuracy_document(const PreparedScene& prepared, const AccuracyStudy& study, const Provenance& provenance) {
-  Document document{.title = prepared.scene.title, .origin = "accuracy", .made = internal::origin(prepared, provenance.command)};
+Document document_of(const AccuracyRecord& record) {
+  const AccuracyStudy& study = record.found;
+  Document document{.title = title_of(record.origin), .origin = "accuracy", .made = internal::made_of(record.origin)};
   if (study.rows.empty()) {
     document.headline = study.status == Status::no_contact
                             ? "The switch does not touch within its window: there are no figures to be accurate in."
@@ -301,7 +310,7 @@ Document accuracy_document(const PreparedScene& prepared, const AccuracyStudy& s
                                           study.message.empty() ? std::string(to_string(study.status)) : study.message);
     return document;
   }
-  std::tie(document.headline, document.headline_rest) = headline(prepared, study);
+  std::tie(document.headline, document.headline_rest) = headline(record);
   document.keys = reference_keys(study);
   document.draw = [&study] { return picture(study); };
   document.sections = {recommendations_section(study),
@@ -311,7 +320,9 @@ Document accuracy_document(const PreparedScene& prepared, const AccuracyStudy& s
   return document;
 }
 
-std::string accuracy_svg(const std::string& title, const AccuracyStudy& study) {
+std::string svg_of(const AccuracyRecord& record) {
+  const AccuracyStudy& study = record.found;
+  const std::string title = title_of(record.origin);
   std::string words = "Dots are tolerances, a factor of ten apart. Quickest within";
   for (const Recommendation& r : study.recommendations)
     words += fmt::format(" {}: {}{}", internal::scientific(r.accuracy), recommended(study, r),

@@ -1,91 +1,140 @@
 #include "reports/accuracy_report.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
+#include "base/require.h"
 #include "reports/accuracy_words.h"
-#include "reports/json_number.h"
-#include "reports/origin.h"
-#include "reports/result_json.h"
+#include "reports/study_members.h"
 
 namespace softland {
-namespace {
 
-using internal::json_number;
 using nlohmann::json;
 
-json errors_json(const FigureErrors& errors) {
-  json all = json::object();
-  for (std::size_t i = 0; i < errors.size(); ++i) all[std::string(studied_figures[i].key)] = json_number(errors[i]);
-  return all;
+namespace internal {
+namespace {
+
+template <class A>
+void members(A& a, FigureErrors& errors) {
+  for (std::size_t i = 0; i < errors.size(); ++i) a(studied_figures[i].key, errors[i]);
 }
 
-json setting_json(const AccuracyRow& row) {
-  return {{"integrator", to_string(row.integrator)},
-          {"tolerance", row.tolerance},
-          {"points_per_length", row.points_per_length ? json(*row.points_per_length) : json(nullptr)},
-          {"modes", row.modes}};
+}  // namespace
+}  // namespace internal
+
+template <class A>
+void members(A& a, AccuracyRow& row) {
+  a.custom("integrator", row.integrator, internal::integrator_name, internal::read_integrator);
+  a("tolerance", row.tolerance);
+  a("points_per_length", internal::OrNull{row.points_per_length});
+  a("modes", row.modes);
+  if (a.has(!row.missing.empty())) a("missing", row.missing);
+  if (!row.missing.empty()) return;
+  a.object("relative_errors", [&](auto& errors) { internal::members(errors, row.errors); });
+  a("metrics", row.figures);
+  a("steps", row.work.steps);
+  a("rhs_evaluations", row.work.rhs_evaluations);
+  a("cpu_s", row.seconds);
+  a("runs", row.runs);
 }
 
-json row_json(const AccuracyRow& row) {
-  json j = setting_json(row);
-  if (!row.missing.empty()) {
-    j["missing"] = row.missing;
-    return j;
-  }
-  j["relative_errors"] = errors_json(row.errors);
-  j["metrics"] = metrics_json(row.figures);
-  j["steps"] = row.work.steps;
-  j["rhs_evaluations"] = row.work.rhs_evaluations;
-  j["cpu_s"] = json_number(row.seconds);
-  j["runs"] = row.runs;
-  return j;
+namespace {
+
+// The reference has no error but the one to which it is known.
+json reference_json(const AccuracyStudy& study) {
+  json reference = internal::record_json(study.reference);
+  reference["resolution"] = reference["relative_errors"];
+  internal::JsonWriter resolution;
+  internal::members(resolution, const_cast<FigureErrors&>(study.resolution));
+  reference["resolution"] = std::move(resolution).take();
+  reference.erase("relative_errors");
+  return reference;
 }
 
-json rows_json(const std::vector<AccuracyRow>& rows) {
+json recommendations_json(const AccuracyStudy& study) {
   json all = json::array();
-  for (const AccuracyRow& row : rows) all.push_back(row_json(row));
+  const std::vector<std::string> words = internal::recommendations(study);
+  for (std::size_t i = 0; i < study.recommendations.size(); ++i) {
+    const Recommendation& r = study.recommendations[i];
+    all.push_back({{"accuracy", r.accuracy},
+                   {"words", words[std::min(i, words.size() - 1)]},
+                   {"setting", r.row ? internal::record_json(study.rows[*r.row]) : json()}});
+  }
   return all;
 }
 
-json spread_json(const Spread& s) {
-  return {{"low", json_number(s.low)}, {"median", json_number(s.median)}, {"high", json_number(s.high)}, {"runs", s.runs}};
+std::vector<Recommendation> read_recommendations(const json& from, const std::vector<AccuracyRow>& rows) {
+  std::vector<Recommendation> all;
+  for (const json& one : from.is_array() ? from : json::array()) {
+    Recommendation& r = all.emplace_back();
+    const internal::JsonReader members(one);
+    r.accuracy = internal::JsonReader::read<double>(members.at("accuracy"));
+    const auto row = std::ranges::find(rows, members.at("setting"), internal::record_json<AccuracyRow>);
+    if (row != rows.end()) r.row = static_cast<std::size_t>(row - rows.begin());
+  }
+  return all;
+}
+
+// A figure that a row lacks, and the reference has, is infinitely far off; JSON has no such number.
+void set_missing(std::vector<AccuracyRow>& rows, const Metrics& reference) {
+  for (AccuracyRow& row : rows) {
+    for (std::size_t i = 0; i < row.errors.size(); ++i) {
+      if (std::isnan(row.errors[i]) && std::isfinite(studied_figures[i].value(reference)))
+        row.errors[i] = std::numeric_limits<double>::infinity();
+    }
+  }
 }
 
 }  // namespace
 
-json accuracy_json(const PreparedScene& prepared, const AccuracyStudy& study, const Provenance& provenance) {
-  json j = with_origin({{"kind", "accuracy"}, {"status", to_string(study.status)}}, prepared, provenance.command);
-  if (!study.message.empty()) j["message"] = study.message;
-  if (study.rows.empty()) return j;
-  j["reference"] = row_json(study.reference);
-  j["reference"].erase("relative_errors");
-  j["reference"]["resolution"] = errors_json(study.resolution);
-  j["rows"] = rows_json(study.rows);
-  j["modes"] = rows_json(study.modes);
-  j["without_restart_at_contact"] = rows_json(study.through);
-  if (!study.why_always_restarted.empty()) j["why_always_restarted"] = study.why_always_restarted;
-  for (std::size_t i = 0; i < studied_figures.size(); ++i) {
-    json cloud = spread_json(study.cloud[i]);
-    cloud["well_conditioned"] = study.conditioned[i];
-    j["cloud"][std::string(studied_figures[i].key)] = std::move(cloud);
+template <class A>
+void members(A& a, AccuracyRecord& record) {
+  AccuracyStudy& study = record.found;
+  members(a, record.origin);
+  a("status", study.status);
+  if (a.has(!study.message.empty())) a("message", study.message);
+  if (a.has(!study.rows.empty())) a("rows", study.rows);
+  if (study.rows.empty()) return;
+  a.custom(
+      "reference", study.reference, [&](const AccuracyRow&) { return reference_json(study); },
+      internal::JsonReader::read<AccuracyRow>);
+  if constexpr (A::reads) {
+    internal::JsonReader reference(a.at("reference"));
+    reference.object("resolution", [&](auto& resolution) { internal::members(resolution, study.resolution); });
   }
-  const auto key = [](Figure::Member member) { return std::string(figure_of(member).key); };
-  j["cloud"][key(&Metrics::permanent_contact_time)] = spread_json(study.permanent_contact_time);
-  j["cloud"][key(&Metrics::bounce_count)] = spread_json(study.bounce_count);
-  const std::vector<std::string> words = internal::recommendations(study);
-  j["recommendations"] = json::array();
-  for (std::size_t i = 0; i < study.recommendations.size(); ++i) {
-    const Recommendation& r = study.recommendations[i];
-    json one{{"accuracy", r.accuracy}, {"words", words[std::min(i, words.size() - 1)]}, {"setting", nullptr}};
-    if (r.row) one["setting"] = row_json(study.rows[*r.row]);
-    j["recommendations"].push_back(std::move(one));
-  }
-  return j;
+  a("modes", study.modes);
+  a("without_restart_at_contact", study.through);
+  if (a.has(!study.why_always_restarted.empty())) a("why_always_restarted", study.why_always_restarted);
+  a.object("cloud", [&](auto& cloud) {
+    for (std::size_t i = 0; i < studied_figures.size(); ++i) {
+      cloud.object(studied_figures[i].key, [&](auto& one) {
+        members(one, study.cloud[i]);
+        one("well_conditioned", study.conditioned[i]);
+      });
+    }
+    cloud(key_of(&Metrics::permanent_contact_time), study.permanent_contact_time);
+    cloud(key_of(&Metrics::bounce_count), study.bounce_count);
+  });
+  a.custom(
+      "recommendations", study.recommendations, [&](const auto&) { return recommendations_json(study); },
+      [&](const json& from) { return read_recommendations(from, study.rows); });
+}
+
+json json_of(const AccuracyRecord& record) { return internal::record_json(record); }
+
+AccuracyRecord read_accuracy(const json& from) {
+  AccuracyRecord record = internal::whole_record<AccuracyRecord>(from);
+  AccuracyStudy& study = record.found;
+  if (study.rows.empty()) return record;
+  const auto has_points = [](const AccuracyRow& row) { return row.points_per_length.has_value(); };
+  require(std::ranges::all_of(study.rows, [&](const AccuracyRow& row) { return has_points(row) == has_points(study.rows[0]); }) &&
+              !internal::quadrature_rows(study).empty(),
+          "\"rows\" are not those of one study");
+  for (std::vector<AccuracyRow>* rows : {&study.rows, &study.modes, &study.through}) set_missing(*rows, study.reference.figures);
+  return record;
 }
 
 }  // namespace softland

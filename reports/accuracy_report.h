@@ -5,17 +5,22 @@
 #include <string>
 
 #include "reports/document.h"
-#include "reports/result_maker.h"
+#include "reports/origin.h"
 #include "studies/closing/accuracy.h"
 
 namespace softland {
 
-[[nodiscard]] nlohmann::json accuracy_json(const PreparedScene& prepared, const AccuracyStudy& study,
-                                           const Provenance& provenance);
+struct AccuracyRecord {
+  Origin origin;
+  AccuracyStudy found;
+};
+
+[[nodiscard]] nlohmann::json json_of(const AccuracyRecord& record);
+[[nodiscard]] AccuracyRecord read_accuracy(const nlohmann::json& from);
 /// Recommendations, diagrams, tables, clouds; of a study without rows why it has none.
-[[nodiscard]] Document accuracy_document(const PreparedScene& prepared, const AccuracyStudy& study, const Provenance& provenance);
+[[nodiscard]] Document document_of(const AccuracyRecord& record);
 /// Error against time, one curve per integrator; the same with and without a restart at the contact; and error against quadrature
 /// points, one curve per figure.
-[[nodiscard]] std::string accuracy_svg(const std::string& title, const AccuracyStudy& study);
+[[nodiscard]] std::string svg_of(const AccuracyRecord& record);
 
 }  // namespace softland

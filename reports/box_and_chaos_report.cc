@@ -6,18 +6,19 @@
 #include <utility>
 #include <vector>
 
-#include "reports/json_number.h"
 #include "reports/quantity.h"
 #include "reports/robustness_report.h"
 
 namespace softland::internal {
 namespace {
 
-using nlohmann::json;
+using DriveRecord = RobustnessRecord::Drive;
+using OtherWays = RobustnessRecord::OtherWays;
+using RangeRecord = OtherWays::Range;
 
 constexpr double predicted_well = 0.1;  // the largest part of the variance that may be missed
 
-const FigureStatistics& sampled(const DriveRobustness& drive, std::string_view key) { return drive.figures[figure_of(key)]; }
+const FigureStatistics& sampled(const DriveRecord& drive, std::string_view key) { return drive.figures[figure_of(key)]; }
 
 std::string figure_text(double value, std::string_view key) {
   return std::isinf(value) ? "∞" : quantity(value, figure_of(key).unit);
@@ -30,48 +31,44 @@ double missed(const FigureChaos& chaos) { return 1 - (std::isfinite(chaos.q2_uns
 std::string missed_share(double share) { return share >= 1 ? "all" : percent(std::max(0.0, share)); }
 std::string missed_text(double q2) { return std::isfinite(q2) ? missed_share(1 - q2) : "—"; }
 
-ReportTable compared(const BoxAndChaos& ways, const DriveRobustness& drive) {
+ReportTable compared(const OtherWays& ways, const DriveRecord& drive) {
   ReportTable table{.head = {"Other ways, under " + drive.name}, .rows = {}};
-  for (const FigureRange& r : ways.ranges) table.head.emplace_back(figure_of(r.key).symbol);
+  for (const RangeRecord& r : ways.ranges) table.head.emplace_back(figure_of(r.key).symbol);
   const auto add = [&](TableCell name, auto&& cell) {
     TableRow& row = table.rows.emplace_back(TableRow{std::move(name)});
     for (std::size_t i = 0; i < ways.ranges.size(); ++i) row.emplace_back(cell(ways.ranges[i], ways.chaos[i]));
   };
   const auto part = [](const char* name) { return TableCell(name, "part"); };
-  add("Mean: sampled", [&](const FigureRange& r, const FigureChaos&) { return figure_text(sampled(drive, r.key).mean, r.key); });
-  add(part("polynomial chaos"), [](const FigureRange&, const FigureChaos& c) { return figure_text(c.mean, c.key); });
+  add("Mean: sampled", [&](const RangeRecord& r, const FigureChaos&) { return figure_text(sampled(drive, r.key).mean, r.key); });
+  add(part("polynomial chaos"), [](const RangeRecord&, const FigureChaos& c) { return figure_text(c.mean, c.key); });
   add("Standard deviation: sampled",
-      [&](const FigureRange& r, const FigureChaos&) { return figure_text(sampled(drive, r.key).standard_deviation, r.key); });
+      [&](const RangeRecord& r, const FigureChaos&) { return figure_text(sampled(drive, r.key).standard_deviation, r.key); });
   add(part("polynomial chaos"),
-      [](const FigureRange&, const FigureChaos& c) { return figure_text(c.standard_deviation, c.key); });
+      [](const RangeRecord&, const FigureChaos& c) { return figure_text(c.standard_deviation, c.key); });
   add("95 % of devices below: sampled",
-      [&](const FigureRange& r, const FigureChaos&) { return figure_text(sampled(drive, r.key).quantiles[2].value, r.key); });
-  add(part("polynomial chaos"), [](const FigureRange&, const FigureChaos& c) { return figure_text(c.quantile_95, c.key); });
+      [&](const RangeRecord& r, const FigureChaos&) { return figure_text(sampled(drive, r.key).quantiles[2].value, r.key); });
+  add(part("polynomial chaos"), [](const RangeRecord&, const FigureChaos& c) { return figure_text(c.quantile_95, c.key); });
   add("Worst in the box: found by search",
-      [](const FigureRange& r, const FigureChaos&) { return figure_text(r.most.figure, r.key); });
-  add(part("sampled"), [](const FigureRange& r, const FigureChaos&) { return figure_text(r.of_sample.high, r.key); });
+      [](const RangeRecord& r, const FigureChaos&) { return figure_text(r.most.figure, r.key); });
+  add(part("sampled"), [](const RangeRecord& r, const FigureChaos&) { return figure_text(r.of_sample.high, r.key); });
   add("Best in the box: found by search",
-      [](const FigureRange& r, const FigureChaos&) { return figure_text(r.least.figure, r.key); });
-  add(part("sampled"), [](const FigureRange& r, const FigureChaos&) { return figure_text(r.of_sample.low, r.key); });
-  add("Variance that chaos misses: cross-validated", [](const FigureRange&, const FigureChaos& c) { return missed_text(c.q2); });
-  add(part("of devices it was not made of"), [](const FigureRange&, const FigureChaos& c) { return missed_text(c.q2_unseen); });
+      [](const RangeRecord& r, const FigureChaos&) { return figure_text(r.least.figure, r.key); });
+  add(part("sampled"), [](const RangeRecord& r, const FigureChaos&) { return figure_text(r.of_sample.low, r.key); });
+  add("Variance that chaos misses: cross-validated", [](const RangeRecord&, const FigureChaos& c) { return missed_text(c.q2); });
+  add(part("of devices it was not made of"), [](const RangeRecord&, const FigureChaos& c) { return missed_text(c.q2_unseen); });
   return table;
 }
 
-std::string value_text(const SpreadVariable& variable, double value) {
-  return variable.is_factor ? fmt::format("× {:.4f}", value) : quantity(value, variable.keys.front().unit, 5);
-}
-
-std::string box_words(const BoxAndChaos& ways, const DriveRobustness& drive) {
+std::string box_words(const OtherWays& ways, std::size_t devices) {
   return fmt::format(
       "The box: every quantity within ± {:.2f} standard deviations of the normal number beneath it, which holds {:.0f} % of all "
       "devices, and {} of the {} sampled. So its worst is not below what {:.0f} % of the devices stay below. Worst and best are "
       "what searches found in {} closings: no proof, the true range is at least as wide.",
-      ways.half_width, 100 * box_share, ways.sampled_inside, drive.outcomes.size(), 100 * box_share, ways.closings);
+      ways.half_width, 100 * ways.share, ways.sampled_inside, devices, 100 * ways.share, ways.closings);
 }
 
 /// How far chaos can be trusted.
-std::string chaos_words(const BoxAndChaos& ways) {
+std::string chaos_words(const OtherWays& ways) {
   std::vector<std::string> good, bad, none;
   for (const FigureChaos& c : ways.chaos) {
     const std::string name(figure_of(c.key).symbol);
@@ -102,68 +99,55 @@ std::string chaos_words(const BoxAndChaos& ways) {
   return words;
 }
 
-// Of the varying quantities, as robustness_report.h shows them.
-std::vector<double> shown_values_in_box(const BoxDevice& device, const PreparedScene& nominal) {
-  return device.values.empty() ? device.values : DeviceDrives(nominal).shown(device.values);
-}
-
-json device_of_box_json(const BoxDevice& device, const PreparedScene& nominal) {
-  json values = json::object();
-  const std::vector<double> shown = shown_values_in_box(device, nominal);
-  for (std::size_t i = 0; i < shown.size(); ++i) values[nominal.scene.spread.variables[i].name] = shown[i];
-  json j{
-      {"value", json_number(device.figure)}, {"values", std::move(values)}, {"status", to_string(device.outcome.metrics.status)}};
-  if (!device.outcome.failure.empty()) j["failure"] = device.outcome.failure;
-  return j;
+// Its quantities as robustness_report.h shows them.
+OtherWays::InBox in_box(const BoxDevice& device, const PreparedScene& nominal) {
+  OtherWays::InBox record{.figure = device.figure,
+                          .values = {},
+                          .status = std::string(to_string(device.outcome.metrics.status)),
+                          .failure = device.outcome.failure};
+  const std::vector<double> shown = device.values.empty() ? device.values : DeviceDrives(nominal).shown(device.values);
+  for (std::size_t i = 0; i < shown.size(); ++i) record.values[nominal.scene.spread.variables[i].name] = shown[i];
+  return record;
 }
 
 }  // namespace
 
-json other_ways_json(const BoxAndChaos& ways, const DriveRobustness& drive, const PreparedScene& nominal) {
-  json ranges = json::object(), chaos = json::object();
-  for (const FigureRange& r : ways.ranges) {
-    ranges[std::string(r.key)] = {{"least", device_of_box_json(r.least, nominal)},
-                                  {"most", device_of_box_json(r.most, nominal)},
-                                  {"sampled", {json_number(r.of_sample.low), json_number(r.of_sample.high)}}};
-  }
-  for (const FigureChaos& c : ways.chaos) {
-    chaos[std::string(c.key)] = {{"devices", c.taught},
-                                 {"other_devices", c.unseen},
-                                 {"degree", c.degree},
-                                 {"terms", c.terms},
-                                 {"q2_cross_validated", json_number(c.q2)},
-                                 {"q2_other_devices", json_number(c.q2_unseen)},
-                                 {"mean", json_number(c.mean)},
-                                 {"standard_deviation", json_number(c.standard_deviation)},
-                                 {"quantile_95", json_number(c.quantile_95)}};
-  }
-  json j{{"drive", drive.name},
-         {"box",
-          {{"share_of_devices", box_share},
-           {"half_width_standard_deviations", json_number(ways.half_width)},
-           {"sampled_devices_inside", ways.sampled_inside},
-           {"closings", ways.closings},
-           {"figures", std::move(ranges)}}},
-         {"polynomial_chaos", std::move(chaos)}};
-  if (!ways.why_none.empty()) j["why_none"] = ways.why_none;
-  return j;
+OtherWays record_of(const BoxAndChaos& ways, const DriveRobustness& drive, const PreparedScene& nominal) {
+  OtherWays record{.drive = drive.name,
+                   .why_none = ways.why_none,
+                   .share = box_share,
+                   .half_width = ways.half_width,
+                   .sampled_inside = ways.sampled_inside,
+                   .left_out = ways.left_out,
+                   .closings = ways.closings,
+                   .ranges = {},
+                   .chaos = ways.chaos};
+  for (const FigureRange& r : ways.ranges)
+    record.ranges.push_back({r.key, in_box(r.least, nominal), in_box(r.most, nominal), r.of_sample});
+  return record;
 }
 
-ReportSection other_ways_section(const BoxAndChaos& ways, const DriveRobustness& drive, const PreparedScene& nominal) {
+std::string value_text(const RobustnessRecord::Varied& variable, double value) {
+  return variable.is_factor ? fmt::format("× {:.4f}", value) : quantity(value, variable.unit, 5);
+}
+
+ReportSection other_ways_section(const RobustnessRecord& record) {
+  const OtherWays& ways = *record.other_ways;
   ReportSection section{.id = "ways", .heading = "Other ways to the same answer", .parts = {}};
   if (ways.ranges.empty()) return section;
-  ReportTable figures = compared(ways, drive), devices{.head = {"In the box", "Found"}, .rows = {}};
-  const std::vector<SpreadVariable>& variables = nominal.scene.spread.variables;
-  for (const SpreadVariable& v : variables) devices.head.emplace_back(v.name);
-  for (const FigureRange& r : ways.ranges) {
+  ReportTable figures = compared(ways, record.drives.back()), devices{.head = {"In the box", "Found"}, .rows = {}};
+  for (const RobustnessRecord::Varied& v : record.spread) devices.head.emplace_back(v.name);
+  for (const RangeRecord& r : ways.ranges) {
     for (const auto& [name, device] : {std::pair("Worst", &r.most), std::pair("Best", &r.least)}) {
       TableRow& line = devices.rows.emplace_back(
           TableRow{fmt::format("{} {}", name, figure_of(r.key).symbol), figure_text(device->figure, r.key)});
-      const std::vector<double> shown = shown_values_in_box(*device, nominal);
-      for (std::size_t i = 0; i < shown.size(); ++i) line.emplace_back(value_text(variables[i], shown[i]));
+      for (const RobustnessRecord::Varied& v : record.spread) {
+        if (const auto value = device->values.find(v.name); value != device->values.end())
+          line.emplace_back(value_text(v, value->second));
+      }
     }
   }
-  section.parts = {Paragraph{box_words(ways, drive)}, Paragraph{chaos_words(ways)}, std::move(figures),
+  section.parts = {Paragraph{box_words(ways, record.devices)}, Paragraph{chaos_words(ways)}, std::move(figures),
                    SubHeading{"Worst and best devices of the box"}, std::move(devices)};
   return section;
 }

@@ -2,15 +2,15 @@
 // of `softland robustness`.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
-#include "reports/document.h"
-#include "studies/devices/box_and_chaos.h"
+#include "reports/robustness_report.h"
 
 namespace softland::internal {
 
-[[nodiscard]] nlohmann::json other_ways_json(const BoxAndChaos& ways, const DriveRobustness& drive, const PreparedScene& nominal);
-[[nodiscard]] ReportSection other_ways_section(const BoxAndChaos& ways, const DriveRobustness& drive,
-                                               const PreparedScene& nominal);
+[[nodiscard]] RobustnessRecord::OtherWays record_of(const BoxAndChaos& ways, const DriveRobustness& drive,
+                                                    const PreparedScene& nominal);
+/// Of a record that has them.
+[[nodiscard]] ReportSection other_ways_section(const RobustnessRecord& record);
+/// "× 1.0213", "2.013 µm"
+[[nodiscard]] std::string value_text(const RobustnessRecord::Varied& variable, double value);
 
 }  // namespace softland::internal

@@ -7,13 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "reports/json_number.h"
 #include "reports/quantity.h"
 
 namespace softland::internal {
 namespace {
 
-using nlohmann::json;
+using Derived = RobustnessRecord::Derived;
 
 const FigureStatistics& statistics_of(const DriveRobustness& drive, std::string_view key) {
   return drive.figures[figure_of(key)];
@@ -38,109 +37,98 @@ bool agrees(const FigureDerivatives& figure, const DriveRobustness& drive) {
 }
 
 // "+0.52 %/%, +1.2 µs"
-std::string derivative_cell(const Derivatives& derivatives, const DriveRobustness& drive, const FigureDerivatives& figure,
-                            std::size_t i) {
-  if (!agrees(figure, drive) || !std::isfinite(figure.by_variable[i])) return "—";
-  const Derivatives::Variable& variable = derivatives.variables[i];
-  const double relative = elasticity(figure, variable, figure.by_variable[i]), step = figure.by_variable[i] * variable.deviation;
+std::string derivative_cell(const Derived::Of& figure, const std::string& variable) {
+  const auto slope = figure.by.find(variable);
+  if (!figure.agrees || slope == figure.by.end() || !std::isfinite(slope->second.derivative)) return "—";
+  const auto& [derivative, relative, step] = slope->second;
   const std::string change = with_sign(quantity(step, figure_of(figure.key).unit), step);
   return std::isfinite(relative) ? with_sign(plain_number(relative), relative) + " %/%, " + change : change;
 }
 
-std::string deviation_cell(const FigureDerivatives& figure, double deviation) {
-  const bool none = std::ranges::none_of(figure.by_variable, [](double slope) { return std::isfinite(slope); });
-  return figure.is_known() && !none ? quantity(deviation, figure_of(figure.key).unit) : "—";
+std::string deviation_cell(const Derived::Of& figure) {
+  const bool none = std::ranges::none_of(figure.by, [](const auto& slope) { return std::isfinite(slope.second.derivative); });
+  return none ? "—" : quantity(figure.deviation, figure_of(figure.key).unit);
 }
 
 // What a derivative says, and what it does not.
-std::string meaning_of(const Derivatives& derivatives, const DriveRobustness& drive) {
+std::string meaning_of(const Derived& derivatives) {
   std::string words = fmt::format(
       "Exact derivatives at the nominal device under {}: per cent of the figure for one per cent of the quantity, and its change "
       "for one standard deviation. To first order these add up to the spread; a rebound that comes or goes is no small change, "
       "and where the two spreads differ the sample is to be believed.",
-      drive.name);
+      derivatives.drive);
   std::vector<std::string> apart;
-  for (const FigureDerivatives& figure : derivatives.figures) {
-    if (figure.is_known() && !agrees(figure, drive)) apart.emplace_back(figure_of(figure.key).symbol);
+  for (const Derived::Of& figure : derivatives.figures) {
+    if (!figure.by.empty() && !figure.agrees) apart.emplace_back(figure_of(figure.key).symbol);
   }
   if (!apart.empty()) {
     words +=
         fmt::format(" Those of {} are not shown: their spread is off by more than a factor of {:g} from that of the devices.",
                     fmt::join(apart, ", "), most_apart);
   }
-  if (derivatives.grazes()) {
+  if (derivatives.grazes) {
     words += fmt::format(
         " Grazing: the slowest crossing of the contact plane has {} of the speed of the first touch, so that a touch nearly "
         "comes "
         "or goes, and figures after the first touch keep these derivatives for much smaller changes only.",
         percent(derivatives.grazing));
   }
-  for (const Derivatives::Variable& v : derivatives.variables) {
-    if (!v.why_none.empty()) words += fmt::format(" {} is left out: {}.", v.name, v.why_none);
+  for (const auto& [name, variable] : derivatives.variables) {
+    if (!variable.why_none.empty()) words += fmt::format(" {} is left out: {}.", name, variable.why_none);
   }
   return words;
 }
 
-std::string why_no_derivatives(const Derivatives& derivatives) {
+std::string why_no_derivatives(const Derived& derivatives) {
   return fmt::format("The figures have no derivatives here: {}.", derivatives.why_none);
 }
 
 }  // namespace
 
-json derivatives_json(const Derivatives& derivatives, const DriveRobustness& drive) {
-  json variables = json::object(), figures = json::object();
-  for (const Derivatives::Variable& v : derivatives.variables) {
-    variables[v.name] = {{"nominal", v.nominal}, {"standard_deviation", v.deviation}};
-    if (!v.why_none.empty()) variables[v.name]["why_none"] = v.why_none;
-  }
+Derived record_of(const Derivatives& derivatives, const DriveRobustness& drive) {
+  Derived record{
+      .drive = drive.name, .why_none = derivatives.why_none, .grazes = derivatives.grazes(), .grazing = derivatives.grazing};
+  for (const Derivatives::Variable& v : derivatives.variables) record.variables[v.name] = {v.nominal, v.deviation, v.why_none};
   for (const FigureDerivatives& figure : derivatives.figures) {
-    json by = json::object();
+    Derived::Of& one = record.figures.emplace_back(Derived::Of{.key = figure.key,
+                                                               .nominal = figure.value,
+                                                               .deviation = figure.deviation,
+                                                               .error = figure.error,
+                                                               .by = {},
+                                                               .agrees = agrees(figure, drive),
+                                                               .why_none = figure.why_none});
     for (std::size_t i = 0; i < figure.by_variable.size(); ++i) {
       const Derivatives::Variable& v = derivatives.variables[i];
-      by[v.name] = {{"derivative", json_number(figure.by_variable[i])},
-                    {"relative", json_number(elasticity(figure, v, figure.by_variable[i]))},
-                    {"per_standard_deviation", json_number(figure.by_variable[i] * v.deviation)}};
+      const double slope = figure.by_variable[i];
+      one.by[v.name] = {slope, elasticity(figure, v, slope), slope * v.deviation};
     }
-    json& one = figures[std::string(figure.key)] = {{"nominal", json_number(figure.value)},
-                                                    {"by", std::move(by)},
-                                                    {"standard_deviation", json_number(figure.deviation)},
-                                                    {"error", json_number(figure.error)},
-                                                    {"agrees_with_devices", agrees(figure, drive)}};
-    if (!figure.why_none.empty()) one["why_none"] = figure.why_none;
   }
-  json j{{"drive", drive.name},
-         {"grazes", derivatives.grazes()},
-         {"slowest_crossing", json_number(derivatives.grazing)},
-         {"variables", std::move(variables)},
-         {"figures", std::move(figures)}};
-  if (!derivatives.why_none.empty()) j["why_none"] = derivatives.why_none;
-  return j;
+  return record;
 }
 
-ReportSection derivatives_section(const Derivatives& derivatives, const DriveRobustness& drive) {
+ReportSection derivatives_section(const Derived& derivatives, const RobustnessRecord::Drive& drive) {
   ReportSection section{.id = "derivatives", .heading = "To first order", .parts = {}};
   if (derivatives.variables.empty()) return section;
   if (derivatives.figures.empty()) {
     section.parts = {Paragraph{why_no_derivatives(derivatives)}};
     return section;
   }
-  ReportTable table{.head = {derivatives.grazes() ? "To first order (grazing)" : "To first order", "Nominal"}, .rows = {}};
+  ReportTable table{.head = {derivatives.grazes ? "To first order (grazing)" : "To first order", "Nominal"}, .rows = {}};
   table.head.front().html = "Figure";
-  for (const Derivatives::Variable& v : derivatives.variables) table.head.emplace_back(v.name);
+  for (const auto& [name, variable] : derivatives.variables) table.head.emplace_back(name);
   table.head.insert(table.head.end(), {"Standard deviation", "of the devices"});
-  for (const FigureDerivatives& figure : derivatives.figures) {
+  for (const Derived::Of& figure : derivatives.figures) {
     const Figure& of = figure_of(figure.key);
-    TableRow& row = table.rows.emplace_back(TableRow{of.name, quantity(figure.value, of.unit)});
-    if (!figure.is_known()) {
+    TableRow& row = table.rows.emplace_back(TableRow{of.name, quantity(figure.nominal, of.unit)});
+    if (figure.by.empty()) {
       row.emplace_back(figure.why_none, "missing", derivatives.variables.size() + 1);
     } else {
-      for (std::size_t i = 0; i < derivatives.variables.size(); ++i)
-        row.emplace_back(derivative_cell(derivatives, drive, figure, i));
-      row.emplace_back(deviation_cell(figure, figure.deviation));
+      for (const auto& [name, variable] : derivatives.variables) row.emplace_back(derivative_cell(figure, name));
+      row.emplace_back(deviation_cell(figure));
     }
-    row.emplace_back(quantity(statistics_of(drive, figure.key).standard_deviation, of.unit));
+    row.emplace_back(quantity(drive.figures[of].standard_deviation, of.unit));
   }
-  section.parts = {std::move(table), Paragraph{.text = meaning_of(derivatives, drive), .is_note = true}};
+  section.parts = {std::move(table), Paragraph{.text = meaning_of(derivatives), .is_note = true}};
   return section;
 }
 

@@ -2,17 +2,14 @@
 // `softland robustness`.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
-#include "reports/document.h"
-#include "studies/devices/derivatives.h"
-#include "studies/devices/robustness.h"
+#include "reports/robustness_report.h"
 
 namespace softland::internal {
 
 /// `drive` is the one that they are of.
-[[nodiscard]] nlohmann::json derivatives_json(const Derivatives& derivatives, const DriveRobustness& drive);
+[[nodiscard]] RobustnessRecord::Derived record_of(const Derivatives& derivatives, const DriveRobustness& drive);
 /// With all figures. Without parts where nothing was asked for.
-[[nodiscard]] ReportSection derivatives_section(const Derivatives& derivatives, const DriveRobustness& drive);
+[[nodiscard]] ReportSection derivatives_section(const RobustnessRecord::Derived& derivatives,
+                                                const RobustnessRecord::Drive& drive);
 
 }  // namespace softland::internal

@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 #include <vector>
 
+#include "base/require.h"
 #include "reports/document.h"
 #include "reports/json_number.h"
-#include "reports/origin.h"
 #include "reports/quantity.h"
-#include "reports/result_json.h"
 #include "reports/result_words.h"
+#include "reports/study_members.h"
 
 namespace softland {
 namespace {
@@ -25,13 +26,17 @@ double change(const Figure& figure, const Metrics& metrics, const Metrics& own) 
   return relative_change(figure.value(metrics), figure.value(own));
 }
 
-json changes_json(const Metrics& metrics, const Metrics& own) {
-  json all = json::object();
-  for (const Figure& f : compared_figures) all[std::string(f.quantity())] = json_number(change(f, metrics, own));
+// What is worked out from the closings is written beside each of them.
+template <class Closing>
+json compared_json(const std::vector<Closing>& closings, const Metrics& own) {
+  json all = json::array();
+  for (const Closing& closing : closings) {
+    json& one = all.emplace_back(internal::record_json(closing));
+    for (const Figure& f : compared_figures)
+      one["relative_change"][std::string(f.quantity())] = json_number(change(f, closing.metrics, own));
+  }
   return all;
 }
-
-json named(const NamedNumber& n) { return {{"name", n.name}, {"unit", n.unit}, {"value", json_number(n.value)}}; }
 
 std::string size_of(const NamedNumber& n) {
   return std::isfinite(n.value) ? fmt::format("{} {}", n.name, internal::quantity(n.value, n.unit)) : std::string();
@@ -108,45 +113,62 @@ std::vector<std::string> warnings_of(const Effects& effects) {
 
 }  // namespace
 
-json effects_json(const PreparedScene& prepared, const Effects& effects, const Provenance& provenance) {
-  json list = json::array();
-  for (const Effect& e : effects.list) {
-    list.push_back({{"section", e.section},
-                    {"choice", e.choice},
-                    {"in_scene", e.in_scene},
-                    {"status", to_string(e.metrics.status)},
-                    {"magnitude", named(e.magnitude)},
-                    {"dimensionless_group", named(e.group)},
-                    {"metrics", metrics_json(e.metrics)},
-                    {"relative_change", changes_json(e.metrics, effects.own(e.section).metrics)},
-                    {"rhs_s", json_number(e.rhs_seconds)},
-                    {"warnings", e.warnings}});
-  }
-  json not_compared = json::array();
-  for (const NotCompared& n : effects.not_compared) not_compared.push_back({{"choice", n.choice}, {"reason", n.reason}});
-  json left_out = json::array();
-  for (const EffectAblation& o : effects.omissions) {
-    left_out.push_back({{"effect", o.what.effect},
-                        {"choice", o.what.choice},
-                        {"magnitude", named(o.what.magnitude)},
-                        {"dimensionless_group", named(o.what.group)},
-                        {"metrics", metrics_json(o.metrics)},
-                        {"relative_change", changes_json(o.metrics, effects.own("gas").metrics)},
-                        {"influence", json_number(o.influence)},
-                        {"rhs_s", json_number(o.rhs_seconds)}});
-  }
-  json spread = json::object();
-  for (const Figure& f : compared_figures) spread[std::string(f.quantity())] = json_number(effects.spread("gas", f));
-  return with_origin({{"kind", "effects"},
-                      {"status", to_string(effects.interrupted ? Status::interrupted : effects.own("gas").metrics.status)},
-                      {"left_out", left_out},
-                      {"effects", list},
-                      {"not_compared", not_compared},
-                      {"relative_spread", {{"gas", spread}}}},
-                     prepared, provenance.command);
+template <class A>
+void members(A& a, Effect& effect) {
+  a("section", effect.section);
+  a("choice", effect.choice);
+  a("in_scene", effect.in_scene);
+  a("status", effect.metrics.status);
+  a("magnitude", effect.magnitude);
+  a("dimensionless_group", effect.group);
+  a("metrics", effect.metrics);
+  a("rhs_s", effect.rhs_seconds);
+  a("warnings", effect.warnings);
 }
 
-std::string effects_text(const Effects& effects) {
+template <class A>
+void members(A& a, NotCompared& law) {
+  a("choice", law.choice);
+  a("reason", law.reason);
+}
+
+template <class A>
+void members(A& a, EffectAblation& one) {
+  a("effect", one.what.effect);
+  a("choice", one.what.choice);
+  a("magnitude", one.what.magnitude);
+  a("dimensionless_group", one.what.group);
+  a("metrics", one.metrics);
+  a("influence", one.influence);
+  a("rhs_s", one.rhs_seconds);
+}
+
+template <class A>
+void members(A& a, EffectsRecord& record) {
+  Effects& found = record.found;
+  members(a, record.origin);
+  const auto compared = [&](const auto& closings) { return compared_json(closings, found.own("gas").metrics); };
+  a.custom("effects", found.list, compared, internal::JsonReader::read<std::vector<Effect>>);
+  require(std::ranges::any_of(found.list, [](const Effect& e) { return e.in_scene && e.section == "gas"; }),
+          "\"effects\" lacks the gas of the scene");
+  a.custom("left_out", found.omissions, compared, internal::JsonReader::read<std::vector<EffectAblation>>);
+  a("not_compared", found.not_compared);
+  a("duration_s", found.window);
+  a.custom(
+      "status", found.interrupted,
+      [&](bool stopped) { return json(to_string(stopped ? Status::interrupted : found.own("gas").metrics.status)); },
+      [](const json& status) { return status == to_string(Status::interrupted); });
+  std::map<std::string, double> spread;
+  for (const Figure& f : compared_figures) spread[std::string(f.quantity())] = found.spread("gas", f);
+  a.derived("relative_spread", std::map<std::string, std::map<std::string, double>>{{"gas", std::move(spread)}});
+}
+
+json json_of(const EffectsRecord& record) { return internal::record_json(record); }
+
+EffectsRecord read_effects(const json& from) { return internal::whole_record<EffectsRecord>(from); }
+
+std::string text_of(const EffectsRecord& record) {
+  const Effects& effects = record.found;
   const Effect& own = effects.own("gas");
   Document document{.doubt = effects.interrupted ? "Interrupted: what follows is not all." : ""};
   if (!std::isfinite(own.metrics.initial_contact_time)) {

@@ -4,12 +4,19 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "reports/result_maker.h"
+#include "reports/origin.h"
 #include "studies/closing/effects.h"
 
 namespace softland {
 
-[[nodiscard]] nlohmann::json effects_json(const PreparedScene& prepared, const Effects& effects, const Provenance& provenance);
-[[nodiscard]] std::string effects_text(const Effects& effects);
+struct EffectsRecord {
+  Origin origin;
+  Effects found;
+};
+
+[[nodiscard]] nlohmann::json json_of(const EffectsRecord& record);
+/// Throws InvalidInput for anything but the JSON of such a record, as that of every study does.
+[[nodiscard]] EffectsRecord read_effects(const nlohmann::json& from);
+[[nodiscard]] std::string text_of(const EffectsRecord& record);
 
 }  // namespace softland

@@ -7,17 +7,17 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <utility>
 
-#include "reports/json_number.h"
-#include "reports/origin.h"
+#include "base/require.h"
 #include "reports/quantity.h"
+#include "reports/study_members.h"
 
 namespace softland {
 namespace {
 
-using internal::json_number;
 using internal::plain_number;
 using internal::quantity;
 using nlohmann::json;
@@ -101,21 +101,6 @@ std::size_t freedom(const Fit& fit) {
   return fit.residuals.size() > fit.unknowns.size() ? fit.residuals.size() - fit.unknowns.size() : 0;
 }
 
-std::string fit_headline(const Fit& fit) {
-  if (!fit.found) return "No device like the scene could be read as it was measured.";
-  const auto n = static_cast<double>(fit.residuals.size());
-  if (!fit.doubts.empty())
-    return fmt::format(
-        "This fit is not to be believed: {}. Is every measurement under the right quantity and unit, and the scene "
-        "that of the device?",
-        fmt::join(fit.doubts, "; "));
-  return fmt::format(
-      "The fitted scene is off the data by {} of their errors, the scene as it was by {} (root of the mean square).",
-      plain_number(std::sqrt(fit.chi_squared() / n), 3), plain_number(std::sqrt(fit.chi_squared_before() / n), 3));
-}
-
-}  // namespace
-
 std::vector<std::string> fit_words(const Fit& fit) {
   std::vector<std::string> all;
   if (!fit.found) {
@@ -163,96 +148,26 @@ std::vector<std::string> fit_words(const Fit& fit) {
   return all;
 }
 
-json fit_json(const Fit& fit, const Provenance& provenance) {
-  json unknowns = json::array(), correlation = json::array(), weak = json::array(), next = json::array(),
-       residuals = json::array();
-  for (const FittedUnknown& u : fit.unknowns) {
-    json one{{"key", u.name},
-             {"unit", u.unit},
-             {"nominal", json_number(u.nominal)},
-             {"value", json_number(u.value)},
-             {"standard_error", json_number(u.standard_error)},
-             {"interval95", {json_number(u.low), json_number(u.high)}},
-             {"prior", std::isfinite(u.prior_mean) ? json{{"mean", u.prior_mean}, {"standard_deviation", u.prior_deviation}}
-                                                   : json(nullptr)}};
-    if (!u.device.empty()) one["device"] = u.device;
-    unknowns.push_back(std::move(one));
-  }
-  for (Eigen::Index i = 0; i < fit.estimate.correlation.rows(); ++i) {
-    json row = json::array();
-    for (const double value : fit.estimate.correlation.row(i)) row.push_back(json_number(value));
-    correlation.push_back(std::move(row));
-  }
-  for (const WeakDirection& one : fit.estimate.weak) {
-    json keys = json::array();
-    for (const std::size_t i : one.unknowns) keys.push_back(fit.unknowns[i].name);
-    weak.push_back(std::move(keys));
-  }
-  for (const NextMeasurement& one : fit.next)
-    next.push_back({{"quantity", row_of(one.what).name},
-                    {"name", one.name},
-                    {"level_V", one.level ? json(*one.level) : json(nullptr)},
-                    {"error", json_number(one.error)},
-                    {"reduction", json_number(one.reduction)}});
-  for (const FitResidual& r : fit.residuals) {
-    json one{{"measurement", r.measurement},    {"quantity", row_of(r.what).name}, {"drive", r.drive},
-             {"unit", row_of(r.what).unit},     {"measured", r.measured},          {"error", r.error},
-             {"before", json_number(r.before)}, {"after", json_number(r.after)},   {"normalized", json_number(r.normalized())}};
-    if (!r.device.empty()) one["device"] = r.device;
-    if (r.level) one["level_V"] = *r.level;
-    if (r.time) one["time_s"] = *r.time;
-    residuals.push_back(std::move(one));
-  }
-  json traces = json::array();
-  for (const FittedTrace& trace : fit.traces)
-    traces.push_back({{"measurement", trace.measurement},
-                      {"quantity", row_of(trace.what).name},
-                      {"until_s", trace.until},
-                      {"recorded_s", trace.recorded}});
-  json data = with_origin(
-      {
-          {"kind", "fit"},
-          {"status", !fit.found           ? "numerical_failure"
-                     : fit.doubts.empty() ? "done"
-                                          : "not_believed"},
-          {"doubts", fit.doubts},
-          {"title", fit.scene.scene.title},
-          {"unknowns", unknowns},
-          {"correlation", correlation},
-          {"indistinguishable", weak},
-          {"next_measurement", next},
-          {"minima", fit.minima},
-          {"starts", fit.starts},
-          {"converged", fit.converged},
-          {"residuals", residuals},
-          {"traces", traces},
-          {"chi_squared", fit.found ? json_number(fit.chi_squared()) : json(nullptr)},
-          {"chi_squared_before", fit.found ? json_number(fit.chi_squared_before()) : json(nullptr)},
-          {"words", fit_words(fit)},
-          {"spread_assumed", fit.spread_assumed},
-          {"loss", losses[static_cast<std::size_t>(fit.loss)].name},
-          {"seed", fit.seed},
-      },
-      fit.scene, provenance.command);
-  if (fit.population) {
-    json matrix = json::array(), variables = json::array();
-    for (Eigen::Index i = 0; i < fit.population->correlation.rows(); ++i) {
-      json row = json::array();
-      for (const double value : fit.population->correlation.row(i)) row.push_back(json_number(value));
-      matrix.push_back(std::move(row));
-    }
-    for (std::size_t i = 0; i < fit.population->names.size(); ++i)
-      variables.push_back({{"key", fit.population->names[i]},
-                           {"mean", json_number(fit.population->mean[i])},
-                           {"standard_deviation", json_number(fit.population->deviation[i])}});
-    data["population"] = {{"variables", variables}, {"correlation", matrix}};
-  }
-  return data;
+FitRecord::Matrix rows_of(const Eigen::MatrixXd& matrix) {
+  FitRecord::Matrix rows;
+  for (const auto& row : matrix.rowwise()) rows.emplace_back(row.begin(), row.end());
+  return rows;
 }
 
-namespace {
+std::string fit_headline(const FitRecord& fit) {
+  if (!fit.is_found()) return "No device like the scene could be read as it was measured.";
+  const auto n = static_cast<double>(fit.residuals.size());
+  if (!fit.doubts.empty())
+    return fmt::format(
+        "This fit is not to be believed: {}. Is every measurement under the right quantity and unit, and the scene "
+        "that of the device?",
+        fmt::join(fit.doubts, "; "));
+  return fmt::format(
+      "The fitted scene is off the data by {} of their errors, the scene as it was by {} (root of the mean square).",
+      plain_number(std::sqrt(fit.chi_squared / n), 3), plain_number(std::sqrt(fit.chi_squared_before / n), 3));
+}
 
-ReportSection values_section(const Fit& fit) {
+ReportSection values_section(const FitRecord& fit) {
   ReportTable table{.head = {"Unknown", "Scene", "Fitted", "± 1 σ", "95 %", "Known before"}, .rows = {}};
   for (const FittedUnknown& u : fit.unknowns)
     table.rows.push_back({label_of(u),
@@ -262,24 +177,23 @@ ReportSection values_section(const Fit& fit) {
                           fitted_interval_text(u),
                           fitted_prior_text(u)});
   ReportSection section{.id = "values", .heading = "What was fitted", .parts = {}};
-  if (fit.found) section.parts.emplace_back(std::move(table));
-  for (const std::string& sentence : fit_words(fit)) section.parts.emplace_back(Paragraph{.text = sentence, .is_note = true});
+  if (fit.is_found()) section.parts.emplace_back(std::move(table));
+  for (const std::string& sentence : fit.words) section.parts.emplace_back(Paragraph{.text = sentence, .is_note = true});
   return section;
 }
 
-ReportTable correlation_table(const Fit& fit) {
+ReportTable correlation_table(const FitRecord& fit) {
   ReportTable table{.head = {""}, .rows = {}};
   for (const FittedUnknown& u : fit.unknowns) table.head.emplace_back(label_of(u));
   for (std::size_t i = 0; i < fit.unknowns.size(); ++i) {
     TableRow& row = table.rows.emplace_back(TableRow{label_of(fit.unknowns[i])});
     for (std::size_t j = 0; j < fit.unknowns.size(); ++j)
-      row.emplace_back(internal::with_true_minus(
-          fmt::format("{:.3f}", fit.estimate.correlation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)))));
+      row.emplace_back(internal::with_true_minus(fmt::format("{:.3f}", fit.correlation[i][j])));
   }
   return table;
 }
 
-ReportTable next_table(const Fit& fit) {
+ReportTable next_table(const FitRecord& fit) {
   constexpr std::size_t most = 8;
   ReportTable table{.head = {"Measurement", "To", "Standard errors fall by"}, .rows = {}};
   for (const NextMeasurement& one : fit.next) {
@@ -289,7 +203,7 @@ ReportTable next_table(const Fit& fit) {
   return table;
 }
 
-ReportSection data_section(const Fit& fit) {
+ReportSection data_section(const FitRecord& fit) {
   constexpr std::size_t most = 60;
   ReportTable table{.head = {"Measured", "Value", "Error", "Scene", "Fitted", "Off, in errors"}, .rows = {}};
   for (const FitResidual& r : fit.residuals) {
@@ -310,7 +224,7 @@ ReportSection data_section(const Fit& fit) {
   return section;
 }
 
-void add_residual_chart(const Fit& fit, internal::Picture& drawn) {
+void add_residual_chart(const FitRecord& fit, internal::Picture& drawn) {
   internal::CurveTable& table = drawn.tables["residuals"];
   double largest = unlikely;
   for (std::size_t i = 0; i < fit.residuals.size(); ++i) {
@@ -337,7 +251,7 @@ void add_residual_chart(const Fit& fit, internal::Picture& drawn) {
 }
 
 // What was measured over levels or times, with the scene before and after.
-void add_courses(const Fit& fit, internal::Picture& drawn) {
+void add_courses(const FitRecord& fit, internal::Picture& drawn) {
   constexpr std::size_t most = 12;
   std::map<std::tuple<std::string, Measurable, bool>, std::vector<const FitResidual*>> groups;
   for (const FitResidual& r : fit.residuals) {
@@ -388,18 +302,18 @@ void add_courses(const Fit& fit, internal::Picture& drawn) {
   }
 }
 
-internal::Picture picture_of(const Fit& fit) {
+internal::Picture picture_of(const FitRecord& fit) {
   internal::Picture drawn;
   add_residual_chart(fit, drawn);
   add_courses(fit, drawn);
   return drawn;
 }
 
-std::vector<KeyNumber> keys_of(const Fit& fit) {
+std::vector<KeyNumber> keys_of(const FitRecord& fit) {
   const auto n = static_cast<double>(fit.residuals.size());
   return {{.name = "Off the data by",
-           .value = fmt::format("{} errors", plain_number(std::sqrt(fit.chi_squared() / n), 3)),
-           .change = fmt::format("the scene as it was: {}", plain_number(std::sqrt(fit.chi_squared_before() / n), 3))},
+           .value = fmt::format("{} errors", plain_number(std::sqrt(fit.chi_squared / n), 3)),
+           .change = fmt::format("the scene as it was: {}", plain_number(std::sqrt(fit.chi_squared_before / n), 3))},
           {.name = "Unknowns",
            .value = fmt::format("{}", fit.unknowns.size()),
            .change = fmt::format("from {} data", fit.residuals.size())},
@@ -410,16 +324,162 @@ std::vector<KeyNumber> keys_of(const Fit& fit) {
 
 }  // namespace
 
-Document fit_document(const Fit& fit, const Provenance& provenance) {
-  Document document{.title = fit.scene.scene.title,
+namespace internal {
+
+/// What was known of an unknown.
+struct Prior {
+  double mean = Metrics::unset, deviation = Metrics::unset;
+};
+template <class A>
+void members(A& a, Prior& prior) {
+  a("mean", prior.mean);
+  a("standard_deviation", prior.deviation);
+}
+
+}  // namespace internal
+
+template <class A>
+void members(A& a, FittedUnknown& u) {
+  a("key", u.name);
+  a("unit", u.unit);
+  a("nominal", u.nominal);
+  a("value", u.value);
+  a("standard_error", u.standard_error);
+  a.pair("interval95", u.low, u.high);
+  a("scale", u.scale);
+  std::optional<internal::Prior> prior;
+  if (std::isfinite(u.prior_mean)) prior = {u.prior_mean, u.prior_deviation};
+  a("prior", internal::OrNull{prior});
+  if (prior) u.prior_mean = prior->mean, u.prior_deviation = prior->deviation;
+  if (a.has(!u.device.empty())) a("device", u.device);
+}
+
+template <class A>
+void members(A& a, NextMeasurement& next) {
+  a("quantity", internal::Chosen{next.what, measurables});
+  a("name", next.name);
+  a("level_V", internal::OrNull{next.level});
+  a("error", next.error);
+  a("reduction", next.reduction);
+}
+
+template <class A>
+void members(A& a, FitResidual& r) {
+  a("measurement", r.measurement);
+  a("quantity", internal::Chosen{r.what, measurables});
+  a("drive", r.drive);
+  a.derived("unit", std::string(row_of(r.what).unit));
+  a("measured", r.measured);
+  a("error", r.error);
+  a("before", r.before);
+  a("after", r.after);
+  a.derived("normalized", r.normalized());
+  if (a.has(!r.device.empty())) a("device", r.device);
+  a("level_V", r.level);
+  a("time_s", r.time);
+}
+
+template <class A>
+void members(A& a, FittedTrace& trace) {
+  a("measurement", trace.measurement);
+  a("quantity", internal::Chosen{trace.what, measurables});
+  a("until_s", trace.until);
+  a("recorded_s", trace.recorded);
+}
+
+template <class A>
+void members(A& a, FitRecord::Population::Variable& variable) {
+  a("key", variable.key);
+  a("mean", variable.mean);
+  a("standard_deviation", variable.deviation);
+}
+
+template <class A>
+void members(A& a, FitRecord::Population& population) {
+  a("variables", population.variables);
+  a("correlation", population.correlation);
+}
+
+template <class A>
+void members(A& a, FitRecord& fit) {
+  members(a, fit.origin);
+  a("status", fit.status);
+  a("doubts", fit.doubts);
+  a("title", fit.title);
+  a("unknowns", fit.unknowns);
+  a("correlation", fit.correlation);
+  a("indistinguishable", fit.indistinguishable);
+  a("next_measurement", fit.next);
+  a("minima", fit.minima);
+  a("starts", fit.starts);
+  a("converged", fit.converged);
+  a("residuals", fit.residuals);
+  a("traces", fit.traces);
+  a("chi_squared", fit.chi_squared);
+  a("chi_squared_before", fit.chi_squared_before);
+  a("words", fit.words);
+  a("spread_assumed", fit.spread_assumed);
+  a("loss", internal::Chosen{fit.loss, losses});
+  a("seed", fit.seed);
+  a("tolerance", fit.tolerance);
+  a("population", fit.population);
+}
+
+FitRecord record_of(const Fit& fit, const std::string& command) {
+  FitRecord record{.origin = whole_origin_of("fit", fit.scene, command),
+                   .status = !fit.found           ? std::string(to_string(Status::numerical_failure))
+                             : fit.doubts.empty() ? "done"
+                                                  : "not_believed",
+                   .doubts = fit.doubts,
+                   .title = fit.scene.scene.title,
+                   .unknowns = fit.unknowns,
+                   .correlation = rows_of(fit.estimate.correlation),
+                   .indistinguishable = {},
+                   .next = fit.next,
+                   .minima = fit.minima,
+                   .starts = fit.starts,
+                   .converged = fit.converged,
+                   .residuals = fit.residuals,
+                   .traces = fit.traces,
+                   .words = fit_words(fit),
+                   .spread_assumed = fit.spread_assumed,
+                   .loss = fit.loss,
+                   .seed = fit.seed,
+                   .tolerance = fit.scene.tolerance,
+                   .population = {}};
+  if (fit.found) record.chi_squared = fit.chi_squared(), record.chi_squared_before = fit.chi_squared_before();
+  for (const WeakDirection& weak : fit.estimate.weak) {
+    std::vector<std::string>& names = record.indistinguishable.emplace_back();
+    for (const std::size_t i : weak.unknowns) names.push_back(fit.unknowns[i].name);
+  }
+  if (const auto& found = fit.population) {
+    FitRecord::Population& population = record.population.emplace();
+    population.correlation = rows_of(found->correlation);
+    for (std::size_t i = 0; i < found->names.size(); ++i)
+      population.variables.push_back({found->names[i], found->mean[i], found->deviation[i]});
+  }
+  return record;
+}
+
+json json_of(const FitRecord& record) { return internal::record_json(record); }
+
+FitRecord read_fit(const json& from) {
+  FitRecord record = internal::whole_record<FitRecord>(from);
+  require(std::ranges::all_of(record.correlation, [&](const auto& row) { return row.size() == record.correlation.size(); }),
+          "\"correlation\" must have as many columns as rows");
+  return record;
+}
+
+Document document_of(const FitRecord& fit) {
+  Document document{.title = fit.title,
                     .origin = "fit",
                     .headline = fit_headline(fit),
                     .sections = {values_section(fit)},
-                    .made = internal::origin(fit.scene, provenance.command)};
+                    .made = internal::made_of(fit.origin)};
   document.made.seed = fit.seed;
-  document.made.tolerance = fit.scene.tolerance;
+  document.made.tolerance = fit.tolerance;
   constexpr std::size_t most = 12;  // unknowns whose correlations can be read
-  if (fit.unknowns.size() >= 2 && fit.unknowns.size() <= most)
+  if (fit.unknowns.size() >= 2 && fit.correlation.size() == fit.unknowns.size() && fit.unknowns.size() <= most)
     document.sections.push_back({.id = "correlation",
                                  .heading = "Correlations of their errors",
                                  .parts = {correlation_table(fit)},
@@ -432,7 +492,7 @@ Document fit_document(const Fit& fit, const Provenance& provenance) {
                                                       "known before, where this is measured as well, on every device.",
                                               .is_note = true}},
          .shown = ShownIn::page});
-  if (fit.found) {
+  if (fit.is_found()) {
     document.keys = keys_of(fit);
     document.draw = [&fit] { return picture_of(fit); };
   }

@@ -2,19 +2,53 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "reports/document.h"
-#include "reports/result_maker.h"
+#include "reports/origin.h"
 #include "studies/fitting/fit.h"
 
 namespace softland {
 
-[[nodiscard]] nlohmann::json fit_json(const Fit& fit, const Provenance& provenance);
+struct FitRecord {
+  using Matrix = std::vector<std::vector<double>>;
+  struct Population {
+    struct Variable {
+      std::string key;
+      double mean = Metrics::unset, deviation = Metrics::unset;
+    };
+    std::vector<Variable> variables;
+    Matrix correlation;
+  };
+  Origin origin;
+  std::string status;
+  std::vector<std::string> doubts;  ///< Fit::doubts
+  std::string title;
+  std::vector<FittedUnknown> unknowns;
+  Matrix correlation;
+  std::vector<std::vector<std::string>> indistinguishable;  ///< unknowns that the data cannot tell apart
+  std::vector<NextMeasurement> next;
+  std::size_t minima = 0, starts = 0, converged = 0;
+  std::vector<FitResidual> residuals;
+  std::vector<FittedTrace> traces;
+  double chi_squared = Metrics::unset, chi_squared_before = Metrics::unset;  ///< NaN where nothing was found
+  /// The residuals as a whole, data that do not agree, what the data cannot tell apart, minima.
+  std::vector<std::string> words;
+  bool spread_assumed = false;
+  Loss loss = Loss::huber;
+  std::uint64_t seed = 1;
+  double tolerance = Metrics::unset;  ///< of the integrator
+  std::optional<Population> population;
+
+  [[nodiscard]] bool is_found() const { return status != to_string(Status::numerical_failure); }
+};
+[[nodiscard]] FitRecord record_of(const Fit& fit, const std::string& command);
+
+[[nodiscard]] nlohmann::json json_of(const FitRecord& record);
+[[nodiscard]] FitRecord read_fit(const nlohmann::json& from);
 /// Values and their intervals, what the data cannot tell apart and what would, residuals.
-[[nodiscard]] Document fit_document(const Fit& fit, const Provenance& provenance);
-/// What is said in words: the residuals as a whole, data that do not agree, what the data cannot tell apart, minima.
-[[nodiscard]] std::vector<std::string> fit_words(const Fit& fit);
+[[nodiscard]] Document document_of(const FitRecord& record);
 
 }  // namespace softland

@@ -10,52 +10,19 @@
 
 #include "reports/chart.h"
 #include "reports/document.h"
-#include "reports/json_number.h"
-#include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/result_json.h"
+#include "reports/result_maker.h"
+#include "reports/result_reader.h"
+#include "reports/study_members.h"
 #include "reports/svg.h"
 #include "studies/closing/summits_at_hold.h"
 
 namespace softland {
 namespace {
 
-using internal::json_number;
 using internal::quantity;
 using nlohmann::json;
-
-json least_json(const LeastTime& least) {
-  return {{"status", to_string(least.status)},
-          {"message", least.message},
-          {"from_start", least.from_start},
-          {"least_time_s", json_number(least.time)},
-          {key_of(&Metrics::impact_velocity), json_number(least.impact_velocity)},
-          {"peak_voltage_V", json_number(least.peak)},
-          {"simulated_time_s", json_number(least.simulated_time)},
-          {"simulated_impact_velocity_m_s", json_number(least.simulated_velocity)},
-          {"distance_from_rest", json_number(least.room)}};
-}
-
-json list_json(const std::vector<LeastTime>& all) {
-  json list = json::array();
-  for (const LeastTime& least : all) list.push_back(least_json(least));
-  return list;
-}
-
-json landing_json(const LimitLanding& landing) {
-  json checks = json::array();
-  for (const ConfirmingRun& c : landing.checks) {
-    if (c.varied != Varied::gas) checks.push_back({{"name", c.name}, {"metrics", metrics_json(c.metrics)}});
-  }
-  return {{"way", least_json(landing.way)},
-          {"at_rest", std::isfinite(landing.way.room)},
-          {"catch_delay_s", json_number(landing.catch_delay)},
-          {"catch_s", json_number(landing.catch_time)},
-          {"bounce_free", landing.bounce_free},
-          {"metrics", metrics_json(landing.closing.metrics)},
-          {"confirmed_by", checks},
-          {"scene", landing.scene.scene.file.json()}};
-}
 
 std::string drives_of(Actuator actuator) {
   switch (actuator) {
@@ -91,21 +58,19 @@ ReportTable list_table(const char* title, const std::vector<LeastTime>& all, Nam
 }
 
 // The model for which a least time is a bound: a beam with more modes may touch earlier. Empty for a plate, which has one mode.
-std::string model_of(const Limit& limit) {
-  if (limit.given.scene.device.structure.is_rigid()) return {};
-  const auto modes = limit.given.model.modes();
-  return fmt::format("{} mode{}", modes, modes == 1 ? "" : "s");
+std::string model_of(const LimitRecord& limit) {
+  if (read_result_scene(limit.origin.scene, {}).structure == "plate") return {};
+  return fmt::format("{} mode{}", limit.modes, limit.modes == 1 ? "" : "s");
 }
 
 // What follows the touch of a landing.
-std::string words_after(const LimitLanding& landing) {
+std::string words_after(const LimitRecord::Landing& landing) {
   if (landing.bounce_free) return "no rebound, confirmed";
-  const Metrics& own = landing.closing.metrics;
+  const Metrics& own = landing.metrics;
   std::string words =
       own.major_bounce_height > 0 ? fmt::format("rebounds up to {}", quantity(own.major_bounce_height, "m")) : "no rebound";
   std::string others;
-  for (const ConfirmingRun& c : landing.checks) {
-    if (c.varied == Varied::gas) continue;
+  for (const LimitRecord::Check& c : landing.checks) {
     if (c.metrics.bounce_count == 0 && c.metrics.status == Status::done) continue;
     const std::string course =
         c.metrics.bounce_count > 0 ? "up to " + quantity(c.metrics.major_bounce_height, "m") : std::string("it is not settled");
@@ -115,7 +80,7 @@ std::string words_after(const LimitLanding& landing) {
   return words;
 }
 
-std::string words_of_catch(const LimitLanding& landing) {
+std::string words_of_catch(const LimitRecord::Landing& landing) {
   const double pulled = landing.catch_time - landing.catch_delay;
   if (!(pulled > 0)) return "landing";
   std::string words = fmt::format("landing, then a catch of {}", quantity(pulled, "s"));
@@ -123,26 +88,18 @@ std::string words_of_catch(const LimitLanding& landing) {
   return words;
 }
 
-ReportTable touches_table(const Limit& limit) {
+ReportTable touches_table(const LimitRecord& limit) {
   ReportTable table{.head = {"", "first touch", "speed", {"", "words"}}, .rows = {}};
   table.rows = {
       {"plain step", quantity(limit.step.initial_contact_time, "s", 4), quantity(limit.step.impact_velocity, "m/s")},
       least_row(fmt::format("least time of a touch at {} or less", quantity(limit.impact_velocity, "m/s")), limit.touch),
       least_row("least time with every mode at rest", limit.rest)};
   if (limit.landing) {
-    const Metrics& m = limit.landing->closing.metrics;
+    const Metrics& m = limit.landing->metrics;
     table.rows.push_back({words_of_catch(*limit.landing), quantity(m.initial_contact_time, "s", 4),
                           quantity(m.impact_velocity, "m/s"), words_after(*limit.landing)});
   }
   return table;
-}
-
-std::vector<std::string> all_warnings(const Limit& limit) {
-  std::vector<std::string> all = limit.given.scene.warnings;
-  if (!limit.hold_warning.empty()) all.push_back(limit.hold_warning);
-  if (std::string few = few_summits_warning(limit.given.model, limit.given.signals()); !few.empty())
-    all.push_back(std::move(few));
-  return all;
 }
 
 // Column pairs of a curve; what was not found is left out.
@@ -169,49 +126,134 @@ internal::Chart curve(const std::string& table, const std::string& title, const 
   return chart;
 }
 
-json quasi_static_json(const Limit& limit) {
-  if (!limit.approach) return nullptr;
-  return {{"drive", limit.approach->drive},
-          {"touch_places_m", json_number(limit.approach->touch_places())},
-          {"steady_s", json_number(limit.step.steady_force_time)},
-          {"speed_m_s", json_number(limit.quasi_static)}};
-}
-
 // Says how softly one slow waveform can land all devices.
-std::string quasi_static_words(const Limit& limit) {
-  if (!limit.approach || !std::isfinite(limit.quasi_static)) return {};
-  const std::string drive = limit.approach->drive == piezo_drive ? "piezo" : "electrode " + limit.approach->drive;
+std::string quasi_static_words(const LimitRecord& limit) {
+  if (!limit.quasi_static || !std::isfinite(limit.quasi_static->speed)) return {};
+  const auto& [name, touch_places, steady, speed] = *limit.quasi_static;
+  const std::string drive = name == piezo_drive ? "piezo" : "electrode " + name;
   return fmt::format(
       "The {} can carry the devices of [spread] to their contact slowly, through stable equilibria. The places where 90 % of "
       "them "
       "touch lie {} apart on its way. A waveform that passes them evenly, and is steady as soon as the plain step, at {}, "
       "touches "
       "at {} or more.",
-      drive, quantity(limit.approach->touch_places(), "m"), quantity(limit.step.steady_force_time, "s"),
-      quantity(limit.quasi_static, "m/s"));
+      drive, quantity(touch_places, "m"), quantity(steady, "s"), quantity(speed, "m/s"));
 }
 
 }  // namespace
 
-json limit_json(const Limit& limit, const Provenance& provenance) {
-  return with_origin({{"kind", "limit"},
-                      {"status", limit.interrupted ? "interrupted" : to_string(limit.touch.status)},
-                      {"actuator", name_of(actuators, limit.options.actuator)},
-                      {"permitted_impact_velocity_m_s", json_number(limit.impact_velocity)},
-                      {"modes", limit.given.model.modes()},
-                      {"plain_step", metrics_json(limit.step)},
-                      {"touch", least_json(limit.touch)},
-                      {"at_rest", least_json(limit.rest)},
-                      {"quasi_static", quasi_static_json(limit)},
-                      {"closed_state", closed_state_json(limit.closed_state)},
-                      {"warnings", all_warnings(limit)},
-                      {"landing", limit.landing ? landing_json(*limit.landing) : json()},
-                      {"over_impact_velocity", list_json(limit.over_velocity)},
-                      {"over_peak_voltage", list_json(limit.over_peak)}},
-                     limit.given, provenance.command);
+template <class A>
+void members(A& a, LeastTime& least) {
+  a("status", least.status);
+  a("message", least.message);
+  a("from_start", least.from_start);
+  a("least_time_s", least.time);
+  a(key_of(&Metrics::impact_velocity), least.impact_velocity);
+  a("permitted_impact_velocity_m_s", least.permitted);
+  a("peak_voltage_V", least.peak);
+  a("simulated_time_s", least.simulated_time);
+  a("simulated_impact_velocity_m_s", least.simulated_velocity);
+  a("distance_from_rest", least.room);
 }
 
-std::string limit_text(const Limit& limit) {
+template <class A>
+void members(A& a, LimitRecord::QuasiStatic& found) {
+  a("drive", found.drive);
+  a("touch_places_m", found.touch_places);
+  a("steady_s", found.steady);
+  a("speed_m_s", found.speed);
+}
+
+template <class A>
+void members(A& a, LimitRecord::Check& check) {
+  a("name", check.name);
+  a("metrics", check.metrics);
+}
+
+template <class A>
+void members(A& a, LimitRecord::Landing& landing) {
+  a("way", landing.way);
+  a("at_rest", landing.at_rest);
+  a("catch_delay_s", landing.catch_delay);
+  a("catch_s", landing.catch_time);
+  a("bounce_free", landing.bounce_free);
+  a("metrics", landing.metrics);
+  a("confirmed_by", landing.checks);
+  a("scene", landing.scene);
+}
+
+template <class A>
+void members(A& a, LimitRecord& limit) {
+  members(a, limit.origin);
+  a("status", limit.status);
+  a("actuator", internal::Chosen{limit.actuator, actuators});
+  a("permitted_impact_velocity_m_s", limit.impact_velocity);
+  a("modes", limit.modes);
+  a("has_start", limit.has_start);
+  a("plain_step", limit.step);
+  a("touch", limit.touch);
+  a("at_rest", limit.rest);
+  a("quasi_static", internal::OrNull{limit.quasi_static});
+  a("closed_state", limit.closed_state);
+  a("hold_warning", internal::OrNull{limit.hold_warning});
+  a("warnings", limit.warnings);
+  a("landing", internal::OrNull{limit.landing});
+  a("over_impact_velocity", limit.over_velocity);
+  a("over_peak_voltage", limit.over_peak);
+  if (!a.has(limit.landed.has_value())) return;
+  a.object("curves", [&](auto& curves) {
+    curves.custom(
+        "landing", limit.landed, [](const auto& run) { return result_json(*run); },
+        [](const json& run) { return std::optional(read_result(run)); });
+  });
+}
+
+LimitRecord record_of(const Limit& limit, const std::string& command) {
+  LimitRecord record{.origin = origin_of("limit", limit.given, command),
+                     .status = std::string(limit.interrupted ? "interrupted" : to_string(limit.touch.status)),
+                     .actuator = limit.options.actuator,
+                     .impact_velocity = limit.impact_velocity,
+                     .modes = static_cast<int>(limit.given.model.modes()),
+                     .has_start = !limit.options.start.empty(),
+                     .step = limit.step,
+                     .touch = limit.touch,
+                     .rest = limit.rest,
+                     .quasi_static = {},
+                     .closed_state = limit.closed_state,
+                     .hold_warning = limit.hold_warning,
+                     .warnings = limit.given.scene.warnings,
+                     .landing = {},
+                     .over_velocity = limit.over_velocity,
+                     .over_peak = limit.over_peak,
+                     .landed = {}};
+  if (limit.approach)
+    record.quasi_static = {limit.approach->drive, limit.approach->touch_places(), limit.step.steady_force_time,
+                           limit.quasi_static};
+  if (!limit.hold_warning.empty()) record.warnings.push_back(limit.hold_warning);
+  if (std::string few = few_summits_warning(limit.given.model, limit.given.signals()); !few.empty())
+    record.warnings.push_back(std::move(few));
+  if (const auto& found = limit.landing) {
+    record.landed = result_of(found->scene, found->closing, {});
+    record.landing = {found->way,
+                      std::isfinite(found->way.room),
+                      found->catch_delay,
+                      found->catch_time,
+                      found->bounce_free,
+                      found->closing.metrics,
+                      {},
+                      found->scene.scene.file.json()};
+    for (const ConfirmingRun& c : found->checks) {
+      if (c.varied != Varied::gas) record.landing->checks.push_back({c.name, c.metrics});
+    }
+  }
+  return record;
+}
+
+json json_of(const LimitRecord& record) { return internal::record_json(record); }
+
+LimitRecord read_limit(const json& from) { return internal::whole_record<LimitRecord>(from); }
+
+std::string text_of(const LimitRecord& limit) {
   const std::string peak = std::isfinite(limit.touch.peak) ? fmt::format(", up to {}", quantity(limit.touch.peak, "V")) : "";
   ReportSection section{.id = "least-times", .heading = "Least times", .parts = {}};
   if (!limit.hold_warning.empty()) section.parts.emplace_back(Paragraph{"warning: " + limit.hold_warning});  // before all figures
@@ -227,18 +269,18 @@ std::string limit_text(const Limit& limit) {
     section.parts.emplace_back(Paragraph{
         "No waveform of these drives touches earlier at that speed" + (model.empty() ? "" : " in this model of " + model) +
         ", as far as Ipopt can tell: the optimum is a local one, found from the quickest single swing" +
-        std::string(limit.options.start.empty() ? "" : " or from the waveform of --start") +
+        std::string(!limit.has_start ? "" : " or from the waveform of --start") +
         (model.empty() ? "." : ". A beam has more modes, by which a waveform can gain.") +
         " A beam whose modes still ring may bounce after a soft touch: the landing was simulated."});
   if (const std::string words = quasi_static_words(limit); !words.empty()) section.parts.emplace_back(Paragraph{words});
-  return terminal_text({.headline = fmt::format("How quickly {} can close the switch{}", drives_of(limit.options.actuator), peak),
-                        .doubt = limit.interrupted ? "Interrupted: what follows is not all." : "",
+  return terminal_text({.headline = fmt::format("How quickly {} can close the switch{}", drives_of(limit.actuator), peak),
+                        .doubt = limit.status == "interrupted" ? "Interrupted: what follows is not all." : "",
                         .sections = {std::move(section)}});
 }
 
-std::string limit_svg(const Limit& limit) {
+std::string svg_of(const LimitRecord& limit) {
   internal::Picture drawn;
-  if (limit.landing) drawn = gap_and_drives(result_of(limit.landing->scene, limit.landing->closing, {}));
+  if (limit.landed) drawn = gap_and_drives(*limit.landed);
   add_curve(drawn.tables, "speed", limit.over_velocity, [](const LeastTime& l) { return l.permitted; });
   add_curve(drawn.tables, "peak", limit.over_peak, [](const LeastTime& l) { return l.peak; });
   if (drawn.tables.contains("peak")) {
@@ -255,7 +297,7 @@ std::string limit_svg(const Limit& limit) {
       found ? fmt::format("No waveform touches before {} at {} or less{}", quantity(limit.touch.time, "s", 4),
                           quantity(limit.impact_velocity, "m/s"), model.empty() ? "" : fmt::format(", with {}", model))
             : "The least time was not found: " + why_not(limit.touch);
-  return svg_page(headline, limit.given.scene.title, drawn, 1);
+  return svg_page(headline, title_of(limit.origin), drawn, 1);
 }
 
 }  // namespace softland

@@ -2,17 +2,58 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "reports/result_maker.h"
+#include "reports/origin.h"
+#include "reports/result.h"
 #include "studies/search/limit.h"
 
 namespace softland {
 
-[[nodiscard]] nlohmann::json limit_json(const Limit& limit, const Provenance& provenance);
-[[nodiscard]] std::string limit_text(const Limit& limit);
+struct LimitRecord {
+  struct QuasiStatic {
+    std::string drive;
+    /// Within these 90 % of the devices touch [m]; from then on the force of the plain step is steady [s]; and the speed [m/s].
+    double touch_places = Metrics::unset, steady = Metrics::unset, speed = Metrics::unset;
+  };
+  struct Check {
+    std::string name;
+    Metrics metrics;
+  };
+  struct Landing {
+    LeastTime way;
+    bool at_rest = false;
+    double catch_delay = Metrics::unset, catch_time = Metrics::unset;  ///< [s]
+    bool bounce_free = false;
+    Metrics metrics;
+    std::vector<Check> checks;  ///< by a tighter integrator and a richer beam
+    nlohmann::json scene;
+  };
+  Origin origin;
+  std::string status;
+  Actuator actuator = Actuator::electrostatic;
+  double impact_velocity = Metrics::unset;  ///< permitted [m/s]
+  int modes = 0;
+  bool has_start = false;  ///< a waveform was given to start with
+  Metrics step;
+  LeastTime touch, rest;
+  std::optional<QuasiStatic> quasi_static;
+  ClosedState closed_state;
+  std::string hold_warning;           ///< one of the warnings; empty where there is none
+  std::vector<std::string> warnings;  ///< of the scene, of its hold levels, and of few summits that carry the force
+  std::optional<Landing> landing;
+  std::vector<LeastTime> over_velocity, over_peak;
+  std::optional<Result> landed;  ///< the run of the landing; only files have it
+};
+[[nodiscard]] LimitRecord record_of(const Limit& limit, const std::string& command);
+
+[[nodiscard]] nlohmann::json json_of(const LimitRecord& record);
+[[nodiscard]] LimitRecord read_limit(const nlohmann::json& from);
+[[nodiscard]] std::string text_of(const LimitRecord& record);
 /// The landing's gap and waveforms, and the least time against the peak voltage and against the permitted speed, as far as they
 /// were found.
-[[nodiscard]] std::string limit_svg(const Limit& limit);
+[[nodiscard]] std::string svg_of(const LimitRecord& record);
 
 }  // namespace softland

@@ -8,20 +8,16 @@
 #include "config/assumed_spread.h"
 #include "reports/document.h"
 #include "reports/estimates.h"
-#include "reports/json_number.h"
-#include "reports/origin.h"
 #include "reports/quantity.h"
+#include "reports/study_members.h"
 #include "sampling/statistics.h"
 
 namespace softland {
 namespace {
 
-using internal::interval_json;
-using internal::json_number;
 using internal::percent;
 using internal::quantile_text;
 using internal::quantity;
-using internal::yield_json;
 using internal::yield_text;
 using nlohmann::json;
 
@@ -37,11 +33,8 @@ double variation(const MeasurableFigure& figure) {
   return values.size() < 2 ? Metrics::unset : sample_standard_deviation(values) / sample_mean(values);
 }
 
-json quantile_json(const EstimatedQuantile& q) {
-  return {{"value", json_number(q.value)}, {"interval", interval_json(q.interval)}};
-}
-
-TableRow row(const Prediction& p, bool drives_piezo) {
+TableRow row(const MeasurementsRecord::Row& row, bool drives_piezo) {
+  const Prediction& p = row.found;
   const auto miss = [](double value) {
     return std::isfinite(value) ? internal::plain_number(100 * value, 2) + " %" : std::string("—");
   };
@@ -52,81 +45,104 @@ TableRow row(const Prediction& p, bool drives_piezo) {
   return cells;
 }
 
-ReportTable predictions_table(const char* name, const std::vector<Prediction>& predictions, bool drives_piezo) {
+ReportTable predictions_table(const char* name, const std::vector<MeasurementsRecord::Row>& predictions, bool drives_piezo) {
   ReportTable table{.head = {name, "volts off", "time off"}, .rows = {}};
   if (drives_piezo) table.head.emplace_back("piezo off");
   table.head.insert(table.head.end(), {"without a rebound", "v_max, 95 % below", "B_H, 95 % below"});
-  for (const Prediction& p : predictions) table.rows.push_back(row(p, drives_piezo));
+  for (const MeasurementsRecord::Row& p : predictions) table.rows.push_back(row(p, drives_piezo));
   return table;
 }
 
-ReportTable figures_table(const IdentificationStudy& study) {
+ReportTable figures_table(const MeasurementsRecord& record) {
   ReportTable table{.head = {"Figure", "nominal", "varies by", "error", "devices"}, .rows = {}};
-  for (const MeasurableFigure& f : study.figures)
-    table.rows.push_back({f.name, quantity(f.nominal, f.unit), percent(variation(f)), f.error > 0 ? percent(f.error) : "exact",
-                          std::to_string(known(f).size())});
+  for (const MeasurementsRecord::Figure& f : record.figures)
+    table.rows.push_back({f.name, quantity(f.nominal, f.unit), percent(f.variation), f.error > 0 ? percent(f.error) : "exact",
+                          std::to_string(f.devices)});
   return table;
 }
 
 }  // namespace
 
-json measurements_json(const IdentificationStudy& study, const IdentificationOptions& options, const std::string& command) {
-  json figures = json::array();
-  for (const MeasurableFigure& f : study.figures) {
-    figures.push_back({{"name", f.name},
-                       {"unit", f.unit},
-                       {"nominal", json_number(f.nominal)},
-                       {"variation", json_number(variation(f))},
-                       {"error", f.error},
-                       {"devices", known(f).size()}});
-  }
+template <class A>
+void members(A& a, MeasurementsRecord::Figure& figure) {
+  a("name", figure.name);
+  a("unit", figure.unit);
+  a("nominal", figure.nominal);
+  a("variation", figure.variation);
+  a("error", figure.error);
+  a("devices", figure.devices);
+}
+
+template <class A>
+void members(A& a, MeasurementsRecord::Row& row) {
+  Prediction& p = row.found;
+  a("name", p.name);
+  a("measured", row.measured);
+  a("volts_miss", p.volts_miss);
+  a("time_miss", p.time_miss);
+  a("volts_unexplained", p.volts_unexplained);
+  a("time_unexplained", p.time_unexplained);
+  a("piezo_miss", p.piezo_miss);
+  a("piezo_unexplained", p.piezo_unexplained);
+  if constexpr (A::reads) p.is_judged = a.at("bounce_free").is_object();
+  if (!p.is_judged) return;
+  a("score_95", p.score);
+  a("bounce_free", p.bounce_free);
+  a("largest_impact_velocity_95_m_s", p.impact_speed);
+  a("major_bounce_height_95_m", p.rebound_height);
+}
+
+template <class A>
+void members(A& a, MeasurementsRecord& record) {
+  members(a, record.origin);
+  a("status", internal::Stopped{record.interrupted});
+  a("devices", record.devices);
+  a("seed", record.seed);
+  a("spread_assumed", record.spread_assumed);
+  a("drives_piezo", record.drives_piezo);
+  a("figures", record.figures);
+  a("references", record.references);
+  a("predictions", record.predictions);
+}
+
+MeasurementsRecord record_of(const IdentificationStudy& study, const IdentificationOptions& options, const std::string& command) {
+  MeasurementsRecord record{.origin = origin_of("calibrate", command),
+                            .seed = options.seed,
+                            .devices = study.devices,
+                            .interrupted = study.interrupted,
+                            .spread_assumed = study.spread_assumed,
+                            .drives_piezo = study.drives_piezo};
+  for (const MeasurableFigure& f : study.figures)
+    record.figures.push_back({f.name, f.unit, f.nominal, variation(f), f.error, known(f).size()});
   const auto rows = [&](const std::vector<Prediction>& predictions) {
-    json all = json::array();
+    std::vector<MeasurementsRecord::Row> all;
     for (const Prediction& p : predictions) {
-      json measured = json::array();
-      for (const std::size_t f : p.figures) measured.push_back(study.figures[f].name);
-      json one{{"name", p.name},
-               {"measured", std::move(measured)},
-               {"volts_miss", json_number(p.volts_miss)},
-               {"time_miss", json_number(p.time_miss)},
-               {"volts_unexplained", json_number(p.volts_unexplained)},
-               {"time_unexplained", json_number(p.time_unexplained)},
-               {"piezo_miss", json_number(p.piezo_miss)},
-               {"piezo_unexplained", json_number(p.piezo_unexplained)}};
-      if (p.is_judged) {
-        one["score_95"] = json_number(p.score);
-        one["bounce_free"] = yield_json(p.bounce_free);
-        one["largest_impact_velocity_95_m_s"] = quantile_json(p.impact_speed);
-        one["major_bounce_height_95_m"] = quantile_json(p.rebound_height);
-      }
-      all.push_back(std::move(one));
+      all.push_back({p, {}});
+      for (const std::size_t f : p.figures) all.back().measured.push_back(study.figures[f].name);
     }
     return all;
   };
-  return with_origin({{"kind", "calibrate"},
-                      {"status", study.interrupted ? "interrupted" : "done"},
-                      {"devices", study.devices},
-                      {"seed", options.seed},
-                      {"spread_assumed", study.spread_assumed},
-                      {"drives_piezo", study.drives_piezo},
-                      {"figures", std::move(figures)},
-                      {"references", rows(study.references)},
-                      {"predictions", rows(study.predictions)}},
-                     command);
+  record.references = rows(study.references), record.predictions = rows(study.predictions);
+  return record;
 }
 
-std::string measurements_text(const IdentificationStudy& study, const IdentificationOptions& options, std::size_t most) {
+json json_of(const MeasurementsRecord& record) { return internal::record_json(record); }
+
+MeasurementsRecord read_measurements(const json& from) { return internal::whole_record<MeasurementsRecord>(from); }
+
+std::string text_of(const MeasurementsRecord& study, std::size_t most) {
+  using Row = MeasurementsRecord::Row;
   // Whether a pair is worth its second figure.
-  const auto is_better_than_its_figures = [&](const Prediction& p) {
-    return std::all_of(p.figures.begin(), p.figures.end(), [&](std::size_t figure) {
-      return std::all_of(study.predictions.begin(), study.predictions.end(), [&](const Prediction& single) {
-        return single.figures != std::vector{figure} || !single.is_judged || p.score < single.score;
+  const auto is_better_than_its_figures = [&](const Row& p) {
+    return std::ranges::all_of(p.measured, [&](const std::string& figure) {
+      return std::ranges::all_of(study.predictions, [&](const Row& single) {
+        return single.measured != std::vector{figure} || !single.found.is_judged || p.found.score < single.found.score;
       });
     });
   };
-  std::vector<Prediction> shown;
-  for (const Prediction& p : study.predictions) {
-    if (shown.size() < most && (!p.is_judged || p.figures.size() < 2 || is_better_than_its_figures(p))) shown.push_back(p);
+  std::vector<Row> shown;
+  for (const Row& p : study.predictions) {
+    if (shown.size() < most && (!p.found.is_judged || p.measured.size() < 2 || is_better_than_its_figures(p))) shown.push_back(p);
   }
   const std::size_t left_out = study.predictions.size() - shown.size();
   const std::string others =
@@ -146,7 +162,7 @@ std::string measurements_text(const IdentificationStudy& study, const Identifica
                                    "Volts and times are off the best factors by this root mean square. In brackets: 95 % "
                                    "confidence. Ranked by the 95 % quantile of the score of `bounce`, half the largest "
                                    "touch speed and half the highest rebound over those of the plain step. Seed {}.{}",
-                                   options.seed, others)}}}}});
+                                   study.seed, others)}}}}});
 }
 
 }  // namespace softland

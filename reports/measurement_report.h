@@ -3,15 +3,38 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
+#include "reports/origin.h"
 #include "studies/search/identification.h"
 
 namespace softland {
 
-[[nodiscard]] nlohmann::json measurements_json(const IdentificationStudy& study, const IdentificationOptions& options,
-                                               const std::string& command);
+struct MeasurementsRecord {
+  struct Figure {
+    std::string name, unit;
+    double nominal = Metrics::unset;    ///< of the nominal device [unit]
+    double variation = Metrics::unset;  ///< standard deviation of the devices that have it, over their mean
+    double error = 0;                   ///< of its measurement, relative
+    std::size_t devices = 0;            ///< that have it
+  };
+  struct Row {
+    Prediction found;
+    std::vector<std::string> measured;  ///< names of its figures
+  };
+  Origin origin;
+  std::uint64_t seed = 1;
+  std::size_t devices = 0;
+  bool interrupted = false, spread_assumed = false, drives_piezo = false;
+  std::vector<Figure> figures;
+  std::vector<Row> references, predictions;
+};
+[[nodiscard]] MeasurementsRecord record_of(const IdentificationStudy& study, const IdentificationOptions& options,
+                                           const std::string& command);
+
+[[nodiscard]] nlohmann::json json_of(const MeasurementsRecord& record);
+[[nodiscard]] MeasurementsRecord read_measurements(const nlohmann::json& from);
 /// Pairs that close devices no better than the better one of their figures are left out, and so are all beyond `most` rows.
-[[nodiscard]] std::string measurements_text(const IdentificationStudy& study, const IdentificationOptions& options,
-                                            std::size_t most = 24);
+[[nodiscard]] std::string text_of(const MeasurementsRecord& record, std::size_t most = 24);
 
 }  // namespace softland

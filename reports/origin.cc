@@ -11,6 +11,33 @@ namespace softland {
 
 using nlohmann::json;
 
+Origin origin_of(const char* kind, const std::string& command) {
+  return {.kind = kind, .version = std::string(version), .command = command, .made_with = made_with()};
+}
+
+Origin origin_of(const char* kind, const PreparedScene& scene, const std::string& command) {
+  Origin origin = origin_of(kind, command);
+  origin.scene = scene.resolved().json();
+  return origin;
+}
+
+Origin whole_origin_of(const char* kind, const PreparedScene& scene, const std::string& command) {
+  Origin origin = origin_of(kind, scene, command);
+  origin.scene_toml = scene.resolved().text();
+  return origin;
+}
+
+std::string title_of(const Origin& origin) {
+  const auto title = origin.scene.find("title");
+  return title != origin.scene.end() && title->is_string() ? title->get<std::string>() : std::string();
+}
+
+Result internal::made_of(const Origin& origin) {
+  Result result{.command = origin.command, .version = origin.version, .made_with = origin.made_with};
+  result.scene.text = origin.scene_toml;
+  return result;
+}
+
 json with_origin(json record, const std::string& command) {
   record.update({{"version", version}, {"made_with", made_with_json()}, {"command", command}});
   return record;

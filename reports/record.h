@@ -1,8 +1,8 @@
 // A record and its JSON from one list of its members. `members(archive, record)`, a function template beside the record's type,
 // names every member once; a JsonWriter and a JsonReader both go through it, as archives do in Drake's Serialize.
 //
-// In JSON a number that is not finite is null. A reader takes what is there: what is missing, or of another type, stays as it is
-// in the record.
+// In JSON a number that is not finite is null. A reader takes what is there: a number that is missing or null is NaN, and what is
+// missing otherwise, or of another type, stays as it is in the record.
 #pragma once
 
 #include <array>
@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/choice.h"
 #include "objectives/figures.h"
 #include "reports/json_number.h"
 
@@ -44,9 +45,23 @@ struct OrNull {
 };
 template <class T>
 OrNull(T&) -> OrNull<T>;
+/// The status of a study that cannot but be done, or interrupted.
+struct Stopped {
+  bool& interrupted;
+};
+/// A choice by the name that its table has for it.
+template <class Rows>
+struct Chosen {
+  decltype(Rows::value_type::value)& value;
+  const Rows& rows;
+};
+template <class T, class Rows>
+Chosen(T&, const Rows&) -> Chosen<Rows>;
 
 template <class Record>
 [[nodiscard]] json record_json(const Record& record);
+/// Throws InvalidInput, which names the first difference, unless JSON that was read is what its record is written as.
+void require_same(const json& written, const json& read);
 
 class JsonWriter {
  public:
@@ -69,6 +84,11 @@ class JsonWriter {
   void custom(std::string_view key, const T& value, const Write& write, const Read&) {
     json_[std::string(key)] = write(value);
   }
+  /// A value that is worked out from members.
+  template <class T>
+  void derived(std::string_view key, const T& value) {
+    (*this)(key, value);
+  }
   /// The members that `inside(archive)` names, in an object of their own.
   template <class Inside>
   void object(std::string_view key, const Inside& inside) {
@@ -89,6 +109,13 @@ class JsonWriter {
   static json of(double value) { return json_number(value); }
   static json of(bool value) { return value; }
   static json of(const std::string& text) { return text; }
+  static json of(const json& as_it_is) { return as_it_is; }
+  static json of(Stopped study) { return study.interrupted ? "interrupted" : "done"; }
+  static json of(Status status) { return to_string(status); }
+  template <class Rows>
+  static json of(const Chosen<Rows>& choice) {
+    return name_of(choice.rows, choice.value);
+  }
   template <std::integral Whole>
   static json of(Whole value) {
     return value;
@@ -157,6 +184,8 @@ class JsonReader {
   void custom(std::string_view key, T& value, const Write&, const Read& read) {
     value = read(at(key));
   }
+  template <class T>
+  void derived(std::string_view, const T&) const {}
   template <class Inside>
   void object(std::string_view key, const Inside& inside) {
     if (!at(key).is_object()) return;
@@ -185,6 +214,19 @@ class JsonReader {
  private:
   static void take(const json& from, double& value) {
     if (from.is_number()) value = from.get<double>();
+    if (from.is_null()) value = Metrics::unset;
+  }
+  static void take(const json& from, json& as_it_is) { as_it_is = from; }
+  static void take(const json& from, Stopped study) { study.interrupted = from == "interrupted"; }
+  static void take(const json& from, Status& status) {
+    for (int k = 0; k <= static_cast<int>(Status::interrupted); ++k) {
+      if (from == to_string(static_cast<Status>(k))) status = static_cast<Status>(k);
+    }
+  }
+  template <class Rows>
+  static void take(const json& from, Chosen<Rows> choice) {
+    if (!from.is_string()) return;
+    if (const auto* const row = find_named(choice.rows, from.get<std::string>())) choice.value = row->value;
   }
   static void take(const json& from, bool& value) {
     if (from.is_boolean()) value = from.get<bool>();
@@ -279,6 +321,14 @@ json record_json(const Record& record) {
   JsonWriter archive;
   members(archive, const_cast<Record&>(record));  // which a writer leaves as it is
   return std::move(archive).take();
+}
+
+/// The record of this JSON. Throws InvalidInput where anything of it is missing, unknown or not as it would be written.
+template <class Record>
+[[nodiscard]] Record whole_record(const json& from) {
+  Record record = JsonReader::read<Record>(from);
+  require_same(record_json(record), from);
+  return record;
 }
 
 }  // namespace softland::internal

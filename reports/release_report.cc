@@ -8,12 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/require.h"
 #include "reports/chart.h"
 #include "reports/document.h"
-#include "reports/json_number.h"
-#include "reports/origin.h"
 #include "reports/quantity.h"
+#include "reports/result_maker.h"
 #include "reports/robustness_words.h"
+#include "reports/study_members.h"
 #include "reports/svg.h"
 #include "studies/closing/summits_at_hold.h"
 #include "waveforms/export.h"
@@ -21,7 +22,6 @@
 namespace softland {
 namespace {
 
-using internal::json_number;
 using internal::percent;
 using internal::quantity;
 using internal::spread_words;
@@ -29,15 +29,6 @@ using nlohmann::json;
 
 constexpr const char* plain_words = "plain opening";
 constexpr double curve_tolerance = 1e-4;  // of the largest voltage, where a drive is no straight line
-
-json figures_json(const OpeningFigures& f) {
-  return {{"status", to_string(f.status)},
-          {"release_time_s", json_number(f.release_time)},
-          {"settling_time_s", json_number(f.settling_time)},
-          {"overshoot_m", json_number(f.overshoot)},
-          {"residual_vibration_m", json_number(f.residual_vibration)},
-          {"touches_again", f.touches}};
-}
 
 // Drives that are voltages, with their signals.
 std::map<std::string, Signal> voltages(const OpeningResult& r, const Opening& o) {
@@ -66,17 +57,18 @@ std::vector<std::pair<double, double>> line_of(const OpeningResult& r, const std
   return points;
 }
 
-json opening_json(const OpeningResult& r, const Opening& o) {
-  json waveforms = json::object();
+ReleaseRecord::Run run_of(const OpeningResult& r, const Opening& o) {
+  ReleaseRecord::Run run{.figures = o.figures, .message = o.trajectory.message, .drives_end = o.voltages_end, .waveforms = {}};
   for (const auto& [drive, signal] : voltages(r, o)) {
-    json points = json::array();
+    Points& points = run.waveforms[drive];
     for (const auto& [time, voltage] : line_of(r, drive, signal, o.voltages_end)) points.push_back({time, voltage});
-    waveforms[drive] = points;
   }
-  return {{"figures", figures_json(o.figures)},
-          {"message", o.trajectory.message},
-          {"drives_end_s", json_number(o.voltages_end)},
-          {"waveforms", waveforms}};
+  return run;
+}
+
+ReleaseRecord::Gap gap_of(const OpeningResult& r, const Opening& o) {
+  ResultCurve curve = curve_of(o.trajectory, r.given.scene.metrics);
+  return {.time = std::move(curve.time), .gap = std::move(curve.gap)};
 }
 
 std::string gain(double plain, double best) {
@@ -84,7 +76,7 @@ std::string gain(double plain, double best) {
   return internal::times(plain / best) + " less";
 }
 
-TableRow quantity_row(const OpeningResult& r, const std::string& name, double OpeningFigures::*member, std::string_view unit,
+TableRow quantity_row(const ReleaseRecord& r, const std::string& name, double OpeningFigures::*member, std::string_view unit,
                       bool lower) {
   const double plain = r.plain.figures.*member;
   if (!r.best) return {name, quantity(plain, unit)};
@@ -92,7 +84,7 @@ TableRow quantity_row(const OpeningResult& r, const std::string& name, double Op
   return {name, quantity(plain, unit), quantity(best, unit), lower ? gain(plain, best) : ""};
 }
 
-std::string finding(const OpeningResult& r) {
+std::string finding(const ReleaseRecord& r) {
   const OpeningFigures& plain = r.plain.figures;
   const auto ends = [](const OpeningFigures& f) {
     if (!std::isfinite(f.release_time)) return std::string("stays closed");
@@ -105,14 +97,14 @@ std::string finding(const OpeningResult& r) {
 }
 
 // Where the figures are from, what confirms them.
-std::string remarks(const OpeningResult& r) {
+std::string remarks(const ReleaseRecord& r) {
   std::string words = fmt::format(
       "Open for good: the contact point stays within {} of its open position ({} of the contact gap). Residual vibration: how "
       "far it "
       "still swings from there once all drives stand at 0 V.",
-      quantity(r.band, "m"), percent(r.options.band));
+      quantity(r.band, "m"), percent(r.band_share));
   if (!r.best) return words + " No waveform was found that opens the switch.";
-  words += fmt::format(" Searched: {} waveforms, seed {}.", r.search.evaluations, r.options.seed);
+  words += fmt::format(" Searched: {} waveforms, seed {}.", r.evaluations, r.seed);
   for (const ConfirmingOpening& c : r.checks) {
     words += fmt::format(" With {}: {}.", c.name,
                          std::isfinite(c.figures.residual_vibration)
@@ -120,14 +112,6 @@ std::string remarks(const OpeningResult& r) {
                              : std::string(to_string(c.figures.status)));
   }
   return words;
-}
-
-internal::CurveTable gap_table(const OpeningResult& r, const Opening& o) {
-  internal::CurveTable table;
-  const ResultCurve curve = curve_of(o.trajectory, r.given.scene.metrics);
-  table["time_s"] = curve.time;
-  table["tip_gap_m"] = curve.gap;
-  return table;
 }
 
 internal::Chart over_time(const std::string& id, const std::string& title, const char* y_label, const char* y_unit,
@@ -139,36 +123,15 @@ internal::Chart over_time(const std::string& id, const std::string& title, const
 }
 
 // Until the braked switch is quiet and a little longer.
-double shown_until(const OpeningResult& r, double window) {
+double shown_until(const ReleaseRecord& r, double window) {
   constexpr double longer = 3;
   if (!r.best) return window;
-  const double end = std::fmax(r.best->voltages_end, r.best->figures.settling_time);
+  const double end = std::fmax(r.best->drives_end, r.best->figures.settling_time);
   return std::min(window, longer * end);
 }
 
-}  // namespace
-
-namespace {
-
-json openings_json(const DeviceOpenings& o) {
-  return {{"open", json_number(o.open)},
-          {"in_band_with_drives", json_number(o.in_band)},
-          {"settling_time_s", json_number(o.settling_time)},
-          {"residual_vibration_m", json_number(o.residual_vibration)},
-          {"overshoot_m", json_number(o.overshoot)}};
-}
-
-json devices_json(const std::optional<OpeningsOnDevices>& found) {
-  if (!found) return nullptr;
-  return {{"count", found->devices},
-          {"spread_assumed", found->spread_assumed},
-          {"spread", spread_words(found->spread)},
-          {"plain", openings_json(found->plain)},
-          {"best", openings_json(found->best)}};
-}
-
 // What 95 % of the devices do under either opening.
-ReportSection devices_section(const OpeningsOnDevices& found) {
+ReportSection devices_section(const ReleaseRecord::Devices& found) {
   ReportTable table{.head = {"", plain_words, "found"}, .rows = {}};
   table.rows = {{"open for good", percent(found.plain.open), percent(found.best.open)},
                 {"from when the drives stand on", percent(found.plain.in_band), percent(found.best.in_band)}};
@@ -181,13 +144,12 @@ ReportSection devices_section(const OpeningsOnDevices& found) {
   add("beyond the open position, 95 % below", &DeviceOpenings::overshoot, "m");
   return {.id = "devices",
           .heading = "On devices that differ",
-          .parts = {Paragraph{fmt::format("On {} devices, all in the volts of the nominal one: {}{}.", found.devices,
-                                          spread_words(found.spread),
+          .parts = {Paragraph{fmt::format("On {} devices, all in the volts of the nominal one: {}{}.", found.count, found.spread,
                                           found.spread_assumed ? " (assumed, the scene has no [spread])" : "")},
                     std::move(table)}};
 }
 
-ReportTable openings_table(const OpeningResult& r) {
+ReportTable openings_table(const ReleaseRecord& r) {
   ReportTable table{.head = {"", plain_words, r.best ? "found" : "", {"", "words"}}, .rows = {}};
   table.rows = {
       quantity_row(r, "leaves its contact", &OpeningFigures::release_time, "s", false),
@@ -198,7 +160,7 @@ ReportTable openings_table(const OpeningResult& r) {
   return table;
 }
 
-ReportTable parameters_table(const OpeningResult& r) {
+ReportTable parameters_table(const ReleaseRecord& r) {
   ReportTable table{.head = {"parameter", "value"}, .rows = {}};
   for (const auto& [name, value] : r.parameters)
     table.rows.push_back({name, quantity(value, name.find(".level_") == std::string::npos ? "s" : "V", 4)});
@@ -207,56 +169,136 @@ ReportTable parameters_table(const OpeningResult& r) {
 
 }  // namespace
 
-std::vector<std::string> warnings(const OpeningResult& r) {
-  std::vector<std::string> all = r.given.scene.warnings;
-  if (std::string few = few_summits_warning(r.given.model, r.given.signals()); !few.empty()) all.push_back(std::move(few));
-  return all;
+template <class A>
+void members(A& a, OpeningFigures& figures) {
+  a("status", figures.status);
+  a("release_time_s", figures.release_time);
+  a("settling_time_s", figures.settling_time);
+  a("overshoot_m", figures.overshoot);
+  a("residual_vibration_m", figures.residual_vibration);
+  a("touches_again", figures.touches);
 }
 
-json release_json(const OpeningResult& r, const Provenance& provenance) {
-  json checks = json::array();
-  for (const ConfirmingOpening& c : r.checks) checks.push_back({{"name", c.name}, {"figures", figures_json(c.figures)}});
-  json holds = json::object();
+template <class A>
+void members(A& a, ReleaseRecord::Run& run) {
+  a("figures", run.figures);
+  a("message", run.message);
+  a("drives_end_s", run.drives_end);
+  a("waveforms", run.waveforms);
+}
+
+template <class A>
+void members(A& a, ConfirmingOpening& check) {
+  a("name", check.name);
+  a("figures", check.figures);
+}
+
+template <class A>
+void members(A& a, DeviceOpenings& openings) {
+  a("open", openings.open);
+  a("in_band_with_drives", openings.in_band);
+  a("settling_time_s", internal::OrInfinite{openings.settling_time});
+  a("residual_vibration_m", internal::OrInfinite{openings.residual_vibration});
+  a("overshoot_m", internal::OrInfinite{openings.overshoot});
+}
+
+template <class A>
+void members(A& a, ReleaseRecord::Devices& devices) {
+  a("count", devices.count);
+  a("spread_assumed", devices.spread_assumed);
+  a("spread", devices.spread);
+  a("plain", devices.plain);
+  a("best", devices.best);
+}
+
+template <class A>
+void members(A& a, ReleaseRecord::Gap& course) {
+  a("time_s", course.time);
+  a("tip_gap_m", course.gap);
+}
+
+template <class A>
+void members(A& a, ReleaseRecord& r) {
+  members(a, r.origin);
+  a("status", r.status);
+  a("actuator", internal::Chosen{r.actuator, actuators});
+  a("hold_levels", r.hold_levels);
+  a("contact_force_N", r.contact_force);
+  a("open_position_m", r.open_position);
+  a("band_m", r.band);
+  a("band_of_contact_gap", r.band_share);
+  a("plain", r.plain);
+  a("best", internal::OrNull{r.best});
+  a("parameters", r.parameters);
+  a("confirmed_by", r.checks);
+  a("devices", internal::OrNull{r.devices});
+  a("goal_met", r.goal_met);
+  a("confirmed", r.confirmed);
+  a("evaluations", r.evaluations);
+  a("seed", r.seed);
+  a("termination", r.termination);
+  a("warnings", r.warnings);
+  if (a.has(!r.gaps.empty())) a("curves", r.gaps);
+}
+
+ReleaseRecord record_of(const OpeningResult& r, const std::string& command) {
+  ReleaseRecord record{
+      .origin = origin_of("release", r.given, command),
+      .status = std::string(r.interrupted ? "interrupted" : to_string((r.best ? *r.best : r.plain).trajectory.status)),
+      .actuator = r.options.actuator,
+      .hold_levels = {},
+      .contact_force = r.contact_force,
+      .open_position = r.open_position,
+      .band = r.band,
+      .band_share = r.options.band,
+      .plain = run_of(r, r.plain),
+      .best = {},
+      .parameters = r.parameters,
+      .checks = r.checks,
+      .devices = {},
+      .goal_met = r.goal_met,
+      .confirmed = r.confirmed,
+      .evaluations = r.search.evaluations,
+      .seed = r.options.seed,
+      .termination = std::string(to_string(r.search.termination)),
+      .warnings = r.given.scene.warnings,
+      .gaps = {{"plain", gap_of(r, r.plain)}}};
   const std::vector<std::string> names = r.given.drive_names();
-  for (std::size_t k = 0; k < names.size(); ++k) holds[names[k]] = json_number(r.holds[k]);
-  return with_origin({{"kind", "release"},
-                      {"status", r.interrupted ? "interrupted" : to_string((r.best ? *r.best : r.plain).trajectory.status)},
-                      {"actuator", name_of(actuators, r.options.actuator)},
-                      {"hold_levels", holds},
-                      {"contact_force_N", json_number(r.contact_force)},
-                      {"open_position_m", json_number(r.open_position)},
-                      {"band_m", json_number(r.band)},
-                      {"plain", opening_json(r, r.plain)},
-                      {"best", r.best ? opening_json(r, *r.best) : json()},
-                      {"parameters", r.parameters},
-                      {"confirmed_by", checks},
-                      {"devices", devices_json(r.on_devices)},
-                      {"goal_met", r.goal_met},
-                      {"confirmed", r.confirmed},
-                      {"evaluations", r.search.evaluations},
-                      {"seed", r.options.seed},
-                      {"termination", to_string(r.search.termination)},
-                      {"warnings", warnings(r)}},
-                     r.given, provenance.command);
+  for (std::size_t k = 0; k < names.size(); ++k) record.hold_levels[names[k]] = r.holds[k];
+  if (r.best) record.best = run_of(r, *r.best), record.gaps["best"] = gap_of(r, *r.best);
+  if (const auto& d = r.on_devices) record.devices = {d->devices, d->spread_assumed, spread_words(d->spread), d->plain, d->best};
+  if (std::string few = few_summits_warning(r.given.model, r.given.signals()); !few.empty())
+    record.warnings.push_back(std::move(few));
+  return record;
 }
 
-std::string release_text(const OpeningResult& r) {
+json json_of(const ReleaseRecord& record) { return internal::record_json(record); }
+
+ReleaseRecord read_release(const json& from) {
+  ReleaseRecord record = internal::whole_record<ReleaseRecord>(from);
+  for (const char* run : {"plain", "best"})
+    require(record.gaps.empty() || record.gaps.contains(run) || (run == std::string("best") && !record.best),
+            "\"curves\" lacks a run");
+  return record;
+}
+
+std::string text_of(const ReleaseRecord& r) {
   ReportSection opening{.id = "opening", .heading = "The opening", .parts = {openings_table(r)}};
   if (r.best) opening.parts.emplace_back(parameters_table(r));
   Document document{.headline = finding(r),
-                    .doubt = r.interrupted ? "Interrupted: what follows is the best so far." : "",
+                    .doubt = r.status == "interrupted" ? "Interrupted: what follows is the best so far." : "",
                     .sections = {std::move(opening)},
-                    .warnings = warnings(r)};
-  if (r.on_devices) document.sections.push_back(devices_section(*r.on_devices));
+                    .warnings = r.warnings};
+  if (r.devices) document.sections.push_back(devices_section(*r.devices));
   document.sections.push_back({.id = "remarks", .heading = "Remarks", .parts = {Paragraph{remarks(r)}}});
   return terminal_text(document);
 }
 
-std::string release_svg(const OpeningResult& r) {
-  const double window = r.plain.trajectory.points.empty() ? r.window : r.plain.trajectory.points.back().time;
-  const double shown = shown_until(r, window);
+std::string svg_of(const ReleaseRecord& r) {
+  const std::vector<double>& times = r.gaps.at("plain").time;
+  const double shown = shown_until(r, times.empty() ? r.plain.drives_end : times.back());
   struct Drawn {
-    const Opening* opening;
+    const ReleaseRecord::Run* run;
     const char *name, *words;
     internal::Role role;
   };
@@ -268,15 +310,22 @@ std::string release_svg(const OpeningResult& r) {
   gap.zero_label = "contact plane";
   gap.height = 320;
   for (const Drawn& run : runs) {
-    drawn.tables[run.name] = gap_table(r, *run.opening);
+    const auto& [time, gap_then] = r.gaps.at(run.name);
+    drawn.tables[run.name] = {{"time_s", time}, {"tip_gap_m", gap_then}};
     gap.series.push_back({run.name, "tip_gap_m", run.words, run.role});
   }
   drawn.charts.push_back(gap);
   for (const Drawn& run : runs) {
     std::size_t place = 1;  // of the drive's chart
-    for (const auto& [drive, signal] : voltages(r, *run.opening)) {
+    for (const auto& [drive, points] : run.run->waveforms) {
       const std::string table = fmt::format("{}/{}", run.name, drive);
-      for (const auto& [time, voltage] : line_of(r, drive, signal, std::max(shown, run.opening->voltages_end))) {
+      Points line = points;
+      if (!line.empty() && line.back()[0] < shown) {  // it stays there
+        const bool is_flat = line.size() > 1 && line[line.size() - 2][1] == line.back()[1];
+        if (!is_flat) line.push_back(line.back());
+        line.back()[0] = shown;
+      }
+      for (const auto& [time, voltage] : line) {
         drawn.tables[table]["time_s"].push_back(time);
         drawn.tables[table]["level"].push_back(voltage);
       }
@@ -287,7 +336,7 @@ std::string release_svg(const OpeningResult& r) {
       drawn.charts[place++].series.push_back({table, "level", run.words, run.role});
     }
   }
-  return svg_page(finding(r), r.given.scene.title, drawn, 1);
+  return svg_page(finding(r), title_of(r.origin), drawn, 1);
 }
 
 std::string release_csv(const OpeningResult& r) {

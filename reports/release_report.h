@@ -1,22 +1,60 @@
 // What `softland release` found: JSON with SI units in the names, a table for a terminal, the drives as CSV, and a picture.
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "reports/result_maker.h"
+#include "reports/origin.h"
+#include "reports/result.h"
 #include "studies/search/opening.h"
 
 namespace softland {
 
-/// What is to be warned of: the scene, and a contact force at hold that few summits carry.
-[[nodiscard]] std::vector<std::string> warnings(const OpeningResult& result);
+struct ReleaseRecord {
+  struct Run {
+    OpeningFigures figures;
+    std::string message;
+    double drives_end = Metrics::unset;       ///< from when on all drives stand at 0 V [s]
+    std::map<std::string, Points> waveforms;  ///< by drive, from their hold levels on: time [s] and level [V]
+  };
+  struct Gap {
+    std::vector<double> time, gap;  ///< [s], [m]
+  };
+  /// Of DeviceOpenings, and the spread in words.
+  struct Devices {
+    std::uint64_t count = 0;
+    bool spread_assumed = false;
+    std::string spread;
+    DeviceOpenings plain, best;
+  };
+  Origin origin;
+  std::string status;
+  Actuator actuator = Actuator::electrostatic;
+  std::map<std::string, double> hold_levels;                                                     ///< by drive [V]
+  double contact_force = Metrics::unset, open_position = Metrics::unset, band = Metrics::unset;  ///< [N], [m], [m]
+  double band_share = Metrics::unset;                                                            ///< of the contact gap
+  Run plain;
+  std::optional<Run> best;
+  std::map<std::string, double> parameters;
+  std::vector<ConfirmingOpening> checks;
+  std::optional<Devices> devices;
+  bool goal_met = false, confirmed = false;
+  long evaluations = 0;
+  std::uint64_t seed = 1;
+  std::string termination;
+  std::vector<std::string> warnings;  ///< of the scene, and of a contact force at hold that few summits carry
+  std::map<std::string, Gap> gaps;    ///< "plain" and "best"; only files have them
+};
+[[nodiscard]] ReleaseRecord record_of(const OpeningResult& release, const std::string& command);
 
-[[nodiscard]] nlohmann::json release_json(const OpeningResult& release, const Provenance& provenance);
-[[nodiscard]] std::string release_text(const OpeningResult& release);
-/// Gap of the plain opening and of the best, and the drives.
-[[nodiscard]] std::string release_svg(const OpeningResult& release);
+[[nodiscard]] nlohmann::json json_of(const ReleaseRecord& record);
+[[nodiscard]] ReleaseRecord read_release(const nlohmann::json& from);
+[[nodiscard]] std::string text_of(const ReleaseRecord& record);
+/// Gap of the plain opening and of the best, and the drives; of a record that has the gaps.
+[[nodiscard]] std::string svg_of(const ReleaseRecord& record);
 /// The drives of the best opening, or where there is none of the plain one, from the hold levels on: a header
 /// `time_s,<drive>,...` [s, V], straight lines between the rows; rows of the same time are a jump.
 [[nodiscard]] std::string release_csv(const OpeningResult& release);

@@ -48,7 +48,7 @@ std::vector<ReportFile<Result>> files_of(const Result& result) {
 
 std::vector<ReportFile<RobustnessReport>> files_of(const RobustnessReport&) {
   return {{robustness_files[0], [](const RobustnessReport& r) { return page_html(robustness_document(r)); }},
-          {robustness_files[1], [](const RobustnessReport& r) { return json_text(robustness_json(r), 2); }},
+          {robustness_files[1], [](const RobustnessReport& r) { return json_text(json_of(record_of(r)), 2); }},
           {robustness_files[2], robustness_csv}};
 }
 

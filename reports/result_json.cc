@@ -104,6 +104,11 @@ json result_json(const Result& r) {
   return j;
 }
 
+json without_curves(json record) {
+  record.erase("curves");
+  return record;
+}
+
 json summary_json(json result) {
   for (const char* key : {"curves", "scene_toml", "search"}) result.erase(key);
   if (result.contains("baseline")) {

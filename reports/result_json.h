@@ -16,6 +16,9 @@ namespace softland {
 /// What --json gives: a result without what is large (curves, the text of the scene, the log of the search) or said twice.
 [[nodiscard]] nlohmann::json summary_json(nlohmann::json result);
 
+/// The same of the record of a study.
+[[nodiscard]] nlohmann::json without_curves(nlohmann::json record);
+
 [[nodiscard]] nlohmann::json closed_state_json(const ClosedState& state);
 
 namespace internal {

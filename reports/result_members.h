@@ -7,6 +7,7 @@
 
 #include "reports/record.h"
 #include "reports/result.h"
+#include "reports/result_json.h"
 #include "reports/robustness_report.h"
 
 namespace softland {

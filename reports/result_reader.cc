@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/printable.h"
 #include "base/require.h"
 #include "base/shortened.h"
 #include "config/units.h"
@@ -82,7 +83,7 @@ bool is_search(const json& result) {
 
 }  // namespace
 
-json parse_result(std::string_view content, const std::string& name) {
+json parse_record(std::string_view content, const std::string& name) {
   // A result of ours is 6 deep; reports walk through what they show by recursion.
   constexpr int deepest = 64;
   const auto watch_depth = [&](int around, json::parse_event_t event, const json&) {
@@ -90,18 +91,30 @@ json parse_result(std::string_view content, const std::string& name) {
     if (opens && around >= deepest) throw InvalidInput(fmt::format("{}: is nested more than {} deep", name, deepest));
     return true;
   };
-  json result = json::parse(content, watch_depth, false);
-  const bool is_result =
-      result.is_object() && result.contains("kind") && (result["kind"] == "simulate" || result["kind"] == "optimize");
-  require(is_result, fmt::format("{}: is not a result.json of softland", name));
+  json record = json::parse(content, watch_depth, false);
+  require(!text(record, {"kind"}).empty(), [&] { return fmt::format("{}: is not a result of softland", name); });
+  return record;
+}
+
+json parse_result(std::string_view content, const std::string& name) {
+  json result = parse_record(content, name);
+  require(result["kind"] == "simulate" || result["kind"] == "optimize",
+          fmt::format("{}: is not a result of simulate or optimize", name));
   return result;
 }
 
-void require_reportable(const json& result, const std::string& name) {
-  const std::string made_by = text(result, {"version"});
+void require_version(const json& record, const std::string& name) {
+  const std::string made_by = text(record, {"version"});
   require(!made_by.empty(), fmt::format("{}: does not say of which version of softland it is: \"version\" is missing", name));
   require(made_by == version,
           fmt::format("{}: is a result of softland {}, of which softland {} makes no report", name, shortened(made_by), version));
+}
+
+void require_reportable(const json& result, const std::string& name) {
+  const std::string kind = text(result, {"kind"});
+  require(kind == "simulate" || kind == "optimize",
+          [&] { return fmt::format("{}: is of kind '{}', of which no report is made", name, shortened(printable_line(kind))); });
+  require_version(result, name);
   for (const char* part : {is_search(result) ? "baseline" : "metrics", "curves", "scene"}) {
     require(at(result, {part}).is_object(),
             fmt::format("{}: \"{}\" is missing; name the result.json in the folder that --out named", name, part));

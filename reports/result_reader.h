@@ -9,6 +9,12 @@
 
 namespace softland {
 
+/// The JSON that the content of a file holds, which says of what kind it is: an object; everything else in it may be missing or
+/// of another type. `name` stands for the file in messages. Throws InvalidInput for anything else.
+[[nodiscard]] nlohmann::json parse_record(std::string_view content, const std::string& name);
+/// Throws InvalidInput unless it was made by this version of softland.
+void require_version(const nlohmann::json& record, const std::string& name);
+
 /// The JSON that the content of a result.json holds: an object of kind "simulate" or "optimize"; everything else in it may be
 /// missing or of another type. `name` stands for the file in messages. Throws InvalidInput for anything else.
 [[nodiscard]] nlohmann::json parse_result(std::string_view content, const std::string& name);

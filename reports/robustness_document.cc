@@ -5,12 +5,13 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "config/assumed_spread.h"
 #include "reports/box_and_chaos_report.h"
 #include "reports/derivatives_report.h"
 #include "reports/device_scatter.h"
@@ -27,20 +28,18 @@ namespace softland {
 namespace {
 
 using internal::calibration_words;
-using internal::error_words;
 using internal::escaped;
 using internal::is_erring;
 using internal::is_had;
-using internal::outside_words;
 using internal::percent;
 using internal::quantile_95;
 using internal::quantile_text;
 using internal::quantity;
-using internal::shown_values;
 using internal::some_collapse;
-using internal::spread_words;
 using internal::worst_words;
 using internal::yield_text;
+
+using DriveRecord = RobustnessRecord::Drive;
 
 constexpr std::array drawn_figures{key_of(&Metrics::largest_impact_velocity), key_of(&Metrics::major_bounce_height),
                                    key_of(&Metrics::initial_contact_time)};
@@ -212,47 +211,28 @@ std::string shown_name(const std::string& name, std::size_t columns) {
   return "…" + end;
 }
 
-TableCell drive_cell(const DriveRobustness& drive) {
+TableCell drive_cell(const DriveRecord& drive) {
   constexpr std::size_t widest = 44;
   TableCell cell(shown_name(drive.name, widest));
   cell.html = escaped(drive.name);
   return cell;
 }
 
-ReportSection about(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, spread_assumed, sensitivity, derivatives, courses, ways, windows, unheld,
-               interrupted] = report;
-  const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().known.calibration();
-  return {
-      .id = "charts",
-      .heading = "How the devices differ",
-      .parts = {Paragraph{fmt::format(
-                    "{}{} devices of the spread ({} points): {}. {}{}{}", spread_assumed ? std::string(assumed_words) + " " : "",
-                    found.devices, name_of(point_sets, options.points), spread_words(nominal.scene.spread),
-                    calibration.is_empty() ? "All have the volts that were designed for the nominal device."
-                                           : "The plain step has the volts of the nominal device; every other drive is in "
-                                             "the units of each device, known of it: " +
-                                                 calibration_words(calibration) + ".",
-                    error_words(nominal.scene.spread), outside_words(found))},
-                Paragraph{found.interrupted ? "Interrupted: these are not all devices." : ""}}};
-}
-
-ReportSection statistics_section(const RobustnessReport& report) {
-  const Robustness& found = report.found;
+ReportSection statistics_section(const RobustnessRecord& found) {
   ReportTable table{.head = {"Over the devices"}, .rows = {}};
-  for (const DriveRobustness& d : found.drives) table.head.push_back(drive_cell(d));
+  for (const DriveRecord& d : found.drives) table.head.push_back(drive_cell(d));
   const auto add = [&](TableCell name, const auto& cell) {
     TableRow& row = table.rows.emplace_back(TableRow{std::move(name)});
-    for (const DriveRobustness& d : found.drives) row.emplace_back(cell(d), &d == &found.drives.back() ? "own" : "");
+    for (const DriveRecord& d : found.drives) row.emplace_back(cell(d), &d == &found.drives.back() ? "own" : "");
   };
-  add("Devices that close", [](const DriveRobustness& d) { return yield_text(d.closing); });
-  if (some_collapse(found)) add("Pulled onto the electrode", [](const DriveRobustness& d) { return yield_text(d.collapsed); });
-  add("Without a rebound", [](const DriveRobustness& d) { return yield_text(d.bounce_free); });
+  add("Devices that close", [](const DriveRecord& d) { return yield_text(d.closing); });
+  if (some_collapse(found)) add("Pulled onto the electrode", [](const DriveRecord& d) { return yield_text(d.collapsed); });
+  add("Without a rebound", [](const DriveRecord& d) { return yield_text(d.bounce_free); });
   for (const Figure& f : device_figures) {
     if (!is_had(found, f)) continue;
     for (const std::size_t q : {std::size_t{1}, std::size_t{2}}) {
       add(label_of(f) + (q == 1 ? ": median" : ": 95 % below"),
-          [&](const DriveRobustness& d) { return quantile_text(d.figures[f].quantiles[q], f.unit); });
+          [&](const DriveRecord& d) { return quantile_text(d.figures[f].quantiles[q], f.unit); });
     }
   }
   return {.id = "figures",
@@ -260,24 +240,24 @@ ReportSection statistics_section(const RobustnessReport& report) {
           .parts = {std::move(table),
                     Paragraph{.text = fmt::format(
                                   "In brackets: 95 % confidence. Seed {}, {} points, window {}, integrator tolerance {}. {}",
-                                  report.options.seed, name_of(point_sets, report.options.points),
-                                  quantity(found.duration, "s", 4), internal::scientific(found.tolerance), worst_words),
+                                  found.seed, name_of(point_sets, found.points), quantity(found.duration, "s", 4),
+                                  internal::scientific(found.tolerance), worst_words),
                               .is_note = true},
-                    Paragraph{.text = internal::window_words(report.windows), .is_note = true}}};
+                    Paragraph{.text = internal::window_words(found.windows), .is_note = true}}};
 }
 
 // What each measurement is worth: the last drive with more and more known of the devices.
-ReportSection knowledge_section(const Robustness& found) {
+ReportSection knowledge_section(const RobustnessRecord& found) {
   ReportSection section{.id = "knowledge", .heading = "What measuring a device is worth", .parts = {}};
   if (found.by_knowledge.empty()) return section;
   ReportTable table{.head = {"Known of every device", "Without a rebound", "v_max, 95 % below", "B_H, 95 % below"}, .rows = {}};
-  const auto add = [&](const std::string& name, const DriveRobustness& d) {
+  const auto add = [&](const std::string& name, const DriveRecord& d) {
     table.rows.push_back({name, yield_text(d.bounce_free),
                           quantile_text(quantile_95(d, key_of(&Metrics::largest_impact_velocity)), "m/s"),
                           quantile_text(quantile_95(d, key_of(&Metrics::major_bounce_height)), "m")});
   };
-  for (const DriveRobustness& d : found.by_knowledge) add(d.name, d);
-  const Calibration& c = found.drives.back().known.calibration();
+  for (const DriveRecord& d : found.by_knowledge) add(d.name, d);
+  const Calibration& c = found.drives.back().calibration;
   if (is_erring(c)) add(calibration_words(c), found.drives.back());
   section.parts = {std::move(table)};
   return section;
@@ -290,20 +270,21 @@ std::string index_text(const SobolIndex& index) {
   return fmt::format("{:.0f} % ({:.0f} to {:.0f})", share(index.value), share(index.interval.low), share(index.interval.high));
 }
 
-ReportSection sensitivity_section(const Sensitivity& sensitivity) {
+ReportSection sensitivity_section(const RobustnessRecord& record) {
   ReportSection section{.id = "sensitivity", .heading = "Where the spread comes from", .parts = {}};
-  if (sensitivity.figures.empty()) return section;
+  if (record.sensitivity.empty()) return section;
   ReportTable table{.head = {"Share of the variance"}, .rows = {}};
-  for (const FigureSensitivity& f : sensitivity.figures) {
+  for (const RobustnessRecord::Sensitive& f : record.sensitivity) {
     for (const char* how : {"{}, alone", "{}, in all"})
       table.head.emplace_back(fmt::format(fmt::runtime(how), figure_of(f.key).symbol));
   }
-  for (std::size_t i = 0; i < sensitivity.variables.size(); ++i) {
-    TableRow& row = table.rows.emplace_back(TableRow{sensitivity.variables[i]});
-    for (const FigureSensitivity& f : sensitivity.figures) {
-      const auto& indices = f.estimate.indices;
-      row.emplace_back(indices ? index_text(indices->first_order[i]) : "unknown");
-      row.emplace_back(indices ? index_text(indices->total[i]) : "unknown");
+  for (const RobustnessRecord::Varied& v : record.spread) {
+    TableRow& row = table.rows.emplace_back(TableRow{v.name});
+    for (const RobustnessRecord::Sensitive& f : record.sensitivity) {
+      const auto indices = f.variables.find(v.name);
+      const bool is_known = indices != f.variables.end();
+      row.emplace_back(is_known ? index_text(indices->second.first_order) : "unknown");
+      row.emplace_back(is_known ? index_text(indices->second.total) : "unknown");
     }
   }
   section.parts = {std::move(table),
@@ -311,47 +292,47 @@ ReportSection sensitivity_section(const Sensitivity& sensitivity) {
                                  "Sobol' indices under the last drive, {} rows: the share of a figure's variance that would be "
                                  "gone if the quantity were known (alone), and the share in which it has a part (in all). "
                                  "Where rebounds set in at once, variances say less than quantiles.",
-                                 sensitivity.figures.front().estimate.rows),
+                                 record.sensitivity.front().rows),
                              .is_note = true}};
-  for (const FigureSensitivity& f : sensitivity.figures) {
-    if (!f.estimate.indices)
+  for (const RobustnessRecord::Sensitive& f : record.sensitivity) {
+    if (f.variables.empty())
       section.parts.emplace_back(
-          Paragraph{fmt::format("{}: {}.", figure_of(f.key).symbol, internal::why_no_indices(f.estimate))});
+          Paragraph{fmt::format("{}: {}.", figure_of(f.key).symbol, internal::why_no_indices(f.rows, f.failed_rows))});
   }
   return section;
 }
 
-ReportSection worst_section(const RobustnessReport& report) {
+double number_of(const std::map<std::string, double>& all, std::string_view name) {
+  const auto found = all.find(std::string(name));
+  return found == all.end() ? Metrics::unset : found->second;
+}
+
+ReportSection worst_section(const RobustnessRecord& record) {
   ReportSection section{.id = "worst", .heading = "The worst devices", .parts = {}, .shown = ShownIn::page};
-  if (report.found.devices == 0) return section;
-  const DriveRobustness& last = report.found.drives.back();
-  const Ensemble ensemble(report.nominal, report.options.samples, report.options.seed, report.options.points);
-  const std::vector<SpreadVariable>& variables = report.nominal.scene.spread.variables;
+  if (record.devices == 0) return section;
+  const DriveRecord& last = record.drives.back();
   ReportTable table{.head = {"Device"}, .rows = {}};
-  for (const SpreadVariable& v : variables) table.head.emplace_back(v.name);
+  for (const RobustnessRecord::Varied& v : record.spread) table.head.emplace_back(v.name);
   table.head.insert(table.head.end(), {"Highest rebound", "Largest impact speed", "First contact"});
-  for (const std::size_t k : last.worst) {
-    TableRow& row = table.rows.emplace_back(TableRow{fmt::format("{}", k)});
-    const std::vector<double> values = shown_values(ensemble, k);
-    for (std::size_t i = 0; i < values.size(); ++i)
-      row.emplace_back(variables[i].is_factor ? fmt::format("× {:.4f}", values[i])
-                                              : quantity(values[i], variables[i].keys.front().unit, 5));
-    const DeviceOutcome& o = last.outcomes[k];
-    if (!o.closed()) {
-      row.emplace_back(o.failure.empty() ? std::string(to_string(o.metrics.status)) : o.failure, "missing", 3);
-      continue;
+  for (const RobustnessRecord::Device& device : last.worst) {
+    TableRow& row = table.rows.emplace_back(TableRow{fmt::format("{}", device.number)});
+    for (const RobustnessRecord::Varied& v : record.spread)
+      row.emplace_back(internal::value_text(v, number_of(device.values, v.name)));
+    if (device.failure.empty() && std::isfinite(number_of(device.figures, drawn_figures[1]))) {
+      for (const std::string_view key : {drawn_figures[1], drawn_figures[0], drawn_figures[2]})
+        row.emplace_back(quantity(number_of(device.figures, key), figure_of(key).unit));
+    } else {
+      row.emplace_back(device.failure.empty() ? device.status : device.failure, "missing", 3);
     }
-    for (const std::string_view key : {drawn_figures[1], drawn_figures[0], drawn_figures[2]})
-      row.emplace_back(quantity(o.of(figure_of(key)), figure_of(key).unit));
   }
   if (!table.rows.empty())
     section.parts = {std::move(table), Paragraph{.text = fmt::format("Under {}.", last.name), .is_note = true}};
   return section;
 }
 
-std::pair<std::string, std::string> headline_of(const Robustness& found) {
-  const DriveRobustness &step = found.drives.front(), &own = found.drives.back();
-  const auto words = [&](const DriveRobustness& d) {
+std::pair<std::string, std::string> headline_of(const RobustnessRecord& found) {
+  const DriveRecord &step = found.drives.front(), &own = found.drives.back();
+  const auto words = [&](const DriveRecord& d) {
     return fmt::format("{} of {} devices close without a rebound, and 95 % touch at no more than {} and rise no more than {}",
                        percent(d.bounce_free.value), found.devices, quantity(quantile_95(d, drawn_figures[0]).value, "m/s"),
                        quantity(quantile_95(d, drawn_figures[1]).value, "m"));
@@ -362,14 +343,14 @@ std::pair<std::string, std::string> headline_of(const Robustness& found) {
                                   quantity(quantile_95(step, drawn_figures[1]).value, "m"))};
 }
 
-std::vector<KeyNumber> keys_of(const Robustness& found) {
-  const DriveRobustness &step = found.drives.front(), &own = found.drives.back();
+std::vector<KeyNumber> keys_of(const RobustnessRecord& found) {
+  const DriveRecord &step = found.drives.front(), &own = found.drives.back();
   const auto before = [&](const std::string& value) { return found.drives.size() > 1 ? "plain step " + value : std::string(); };
   std::vector<KeyNumber> keys{
       {.name = "Without a rebound", .value = percent(own.bounce_free.value), .change = before(percent(step.bounce_free.value))}};
   for (const std::string_view key : drawn_figures) {
     const Figure& f = figure_of(key);
-    const auto value = [&](const DriveRobustness& d) {
+    const auto value = [&](const DriveRecord& d) {
       const double q = quantile_95(d, key).value;
       return std::isfinite(q) ? quantity(q, f.unit) : std::string("∞");
     };
@@ -380,26 +361,33 @@ std::vector<KeyNumber> keys_of(const Robustness& found) {
 
 }  // namespace
 
-Document robustness_document(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, spread_assumed, sensitivity, derivatives, courses, ways, windows, unheld,
-               interrupted] = report;
-  Document document{.title = nominal.scene.title,
+Document document_of(const RobustnessRecord& found) {
+  Document document{.title = title_of(found.origin),
                     .origin = "robustness",
-                    .sections = {about(report)},
-                    .warnings = warnings(report),
-                    .made = internal::origin(nominal, command)};
-  document.made.seed = options.seed;
+                    .sections = {{.id = "charts", .heading = "How the devices differ", .parts = {}}},
+                    .warnings = found.warnings,
+                    .made = internal::made_of(found.origin)};
+  for (const std::string& words : found.about) document.sections.front().parts.emplace_back(Paragraph{words});
+  document.made.seed = found.seed;
   document.made.tolerance = found.tolerance;
   if (found.devices == 0) return document;
   std::tie(document.headline, document.headline_rest) = headline_of(found);
   document.keys = keys_of(found);
+  for (ReportSection& section :
+       std::array{knowledge_section(found), statistics_section(found), sensitivity_section(found),
+                  internal::derivatives_section(found.derivatives, found.drives.back()),
+                  found.other_ways ? internal::other_ways_section(found) : ReportSection(), worst_section(found)})
+    document.sections.push_back(std::move(section));
+  return document;
+}
+
+Document robustness_document(const RobustnessReport& report) {
+  Document document = document_of(record_of(report));
+  if (report.found.devices == 0) return document;
   document.draw = [&report] { return picture_of(report); };
   document.sections.front().parts.emplace_back(internal::all_charts());
-  for (ReportSection& section : std::array{
-           knowledge_section(found), statistics_section(report), internal::device_scatter(report),
-           sensitivity_section(sensitivity), internal::derivatives_section(derivatives, found.drives.back()),
-           ways ? internal::other_ways_section(*ways, found.drives.back(), nominal) : ReportSection(), worst_section(report)})
-    document.sections.push_back(std::move(section));
+  constexpr std::ptrdiff_t behind_figures = 3;  // what is known of devices and the figures stand before
+  document.sections.insert(document.sections.begin() + behind_figures, internal::device_scatter(report));
   return document;
 }
 

@@ -4,17 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
 
+#include "base/require.h"
+#include "config/assumed_spread.h"
 #include "reports/box_and_chaos_report.h"
 #include "reports/derivatives_report.h"
-#include "reports/estimates.h"
 #include "reports/json_number.h"
-#include "reports/origin.h"
-#include "reports/result_json.h"
 #include "reports/robustness_words.h"
+#include "reports/study_members.h"
 #include "studies/closing/closed_state.h"
 #include "studies/closing/simulate.h"
 #include "studies/closing/summits_at_hold.h"
@@ -24,109 +25,119 @@
 namespace softland {
 namespace {
 
-using internal::interval_json;
-using internal::json_number;
 using internal::shown_values;
-using internal::yield_json;
 using nlohmann::json;
 
-json statistics_json(const FigureStatistics& s) {
-  json quantiles = json::array();
-  for (std::size_t i = 0; i < robustness_quantiles.size(); ++i) {
-    quantiles.push_back({{"probability", robustness_quantiles[i]},
-                         {"value", json_number(s.quantiles[i].value)},
-                         {"interval", interval_json(s.quantiles[i].interval)}});
-  }
-  return {{"mean", json_number(s.mean)},
-          {"standard_deviation", json_number(s.standard_deviation)},
-          {"skewness", json_number(s.skewness)},
-          {"devices", s.devices},
-          {"quantiles", std::move(quantiles)}};
-}
-
-json figures_json(const DeviceOutcome& outcome) {
-  json all = json::object();
-  for (const Figure& f : device_figures) all[std::string(f.key)] = json_number(outcome.of(f));
-  return all;
-}
-
-json device_json(const Ensemble& ensemble, const DriveRobustness& drive, std::size_t k) {
-  json values = json::object();
-  const std::vector<double> of_device = shown_values(ensemble, k);
+RobustnessRecord::Device device_of(const Ensemble& ensemble, const DriveRobustness& drive, std::size_t k) {
+  const DeviceOutcome& outcome = drive.outcomes[k];
+  RobustnessRecord::Device device{.number = k,
+                                  .values = {},
+                                  .status = std::string(to_string(outcome.metrics.status)),
+                                  .failure = outcome.failure,
+                                  .figures = {}};
+  const std::vector<double> values = shown_values(ensemble, k);
   const std::vector<SpreadVariable>& variables = ensemble.nominal().scene.spread.variables;
-  for (std::size_t i = 0; i < variables.size(); ++i) values[variables[i].name] = of_device[i];
-  json one{{"device", k},
-           {"values", std::move(values)},
-           {"status", to_string(drive.outcomes[k].metrics.status)},
-           {"figures", figures_json(drive.outcomes[k])}};
-  if (!drive.outcomes[k].failure.empty()) one["failure"] = drive.outcomes[k].failure;
-  return one;
+  for (std::size_t i = 0; i < variables.size(); ++i) device.values[variables[i].name] = values[i];
+  for (const Figure& f : device_figures) device.figures[std::string(f.key)] = outcome.of(f);
+  return device;
 }
 
-json waveforms_json(const PreparedScene& nominal, const DriveRobustness& drive, double duration) {
-  json all = json::object();
+std::map<std::string, Points> waveforms_of(const PreparedScene& nominal, const DriveRobustness& drive, double duration) {
+  std::map<std::string, Points> all;
   const std::vector<std::string> names = nominal.drive_names();
   for (const auto& [name, waveform] : drive.waveforms) {
     const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
     const Signal s = nominal.driven(k, nominal.told(k, waveform));
     const bool is_factor = name == dispersion_drive;
-    json points = json::array();
+    Points& points = all[name];
     for (const auto& [t, v] : polyline(s, duration, 1e-3 * (s.maximum(duration) - s.minimum(duration)), 0))
       points.push_back({t, is_factor ? 1 + v : v});
-    all[name] = std::move(points);
   }
   return all;
 }
 
-json spread_json(const DeviceSpread& spread) {
-  json all = json::array();
+// Those of the nominal scene, and why the last drive does not hold the nominal device.
+std::vector<std::string> warnings(const RobustnessReport& report) {
+  std::vector<std::string> all = report.nominal.scene.warnings;
+  if (!report.unheld.empty()) all.push_back(report.unheld);
+  if (!report.found.drives.empty()) {
+    const DriveRobustness& last = report.found.drives.back();
+    const std::vector<Signal> signals = report.nominal.driven(report.nominal.in_drive_order(last.waveforms));
+    if (std::string few = few_summits_warning(report.nominal.model, signals); !few.empty()) all.push_back(std::move(few));
+  }
+  return all;
+}
+
+RobustnessRecord::Drive drive_of(const RobustnessReport& report, const Ensemble& ensemble, const DriveRobustness& d) {
+  const PreparedScene& nominal = report.nominal;
+  RobustnessRecord::Drive drive{.name = d.name,
+                                .closed_state = {},
+                                .calibration = d.known.calibration(),
+                                .classes = d.known.classes(),
+                                .waveforms = waveforms_of(nominal, d, report.found.duration),
+                                .closing = d.closing,
+                                .collapsed = d.collapsed,
+                                .bounce_free = d.bounce_free,
+                                .figures = d.figures,
+                                .failures = {},
+                                .worst = {}};
+  if (nominal.model.has_contact())
+    drive.closed_state = closed_state(nominal, nominal.driven(nominal.in_drive_order(d.waveforms)));
+  for (const std::size_t k : d.worst) drive.worst.push_back(device_of(ensemble, d, k));
+  for (const DeviceOutcome& o : d.outcomes) {
+    if (!o.closed()) ++drive.failures[o.failure.empty() ? std::string(to_string(o.metrics.status)) : o.failure];
+  }
+  return drive;
+}
+
+std::vector<RobustnessRecord::Varied> varied(const DeviceSpread& spread) {
+  std::vector<RobustnessRecord::Varied> all;
   for (const SpreadVariable& v : spread.variables) {
-    json keys = json::array();
-    for (const VariedKey& key : v.keys) keys.push_back(key.name());
-    all.push_back({{"name", v.name},
-                   {"keys", std::move(keys)},
-                   {"distribution", name_of(distribution_kinds, v.distribution.kind())},
-                   {"is_factor", v.is_factor},
-                   {"mean", v.distribution.mean()},
-                   {"standard_deviation", v.distribution.standard_deviation()}});
+    all.push_back({.name = v.name,
+                   .keys = {},
+                   .distribution = std::string(name_of(distribution_kinds, v.distribution.kind())),
+                   .unit = v.keys.front().unit,
+                   .is_factor = v.is_factor,
+                   .mean = v.distribution.mean(),
+                   .deviation = v.distribution.standard_deviation()});
+    for (const VariedKey& key : v.keys) all.back().keys.push_back(key.name());
   }
   return all;
 }
 
-json calibration_json(const Calibration& c) {
-  const auto error = [](const std::optional<double>& of) { return of ? json(*of) : json(nullptr); };
-  return {{"Vdp_error", error(c.pull_in_error)},
-          {"frequency_error", error(c.frequency_error)},
-          {"piezo_error", error(c.piezo_error)},
-          {"time_error_s", error(c.time_error)},
-          {"classes", c.classes ? json(*c.classes) : json(nullptr)}};
-}
-
-json classes_json(const std::vector<KnownUnits::Class>& classes) {
-  json all = json::array();
-  for (const KnownUnits::Class& c : classes)
-    all.push_back(
-        {{"volts_factor", c.centre.volts}, {"time_factor", c.centre.time}, {"piezo_factor", c.centre.piezo}, {"share", c.share}});
-  return all;
-}
-
-json index_json(const SobolIndex& index) {
-  return {{"value", json_number(index.value)}, {"interval", interval_json(index.interval)}, {"above_zero", index.above_zero}};
-}
-
-json sensitivity_json(const Sensitivity& sensitivity) {
-  json figures = json::object();
+std::vector<RobustnessRecord::Sensitive> sensitive(const Sensitivity& sensitivity) {
+  std::vector<RobustnessRecord::Sensitive> all;
   for (const FigureSensitivity& f : sensitivity.figures) {
-    json variables = json::object();
+    all.push_back({f.key, f.estimate.rows, f.estimate.failed_rows, {}});
     for (std::size_t i = 0; i < sensitivity.variables.size() && f.estimate.indices; ++i)
-      variables[sensitivity.variables[i]] = {{"first_order", index_json(f.estimate.indices->first_order[i])},
-                                             {"total", index_json(f.estimate.indices->total[i])}};
-    figures[std::string(f.key)] = {
-        {"rows", f.estimate.rows}, {"failed_rows", f.estimate.failed_rows}, {"variables", std::move(variables)}};
+      all.back().variables[sensitivity.variables[i]] = {f.estimate.indices->first_order[i], f.estimate.indices->total[i]};
   }
-  json j{{"figures", std::move(figures)}};
-  if (!sensitivity.why_none.empty()) j["why_none"] = sensitivity.why_none;
-  return j;
+  return all;
+}
+
+std::string about_words(const RobustnessReport& report) {
+  const Robustness& found = report.found;
+  const DeviceSpread& spread = report.nominal.scene.spread;
+  const Calibration calibration = found.drives.empty() ? Calibration{} : found.drives.back().known.calibration();
+  return fmt::format("{}{} devices of the spread ({} points): {}. {}{}{}",
+                     report.spread_assumed ? std::string(assumed_words) + " " : "", found.devices,
+                     name_of(point_sets, report.options.points), internal::spread_words(spread),
+                     calibration.is_empty() ? "All have the volts that were designed for the nominal device."
+                                            : "The plain step has the volts of the nominal device; every other drive is in "
+                                              "the units of each device, known of it: " +
+                                                  internal::calibration_words(calibration) + ".",
+                     internal::error_words(spread), internal::outside_words(found));
+}
+
+// Parts by figure, in the order of `keys`.
+template <class A, class Part, class Keys>
+void by_figure(A& a, std::vector<Part>& parts, const Keys& keys) {
+  if constexpr (A::reads) {
+    for (const std::string_view key : keys) {
+      if (a.at(key).is_object()) parts.emplace_back().key = key;
+    }
+  }
+  for (Part& part : parts) a(part.key, part);
 }
 
 }  // namespace
@@ -136,6 +147,213 @@ json internal::windows_json(const HoldWindows& windows) {
   for (const auto& [electrode, window] : windows.of_electrodes)
     all[electrode] = std::isfinite(window.lower) ? json::array({window.lower, json_number(window.upper)}) : json();
   return all;
+}
+
+namespace internal {
+
+struct QuantileAt {
+  double probability = Metrics::unset;
+  EstimatedQuantile quantile;
+};
+template <class A>
+void members(A& a, QuantileAt& one) {
+  a("probability", one.probability);
+  softland::members(a, one.quantile);
+}
+
+}  // namespace internal
+
+template <class A>
+void members(A& a, FigureStatistics& s) {
+  a("mean", s.mean);
+  a("standard_deviation", s.standard_deviation);
+  a("skewness", s.skewness);
+  a("devices", s.devices);
+  std::vector<internal::QuantileAt> quantiles;
+  for (std::size_t i = 0; !A::reads && i < s.quantiles.size(); ++i)
+    quantiles.push_back({robustness_quantiles[i], s.quantiles[i]});
+  a("quantiles", quantiles);
+  for (std::size_t i = 0; i < std::min(quantiles.size(), s.quantiles.size()); ++i) s.quantiles[i] = quantiles[i].quantile;
+}
+
+template <class A>
+void members(A& a, Calibration& c) {
+  a("Vdp_error", internal::OrNull{c.pull_in_error});
+  a("frequency_error", internal::OrNull{c.frequency_error});
+  a("piezo_error", internal::OrNull{c.piezo_error});
+  a("time_error_s", internal::OrNull{c.time_error});
+  a("classes", internal::OrNull{c.classes});
+}
+
+template <class A>
+void members(A& a, KnownUnits::Class& c) {
+  a("volts_factor", c.centre.volts);
+  a("time_factor", c.centre.time);
+  a("piezo_factor", c.centre.piezo);
+  a("share", c.share);
+}
+
+template <class A>
+void members(A& a, RobustnessRecord::Varied& v) {
+  a("name", v.name);
+  a("keys", v.keys);
+  a("distribution", v.distribution);
+  a("unit", v.unit);
+  a("is_factor", v.is_factor);
+  a("mean", v.mean);
+  a("standard_deviation", v.deviation);
+}
+
+template <class A>
+void members(A& a, RobustnessRecord::Device& device) {
+  a("device", device.number);
+  a("values", device.values);
+  a("status", device.status);
+  a("figures", device.figures);
+  if (a.has(!device.failure.empty())) a("failure", device.failure);
+}
+
+template <class A>
+void members(A& a, RobustnessRecord::Drive& d) {
+  a("name", d.name);
+  a("closed_state", internal::OrNull{d.closed_state});
+  a("calibration", d.calibration);
+  a("classes", d.classes);
+  a("waveforms", d.waveforms);
+  a("closing", d.closing);
+  a("collapsed_onto_electrode", d.collapsed);
+  a("bounce_free", d.bounce_free);
+  a.object("figures", [&](auto& figures) {
+    for (const Figure& f : device_figures) figures(f.key, d.figures[f]);
+  });
+  a("failures", d.failures);
+  a("worst", d.worst);
+}
+
+template <class A>
+void members(A& a, SobolIndex& index) {
+  a("value", index.value);
+  a.pair("interval", index.interval.low, index.interval.high);
+  a("above_zero", index.above_zero);
+}
+
+template <class A>
+void members(A& a, RobustnessRecord::Sensitive::Indices& indices) {
+  a("first_order", indices.first_order);
+  a("total", indices.total);
+}
+
+template <class A>
+void members(A& a, RobustnessRecord::Sensitive& s) {
+  a("rows", s.rows);
+  a("failed_rows", s.failed_rows);
+  a("variables", s.variables);
+}
+
+template <class A>
+void members(A& a, RobustnessRecord::Derived::Variable& v) {
+  a("nominal", v.nominal);
+  a("standard_deviation", v.deviation);
+  if (a.has(!v.why_none.empty())) a("why_none", v.why_none);
+}
+
+template <class A>
+void members(A& a, RobustnessRecord::Derived::Slope& slope) {
+  a("derivative", slope.derivative);
+  a("relative", slope.relative);
+  a("per_standard_deviation", slope.step);
+}
+
+template <class A>
+void members(A& a, RobustnessRecord::Derived::Of& figure) {
+  a("nominal", figure.nominal);
+  a("by", figure.by);
+  a("standard_deviation", figure.deviation);
+  a("error", figure.error);
+  a("agrees_with_devices", figure.agrees);
+  if (a.has(!figure.why_none.empty())) a("why_none", figure.why_none);
+}
+
+template <class A>
+void members(A& a, RobustnessRecord::Derived& d) {
+  a("drive", d.drive);
+  a("grazes", d.grazes);
+  a("slowest_crossing", d.grazing);
+  a("variables", d.variables);
+  a.object("figures", [&](auto& figures) {
+    std::vector<std::string_view> keys;
+    for (const Figure& f : device_figures) keys.push_back(f.key);
+    by_figure(figures, d.figures, keys);
+  });
+  if (a.has(!d.why_none.empty())) a("why_none", d.why_none);
+}
+
+template <class A>
+void members(A& a, RobustnessRecord::OtherWays::InBox& device) {
+  a("value", device.figure);
+  a("values", device.values);
+  a("status", device.status);
+  if (a.has(!device.failure.empty())) a("failure", device.failure);
+}
+
+template <class A>
+void members(A& a, RobustnessRecord::OtherWays::Range& range) {
+  a("least", range.least);
+  a("most", range.most);
+  a.pair("sampled", range.of_sample.low, range.of_sample.high);
+}
+
+template <class A>
+void members(A& a, FigureChaos& c) {
+  a("devices", c.taught);
+  a("other_devices", c.unseen);
+  a("degree", c.degree);
+  a("terms", c.terms);
+  a("q2_cross_validated", c.q2);
+  a("q2_other_devices", c.q2_unseen);
+  a("mean", c.mean);
+  a("standard_deviation", c.standard_deviation);
+  a("quantile_95", c.quantile_95);
+}
+
+template <class A>
+void members(A& a, RobustnessRecord::OtherWays& ways) {
+  a("drive", ways.drive);
+  a.object("box", [&](auto& box) {
+    box("share_of_devices", ways.share);
+    box("half_width_standard_deviations", ways.half_width);
+    box("sampled_devices_inside", ways.sampled_inside);
+    box("closings", ways.closings);
+    box.object("figures", [&](auto& figures) { by_figure(figures, ways.ranges, explained_figures); });
+  });
+  a("devices_left_out", ways.left_out);
+  a.object("polynomial_chaos", [&](auto& chaos) { by_figure(chaos, ways.chaos, explained_figures); });
+  if (a.has(!ways.why_none.empty())) a("why_none", ways.why_none);
+}
+
+template <class A>
+void members(A& a, RobustnessRecord& r) {
+  members(a, r.origin);
+  a("status", internal::Stopped{r.interrupted});
+  a("devices", r.devices);
+  a("seed", r.seed);
+  a("points", internal::Chosen{r.points, point_sets});
+  a("duration_s", r.duration);
+  a("tolerance", r.tolerance);
+  a("about", r.about);
+  a("spread", r.spread);
+  a("spread_assumed", r.spread_assumed);
+  a.custom("hold_window_V", r.windows, internal::windows_json, internal::read_windows);
+  a("hold_window_devices", r.windows.devices);
+  a("drives", r.drives);
+  a("by_knowledge", r.by_knowledge);
+  a.object("sensitivity", [&](auto& sensitivity) {
+    sensitivity.object("figures", [&](auto& figures) { by_figure(figures, r.sensitivity, explained_figures); });
+    if (sensitivity.has(!r.why_no_sensitivity.empty())) sensitivity("why_none", r.why_no_sensitivity);
+  });
+  a("derivatives", r.derivatives);
+  a("other_ways", internal::OrNull{r.other_ways});
+  a("warnings", r.warnings);
 }
 
 void add_details(RobustnessReport& report, bool other_ways_too, const Watch& watch) {
@@ -156,67 +374,54 @@ void add_details(RobustnessReport& report, bool other_ways_too, const Watch& wat
   report.interrupted = watch.stopped();
 }
 
-std::vector<std::string> warnings(const RobustnessReport& report) {
-  std::vector<std::string> all = report.nominal.scene.warnings;
-  if (!report.unheld.empty()) all.push_back(report.unheld);
-  if (!report.found.drives.empty()) {
-    const DriveRobustness& last = report.found.drives.back();
-    const std::vector<Signal> signals = report.nominal.driven(report.nominal.in_drive_order(last.waveforms));
-    if (std::string few = few_summits_warning(report.nominal.model, signals); !few.empty()) all.push_back(std::move(few));
-  }
-  return all;
-}
-
-json robustness_json(const RobustnessReport& report) {
+RobustnessRecord record_of(const RobustnessReport& report) {
   const auto& [nominal, found, options, command, spread_assumed, sensitivity, derivatives, courses, ways, windows, unheld,
                interrupted] = report;
+  RobustnessRecord record{.origin = whole_origin_of("robustness", nominal, command),
+                          .interrupted = interrupted,
+                          .spread_assumed = spread_assumed,
+                          .devices = found.devices,
+                          .seed = options.seed,
+                          .points = options.points,
+                          .duration = found.duration,
+                          .tolerance = found.tolerance,
+                          .about = {about_words(report)},
+                          .spread = varied(nominal.scene.spread),
+                          .windows = windows,
+                          .drives = {},
+                          .by_knowledge = {},
+                          .sensitivity = sensitive(sensitivity),
+                          .why_no_sensitivity = sensitivity.why_none,
+                          .derivatives = internal::record_of(derivatives, found.drives.back()),
+                          .other_ways = {},
+                          .warnings = warnings(report)};
+  if (found.interrupted) record.about.emplace_back("Interrupted: these are not all devices.");
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
-  const auto drive_json = [&](const DriveRobustness& d) {
-    json figures = json::object(), worst = json::array(), failures = json::object();
-    for (const Figure& f : device_figures) figures[std::string(f.key)] = statistics_json(d.figures[f]);
-    for (const std::size_t k : d.worst) worst.push_back(device_json(ensemble, d, k));
-    std::map<std::string, std::size_t> reasons;
-    for (const DeviceOutcome& o : d.outcomes) {
-      if (!o.closed()) ++reasons[o.failure.empty() ? std::string(to_string(o.metrics.status)) : o.failure];
-    }
-    for (const auto& [why, count] : reasons) failures[why] = count;
-    const bool has_contact = nominal.model.has_contact();
-    return json{
-        {"name", d.name},
-        {"closed_state",
-         has_contact ? closed_state_json(closed_state(nominal, nominal.driven(nominal.in_drive_order(d.waveforms)))) : json()},
-        {"calibration", calibration_json(d.known.calibration())},
-        {"classes", classes_json(d.known.classes())},
-        {"waveforms", waveforms_json(nominal, d, found.duration)},
-        {"closing", yield_json(d.closing)},
-        {"collapsed_onto_electrode", yield_json(d.collapsed)},
-        {"bounce_free", yield_json(d.bounce_free)},
-        {"figures", std::move(figures)},
-        {"failures", std::move(failures)},
-        {"worst", std::move(worst)}};
+  for (const DriveRobustness& d : found.drives) record.drives.push_back(drive_of(report, ensemble, d));
+  for (const DriveRobustness& d : found.by_knowledge) record.by_knowledge.push_back(drive_of(report, ensemble, d));
+  if (ways) record.other_ways = internal::record_of(*ways, found.drives.back(), nominal);
+  return record;
+}
+
+json json_of(const RobustnessRecord& record) { return internal::record_json(record); }
+
+// In the JSON a number that is not finite is null; a device that does not close counts as infinite.
+RobustnessRecord read_robustness(const json& from) {
+  RobustnessRecord record = internal::whole_record<RobustnessRecord>(from);
+  require(!record.drives.empty(), "\"drives\" is empty");
+  if (!record.other_ways) return record;
+  RobustnessRecord::OtherWays& ways = *record.other_ways;
+  require(ways.chaos.size() == ways.ranges.size(), "\"polynomial_chaos\" has other figures than \"box\"");
+  const auto set_infinite = [](double& value) {
+    if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
   };
-  json drives = json::array(), by_knowledge = json::array();
-  for (const DriveRobustness& d : found.drives) drives.push_back(drive_json(d));
-  for (const DriveRobustness& d : found.by_knowledge) by_knowledge.push_back(drive_json(d));
-  return with_origin({{"kind", "robustness"},
-                      {"status", interrupted ? "interrupted" : "done"},
-                      {"devices", found.devices},
-                      {"seed", options.seed},
-                      {"points", name_of(point_sets, options.points)},
-                      {"duration_s", found.duration},
-                      {"tolerance", found.tolerance},
-                      {"spread", spread_json(nominal.scene.spread)},
-                      {"spread_assumed", spread_assumed},
-                      {"hold_window_V", internal::windows_json(windows)},
-                      {"hold_window_devices", windows.devices},
-                      {"drives", std::move(drives)},
-                      {"by_knowledge", std::move(by_knowledge)},
-                      {"sensitivity", sensitivity_json(sensitivity)},
-                      {"derivatives", internal::derivatives_json(derivatives, found.drives.back())},
-                      {"other_ways", ways ? internal::other_ways_json(*ways, found.drives.back(), nominal) : json(nullptr)},
-                      {"warnings", warnings(report)},
-                      {"scene_toml", nominal.resolved().text()}},
-                     nominal, command);
+  for (RobustnessRecord::OtherWays::Range& range : ways.ranges) {
+    for (RobustnessRecord::OtherWays::InBox* device : {&range.least, &range.most}) {
+      if (!device->values.empty()) set_infinite(device->figure);
+    }
+    if (ways.sampled_inside > 0) set_infinite(range.of_sample.low), set_infinite(range.of_sample.high);
+  }
+  return record;
 }
 
 std::string robustness_csv(const RobustnessReport& report) {

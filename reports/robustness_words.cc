@@ -68,9 +68,9 @@ std::string calibration_words(const Calibration& c) {
   return c.classes ? fmt::format("{}, {} classes", words, *c.classes) : words;
 }
 
-std::string why_no_indices(const SobolEstimate& e) {
+std::string why_no_indices(std::size_t rows, std::size_t failed_rows) {
   return fmt::format("no shares: {} of the {} rows of devices made for them hold one without the figure, and 1 % may",
-                     e.failed_rows, e.rows);
+                     failed_rows, rows);
 }
 
 bool is_erring(const Calibration& c) {
@@ -82,17 +82,17 @@ std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k) {
   return DeviceDrives(ensemble.nominal()).shown(ensemble.values(k));
 }
 
-bool is_had(const Robustness& found, const Figure& figure) {
+bool is_had(const RobustnessRecord& found, const Figure& figure) {
   const auto some = [&](auto&& holds) { return std::any_of(found.drives.begin(), found.drives.end(), holds); };
-  return some([&](const DriveRobustness& d) { return d.figures[figure].devices > 0; }) ||
-         !some([](const DriveRobustness& d) { return d.closing.devices > 0; });
+  return some([&](const auto& d) { return d.figures[figure].devices > 0; }) ||
+         !some([](const auto& d) { return d.closing.devices > 0; });
 }
 
-bool some_collapse(const Robustness& found) {
-  return std::ranges::any_of(found.drives, [](const DriveRobustness& d) { return d.collapsed.value > 0; });
+bool some_collapse(const RobustnessRecord& found) {
+  return std::ranges::any_of(found.drives, [](const auto& d) { return d.collapsed.value > 0; });
 }
 
-const EstimatedQuantile& quantile_95(const DriveRobustness& drive, std::string_view key) {
+const EstimatedQuantile& quantile_95(const RobustnessRecord::Drive& drive, std::string_view key) {
   return drive.figures[figure_of(key)].quantiles[2];
 }
 

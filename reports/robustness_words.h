@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "reports/robustness_report.h"
 #include "studies/devices/hold_window.h"
 #include "studies/devices/robustness.h"
 
@@ -29,17 +30,17 @@ namespace softland::internal {
 [[nodiscard]] std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k);
 /// Whether a table has a row of the figure, one of device_figures: not where devices close and none has it, as the peak force on
 /// a rigid contact.
-[[nodiscard]] bool is_had(const Robustness& found, const Figure& figure);
+[[nodiscard]] bool is_had(const RobustnessRecord& found, const Figure& figure);
 /// Whether under some drive there is a device whose beam is pulled onto the electrode.
-[[nodiscard]] bool some_collapse(const Robustness& found);
+[[nodiscard]] bool some_collapse(const RobustnessRecord& found);
 /// What a device without a figure counts as.
 inline constexpr std::string_view worst_words =
     "A device without a figure, as it does not close or has not settled, counts as the worst: ∞.";
-[[nodiscard]] const EstimatedQuantile& quantile_95(const DriveRobustness& drive, std::string_view key);
+[[nodiscard]] const EstimatedQuantile& quantile_95(const RobustnessRecord::Drive& drive, std::string_view key);
 
 /// A Sobol' index as a share: its estimate may leave [0, 1] by chance, a share cannot.
 [[nodiscard]] inline double share_of(double index) { return std::clamp(index, 0.0, 1.0); }
 /// Why a figure has no indices: its devices may all close in the sample, which these are not.
-[[nodiscard]] std::string why_no_indices(const SobolEstimate& estimate);
+[[nodiscard]] std::string why_no_indices(std::size_t rows, std::size_t failed_rows);
 
 }  // namespace softland::internal

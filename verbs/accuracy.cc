@@ -11,6 +11,16 @@
 namespace softland::verbs {
 namespace {
 
+Outcome shown(AccuracyRecord found) {
+  const auto record = std::make_shared<const AccuracyRecord>(std::move(found));
+  Outcome outcome{.json = json_of(*record), .text = terminal_text(document_of(*record))};
+  if (record->found.rows.empty()) return outcome;
+  outcome.files = {{"report.html", [record] { return page_html(document_of(*record)); }, "report.html"},
+                   {"accuracy.svg", [record] { return svg_of(*record); }, "accuracy.svg"},
+                   {"accuracy.json", [record] { return json_text(json_of(*record), 2); }, "accuracy.json"}};
+  return outcome;
+}
+
 struct AccuracyRequest : Usual {
   static constexpr auto name = "accuracy",
                         about = "what accuracy costs in time: errors of the figures for every integrator and setting",
@@ -20,6 +30,7 @@ struct AccuracyRequest : Usual {
                             "Example:\n  softland accuracy scenes/mem-gold.toml --set simulate.duration=\"100 us\" --out "
                             "accuracy";
   static std::vector<std::string> files() { return {"report.html", "accuracy.svg", "accuracy.json"}; }
+  static Outcome shown_again(const nlohmann::json& json) { return shown(read_accuracy(json)); }
 };
 
 template <class Archive>
@@ -30,16 +41,9 @@ Outcome run(const Setting& setting, const AccuracyRequest&) {
   const auto tell = [&](std::size_t done, std::size_t of) {
     setting.watch.tell("settings", static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, of)));
   };
-  const auto found =
-      std::make_shared<const AccuracyStudy>(study_accuracy(*scene, {.on_progress = tell, .stop = setting.watch.stop}));
-  const Provenance provenance{.command = setting.command};
-  const auto document = std::make_shared<const Document>(accuracy_document(*scene, *found, provenance));
-  Outcome outcome{
-      .json = accuracy_json(*scene, *found, provenance), .text = terminal_text(*document), .ending = ending_of(found->status)};
-  if (found->rows.empty()) return outcome;
-  outcome.files = {{"report.html", [document] { return page_html(*document); }, "report.html"},
-                   {"accuracy.svg", [scene, found] { return accuracy_svg(scene->scene.title, *found); }, "accuracy.svg"},
-                   {"accuracy.json", [json = outcome.json] { return json_text(json, 2); }, "accuracy.json"}};
+  const AccuracyStudy found = study_accuracy(*scene, {.on_progress = tell, .stop = setting.watch.stop});
+  Outcome outcome = shown({.origin = whole_origin_of("accuracy", *scene, setting.command), .found = found});
+  outcome.ending = ending_of(found.status);
   return outcome;
 }
 

@@ -72,6 +72,8 @@ void read_steps(const std::string& option, const std::string& list, std::vector<
   all = std::move(steps);
 }
 
+Outcome shown(const MeasurementsRecord& record) { return {.json = json_of(record), .text = text_of(record)}; }
+
 struct CalibrateRequest : Usual {
   static constexpr auto name = "calibrate", about = "which measurable figures of a device pin its waveform best",
                         python = "calibrate", scene = varied_scene, changes = "change one key: --set spread.gaps.cov=\"1 %\"";
@@ -80,6 +82,8 @@ struct CalibrateRequest : Usual {
       "times multiplied by factors that each measured figure predicts, and each pair of them. The voltages of a piezo have a\n"
       "factor of their own.\n"
       "Example:\n  softland calibrate softland-out --error \"Vdp:0.2 %,frequency:0.1 %\"";
+
+  static Outcome shown_again(const nlohmann::json& json) { return shown(read_measurements(json)); }
 
   IdentificationOptions options{.jobs = one_per_core()};
 };
@@ -100,9 +104,9 @@ void options(Archive& a, CalibrateRequest& r) {
 
 Outcome run(const Setting& setting, const CalibrateRequest& request) {
   const IdentificationStudy found = identify(setting.scene, request.options, setting.watch);
-  return {.json = measurements_json(found, request.options, setting.command),
-          .text = measurements_text(found, request.options),
-          .ending = found.interrupted ? Ending::interrupted : Ending::done};
+  Outcome outcome = shown(record_of(found, request.options, setting.command));
+  outcome.ending = found.interrupted ? Ending::interrupted : Ending::done;
+  return outcome;
 }
 
 }  // namespace

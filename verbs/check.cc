@@ -10,16 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "base/printable.h"
-#include "base/shortened.h"
 #include "model/constants.h"
 #include "model/gas/gas_law.h"
 #include "model/pull_in.h"
-#include "reports/origin.h"
-#include "reports/pull_in_words.h"
+#include "reports/check_report.h"
 #include "reports/quantity.h"
-#include "reports/result_json.h"
-#include "reports/text.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/closed_state.h"
 #include "studies/closing/sent_signals.h"
@@ -98,38 +93,13 @@ ElectrodePullIn quick_pull_in(const Switch& model, std::size_t electrode, Bias b
   return found;
 }
 
-// As elsewhere: of one electrode its voltages, of several by name.
-nlohmann::json by_electrode(std::map<std::string, nlohmann::json> of) {
-  if (of.empty()) return nullptr;
-  return of.size() == 1 ? std::move(of.begin()->second) : nlohmann::json(std::move(of));
-}
-
-// What --json gives, besides the state of the closed switch.
-nlohmann::json check_json(const PreparedScene& p, const std::map<std::string, nlohmann::json>& pull_in,
-                          const std::vector<std::string>& warnings, const std::string& command) {
-  const Eigen::VectorXd& frequencies = p.model.basis().angular_frequencies();
-  std::map<std::string, nlohmann::json> windows;
-  for (const auto& [name, v] : pull_in) {
-    if (v["release_V"].is_number()) windows[name] = nlohmann::json::array({v["release_V"], v["pulled_through_V"]});
-  }
-  return with_origin({{"kind", "check"},
-                      {"status", to_string(Status::done)},
-                      {"title", p.scene.title},
-                      {"natural_frequencies_rad_s", std::vector<double>(frequencies.begin(), frequencies.end())},
-                      {"pull_in", by_electrode(pull_in)},
-                      {"dynamic_precision", precision_of(p.model)},
-                      {"hold_window_V", windows},
-                      {"closed_state", nullptr},
-                      {"duration_s", p.duration},
-                      {"tolerance", p.tolerance},
-                      {"warnings", warnings}},
-                     p, command);
-}
+Outcome shown(const CheckRecord& record) { return {.json = json_of(record), .text = text_of(record)}; }
 
 struct CheckRequest : Usual {
   static constexpr bool is_explorable = true;
   static constexpr auto name = "check", about = "validate a scene and print derived numbers and warnings", python = "checked",
                         remarks = "Examples:\n  softland check my-switch.toml\n  softland check my-switch.toml --json -";
+  static Outcome shown_again(const nlohmann::json& json) { return shown(read_check(json)); }
 };
 
 template <class Archive>
@@ -139,44 +109,54 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   const Watch& watch = setting.watch;
   const PreparedScene p = choose(prepare(setting.scene, false, watch, quick_pull_in), false, watch);
   const Structure& s = p.scene.device.structure;
-  const std::string title = shortened(printable_line(p.scene.title));
-  std::string text = fmt::format("{}: valid{}\n\n", printable_line(setting.name), title.empty() ? "" : " (" + title + ")");
-  const auto add = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<20} {}\n", name, value); };
-  std::vector<std::string> frequencies, warnings = p.scene.warnings, few_summits;
-  for (const double omega : p.model.basis().angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
+  CheckRecord record{.file = setting.name,
+                     .title = p.scene.title,
+                     .dynamic_precision = precision_of(p.model),
+                     .duration = p.duration,
+                     .tolerance = p.tolerance,
+                     .warnings = p.scene.warnings};
+  std::vector<std::string>& warnings = record.warnings;
+  const auto add = [&](const std::string& name, const std::string& value) { record.lines.push_back({name, value}); };
+  std::vector<std::string> frequencies, few_summits;
+  for (const double omega : p.model.basis().angular_frequencies()) {
+    record.frequencies.push_back(omega);
+    frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
+  }
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   if (p.model.has_contact()) add("in-contact period", quantity(p.model.basis().in_contact_period(), "s", 4));
-  std::map<std::string, nlohmann::json> pull_in;      // by electrode that has one
   std::map<std::string, PullInVoltages> searched_to;  // what a search takes for the limit where the scene has none
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
+    const std::string& name = p.scene.device.electrodes[k].name;
     if (!pulls_in(p.scene.device, k)) {
-      add("electrode " + p.scene.device.electrodes[k].name, "on the far side, pulls away from the contact");
+      add("electrode " + name, "on the far side, pulls away from the contact");
       continue;
     }
-    const auto known = p.pull_in.find(p.scene.device.electrodes[k].name);
-    const auto found =
-        pull_in_json(p, k, known != p.pull_in.end() ? known->second : quick_pull_in(p.model, k, bias_of(p.scene, k), watch));
-    const nlohmann::json& v = found["pull_in"];
-    if (v["static_V"].is_number() && v["dynamic_V"].is_number())
-      searched_to[p.scene.device.electrodes[k].name] = {.static_pull_in = v["static_V"].get<double>(),
-                                                        .dynamic_pull_in = v["dynamic_V"].get<double>()};
-    if (found["status"] == to_string(Status::no_contact)) {
-      const std::string& name = p.scene.device.electrodes[k].name;
+    const auto known = p.pull_in.find(name);
+    const ElectrodeRecord found =
+        record_of(p, k, known != p.pull_in.end() ? known->second : quick_pull_in(p.model, k, bias_of(p.scene, k), watch));
+    const PullInRecord& v = found.volts;
+    if (std::isfinite(v.static_pull_in) && std::isfinite(v.dynamic_pull_in))
+      searched_to[name] = {.static_pull_in = v.static_pull_in, .dynamic_pull_in = v.dynamic_pull_in};
+    if (found.status == Status::no_contact) {
       add("electrode " + name, "pulls away from the contact where the switch rests: no pull-in voltage");
       warnings.push_back(said_of(setting.scene, "electrode." + name + ".gap", pulls_away));
       continue;
     }
-    pull_in[p.scene.device.electrodes[k].name] = v;
-    const std::string bias = bias_words(p, k);
+    record.pull_in[name] = v;
+    if (std::isfinite(v.release)) record.hold_windows[name] = {v.release, v.pulled_through};
+    const std::string bias = bias_words(found);
     const std::string roughly =
-        p.model.film_states() > 0 && v["dynamic_V"] != v["static_V"] ? " (to 0.1 %, as levels in Vdp below)" : "";
-    add("electrode " + p.scene.device.electrodes[k].name,
-        (collapsed(found) ? no_open_state
-                          : fmt::format("Vsp {}, Vdp {}", volts(v["static_V"]), dynamic_words(p, k, v)) + roughly) +
-            (p.model.has_contact() ? ", release " + volts(v["release_V"]) : "") + (bias.empty() ? "" : ", under " + bias));
-    if (v["by_modes"].is_object()) {
-      std::string shifts = "more modes move Vsp by " + shift_words(v, "static_V");
-      if (v["release_V"].is_number()) shifts += ", release by " + shift_words(v, "release_V");
+        p.model.film_states() > 0 && std::isfinite(v.static_pull_in) && v.dynamic_pull_in != v.static_pull_in
+            ? " (to 0.1 %, as levels in Vdp below)"
+            : "";
+    add("electrode " + name, (found.status == Status::collapsed_at_rest
+                                  ? no_open_state
+                                  : fmt::format("Vsp {}, Vdp {}", volts(v.static_pull_in), dynamic_words(v)) + roughly) +
+                                 (p.model.has_contact() ? ", release " + volts(v.release) : "") +
+                                 (bias.empty() ? "" : ", under " + bias));
+    if (v.by_modes) {
+      std::string shifts = "more modes move Vsp by " + shift_words(v.by_modes->static_pull_in);
+      if (std::isfinite(v.release)) shifts += ", release by " + shift_words(v.by_modes->release);
       add("", shifts);
     }
   }
@@ -234,12 +214,11 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     warnings.push_back("a run does not begin: " + start_words(p));
   if (!p.model.has_contact()) add("contact", "none: a run ends at first touch");
   add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
-  const StablePathFound path = stable_path_of(p, watch);
-  if (!path.words.empty()) add("stable path", path.words);
-  nlohmann::json closed;
   if (p.model.has_contact()) {
+    record.stable_path = stable_path_of(p, watch);
+    add("stable path", words_of(record.stable_path));
     const ClosedState state = closed_state(p, p.signals());
-    closed = closed_state_json(state);
+    record.closed_state = state;
     add("closed state", closed_state_words(state));
     const Hold hold = hold_of(p.model, p.signals());
     if (const auto summits = hold.closed ? summits_at_hold(p.model, *hold.closed) : std::nullopt)
@@ -248,13 +227,10 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     if (std::string lost = hold_warning(p.model, p.signals(), state); !lost.empty() && !p.scene.begins_closed)
       warnings.push_back(std::move(lost));
   }
-  for (const std::string& w : warnings) text += "\n" + wrapped("warning: " + w) + "\n";
   watch.throw_if_stopped();
-  warnings.insert(warnings.end(), few_summits.begin(), few_summits.end());  // told above, by the contact
-  nlohmann::json data = check_json(p, pull_in, warnings, setting.command);
-  data["closed_state"] = std::move(closed);
-  data["stable_path"] = path.data;
-  return {.json = std::move(data), .text = std::move(text)};
+  warnings.insert(warnings.end(), few_summits.begin(), few_summits.end());
+  record.origin = origin_of("check", p, setting.command);
+  return shown(record);
 }
 
 }  // namespace

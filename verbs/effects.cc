@@ -7,11 +7,14 @@
 namespace softland::verbs {
 namespace {
 
+Outcome shown(const EffectsRecord& record) { return {.json = json_of(record), .text = text_of(record)}; }
+
 struct EffectsRequest : Usual {
   static constexpr bool is_explorable = true;
   static constexpr auto name = "effects", about = "which effects matter in a scene, by how much, and what each costs",
                         python = "effects",
                         remarks = "Example:\n  softland effects scenes/mem-gold.toml --set gas.pressure=\"1 kPa\"";
+  static Outcome shown_again(const nlohmann::json& json) { return shown(read_effects(json)); }
 };
 
 template <class Archive>
@@ -19,10 +22,11 @@ void options(Archive&, EffectsRequest&) {}
 
 Outcome run(const Setting& setting, const EffectsRequest&) {
   const auto scene = setting.prepared(false);
-  const Effects found = compare_effects(*scene, setting.watch);
-  return {.json = effects_json(*scene, found, {.command = setting.command}),
-          .text = effects_text(found),
-          .ending = found.interrupted ? Ending::interrupted : ending_of(found.own("gas").metrics.status)};
+  const EffectsRecord record{.origin = origin_of("effects", *scene, setting.command),
+                             .found = compare_effects(*scene, setting.watch)};
+  Outcome outcome = shown(record);
+  outcome.ending = record.found.interrupted ? Ending::interrupted : ending_of(record.found.own("gas").metrics.status);
+  return outcome;
 }
 
 }  // namespace

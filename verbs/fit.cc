@@ -16,6 +16,14 @@
 namespace softland::verbs {
 namespace {
 
+Outcome shown(FitRecord found) {
+  const auto record = std::make_shared<const FitRecord>(std::move(found));
+  return {.json = json_of(*record),
+          .text = terminal_text(document_of(*record)),
+          .files = {{"fit.html", [record] { return page_html(document_of(*record)); }, "fit.html"},
+                    {"fit.json", [record] { return json_text(json_of(*record), 1) + "\n"; }, "fit.json"}}};
+}
+
 struct FitRequest : Usual {
   static constexpr auto name = "fit", about = "fit a scene to what was measured on devices", python = "fit", scene = scene_alone,
                         leaves = "folder for fitted.toml, fit.json and fit.html (default: softland-fit)", place = "softland-fit";
@@ -31,6 +39,7 @@ struct FitRequest : Usual {
       "  softland fit my.toml --data bench.toml --unknown structure.youngs_modulus --unknown gaps --out device-17\n"
       "  softland fit my.toml --data wafer.toml --shared structure.youngs_modulus --loss cauchy";
   static std::vector<std::string> files() { return {"fitted.toml", "fit.json", "fit.html"}; }
+  static Outcome shown_again(const nlohmann::json& json) { return shown(read_fit(json)); }
 
   std::string data;
   FitOptions options{.jobs = one_per_core()};
@@ -56,17 +65,13 @@ void options(Archive& a, FitRequest& r) {
 Outcome run(const Setting& setting, const FitRequest& request) {
   const Bench bench = load_bench(request.data);
   const auto found = std::make_shared<const Fit>(fit(setting.scene, bench, request.options, setting.watch));
-  const Provenance provenance{.command = setting.command};
-  const auto document = std::make_shared<const Document>(fit_document(*found, provenance));
-  Outcome outcome{.json = fit_json(*found, provenance), .text = terminal_text(*document)};
+  Outcome outcome = shown(record_of(*found, setting.command));
   if (found->found) {
     const auto text = [found, written = setting.text(), name = setting.name] {
       return fitted_text(*found, written, name, found->devices.front());
     };
-    outcome.files.push_back({"fitted.toml", text, "fitted.toml"});
+    outcome.files.insert(outcome.files.begin(), {"fitted.toml", text, "fitted.toml"});
   }
-  outcome.files.push_back({"fit.html", [document] { return page_html(*document); }, "fit.html"});
-  outcome.files.push_back({"fit.json", [json = outcome.json] { return json_text(json, 1) + "\n"; }, "fit.json"});
   if (found->spread_assumed && setting.note) setting.note(std::string(assumed_words));
   outcome.ending = !found->found ? Ending::numerical_failure : found->doubts.empty() ? Ending::done : Ending::no_success;
   return outcome;

@@ -14,6 +14,15 @@
 namespace softland::verbs {
 namespace {
 
+Outcome shown(LimitRecord found) {
+  const auto record = std::make_shared<const LimitRecord>(std::move(found));
+  Outcome outcome{.json = without_curves(json_of(*record)), .text = text_of(*record)};
+  outcome.files = {{"limit.json", [record] { return json_text(json_of(*record), 1) + "\n"; }, "limit.json"}};
+  if (record->landed || !record->landing)
+    outcome.files.push_back({"limit.svg", [record] { return svg_of(*record); }, "limit.svg"});
+  return outcome;
+}
+
 struct LimitRequest : Usual {
   static constexpr bool is_explorable = true;
   static constexpr auto name = "limit", about = "the least time in which any waveform can close the switch softly",
@@ -27,6 +36,7 @@ struct LimitRequest : Usual {
       "  softland limit scenes/mem-gold-pzt.toml --actuator both --impact-velocity \"1 mm/s\" --out limit\n"
       "  softland limit scenes/mem-gold-pzt.toml --actuator pzt --start softland-out --no-curves";
   static std::vector<std::string> files() { return {"limit.json", "limit.svg", "best.toml", "best.csv"}; }
+  static Outcome shown_again(const nlohmann::json& json) { return shown(read_limit(json)); }
 
   LimitOptions options;
   std::optional<std::string> start;
@@ -51,9 +61,7 @@ Outcome run(const Setting& setting, const LimitRequest& request) {
     options.before = drives.before();
   }
   const auto found = std::make_shared<const Limit>(limit(setting.scene, options, setting.watch));
-  Outcome outcome{.json = limit_json(*found, {.command = setting.command}), .text = limit_text(*found)};
-  outcome.files = {{"limit.json", [json = outcome.json] { return json_text(json, 1) + "\n"; }, "limit.json"},
-                   {"limit.svg", [found] { return limit_svg(*found); }, "limit.svg"}};
+  Outcome outcome = shown(record_of(*found, setting.command));
   if (found->landing) {
     outcome.files.push_back({"best.toml", [found] { return found->landing->scene.scene.file.text(); },
                              "best.toml (run it with `softland simulate`)"});

@@ -16,11 +16,11 @@ namespace {
 
 using nlohmann::json;
 
-// Members that are no result of the point: its scene and drives, who made it, times of the machine, and tables by the number of
-// modes.
-constexpr std::array<std::string_view, 10> left_out{
-    "scene", "made_with", "waveforms",  "by_modes",          "pulled_through_by_modes_V",
-    "seed",  "tolerance", "duration_s", "dynamic_precision", "rhs_s"};
+// Members that are no result of the point: its scene and drives, who made it and how, times of the machine, and tables by the
+// number of modes.
+constexpr std::array<std::string_view, 12> left_out{
+    "scene",      "made_with",         "waveforms", "by_modes",  "pulled_through_by_modes_V", "seed", "tolerance",
+    "duration_s", "dynamic_precision", "rhs_s",     "has_start", "band_of_contact_gap"};
 constexpr std::size_t longest_list = 16;
 
 using Numbers = std::vector<std::pair<std::string, double>>;

@@ -16,9 +16,8 @@
 #include "base/require.h"
 #include "config/schema.h"
 #include "config/units.h"
-#include "reports/pull_in_words.h"
-#include "reports/quantity.h"
-#include "reports/sweep_report.h"
+#include "reports/pull_in_report.h"
+#include "reports/text.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/sweep.h"
 #include "studies/exploration/pull_in_memory.h"
@@ -86,61 +85,19 @@ void set_bias(PreparedScene& p, const std::string& assignment) {
   p.scene.standing[static_cast<std::size_t>(drive - names.begin())] = is_factor ? given.value - 1 : given.value;
 }
 
-// How static pull-in comes about; empty where there is none.
-std::string kind_words(const nlohmann::json& found) {
-  if (!found["static_kind"].is_string()) return {};
-  return found["static_kind"] == to_string(StaticKind::fold) ? " (fold of the static branch)"
-                                                             : " (the contact point reaches the contact first)";
-}
-
-std::string shift_clause(const nlohmann::json& found, const char* key) {
-  const std::string shift = shift_words(found, key);
-  return shift.empty() ? shift : "; more modes move it by " + shift;
-}
-
-// What pull_in_of() has found of an electrode, in words.
-std::string words_of(const PreparedScene& p, std::size_t k, const nlohmann::json& one) {
-  std::string text = fmt::format("electrode {}\n", p.scene.device.electrodes[k].name);
-  if (!pulls_in(p.scene.device, k)) return text + "  on the far side: pulls away from the contact\n";
-  if (const std::string bias = bias_words(p, k); !bias.empty()) text += fmt::format("  under            {}\n", bias);
-  if (one["status"] == to_string(Status::no_contact))
-    return text + "  pulls away from the contact where the switch rests: no pull-in voltage\n";
-  const nlohmann::json& found = one["pull_in"];
-  text += collapsed(one)
-              ? fmt::format("  {}\n", no_open_state)
-              : fmt::format("  static pull-in   {}{}{}\n  pull-in position {}\n  dynamic pull-in  {}\n", volts(found["static_V"]),
-                            kind_words(found), shift_clause(found, "static_V"), deflection_words(found),
-                            one["status"] == to_string(Status::interrupted)
-                                ? std::string("not known: the search for it was interrupted")
-                                : dynamic_words(p, k, found));
-  if (p.model.has_contact()) {
-    text += fmt::format("  release          {}{}\n", volts(found["release_V"]), shift_clause(found, "release_V"));
-    if (found["pulled_through_V"].is_number())
-      text += fmt::format("  pulled through   {}: from there on a closed switch goes on to the electrode{}\n",
-                          volts(found["pulled_through_V"]), shift_clause(found, "pulled_through_V"));
-  }
-  return text;
-}
-
-// The sweep of the electrode that closes the switch: its files and its points as JSON.
-nlohmann::json add_sweep(std::vector<Outcome::File>& files, const PreparedScene& p, const SweepRange& range, const Watch& watch) {
-  require_request(has_pulling_electrode(p.scene.device),
-                  [] { return requested("sweep") + ": there is no electrode that pulls towards the contact"; });
-  const std::size_t drive = searched_drive(p.scene.device);
-  const std::vector<double> bias = bias_of(p.scene, drive);
-  const std::vector<SweepPoint> points = static_sweep(p.model, drive, bias, range, watch);
-  if (points.empty()) return nullptr;  // it was asked to stop before the first one
-  std::string of = fmt::format("Electrode {}, swept up and down", p.scene.device.electrodes[drive].name);
-  if (const std::string others = bias_words(p, drive); !others.empty()) of += ", under " + others;
-  std::string svg = sweep_svg(points, of, static_pull_in(p.model, drive, bias), release_voltage(p.model, drive, bias));
-  files = {{"sweep.csv", [points] { return sweep_csv(points); }, "sweep.csv"},
-           {"sweep.svg", [svg = std::move(svg)] { return svg; }, "sweep.svg"}};
-  return sweep_json(points);
-}
-
 // The sentence that names what was not found because the verb was asked to stop.
 std::string left_out_words(const std::vector<std::string>& left_out) {
   return wrapped(fmt::format("interrupted: not found yet: {}.", fmt::join(left_out, "; "))) + "\n";
+}
+
+Outcome shown(PullInsRecord found) {
+  const auto record = std::make_shared<const PullInsRecord>(std::move(found));
+  Outcome outcome{.json = json_of(*record), .text = text_of(*record)};
+  if (!record->sweep.empty())
+    outcome.files = {{"sweep.csv", [record] { return sweep_csv(record->sweep); }, "sweep.csv"},
+                     {"sweep.svg", [record] { return sweep_svg(*record); }, "sweep.svg"}};
+  if (!record->left_out.empty()) outcome.last = left_out_words(record->left_out);
+  return outcome;
 }
 
 struct PullInRequest : Usual {
@@ -153,6 +110,7 @@ struct PullInRequest : Usual {
       "  softland pull-in scenes/mem-gold-pzt.toml --bias piezo=\"0.5 V\"\n"
       "  softland pull-in scenes/mem-gold.toml --sweep \"0 V:20 V:201\" --out swept";
   static std::vector<std::string> files() { return {"sweep.csv", "sweep.svg"}; }
+  static Outcome shown_again(const nlohmann::json& json) { return shown(read_pull_ins(json)); }
 
   std::vector<std::string> bias;
   std::optional<SweepRange> sweep;
@@ -168,42 +126,49 @@ void options(Archive& a, PullInRequest& r) {
            "sweep", "str | None");
 }
 
-// The findings of pull_in_of() for every electrode that was looked at.
-struct Electrodes {
-  std::map<std::string, nlohmann::json> by_name;
-  std::string text;
-  bool failed = false, none = false;
-  std::string status{to_string(Status::done)};  // the status of the first electrode that pulls and has no voltage
-};
-
-Electrodes electrodes_of(const PreparedScene& p, const PullInFinder& find_pull_in, const Watch& watch) {
-  Electrodes all;
-  const auto& electrodes = p.scene.device.electrodes;
-  for (std::size_t k = 0; k < electrodes.size() && !watch.stopped(); ++k) {
-    nlohmann::json one = pull_in_of(p, k, watch, find_pull_in);
-    all.text += words_of(p, k, one);
-    if (pulls_in(p.scene.device, k)) {
-      const bool has_none = collapsed(one) || one["status"] == to_string(Status::no_contact);
-      all.none = all.none || has_none;
-      all.failed = all.failed || (!has_none && one["status"] != to_string(Status::done));
-      if (all.status == to_string(Status::done)) all.status = one["status"];
-    }
-    all.by_name[electrodes[k].name] = std::move(one);
-  }
-  return all;
+// Sweeps the electrode that closes the switch.
+void add_sweep(PullInsRecord& record, const PreparedScene& p, const SweepRange& range, const Watch& watch) {
+  require_request(has_pulling_electrode(p.scene.device),
+                  [] { return requested("sweep") + ": there is no electrode that pulls towards the contact"; });
+  const std::size_t drive = searched_drive(p.scene.device);
+  record.swept = p.scene.device.electrodes[drive].name;
+  record.sweep = static_sweep(p.model, drive, bias_of(p.scene, drive), range, watch);
 }
 
-std::vector<std::string> left_out_of(const PreparedScene& p, const Electrodes& all) {
-  std::vector<std::string> left_out;
-  for (const Electrode& electrode : p.scene.device.electrodes) {
-    const auto found = all.by_name.find(electrode.name);
-    if (found == all.by_name.end()) {
-      left_out.push_back("electrode " + electrode.name);
-    } else if (found->second["status"] == to_string(Status::interrupted)) {
-      left_out.push_back("dynamic pull-in of electrode " + electrode.name);
-    }
+// `done`, or the status of the first electrode that pulls and has no voltage; of one electrode its own.
+Status status_of(const PreparedScene& p, const PullInsRecord& record) {
+  if (record.electrodes.size() == 1) return record.electrodes.begin()->second.status;
+  const auto& electrodes = p.scene.device.electrodes;
+  for (std::size_t k = 0; k < electrodes.size(); ++k) {
+    const auto found = record.electrodes.find(electrodes[k].name);
+    if (found != record.electrodes.end() && pulls_in(p.scene.device, k) && found->second.status != Status::done)
+      return found->second.status;
   }
-  return left_out;
+  return Status::done;
+}
+
+Ending ending_of(const PreparedScene& p, const PullInsRecord& record) {
+  Ending ending = Ending::done;
+  const auto& electrodes = p.scene.device.electrodes;
+  for (std::size_t k = 0; k < electrodes.size(); ++k) {
+    if (!pulls_in(p.scene.device, k)) continue;
+    const Ending one = verbs::ending_of(record.electrodes.at(electrodes[k].name).status);
+    if (ending != Ending::numerical_failure && one != Ending::done) ending = one;
+  }
+  return ending;
+}
+
+void add_electrodes(PullInsRecord& record, const PreparedScene& p, const PullInFinder& find_pull_in, const Watch& watch) {
+  const auto& electrodes = p.scene.device.electrodes;
+  for (std::size_t k = 0; k < electrodes.size(); ++k) {
+    if (watch.stopped()) {
+      record.left_out.push_back("electrode " + electrodes[k].name);
+      continue;
+    }
+    const ElectrodeRecord found = record_of(p, k, find_pull_in(p.model, k, bias_of(p.scene, k), watch));
+    if (found.status == Status::interrupted) record.left_out.push_back("dynamic pull-in of electrode " + electrodes[k].name);
+    record.electrodes.emplace(electrodes[k].name, found);
+  }
 }
 
 Outcome run(const Setting& setting, const PullInRequest& request) {
@@ -217,9 +182,8 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   PreparedScene prepared = leaves_choices ? prepare_and_choose(file, false, watch) : prepare_statics(file);
   for (const std::string& assignment : request.bias) set_bias(prepared, assignment);
   require(!prepared.scene.device.electrodes.empty(), fmt::format("{}: there is no electrode to pull in", setting.name));
-  const Electrodes all = electrodes_of(prepared, find_pull_in, watch);
-  std::vector<std::string> left_out = left_out_of(prepared, all);
-  StablePathFound path;
+  PullInsRecord record;
+  add_electrodes(record, prepared, find_pull_in, watch);
   try {
     watch.throw_if_stopped();
     if (!leaves_choices) {
@@ -227,30 +191,24 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
       prepared = prepare(file, false, watch, find_pull_in);
       prepared.scene.standing = standing;
     }
-    path = stable_path_of(prepared, watch);
+    record.stable_path = stable_path_of(prepared, watch);
   } catch (const Interrupted&) {
-    path = {};
+    record.stable_path.reset();
   }
   if (watch.stopped() && prepared.model.has_contact()) {
-    left_out.emplace_back("the stable path");
-    path = {};
+    record.left_out.emplace_back(stable_path_left_out);
+    record.stable_path.reset();
   }
-  Outcome outcome{.text = all.text};
-  if (!path.words.empty()) outcome.text += wrapped("Stable path: " + path.words + ".") + "\n";
-  nlohmann::json sweep = nullptr;
-  if (request.sweep && !watch.stopped()) sweep = add_sweep(outcome.files, prepared, *request.sweep, watch);
+  if (request.sweep && !watch.stopped()) add_sweep(record, prepared, *request.sweep, watch);
   const bool interrupted = watch.stopped();
   if (request.sweep && interrupted)
-    left_out.push_back(sweep.is_null() ? "the sweep" : fmt::format("the sweep beyond its first {} points", sweep.size()));
-  if (interrupted) outcome.last = left_out_words(left_out);
-  outcome.json = pull_in_json(all.by_name, interrupted ? std::string(to_string(Status::interrupted)) : all.status);
-  outcome.json["stable_path"] = path.data;
-  if (interrupted) outcome.json["status"] = to_string(Status::interrupted), outcome.json["left_out"] = left_out;
-  if (request.sweep) outcome.json["sweep"] = std::move(sweep);
-  outcome.ending = interrupted  ? Ending::interrupted
-                   : all.failed ? Ending::numerical_failure
-                   : all.none   ? Ending::no_success
-                                : Ending::done;
+    record.left_out.push_back(record.sweep.empty() ? "the sweep"
+                                                   : fmt::format("the sweep beyond its first {} points", record.sweep.size()));
+  record.origin = origin_of("pull-in", setting.command);
+  record.origin.scene = interrupted ? file.json() : prepared.resolved().json();  // volts may not be known yet
+  record.status = to_string(interrupted ? Status::interrupted : status_of(prepared, record));
+  Outcome outcome = shown(record);
+  outcome.ending = interrupted ? Ending::interrupted : ending_of(prepared, record);
   return outcome;
 }
 

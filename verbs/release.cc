@@ -11,6 +11,14 @@
 namespace softland::verbs {
 namespace {
 
+Outcome shown(ReleaseRecord found) {
+  const auto record = std::make_shared<const ReleaseRecord>(std::move(found));
+  Outcome outcome{.json = without_curves(json_of(*record)), .text = text_of(*record)};
+  outcome.files = {{"release.json", [record] { return json_text(json_of(*record), 1) + "\n"; }, "release.json"}};
+  if (!record->gaps.empty()) outcome.files.push_back({"release.svg", [record] { return svg_of(*record); }, "release.svg"});
+  return outcome;
+}
+
 struct ReleaseRequest : Usual {
   static constexpr bool is_explorable = true;
   static constexpr auto name = "release",
@@ -25,6 +33,7 @@ struct ReleaseRequest : Usual {
       "Examples:\n  softland release scenes/mem-gold.toml\n"
       "  softland release scenes/mem-gold-pzt.toml --actuator both --out opened";
   static std::vector<std::string> files() { return {"release.json", "release.svg", "release.csv", "release.toml"}; }
+  static Outcome shown_again(const nlohmann::json& json) { return shown(read_release(json)); }
 
   OpeningOptions options{.band = 0.05, .jobs = one_per_core()};
 };
@@ -47,11 +56,9 @@ void options(Archive& a, ReleaseRequest& r) {
 
 Outcome run(const Setting& setting, const ReleaseRequest& request) {
   const auto found = std::make_shared<const OpeningResult>(search_opening(setting.scene, request.options, setting.watch));
-  Outcome outcome{.json = release_json(*found, {.command = setting.command}), .text = release_text(*found)};
-  outcome.files = {{"release.json", [json = outcome.json] { return json_text(json, 1) + "\n"; }, "release.json"},
-                   {"release.svg", [found] { return release_svg(*found); }, "release.svg"},
-                   {"release.csv", [found] { return release_csv(*found); }, "release.csv"},
-                   {"release.toml", [found] { return found->scene->text(); }, "release.toml"}};
+  Outcome outcome = shown(record_of(*found, setting.command));
+  outcome.files.push_back({"release.csv", [found] { return release_csv(*found); }, "release.csv"});
+  outcome.files.push_back({"release.toml", [found] { return found->scene->text(); }, "release.toml"});
   if (!found->interrupted) outcome.next = "\nFor a generator:\n  softland export {}\n";
   outcome.ending = found->interrupted                                            ? Ending::interrupted
                    : found->plain.trajectory.status == Status::numerical_failure ? Ending::numerical_failure

@@ -13,6 +13,7 @@
 #include "config/assumed_spread.h"
 #include "config/calibration_words.h"
 #include "reports/report_files.h"
+#include "reports/result_json.h"
 #include "reports/robustness_report.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/devices/box_and_chaos.h"
@@ -26,6 +27,12 @@ constexpr std::size_t most_worst = 3;
 std::string worst_file(std::size_t i) { return fmt::format("worst-{}.toml", i + 1); }
 // The scene of the worst device of the box.
 std::string box_file(std::string_view key) { return fmt::format("box-{}.toml", figure_of(key).symbol); }
+
+Outcome shown(const RobustnessRecord& record) {
+  Outcome outcome{.json = json_of(record), .text = terminal_text(document_of(record))};
+  outcome.files = {{robustness_files[1], [json = outcome.json] { return json_text(json, 2); }, robustness_files[1]}};
+  return outcome;
+}
 
 struct RobustnessRequest : Usual {
   static constexpr auto name = "robustness", about = "how drives do on devices that differ as [spread] says",
@@ -45,6 +52,9 @@ struct RobustnessRequest : Usual {
     for (const std::string_view key : explained_figures) all.push_back(box_file(key));
     return all;
   }
+
+  // Diagrams are of all devices, which stand in devices.csv.
+  static Outcome shown_again(const nlohmann::json& json) { return shown(read_robustness(json)); }
 
   RobustnessOptions options{.jobs = one_per_core(), .worth_of_measuring = true};
   std::vector<std::string> results;  ///< whose drives are judged as well
@@ -122,12 +132,10 @@ Outcome run(const Setting& setting, const RobustnessRequest& request) {
                                           .spread_assumed = spread_assumed});
   RobustnessReport& report = *judged->report;
   add_details(report, request.box_and_chaos, setting.watch);
-  return {.json = robustness_json(report),
-          .text = terminal_text(robustness_document(report)),
-          .files = files_of(judged),
-          .ending = report.interrupted      ? Ending::interrupted
-                    : report.unheld.empty() ? Ending::done
-                                            : Ending::no_success};
+  Outcome outcome = shown(record_of(report));
+  outcome.files = files_of(judged);
+  outcome.ending = report.interrupted ? Ending::interrupted : report.unheld.empty() ? Ending::done : Ending::no_success;
+  return outcome;
 }
 
 }  // namespace

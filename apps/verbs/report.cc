@@ -1,7 +1,10 @@
-// The report of a result, made again, or of an exploration.
+// The report of what a study found, made again, or of an exploration.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +16,7 @@
 #include "apps/scenes.h"
 #include "apps/streams.h"
 #include "apps/verbs/verbs.h"
+#include "base/read_file.h"
 #include "base/require.h"
 #include "reports/exploration_report.h"
 #include "reports/explored.h"
@@ -21,6 +25,7 @@
 #include "reports/result_reader.h"
 #include "reports/text.h"
 #include "store/study_store.h"
+#include "verbs/study.h"
 
 namespace softland::apps {
 namespace {
@@ -87,34 +92,64 @@ int report_exploration(const Common& given, const ReportRequest& request) {
   return exit_done;
 }
 
+// The JSON of a folder: the result of simulate or optimize, or what a study left there.
+std::filesystem::path record_in(const std::filesystem::path& folder) {
+  std::vector<std::string> names{"result.json"};
+  for (const verbs::Study& study : verbs::all_studies()) {
+    std::ranges::copy_if(study.files, std::back_inserter(names), [](const auto& name) { return name.ends_with(".json"); });
+  }
+  for (const std::string& name : names) {
+    std::error_code ignored;
+    if (std::filesystem::exists(folder / name, ignored)) return folder / name;
+  }
+  throw InvalidInput(fmt::format("{}: holds no result: none of {}", folder.string(), fmt::join(names, ", ")));
+}
+
+// Writes those files that --out has, and says what was found.
+int leave(Common c, const std::filesystem::path& record, std::vector<verbs::Outcome::File> all, const std::string& text) {
+  std::erase_if(all, [](const auto& file) { return file.name.ends_with(".json"); });
+  std::vector<std::string> files;
+  for (const auto& file : all) files.push_back(file.name);
+  if (files.empty()) return print(text), exit_done;
+  if (c.out.empty()) c.out = record.has_parent_path() ? record.parent_path().string() : ".";
+  ResultFolder folder = *claim_places(c, files);
+  for (const verbs::Outcome::File& file : all) folder.write(file.name, file.text());
+  folder.publish(false);
+  print(text + left_in(c.out, files));
+  return exit_done;
+}
+
 int report_verb(const Common& given, const ReportRequest& request) {
   if (is_store(request.result)) return report_exploration(given, request);
-  const std::string& result = request.result;
   require(request.pareto.empty() && request.map.empty(),
-          [&] { return fmt::format("{}: --pareto and --map are for the store of an exploration", result); });
+          [&] { return fmt::format("{}: --pareto and --map are for the store of an exploration", request.result); });
   const std::filesystem::path path =
-      is_folder(result) ? std::filesystem::path(result) / "result.json" : std::filesystem::path(result);
-  const nlohmann::json j = load_result(path);
+      is_folder(request.result) ? record_in(request.result) : std::filesystem::path(request.result);
+  const nlohmann::json j = parse_record(read_file(path), path.string());
+  const auto study = std::ranges::find(verbs::all_studies(), j["kind"], [](const verbs::Study& one) { return one.name; });
+  if (study != verbs::all_studies().end()) {
+    require_version(j, path.string());
+    const verbs::Outcome found = [&] {
+      try {
+        return study->shown_again(j);
+      } catch (const InvalidInput& error) {
+        throw InvalidInput(fmt::format("{}: {}", path.string(), error.what()));
+      }
+    }();
+    return leave(given, path, found.files, found.text + found.last);
+  }
   require_reportable(j, path.string());
-  Common c = given;
-  if (c.out.empty()) c.out = path.has_parent_path() ? path.parent_path().string() : ".";
   const Result r = read_result(j);
-  std::vector<ReportFile<Result>> pictures = files_of(r);
-  std::erase_if(pictures, [](const auto& file) { return !file.name.ends_with(".html") && !file.name.ends_with(".svg"); });
-  std::vector<std::string> files;
-  for (const auto& file : pictures) files.push_back(file.name);
-  ResultFolder folder = *claim_places(c, files);
-  for (const auto& file : pictures) folder.write(file.name, file.text(r));
-  folder.publish(false);
-  print(terminal_text(result_document(r)) + left_in(c.out, files));
-  return exit_done;
+  std::vector<verbs::Outcome::File> files;
+  for (const ReportFile<Result>& file : files_of(r)) files.push_back({file.name, [&r, text = file.text] { return text(r); }});
+  return leave(given, path, files, terminal_text(result_document(r)));
 }
 
 }  // namespace
 
 void add_report(Verb& verb) {
   const auto request = std::make_shared<ReportRequest>();
-  verb.positional("RESULT", request->result, "folder that --out named, or its result.json; or the store of an exploration");
+  verb.positional("RESULT", request->result, "folder that --out named, or the JSON of any study; or the store of an exploration");
   verb.with_out("folder to write them to (default: beside the result; STORE-report for a store)");
   verb.with_quiet();
   verb.option("--pareto", request->pareto, "FIGURES",

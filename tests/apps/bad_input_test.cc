@@ -27,6 +27,8 @@ class BadInput : public ::testing::Test {
     file("nonsense.json", "nonsense");
     file("odd.json", R"({"kind": 3})");
     file("bare.json", R"({"kind": "simulate", "version": "0.1.0"})");
+    file("damaged.json", R"({"kind": "calibrate", "version": "0.1.0", "command": ""})");
+    file("tuned.json", R"({"kind": "tune", "version": "0.1.0"})");
     file("foreign.json", R"({"kind": "simulate", "version": "9.1"})");
     fs::create_directory(here->path() / "folder");
     fs::create_directory(here->path() / "earlier");
@@ -301,21 +303,23 @@ TEST_F(BadInput, PlacesToWriteTo_optimized) {
 
 TEST_F(BadInput, Results) {
   expect_refused({
-      {{"export", "nonsense.json"}, "nonsense.json: is not a result.json of softland"},
-      {{"export", "empty.json"}, "empty.json: is not a result.json of softland"},
+      {{"export", "nonsense.json"}, "nonsense.json: is not a result of softland"},
+      {{"export", "empty.json"}, "empty.json: is not a result of softland"},
       {{"export", "none"}, "none: cannot be read: No such file or directory"},
       {{"export", "folder"}, "folder: holds neither best.toml nor result.json"},
       {{"export", "gold.toml", "--format", "wav"},
        "--format wav: must be one of csv, spice-pwl, codes, spice-model, spice-bench, verilog-a, keysight-arb, siglent-csv, "
        "tektronix-csv, rigol-csv, digilent-csv"},
-      {{"report", "nonsense.json"}, "nonsense.json: is not a result.json of softland"},
-      {{"report", "empty.json"}, "empty.json: is not a result.json of softland"},
+      {{"report", "nonsense.json"}, "nonsense.json: is not a result of softland"},
+      {{"report", "empty.json"}, "empty.json: is not a result of softland"},
       {{"export", "none.json"}, "none.json: cannot be read: No such file or directory"},
       {{"report", "none"}, "none: cannot be read: No such file or directory"},
-      {{"report", "folder"}, "folder/result.json: cannot be read: No such file or directory"},
+      {{"report", "folder"}, "folder: holds no result: none of result.json, …"},
+      {{"report", "damaged.json"}, "damaged.json: \"devices\" is missing"},
+      {{"report", "tuned.json"}, "tuned.json: is of kind 'tune', of which no report is made"},
       {{"report", "odd"}, "odd/result.json: is a folder, it must be a regular file"},
-      {{"report", "gold.toml"}, "gold.toml: is not a result.json of softland"},
-      {{"report", "odd.json"}, "odd.json: is not a result.json of softland"},
+      {{"report", "gold.toml"}, "gold.toml: is not a result of softland"},
+      {{"report", "odd.json"}, "odd.json: is not a result of softland"},
       {{"report", "bare.json"}, "bare.json: \"metrics\" is missing; name the result.json in the folder that --out named"},
       {{"report", "foreign.json"}, "foreign.json: is a result of softland 9.1, of which softland 0.1.0 makes no report"},
       {{"new", "magnet"},

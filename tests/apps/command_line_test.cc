@@ -253,10 +253,11 @@ TEST(PullIn, PrintsTheAgreedJson) {
   ASSERT_EQ(o.status, 0);
   EXPECT_EQ(o.err, "");
   const json j = json::parse(o.out);
-  EXPECT_EQ(keys(j), (std::set<std::string>{"status", "pull_in", "electrodes", "stable_path"}));
+  EXPECT_EQ(keys(j), (std::set<std::string>{"kind", "status", "pull_in", "electrodes", "stable_path", "scene", "version",
+                                            "made_with", "command"}));
   EXPECT_EQ(j["electrodes"], (json{{"main", {{"status", j["status"]}, {"pull_in", j["pull_in"]}}}}));
-  EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"static_V", "static_kind", "deflection_m", "dynamic_V", "release_V",
-                                                       "pulled_through_V", "by_modes"}));
+  EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"static_V", "static_kind", "deflection_m", "dynamic_V", "dynamic_kind",
+                                                       "release_V", "pulled_through_V", "by_modes"}));
   EXPECT_EQ(j["status"], "done");
   EXPECT_LT(j["pull_in"]["dynamic_V"], j["pull_in"]["static_V"]);
   EXPECT_LT(j["pull_in"]["release_V"], j["pull_in"]["static_V"]);
@@ -272,7 +273,8 @@ TEST(PullIn, TellsSeveralElectrodesByName) {
     return json::parse(here.run(all).out);
   };
   const json j = run("pull-in");
-  EXPECT_EQ(keys(j), (std::set<std::string>{"status", "pull_in", "electrodes", "stable_path"}));
+  EXPECT_EQ(keys(j), (std::set<std::string>{"kind", "status", "pull_in", "electrodes", "stable_path", "scene", "version",
+                                            "made_with", "command"}));
   EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"main", "upper"}));
   EXPECT_EQ(j["status"], "done") << "the far electrode need not pull in";
   EXPECT_EQ(j["electrodes"]["upper"]["status"], "no_contact");
@@ -468,8 +470,8 @@ TEST(Effects, PrintATableAndTheAgreedJson_long) {
   EXPECT_THAT(table.out, HasSubstr("* strip"));
   EXPECT_THAT(table.out, HasSubstr("The gas laws differ on this scene"));
   const json j = json::parse(data.out);
-  EXPECT_EQ(keys(j), (std::set<std::string>{"kind", "status", "left_out", "effects", "not_compared", "relative_spread", "scene",
-                                            "version", "command", "made_with"}));
+  EXPECT_EQ(keys(j), (std::set<std::string>{"kind", "status", "left_out", "effects", "not_compared", "duration_s",
+                                            "relative_spread", "scene", "version", "command", "made_with"}));
   EXPECT_EQ(j["effects"].size(), 7U);
   EXPECT_EQ(keys(j["effects"][0]),
             (std::set<std::string>{"section", "choice", "in_scene", "status", "magnitude", "dimensionless_group", "metrics",
@@ -537,8 +539,9 @@ TEST(Accuracy, PrintsATableAndTheAgreedJsonAndDraws_long) {
   EXPECT_THAT(read(here.path() / "acc/report.html"), HasSubstr("softland accuracy gold.toml"));
   const json j = json::parse(read(here.path() / "a.json"));
   EXPECT_EQ(j, json::parse(read(here.path() / "acc/accuracy.json")));
-  EXPECT_EQ(keys(j), (std::set<std::string>{"kind", "status", "scene", "version", "made_with", "command", "reference", "rows",
-                                            "modes", "without_restart_at_contact", "cloud", "recommendations"}));
+  EXPECT_EQ(keys(j),
+            (std::set<std::string>{"kind", "status", "scene", "scene_toml", "version", "made_with", "command", "reference",
+                                   "rows", "modes", "without_restart_at_contact", "cloud", "recommendations"}));
   const json& row = j["rows"][0];
   EXPECT_EQ(j["without_restart_at_contact"].size(), 35U);
   EXPECT_EQ(keys(row), (std::set<std::string>{"integrator", "tolerance", "points_per_length", "modes", "relative_errors",

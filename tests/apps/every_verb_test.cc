@@ -128,9 +128,10 @@ TEST_P(EveryVerb, Describes_optimized) {
   EXPECT_FALSE(modes["natural_frequencies_rad_s"].empty());
   EXPECT_FALSE(modes.contains("scene")) << "as README.md says";
   const json checked = data(scene().quickly({"check", name, "--quiet", "--json", "-"}));
-  EXPECT_EQ(keys(checked), (std::set<std::string>{"kind", "status", "title", "natural_frequencies_rad_s", "pull_in",
-                                                  "dynamic_precision", "hold_window_V", "closed_state", "duration_s", "tolerance",
-                                                  "stable_path", "warnings", "scene", "version", "made_with", "command"}));
+  EXPECT_EQ(keys(checked),
+            (std::set<std::string>{"kind", "file", "lines", "status", "title", "natural_frequencies_rad_s", "pull_in",
+                                   "dynamic_precision", "hold_window_V", "closed_state", "duration_s", "tolerance", "stable_path",
+                                   "warnings", "scene", "version", "made_with", "command"}));
   EXPECT_EQ(checked["stable_path"].is_null() && check.find("through stable equilibria;") != std::string::npos, false) << check;
   EXPECT_EQ(checked["natural_frequencies_rad_s"], modes["natural_frequencies_rad_s"]);
   EXPECT_EQ(checked["closed_state"].is_object(), contact);

@@ -55,7 +55,11 @@ const PreparedScene& gold() {
   return scene;
 }
 
-std::string accuracy_text(const AccuracyStudy& study) { return terminal_text(accuracy_document(gold(), study, {})); }
+AccuracyRecord record(const AccuracyStudy& study, const PreparedScene& scene = gold(), const char* command = "") {
+  return {.origin = whole_origin_of("accuracy", scene, command), .found = study};
+}
+
+std::string accuracy_text(const AccuracyStudy& study) { return terminal_text(document_of(record(study))); }
 
 TEST(AccuracyText, RecommendsAndListsEverySetting) {
   const std::string text = accuracy_text(sample());
@@ -87,7 +91,7 @@ TEST(AccuracyText, ListsWhatWasTriedWithoutARestartOrWhyNothingWas) {
   none.through.clear();
   none.why_always_restarted = "there is no contact";
   EXPECT_THAT(accuracy_text(none), HasSubstr("without a restart at the contact: there is no contact.\n\n"));
-  EXPECT_THAT(accuracy_svg("", none), Not(HasSubstr("not restarted")));
+  EXPECT_THAT(svg_of(record(none)), Not(HasSubstr("not restarted")));
 }
 
 TEST(AccuracyText, OfAPlateSaysThatPointsDoNotMatterAndListsNone) {
@@ -99,15 +103,15 @@ TEST(AccuracyText, OfAPlateSaysThatPointsDoNotMatterAndListsNone) {
   plate.modes.clear();
   plate.recommendations = {{.accuracy = 1e-3, .row = 0}};
   const PreparedScene prepared = prepare(SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/two-electrodes.toml"));
-  const std::string page = page_html(accuracy_document(prepared, plate, {})), text = accuracy_text(plate),
-                    svg = accuracy_svg("", plate);
+  const AccuracyRecord of_plate = record(plate, prepared);
+  const std::string page = page_html(document_of(of_plate)), text = accuracy_text(plate), svg = svg_of(of_plate);
   EXPECT_THAT(text, HasSubstr("tolerance 1e-8, 1 mode: "));
   for (const std::string& shown : {page, text, svg}) {
     EXPECT_THAT(shown, Not(HasSubstr("per length")));
     EXPECT_THAT(shown, Not(HasSubstr("Points per")));
   }
   for (const std::string& shown : {page, text}) EXPECT_THAT(shown, HasSubstr("A rigid plate has the same gap"));
-  EXPECT_TRUE(accuracy_json(prepared, plate, {})["rows"][0]["points_per_length"].is_null());
+  EXPECT_TRUE(json_of(of_plate)["rows"][0]["points_per_length"].is_null());
 }
 
 TEST(AccuracyText, SaysWhenTheReferenceIsLooserThanPlanned) {
@@ -126,12 +130,12 @@ TEST(AccuracyText, OfNoStudySaysWhy) {
 }
 
 TEST(AccuracyPage, HoldsRecommendationsDiagramsTablesAndClouds) {
-  PreparedScene gold = prepare(SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml"));
-  gold.scene.simulate.accuracy = 1e-8;
   const std::string own(to_string(all_integrators[0]));
   AccuracyStudy study = sample();
   study.rows.back().missing = "cut <early>";
-  const std::string page = page_html(accuracy_document(gold, study, {.command = "softland accuracy 'a & b.toml'"}));
+  AccuracyRecord asked = record(study, gold(), "softland accuracy 'a & b.toml'");
+  asked.origin.scene["simulate"]["accuracy"] = 1e-8;
+  const std::string page = page_html(document_of(asked));
   EXPECT_THAT(page, HasSubstr("<h1>Nothing that was tried has t_i and v_i within 1e-9.<"))
       << "nearest to the accuracy that the scene asks for";
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">1e-3</th><td>" + own + "</td><td>1e-3</td><td>8</td><td>150\u00a0µs</td>"));
@@ -144,15 +148,16 @@ TEST(AccuracyPage, HoldsRecommendationsDiagramsTablesAndClouds) {
   EXPECT_THAT(page, HasSubstr("\"scale\":\"log\""));
   EXPECT_THAT(page, Not(HasSubstr("nan")));
   EXPECT_THAT(page, Not(HasSubstr("{{")));
-  study.recommendations.pop_back();
-  EXPECT_THAT(page_html(accuracy_document(gold, study, {})),
-              HasSubstr("<h1>A closing with t_i and v_i within 1e-3 takes 150\u00a0µs<"));
-  study.conditioned = {};
-  EXPECT_THAT(page_html(accuracy_document(gold, study, {})), HasSubstr("<h1>No figure is well-conditioned here"));
+  asked.found.recommendations.pop_back();
+  EXPECT_THAT(page_html(document_of(asked)), HasSubstr("<h1>A closing with t_i and v_i within 1e-3 takes 150\u00a0µs<"));
+  asked.found.conditioned = {};
+  EXPECT_THAT(page_html(document_of(asked)), HasSubstr("<h1>No figure is well-conditioned here"));
 }
 
 TEST(AccuracyPicture, IsWellFormedAndHasACurveForWhateverHasErrors) {
-  const std::string svg = accuracy_svg("Gold & more", sample());
+  AccuracyRecord named = record(sample());
+  named.origin.scene["title"] = "Gold & more";
+  const std::string svg = svg_of(named);
   EXPECT_EQ(softland::test::xml_fault(svg), "");
   EXPECT_THAT(svg, HasSubstr("Gold &amp; more: what accuracy costs"));
   EXPECT_THAT(svg, HasSubstr("Largest relative error of t_i and v_i"));
@@ -163,7 +168,7 @@ TEST(AccuracyPicture, IsWellFormedAndHasACurveForWhateverHasErrors) {
   EXPECT_THAT(svg, HasSubstr(">1e-4</text>")) << "the tolerances along the curve of the own integrator";
   AccuracyStudy none = sample();
   none.conditioned = {};
-  EXPECT_EQ(softland::test::xml_fault(accuracy_svg("", none)), "");
+  EXPECT_EQ(softland::test::xml_fault(svg_of(record(none))), "");
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 
 TEST(LimitPicture, WithoutCurvesShowsTheLanding) {
   ASSERT_TRUE(of_a_plate().landing.has_value());
-  const std::string svg = limit_svg(of_a_plate());
+  const std::string svg = svg_of(record_of(of_a_plate(), ""));
   EXPECT_EQ(test::xml_fault(svg), "");
   for (const char* words : {"Gap (µm)", "Voltage (V)", ">contact plane<"}) EXPECT_THAT(svg, HasSubstr(words));
   EXPECT_GE(count(svg, "<polyline") + count(svg, "<path"), 2U);
@@ -41,7 +41,7 @@ TEST(LimitPicture, OfACurveOfOnePlaceHasAxesAround) {
   Limit found = of_a_plate();
   found.landing.reset();
   found.over_peak = {{.status = Status::no_contact, .peak = 60}, {.status = Status::done, .time = 40e-6, .peak = 120}};
-  const std::string svg = limit_svg(found);
+  const std::string svg = svg_of(record_of(found, ""));
   EXPECT_EQ(test::xml_fault(svg), "");
   EXPECT_THAT(svg, HasSubstr("Least time against the peak voltage"));
   for (const char* tick : {">110<", ">120<", ">130<"}) EXPECT_THAT(svg, HasSubstr(tick));
@@ -52,32 +52,32 @@ TEST(LimitPicture, WhereNothingWasFoundSaysWhy) {
   Limit nothing = of_a_plate();
   nothing.landing.reset();
   nothing.touch = {.status = Status::no_contact, .message = "full pull does not bring the switch to its contact"};
-  EXPECT_THAT(limit_svg(nothing), HasSubstr("full pull does not bring the switch to its contact"));
+  EXPECT_THAT(svg_of(record_of(nothing, "")), HasSubstr("full pull does not bring the switch to its contact"));
 }
 
 TEST(LimitReport, SaysHowSoftlyASlowWaveformCanLandAllDevices) {
   Limit found = of_a_plate();
-  EXPECT_TRUE(limit_json(found, {}).at("quasi_static").is_null());
+  EXPECT_TRUE(json_of(record_of(found, "")).at("quasi_static").is_null());
   found.approach = {.drive = "piezo", .deviation = 0.03, .slope = -2e-6};
   found.quasi_static = 813e-6;
   found.step.steady_force_time = 391e-6;
-  const nlohmann::json told = limit_json(found, {}).at("quasi_static");
+  const nlohmann::json told = json_of(record_of(found, "")).at("quasi_static");
   EXPECT_NEAR(told.at("touch_places_m"), 2 * 1.645 * 0.03 * 2e-6, 1e-10);
   EXPECT_EQ(told.at("speed_m_s"), 813e-6);
-  std::string text = limit_text(found);
+  std::string text = text_of(record_of(found, ""));
   std::ranges::replace(text, '\n', ' ');
   EXPECT_THAT(text, HasSubstr("lie 197\u00a0nm apart on its way"));
   EXPECT_THAT(text, HasSubstr("at 391\u00a0µs, touches at 813\u00a0µm/s or more"));
 }
 
 TEST(LimitReport, SaysForWhichModelALeastTimeIsABound) {
-  const nlohmann::json of_plate = limit_json(of_a_plate(), {});
+  const nlohmann::json of_plate = json_of(record_of(of_a_plate(), ""));
   EXPECT_EQ(of_plate.at("modes"), 1);
-  EXPECT_THAT(limit_text(of_a_plate()), Not(HasSubstr("mode,")));
-  Limit of_beam = of_a_plate();
-  of_beam.given.scene.device.structure.kind = Cantilever{};
-  EXPECT_THAT(limit_text(of_beam), HasSubstr("in this model of 1 mode,"));
-  EXPECT_THAT(limit_svg(of_beam), HasSubstr("with 1 mode<"));
+  EXPECT_THAT(text_of(record_of(of_a_plate(), "")), Not(HasSubstr("mode,")));
+  LimitRecord of_beam = record_of(of_a_plate(), "");
+  of_beam.origin.scene["structure"]["kind"] = "cantilever";
+  EXPECT_THAT(text_of(of_beam), HasSubstr("in this model of 1 mode,"));
+  EXPECT_THAT(svg_of(of_beam), HasSubstr("with 1 mode<"));
 }
 
 }  // namespace

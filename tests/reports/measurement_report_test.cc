@@ -37,7 +37,7 @@ IdentificationStudy study() {
 }
 
 TEST(MeasurementReport, OfATerminalRanksWhatIsMeasured) {
-  const std::string text = measurements_text(study(), {.seed = 7});
+  const std::string text = text_of(record_of(study(), {.seed = 7}, ""));
   for (const char* words : {"4 devices of the spread", "\nVdp ", "1.2 %", "3.4 %", "50.0 % (28 to 72)", "mm/s (50 to 200)",
                             "To compare with", "\nnothing ", "Seed 7.", "Left out are pairs that do no better than one"})
     EXPECT_THAT(text, HasSubstr(words));
@@ -49,7 +49,7 @@ TEST(MeasurementReport, OfATerminalRanksWhatIsMeasured) {
 TEST(MeasurementReport, AsJsonHoldsEveryPredictionAndSaysWhatIsNotJudged) {
   IdentificationStudy stopped = study();
   stopped.interrupted = true;
-  const nlohmann::json j = measurements_json(stopped, {.seed = 7}, "softland calibrate out");
+  const nlohmann::json j = json_of(record_of(stopped, {.seed = 7}, "softland calibrate out"));
   EXPECT_EQ(j["kind"], "calibrate");
   EXPECT_EQ(j["status"], "interrupted");
   EXPECT_EQ(j["command"], "softland calibrate out");
@@ -60,7 +60,7 @@ TEST(MeasurementReport, AsJsonHoldsEveryPredictionAndSaysWhatIsNotJudged) {
   EXPECT_EQ(j["predictions"][1]["score_95"], 0.2);
   EXPECT_FALSE(j["predictions"][2].contains("score_95"));
   EXPECT_EQ(j["predictions"][2]["time_miss"], 0.01);
-  EXPECT_EQ(measurements_json(study(), {}, "")["status"], "done");
+  EXPECT_EQ(json_of(record_of(study(), {}, ""))["status"], "done");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST(ReadResult, KnowsWherePadsLie) {
 TEST(ParseResult, RefusesWhatIsNoResult) {
   for (const char* content : {"", "nonsense", "{}", "[]", R"({"kind": 3})", R"({"kind": "effects"})", R"({"kind": "simulate")",
                               "{\"kind\": \"simulate\", \"title\": \"\xff\"}", R"({"kind": "simulate", "seed": 1e999})"}) {
-    EXPECT_EQ(parse_refusal(content), "x.json: is not a result.json of softland") << content;
+    EXPECT_TRUE(parse_refusal(content).starts_with("x.json: is not a result of ")) << content;
   }
 }
 

@@ -84,7 +84,7 @@ TEST(RobustnessReport, OfATerminalHasEveryDriveAndWhatMeasuringIsWorth_optimized
 }
 
 TEST(RobustnessReport, AsJsonHoldsWhatTheStudyFound_optimized) {
-  const nlohmann::json j = robustness_json(study().report());
+  const nlohmann::json j = json_of(record_of(study().report()));
   EXPECT_EQ(j["kind"], "robustness");
   EXPECT_EQ(j["devices"], 64);
   ASSERT_EQ(j["drives"].size(), 2U);
@@ -131,7 +131,7 @@ TEST(RobustnessReport, SaysWhereChaosFails_optimized) {
   EXPECT_THAT(text, HasSubstr("∞"));
   const std::string page = page_html(robustness_document(report));
   EXPECT_THAT(page, HasSubstr("It fails for v<sub>max</sub> (60.0"));
-  EXPECT_TRUE(robustness_json(report)["other_ways"]["box"]["figures"]["major_bounce_height_m"]["most"]["value"].is_null());
+  EXPECT_TRUE(json_of(record_of(report))["other_ways"]["box"]["figures"]["major_bounce_height_m"]["most"]["value"].is_null());
 }
 
 TEST(RobustnessReport, AsCsvHasALinePerDevice_optimized) {
@@ -167,7 +167,7 @@ TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge_optimized) {
   EXPECT_GT(*times.rbegin() - *times.begin(), 70e-9);
   // A plain step that is late by it is late by it.
   const std::size_t k = jittered.found.drives[0].worst[0];
-  const double shown = robustness_json(jittered.report())["drives"][0]["worst"][0]["values"]["driver.main.jitter"];
+  const double shown = json_of(record_of(jittered.report()))["drives"][0]["worst"][0]["values"]["driver.main.jitter"];
   EXPECT_TRUE(times.contains(shown));
   const SceneFile own = scene_of_device(jittered.nominal, jittered.found.drives[0], k, jittered.options);
   const Signal drive = prepare(own).signals().front();
@@ -175,9 +175,8 @@ TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge_optimized) {
   // So is what is found in a box, whose numbers are those that the times are drawn by.
   BoxAndChaos ways;
   ways.ranges.push_back({.key = "major_bounce_height_m", .most = {.values = {0.75}}});
-  const double in_box = internal::other_ways_json(
-      ways, jittered.found.drives[0],
-      jittered.nominal)["box"]["figures"]["major_bounce_height_m"]["most"]["values"]["driver.main.jitter"];
+  const auto found = internal::record_of(ways, jittered.found.drives[0], jittered.nominal);
+  const double in_box = found.ranges[0].most.values.at("driver.main.jitter");
   EXPECT_LT(std::abs(in_box), 50e-9);
 }
 
@@ -194,7 +193,7 @@ TEST(RobustnessReport, SaysWhatItsDerivativesAreWorth_optimized) {
   RobustnessReport report = study().report();
   report.derivatives = told;
   const std::string text = terminal_text(robustness_document(report)), page = page_html(robustness_document(report));
-  const nlohmann::json j = robustness_json(report)["derivatives"];
+  const nlohmann::json j = json_of(record_of(report))["derivatives"];
   EXPECT_THAT(text, HasSubstr("To first order (grazing)"));
   EXPECT_THAT(page, HasSubstr("has 3.0 % of the speed of the first touch"));
   EXPECT_THAT(page, HasSubstr("ill-conditioned: so &amp; so"));
@@ -207,7 +206,7 @@ TEST(RobustnessReport, SaysWhatItsDerivativesAreWorth_optimized) {
   report.derivatives = told;
   EXPECT_THAT(terminal_text(robustness_document(report)), HasSubstr("The figures have no derivatives here: there is no gas."));
   EXPECT_THAT(page_html(robustness_document(report)), HasSubstr("The figures have no derivatives here: there is no gas."));
-  EXPECT_EQ(robustness_json(report)["derivatives"]["why_none"], "there is no gas");
+  EXPECT_EQ(json_of(record_of(report))["derivatives"]["why_none"], "there is no gas");
 }
 
 TEST(RobustnessReport, AsAPageHasEverySectionAndEscapesNames) {
@@ -282,7 +281,7 @@ TEST(RobustnessReport, ShowsThePlainStepAloneAndDevicesThatDoNotClose_optimized)
   EXPECT_THAT(page, HasSubstr("gap.contact must be &lt;less&gt;"));
   EXPECT_THAT(page, HasSubstr("Under the plain step"));
   EXPECT_THAT(page, Not(HasSubstr("id=\"knowledge\"")));
-  EXPECT_EQ(robustness_json(bare.report())["drives"][0]["failures"]["gap.contact must be <less>"], 1);
+  EXPECT_EQ(json_of(record_of(bare.report()))["drives"][0]["failures"]["gap.contact must be <less>"], 1);
 }
 
 TEST(RobustnessReport, LeavesOutAFigureThatNoDeviceHas_optimized) {
@@ -368,7 +367,7 @@ TEST(RobustnessReport, ShowsNoDerivativesThatTheDevicesContradict) {
   EXPECT_THAT(terminal_text(robustness_document(s.report())), Not(HasSubstr(" %/%")));
   EXPECT_THAT(page_html(robustness_document(s.report())), Not(HasSubstr(" %/%")));
   EXPECT_THAT(terminal_text(robustness_document(s.report())), HasSubstr("are not shown"));
-  EXPECT_FALSE(robustness_json(s.report())["derivatives"]["figures"]["initial_contact_time_s"]["agrees_with_devices"]);
+  EXPECT_FALSE(json_of(record_of(s.report()))["derivatives"]["figures"]["initial_contact_time_s"]["agrees_with_devices"]);
 }
 
 }  // namespace

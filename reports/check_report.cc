@@ -1,0 +1,71 @@
+#include "reports/check_report.h"
+
+#include <fmt/format.h>
+
+#include "base/printable.h"
+#include "base/shortened.h"
+#include "reports/pull_in_members.h"
+#include "reports/text.h"
+#include "studies/closing/summits_at_hold.h"
+
+namespace softland {
+
+using nlohmann::json;
+
+namespace {
+
+// One electrode is the usual case; several are told apart by name.
+json by_electrode(const std::map<std::string, PullInRecord>& all) {
+  json of = json::object();
+  for (const auto& [name, one] : all) of[name] = internal::record_json(one);
+  return all.empty() ? json() : all.size() == 1 ? of.front() : of;
+}
+
+std::map<std::string, PullInRecord> read_by_electrode(const json& from) {
+  if (!from.is_object()) return {};
+  if (from.contains("static_V")) return {{"", internal::JsonReader::read<PullInRecord>(from)}};
+  return internal::JsonReader::read<std::map<std::string, PullInRecord>>(from);
+}
+
+}  // namespace
+
+template <class A>
+void members(A& a, CheckRecord::Line& line) {
+  a("name", line.name);
+  a("value", line.value);
+}
+
+template <class A>
+void members(A& a, CheckRecord& record) {
+  members(a, record.origin);
+  a.derived("status", std::string(to_string(Status::done)));
+  a("file", record.file);
+  a("title", record.title);
+  a("natural_frequencies_rad_s", record.frequencies);
+  a.custom("pull_in", record.pull_in, by_electrode, read_by_electrode);
+  a("hold_window_V", record.hold_windows);
+  a("dynamic_precision", record.dynamic_precision);
+  a("closed_state", internal::OrNull{record.closed_state});
+  a("stable_path", internal::OrNull{record.stable_path});
+  a("duration_s", record.duration);
+  a("tolerance", record.tolerance);
+  a("warnings", record.warnings);
+  a("lines", record.lines);
+}
+
+json json_of(const CheckRecord& record) { return internal::record_json(record); }
+
+CheckRecord read_check(const json& from) { return internal::whole_record<CheckRecord>(from); }
+
+std::string text_of(const CheckRecord& record) {
+  const std::string title = shortened(printable_line(record.title));
+  std::string text = fmt::format("{}: valid{}\n\n", printable_line(record.file), title.empty() ? "" : " (" + title + ")");
+  for (const CheckRecord::Line& line : record.lines) text += fmt::format("{:<20} {}\n", line.name, line.value);
+  for (const std::string& warning : record.warnings) {
+    if (is_few_summits_warning(warning)) continue;  // the contact's line tells it
+    text += "\n" + wrapped("warning: " + warning) + "\n";
+  }
+  return text;
+}
+
+}  // namespace softland

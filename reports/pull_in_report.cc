@@ -1,0 +1,288 @@
+#include "reports/pull_in_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/require.h"
+#include "model/pull_in.h"
+#include "reports/chart.h"
+#include "reports/pull_in_members.h"
+#include "reports/quantity.h"
+#include "reports/result_reader.h"
+#include "reports/svg.h"
+#include "reports/text.h"
+#include "studies/closing/closed_state.h"
+#include "studies/devices/stable_approach.h"
+
+namespace softland {
+
+using internal::quantity;
+using nlohmann::json;
+
+namespace {
+
+// The JSON keys of voltages by modes.
+constexpr std::array by_modes_rows{std::pair("static_V", &VoltagesByModes::static_pull_in),
+                                   std::pair("release_V", &VoltagesByModes::release),
+                                   std::pair("pulled_through_V", &VoltagesByModes::pulled_through)};
+
+std::string dynamic_kind(const PreparedScene& p, std::size_t k, double statically, double dynamically) {
+  if (!std::isfinite(dynamically)) return {};
+  if (!(dynamically >= (1 - dynamic_pull_in_precision) * statically)) return "overshoot";
+  std::vector<double> levels = bias_of(p.scene, k);
+  levels[k] = statically;
+  return leaves_at_rest(p.model, bias_of(p.scene, k), levels) ? "unstable_rest" : "overdamped";
+}
+
+std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
+
+std::string_view branch_name(const SweepPoint& p) { return p.is_up ? "up" : "down"; }
+
+// The columns of one branch, in rising order of the voltage.
+internal::CurveTable branch_of(std::vector<SweepPoint> points, bool is_up) {
+  std::erase_if(points, [&](const SweepPoint& p) { return p.is_up != is_up || p.state == SweepState::none; });
+  std::stable_sort(points.begin(), points.end(), [](const SweepPoint& a, const SweepPoint& b) { return a.voltage < b.voltage; });
+  internal::CurveTable columns{{"voltage", {}}, {"deflection", {}}, {"capacitance", {}}};
+  for (const SweepPoint& p : points) {
+    columns["voltage"].push_back(p.voltage);
+    columns["deflection"].push_back(p.deflection);
+    columns["capacitance"].push_back(p.capacitance);
+  }
+  return columns;
+}
+
+internal::Chart sweep_chart(const std::string& column, const std::string& title, const std::string& unit, double low,
+                            double high) {
+  internal::Chart chart{.id = column,
+                        .title = title,
+                        .x_column = "voltage",
+                        .x_label = "voltage",
+                        .x_unit = "V",
+                        .y_label = column,
+                        .y_unit = unit,
+                        .x_home = {low, high},
+                        .x_whole = {low, high}};
+  chart.series = {{.table = "up", .column = column, .label = "up"},
+                  {.table = "down", .column = column, .label = "down", .role = internal::Role::baseline}};
+  return chart;
+}
+
+// How static pull-in comes about; empty where there is none.
+std::string kind_words(const std::string& kind) {
+  if (kind.empty()) return {};
+  return kind == to_string(StaticKind::fold) ? " (fold of the static branch)" : " (the contact point reaches the contact first)";
+}
+
+std::string shift_clause(const std::optional<VoltagesByModes>& found, ByModes VoltagesByModes::*voltage) {
+  const std::string shift = found ? shift_words(*found.*voltage) : std::string();
+  return shift.empty() ? shift : "; more modes move it by " + shift;
+}
+
+std::string electrode_words(const std::string& name, const ElectrodeRecord& electrode, bool is_far, bool has_contact) {
+  constexpr int digits = 4;
+  std::string text = fmt::format("electrode {}\n", name);
+  if (is_far) return text + "  on the far side: pulls away from the contact\n";
+  if (const std::string bias = bias_words(electrode); !bias.empty()) text += fmt::format("  under            {}\n", bias);
+  if (electrode.status == Status::no_contact)
+    return text + "  pulls away from the contact where the switch rests: no pull-in voltage\n";
+  const PullInRecord& found = electrode.volts;
+  text +=
+      electrode.status == Status::collapsed_at_rest
+          ? fmt::format("  {}\n", no_open_state)
+          : fmt::format("  static pull-in   {}{}{}\n  pull-in position {}\n  dynamic pull-in  {}\n", volts(found.static_pull_in),
+                        kind_words(found.static_kind), shift_clause(found.by_modes, &VoltagesByModes::static_pull_in),
+                        std::isfinite(found.deflection) ? quantity(found.deflection, "m", digits) : "none",
+                        electrode.status == Status::interrupted ? std::string("not known: the search for it was interrupted")
+                                                                : dynamic_words(found));
+  if (!has_contact) return text;
+  text += fmt::format("  release          {}{}\n", volts(found.release), shift_clause(found.by_modes, &VoltagesByModes::release));
+  if (std::isfinite(found.pulled_through))
+    text += fmt::format("  pulled through   {}: from there on a closed switch goes on to the electrode{}\n",
+                        volts(found.pulled_through), shift_clause(found.by_modes, &VoltagesByModes::pulled_through));
+  return text;
+}
+
+}  // namespace
+
+json internal::voltages_by_modes_json(const std::optional<VoltagesByModes>& found) {
+  json all;
+  for (const auto& [key, voltage] : by_modes_rows) {
+    if (found && !(*found.*voltage).values.empty()) all[key] = by_modes_json(*found.*voltage);
+  }
+  return all;
+}
+
+std::optional<VoltagesByModes> internal::read_voltages_by_modes(const json& from) {
+  if (!from.is_object()) return std::nullopt;
+  VoltagesByModes all;
+  const JsonReader found(from);
+  for (const auto& [key, voltage] : by_modes_rows) all.*voltage = read_by_modes(found.at(key)).value_or(ByModes{});
+  return all;
+}
+
+template <class A>
+void members(A& a, ElectrodeRecord& electrode) {
+  a("status", electrode.status);
+  a("pull_in", electrode.volts);
+  if (a.has(!electrode.bias.empty())) a("bias_V", electrode.bias);
+  if (a.has(!electrode.bias_factor.empty())) a("bias_factor", electrode.bias_factor);
+}
+
+template <class A>
+void members(A& a, SweepPoint& point) {
+  a("voltage_V", point.voltage);
+  a("deflection_m", point.deflection);
+  a("capacitance_F", point.capacitance);
+  a.custom(
+      "branch", point.is_up, [&](bool) { return branch_name(point); }, [](const json& name) { return name == "up"; });
+  a.custom(
+      "status", point.state, [](SweepState state) { return to_string(state); },
+      [](const json& name) {
+        return name == to_string(SweepState::open)     ? SweepState::open
+               : name == to_string(SweepState::closed) ? SweepState::closed
+                                                       : SweepState::none;
+      });
+}
+
+template <class A>
+void members(A& a, PullInsRecord& record) {
+  a("electrodes", record.electrodes);
+  if (!A::reads && record.electrodes.size() == 1) members(a, record.electrodes.begin()->second);  // one is the usual case
+  std::map<std::string, PullInRecord> voltages;
+  for (const auto& [name, one] : record.electrodes) voltages[name] = one.volts;
+  if (record.electrodes.size() != 1) a.derived("pull_in", voltages);
+  members(a, record.origin);
+  a("status", record.status);
+  a("stable_path", internal::OrNull{record.stable_path});
+  if (a.has(!record.swept.empty())) {
+    a("swept", record.swept);
+    a("sweep", record.sweep);
+  }
+  if (a.has(!record.left_out.empty())) a("left_out", record.left_out);
+}
+
+ElectrodeRecord record_of(const PreparedScene& p, std::size_t k, const ElectrodePullIn& known) {
+  const std::vector<double> bias = bias_of(p.scene, k);
+  const auto& [s, d] = known;
+  const ClosedRange closed = closed_range(p.model, k, bias);
+  ElectrodeRecord found{.status = s.status == Status::done ? d.status : s.status,
+                        .volts = {.static_pull_in = s.voltage,
+                                  .dynamic_pull_in = d.voltage,
+                                  .release = closed.release,
+                                  .pulled_through = closed.pulled_through,
+                                  .static_kind = std::string(std::isfinite(s.voltage) ? to_string(s.kind) : ""),
+                                  .deflection = s.deflection,
+                                  .dynamic_kind = dynamic_kind(p, k, s.voltage, d.voltage)}};
+  const bool was_found = d.status != Status::interrupted;  // who has stopped the search waits for no more modes
+  if (const ModeLadder ladder(p); was_found && ladder.exists() && std::isfinite(s.voltage))
+    found.volts.by_modes = voltages_by_modes(ladder, p.scene, k, closed.pulled_through);
+  const std::vector<std::string> names = p.drive_names();
+  for (std::size_t other = 0; other < names.size(); ++other) {
+    if (bias[other] == 0) continue;
+    if (names[other] == dispersion_drive)
+      found.bias_factor[names[other]] = 1 + bias[other];
+    else
+      found.bias[names[other]] = bias[other];
+  }
+  return found;
+}
+
+std::string volts(double value) {
+  constexpr int digits = 5;
+  return std::isfinite(value) ? quantity(value, "V", digits) : "none";
+}
+
+std::string bias_words(const ElectrodeRecord& electrode) {
+  std::vector<std::string> drives;
+  for (const auto& [name, level] : electrode.bias) drives.push_back(fmt::format("{} {}", name, volts(level)));
+  for (const auto& [name, factor] : electrode.bias_factor)
+    drives.push_back(fmt::format("{} factor {}", name, internal::plain_number(factor, 5)));
+  return fmt::format("{}", fmt::join(drives, ", "));
+}
+
+std::string dynamic_words(const PullInRecord& found) {
+  return volts(found.dynamic_pull_in) + (found.dynamic_kind == "unstable_rest"
+                                             ? " (the static one: no step moves it, from there on its rest is unstable)"
+                                         : found.dynamic_kind == "overdamped" ? " (overdamped: equals the static one)"
+                                                                              : "");
+}
+
+std::optional<StablePathRecord> stable_path_of(const PreparedScene& p, const Watch& watch) {
+  constexpr std::uint64_t devices = 256, seed = 1;
+  if (!p.model.has_contact()) return std::nullopt;
+  std::optional<StableApproach> found;
+  if (p.model.has_piezo()) found = stable_approach(p, Actuator::pzt);
+  if (!found && has_pulling_electrode(p.scene.device)) found = stable_approach(p, Actuator::electrostatic);
+  if (!found) return std::nullopt;
+  StablePathRecord path{.drive = found->drive, .reaches = found->reaches, .limit = found->limit};
+  if (!p.scene.spread.empty()) path.share = share_with_path(p, *found, devices, seed, 1, watch);
+  return path;
+}
+
+std::string words_of(const std::optional<StablePathRecord>& path) {
+  if (!path) return "no drive alone reaches the contact through stable equilibria within its limits";
+  std::string words =
+      fmt::format("the {} alone reaches the contact at {} through stable equilibria",
+                  path->drive == piezo_drive ? "piezo" : "electrode " + path->drive, quantity(path->reaches, "V", 4));
+  if (path->share)
+    words +=
+        fmt::format("; {} of devices do within {}", internal::percent(*path->share), internal::given_quantity(path->limit, "V"));
+  return words;
+}
+
+json json_of(const PullInsRecord& record) { return internal::record_json(record); }
+
+PullInsRecord read_pull_ins(const json& from) {
+  PullInsRecord record = internal::whole_record<PullInsRecord>(from);
+  require(record.sweep.empty() || record.electrodes.contains(record.swept), "\"swept\" is none of the electrodes");
+  return record;
+}
+
+std::string text_of(const PullInsRecord& record) {
+  const bool has_contact = record.origin.scene.contains("contact");
+  const std::vector<ResultScene::Electrode> all = read_result_scene(record.origin.scene, {}).electrodes;
+  std::string text;
+  for (const auto& [name, electrode] : record.electrodes) {
+    const bool is_far = std::ranges::any_of(all, [&](const auto& one) { return one.name == name && one.far_side; });
+    text += electrode_words(name, electrode, is_far, has_contact);
+  }
+  const bool is_known = std::ranges::find(record.left_out, stable_path_left_out) == record.left_out.end();
+  if (has_contact && is_known) text += wrapped("Stable path: " + words_of(record.stable_path) + ".") + "\n";
+  return text;
+}
+
+std::string sweep_csv(const std::vector<SweepPoint>& points) {
+  std::string text = "voltage_V,deflection_m,capacitance_F,branch,status\n";
+  for (const SweepPoint& p : points)
+    text += fmt::format("{},{},{},{},{}\n", p.voltage, csv_cell(p.deflection), csv_cell(p.capacitance), branch_name(p),
+                        to_string(p.state));
+  return text;
+}
+
+std::string sweep_svg(const PullInsRecord& record) {
+  const std::vector<SweepPoint>& points = record.sweep;
+  const ElectrodeRecord& electrode = record.electrodes.at(record.swept);
+  const auto& [pull_in, release] = std::pair(electrode.volts.static_pull_in, electrode.volts.release);
+  std::string of = fmt::format("Electrode {}, swept up and down", record.swept);
+  if (const std::string others = bias_words(electrode); !others.empty()) of += ", under " + others;
+  const auto [least, most] = std::minmax_element(points.begin(), points.end(),
+                                                 [](const SweepPoint& a, const SweepPoint& b) { return a.voltage < b.voltage; });
+  internal::Picture picture{.tables = {{"up", branch_of(points, true)}, {"down", branch_of(points, false)}}, .charts = {}};
+  for (const auto& [column, title, unit] : {std::array{"deflection", "Deflection of the contact point", "m"},
+                                            std::array{"capacitance", "Capacitance of the electrode", "F"}})
+    picture.charts.push_back(sweep_chart(column, title, unit, least->voltage, most->voltage));
+  if (pull_in <= most->voltage)
+    picture.charts.front().marks.push_back({pull_in, electrode.volts.deflection, internal::Role::best, "pull-in"});
+  std::string words = std::isfinite(pull_in) ? fmt::format("Pull-in at {}, deflected by {}", quantity(pull_in, "V", 4),
+                                                           quantity(electrode.volts.deflection, "m", 4))
+                                             : std::string("No pull-in voltage");
+  if (std::isfinite(release)) words += fmt::format("; release at {}", quantity(release, "V", 4));
+  return svg_page(of, words + ".", picture, 1);
+}
+
+}  // namespace softland

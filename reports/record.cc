@@ -1,0 +1,26 @@
+#include "reports/record.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "base/require.h"
+#include "base/shortened.h"
+
+namespace softland {
+
+void internal::require_same(const json& written, const json& read) {
+  const json changes = json::diff(read, written);
+  if (changes.empty()) return;
+  std::string key = changes[0]["path"].get<std::string>();  // "/touch/least_time_s"
+  for (char& letter : key) {
+    if (letter == '/') letter = '.';
+  }
+  if (!key.empty()) key.erase(0, 1);
+  const std::string how = changes[0]["op"];
+  require(how != "add", [&] { return fmt::format("\"{}\" is missing", shortened(key)); });
+  require(how != "remove", [&] { return fmt::format("\"{}\" is not known", shortened(key)); });
+  throw InvalidInput(fmt::format("\"{}\" is not as softland writes it", shortened(key)));
+}
+
+}  // namespace softland

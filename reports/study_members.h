@@ -1,0 +1,64 @@
+// The members of what several studies find, as their JSON names them: see reports/record.h.
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "reports/origin.h"
+#include "reports/record.h"
+#include "reports/result_members.h"
+#include "sampling/interval.h"
+#include "studies/closing/effect_ablation.h"
+#include "studies/devices/robustness.h"
+
+namespace softland {
+
+/// What every record of a study begins with.
+template <class A>
+void members(A& a, Origin& origin) {
+  a("kind", origin.kind);
+  a("version", origin.version);
+  a("made_with", origin.made_with);
+  a("command", origin.command);
+  if (a.has(!origin.scene.is_null())) a("scene", origin.scene);
+  if (a.has(!origin.scene_toml.empty())) a("scene_toml", origin.scene_toml);
+}
+
+/// Status and figures of a run, but for those of the drives.
+template <class A>
+void members(A& a, Metrics& metrics) {
+  FigureValues values(metrics);
+  a.figures(values, internal::figure_of_no_drive);
+  a("status", metrics.status);
+  if constexpr (!A::reads) return;
+  for (const Figure& figure : all_figures) {
+    const double value = values[figure];
+    std::visit(
+        [&]<class T>(T Metrics::*member) {
+          if (std::is_same_v<T, double> || std::isfinite(value)) metrics.*member = static_cast<T>(value);
+        },
+        figure.member);
+  }
+}
+
+template <class A>
+void members(A& a, NamedNumber& number) {
+  a("name", number.name);
+  a("unit", number.unit);
+  a("value", number.value);
+}
+
+template <class A>
+void members(A& a, Yield& yield) {
+  a("devices", yield.devices);
+  a("share", yield.value);
+  a.pair("interval", yield.interval.low, yield.interval.high);
+}
+
+template <class A>
+void members(A& a, EstimatedQuantile& quantile) {
+  a("value", internal::OrInfinite{quantile.value});
+  a.pair("interval", quantile.interval.low, quantile.interval.high);
+}
+
+}  // namespace softland
