@@ -147,7 +147,7 @@ Status status_of(const PreparedScene& p, const PullInsRecord& record) {
   return Status::done;
 }
 
-Ending ending_of(const PreparedScene& p, const PullInsRecord& record) {
+Ending worst_ending(const PreparedScene& p, const PullInsRecord& record) {
   Ending ending = Ending::done;
   const auto& electrodes = p.scene.device.electrodes;
   for (std::size_t k = 0; k < electrodes.size(); ++k) {
@@ -208,7 +208,7 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   record.origin.scene = interrupted ? file.json() : prepared.resolved().json();  // volts may not be known yet
   record.status = to_string(interrupted ? Status::interrupted : status_of(prepared, record));
   Outcome outcome = shown(record);
-  outcome.ending = interrupted ? Ending::interrupted : ending_of(prepared, record);
+  outcome.ending = interrupted ? Ending::interrupted : worst_ending(prepared, record);
   return outcome;
 }
 

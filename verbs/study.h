@@ -81,7 +81,7 @@ struct Study {
   /// Reads what was told; the study itself runs when that is called. Throws InvalidRequest. Empty where a door runs the verb.
   std::function<std::function<Outcome(const Setting&)>(const Told&)> ask = {};
   /// Makes of the JSON of an outcome what can be made of it again: its text and files. Throws InvalidInput for other JSON. Empty
-  /// where a door runs the verb.
+  /// where the verb leaves no record, or the result of one closing or a search, which reports/result_reader.h reads.
   std::function<Outcome(const nlohmann::json&)> shown_again = {};
 
   /// The name of an option in Python.
@@ -143,14 +143,14 @@ template <class Request>
           .options = list.all()};
 }
 
-/// The study of a request that has run(setting, request) and shown_again(json), too.
+/// The study of a request that has run(setting, request), too, and shown_again(json) where it leaves a record.
 template <class Request>
 [[nodiscard]] Study study_of() {
   Study study = described<Request>();
   study.ask = [](const Told& told) -> std::function<Outcome(const Setting&)> {
     return [request = read_options<Request>(told)](const Setting& setting) { return run(setting, request); };
   };
-  study.shown_again = Request::shown_again;
+  if constexpr (requires { Request::shown_again; }) study.shown_again = Request::shown_again;
   return study;
 }
 

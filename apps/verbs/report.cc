@@ -127,7 +127,7 @@ int report_verb(const Common& given, const ReportRequest& request) {
       is_folder(request.result) ? record_in(request.result) : std::filesystem::path(request.result);
   const nlohmann::json j = parse_record(read_file(path), path.string());
   const auto study = std::ranges::find(verbs::all_studies(), j["kind"], [](const verbs::Study& one) { return one.name; });
-  if (study != verbs::all_studies().end()) {
+  if (study != verbs::all_studies().end() && study->shown_again) {
     require_version(j, path.string());
     const verbs::Outcome found = [&] {
       try {
