@@ -4,16 +4,9 @@
 
 #include <cmath>
 
-#include "reports/json_number.h"
 #include "reports/quantity.h"
 
 namespace softland::internal {
-
-nlohmann::json interval_json(const Interval& interval) { return {json_number(interval.low), json_number(interval.high)}; }
-
-nlohmann::json yield_json(const Yield& yield) {
-  return {{"devices", yield.devices}, {"share", json_number(yield.value)}, {"interval", interval_json(yield.interval)}};
-}
 
 std::string yield_text(const Yield& yield) {
   return fmt::format("{} ({} to {})", percent(yield.value), plain_number(100 * yield.interval.low),

@@ -1,7 +1,6 @@
-// Shares and quantiles of devices with their intervals, as text and as JSON.
+// Shares and quantiles of devices with their intervals, as text.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
@@ -9,8 +8,6 @@
 
 namespace softland::internal {
 
-[[nodiscard]] nlohmann::json interval_json(const Interval& interval);
-[[nodiscard]] nlohmann::json yield_json(const Yield& yield);
 /// "3.4 % (2.7 to 4.3)"
 [[nodiscard]] std::string yield_text(const Yield& yield);
 /// "26.9 mm/s (26.6 to 27.1)"; "∞" where it is infinite.

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "base/printable.h"
 #include "base/require.h"
 #include "base/shortened.h"
 
@@ -17,10 +18,11 @@ void internal::require_same(const json& written, const json& read) {
     if (letter == '/') letter = '.';
   }
   if (!key.empty()) key.erase(0, 1);
+  key = shortened(printable_line(key));
   const std::string how = changes[0]["op"];
-  require(how != "add", [&] { return fmt::format("\"{}\" is missing", shortened(key)); });
-  require(how != "remove", [&] { return fmt::format("\"{}\" is not known", shortened(key)); });
-  throw InvalidInput(fmt::format("\"{}\" is not as softland writes it", shortened(key)));
+  require(how != "add", [&] { return fmt::format("\"{}\" is missing", key); });
+  require(how != "remove", [&] { return fmt::format("\"{}\" is not known", key); });
+  throw InvalidInput(fmt::format("\"{}\" is not as softland writes it", key));
 }
 
 }  // namespace softland

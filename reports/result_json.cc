@@ -1,8 +1,8 @@
 #include "reports/result_json.h"
 
-#include "reports/result_members.h"
 #include "reports/result_words.h"
 #include "reports/seeds_report.h"
+#include "reports/study_members.h"
 
 namespace softland {
 
@@ -61,14 +61,7 @@ json internal::voltages_json(const std::map<std::string, ByModes>& of_electrodes
   return all;
 }
 
-json closed_state_json(const ClosedState& state) { return internal::record_json(state); }
-
-json metrics_json(const Metrics& m) {
-  internal::JsonWriter metrics;
-  metrics.figures(FigureValues(m), internal::figure_of_no_drive);
-  metrics("status", std::string(to_string(m.status)));
-  return std::move(metrics).take();
-}
+json metrics_json(const Metrics& m) { return internal::record_json(m); }
 
 namespace {
 

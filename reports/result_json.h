@@ -19,8 +19,6 @@ namespace softland {
 /// The same of the record of a study.
 [[nodiscard]] nlohmann::json without_curves(nlohmann::json record);
 
-[[nodiscard]] nlohmann::json closed_state_json(const ClosedState& state);
-
 namespace internal {
 /// {"5": number, "10": ..., "20": ..., "converged": number}, and back; a number that there is not is null.
 [[nodiscard]] nlohmann::json by_modes_json(const ByModes& found);

@@ -377,6 +377,24 @@ TEST(PullIn, SaysWhenTheDynamicOneEqualsTheStaticOne_optimized) {
   }
 }
 
+// What the JSON of every study gives is a matter of tests/verbs.
+TEST(Report, FindsWhatAStudyLeftInItsFolder_optimized) {
+  const Workplace here;
+  ASSERT_NE(here.run({"release", "gold.toml", "--budget", "60", "--samples", "0", "--set", "structure.modes=1", "--out", "open"})
+                .status,
+            2);
+  const std::string svg = read(here.path() / "open/release.svg");
+  const Outcome o = here.run({"report", "open", "--out", "again"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("\nIn again: release.svg\n"));
+  EXPECT_EQ(read(here.path() / "again/release.svg"), svg);
+  write(here.path() / "open/release.json", edited(read(here.path() / "open/release.json"), "\"band_m\"", "\"band_km\""));
+  const Outcome damaged = here.run({"report", "open"});
+  EXPECT_EQ(damaged.status, 2);
+  EXPECT_THAT(damaged.err, HasSubstr("open/release.json: \"band_"));
+  EXPECT_EQ(read(here.path() / "open/release.svg"), svg) << "it is left alone";
+}
+
 TEST(Check, SaysWhenTheSwitchHasNoOpenState) {
   const Workplace here;
   write(here.path() / "casimir.toml", shipped("nem-casimir.toml"));

@@ -1,5 +1,14 @@
+#include "reports/accuracy_report.h"
+#include "reports/check_report.h"
+#include "reports/effects_report.h"
+#include "reports/fit_report.h"
+#include "reports/limit_report.h"
+#include "reports/measurement_report.h"
+#include "reports/pull_in_report.h"
+#include "reports/release_report.h"
 #include "reports/result_document.h"
 #include "reports/result_reader.h"
+#include "reports/robustness_report.h"
 #include "reports/svg.h"
 #include "reports/text.h"
 #include "tests/fuzz/scene_checks.h"
@@ -17,10 +26,34 @@ std::size_t scripts(std::string_view page) {
   return count;
 }
 
+// The text of a record of a study.
+template <class Record>
+std::string told(const Record& record) {
+  if constexpr (requires { text_of(record); })
+    return text_of(record);
+  else
+    return terminal_text(document_of(record));
+}
+
+std::string told(const std::string& kind, const json& read) {
+  if (kind == "check") return told(read_check(read));
+  if (kind == "pull-in") return told(read_pull_ins(read));
+  if (kind == "effects") return told(read_effects(read));
+  if (kind == "accuracy") return told(read_accuracy(read));
+  if (kind == "limit") return told(read_limit(read));
+  if (kind == "release") return told(read_release(read));
+  if (kind == "robustness") return told(read_robustness(read));
+  if (kind == "fit") return told(read_fit(read));
+  if (kind == "calibrate") return told(read_measurements(read));
+  return "of no study";
+}
+
 }  // namespace
 
 void result(std::string_view input) {
   json read;
+  if (!accepted([&] { read = parse_record(input, "fuzz.json"); })) return;
+  accepted([&] { check(!told(read["kind"].get<std::string>(), read).empty(), "a record without words"); });
   if (!accepted([&] { read = parse_result(input, "fuzz.json"); })) return;
   check(parse_result(read.dump(), "written.json") == read, "a result changes when it is read again");
 
