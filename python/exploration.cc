@@ -1,5 +1,4 @@
 // Explorations of the design space under Python.
-#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <string>

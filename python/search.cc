@@ -144,19 +144,29 @@ bool is_own(const OptimizeResult& found) {
          });
 }
 
+// Runs a search, which a session keeps in a folder, or none does.
+Outcome run_search(PlannedSearch& search, const Request& request, Run& running, SearchSession* session = nullptr) {
+  listen(search, request, running, session);
+  return searched(request, running, [&](const Watch& watch) {
+    const auto report = std::make_shared<SearchReport>(run(search));
+    const bool own = is_own(report->found.best());
+    if (!own && !running.given_up()) add_devices(*report, search, request.command, watch);
+    if (session != nullptr) session->close();
+    running.throw_if_given_up();
+    if (own) return outcome_of_own(report->found.best());
+    add_result(*report, search, session != nullptr ? session->destination(*report) : "", {.command = request.command});
+    if (session != nullptr) {
+      session->add_log(report->result, *report);
+      session->leave(*report);
+    }
+    return python_outcome(result_json(report->result), verbs::files_of_report<SearchReport>(report));
+  });
+}
+
 Outcome search(PyScene& scene, const Request& request) {
   Run running(request.progress);
   PlannedSearch search = planned_search(request, scene.file, running);
-  listen(search, request, running);
-  return searched(request, running, [&](const Watch& watch) {
-    const auto report = std::make_shared<SearchReport>(run(search));
-    running.throw_if_given_up();
-    if (is_own(report->found.best())) return outcome_of_own(report->found.best());
-    add_devices(*report, search, request.command, watch);
-    running.throw_if_given_up();
-    add_result(*report, search, "", {.command = request.command});
-    return python_outcome(result_json(report->result), verbs::files_of_report<SearchReport>(report));
-  });
+  return run_search(search, request, running);
 }
 
 Outcome search_in_folder(PyScene& scene, const Request& request) {
@@ -169,17 +179,7 @@ Outcome search_in_folder(PyScene& scene, const Request& request) {
                               return ResultFolder(request.out, "out " + request.out, request.command, files, kept);
                             }};
   SearchSession session(search, known, output);
-  listen(search, request, running, &session);
-  return running([&](const Watch& watch) {
-    const auto report = std::make_shared<SearchReport>(run(search));
-    if (!running.given_up()) add_devices(*report, search, request.command, watch);
-    session.close();
-    running.throw_if_given_up();
-    add_result(*report, search, session.destination(*report), {.command = request.command});
-    session.add_log(report->result, *report);
-    session.leave(*report);
-    return python_outcome(result_json(report->result), verbs::files_of_report<SearchReport>(report));
-  });
+  return run_search(search, request, running, &session);
 }
 
 }  // namespace

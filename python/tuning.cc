@@ -1,5 +1,4 @@
 // Tunings under Python: the shots of a session, and a simulated device that answers them.
-#include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 

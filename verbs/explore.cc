@@ -18,7 +18,7 @@ namespace {
 struct ExploreVerb : Usual, ExploreRequest {
   static constexpr auto name = "explore", about = "compute many points of a design space into a store", python = "explore",
                         returns = "Store", scene = scene_alone;
-  static constexpr auto in_python = " Ctrl-C raises KeyboardInterrupt; the rows that are done are in the store.";
+  static constexpr auto in_python = "Ctrl-C raises KeyboardInterrupt; the rows that are done are in the store.";
   static constexpr auto remarks =
       "SCENE is a scene, a plan file (docs/explore.md), or with --resume or --point a store, which holds its plan.\n"
       "Ctrl-C ends a run with what there is; --resume goes on, after a power cut too.\n"
@@ -33,7 +33,7 @@ struct ExploreVerb : Usual, ExploreRequest {
       "  softland explore softland-out.sqlite --point 17 --out point17.toml";
 };
 
-std::vector<std::string> point_study_names() {
+std::vector<std::string> study_names() {
   std::vector<std::string> names;
   for (const std::string_view name : names_of(point_studies)) names.emplace_back(name);
   for (const OtherStudy& one : studies_of_points()) names.push_back(one.name);
@@ -42,7 +42,7 @@ std::vector<std::string> point_study_names() {
 
 template <class Archive>
 void options(Archive& a, ExploreVerb& r) {
-  const std::vector<std::string> studies = point_study_names();
+  const std::vector<std::string> studies = study_names();
   std::string listed_studies = in_words(studies, " or ");
   listed_studies.insert(listed_studies.find(','), " (default)");
   a.as({.type = "Mapping[str, str] | Sequence[str]", .value = "", .told = "_settings({})", .is_positional = true})

@@ -13,7 +13,7 @@
 
 namespace softland::verbs {
 
-/// What is not told is empty.
+/// Options that are not told are empty.
 struct ExploreRequest {
   std::vector<std::string> vary, options;
   std::string sample, pareto, list, study, target, actuator, waveform, optimizer, shard, out;
@@ -26,7 +26,7 @@ struct ExploreRequest {
   [[nodiscard]] std::map<std::string, std::string> of_plan() const;
   /// The plan of this scene. Messages begin with an option as `spelling` has it. Throws InvalidInput.
   [[nodiscard]] PlanRequest plan(SceneFile scene, const Spelling& spelling) const;
-  /// The part of it. Throws InvalidRequest.
+  /// The part of its points. Throws InvalidRequest.
   [[nodiscard]] Shard part() const;
 };
 /// Throws InvalidRequest.

@@ -14,7 +14,7 @@ struct ExportVerb : Usual, ExportRequest {
                         python = "export", returns = "str", progress = "False", subject = "RESULT",
                         scene = "folder that --out named, result.json, or a scene file";
   static constexpr auto in_python =
-      "\n\n        Warns where the switch does not close under the samples as well as under the waveform itself.";
+      "Warns where the switch does not close under the samples as well as under the waveform itself.";
   static constexpr Takes takes{.set = false, .quiet = false, .json = false};
   static constexpr auto remarks =
       "Examples:\n  softland export softland-out --format spice-pwl > drive.cir\n"

@@ -40,7 +40,7 @@ struct OptimizeVerb : Usual, OptimizeRequest {
                         leaves = "folder for the report, the waveform found and all data (default: softland-out)",
                         place = "softland-out";
   static constexpr auto in_python =
-      "\n\n        The result has the keys of result.json, and `files` such as best.toml. `softland optimize --help` lists the "
+      "The result has the keys of result.json, and `files` such as best.toml. `softland optimize --help` lists the "
       "optimizers.";
   static constexpr Takes takes{.scene = false};
   static std::string remarks() {

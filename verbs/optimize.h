@@ -9,10 +9,10 @@
 
 namespace softland::verbs {
 
-/// Of a search that the least time of any waveform, a second or two, does not make much longer.
+/// Evaluations of a search that the least time of any waveform, a second or two, does not make much longer.
 inline constexpr long evaluations_worth_a_limit = 1000;
 
-/// What is not told is empty.
+/// Options that are not told are empty.
 struct OptimizeRequest : SearchRequest {
   std::vector<std::string> starts;  ///< results and scenes to begin with
   int jobs = one_per_core();

@@ -14,7 +14,7 @@ std::string keyword_of(std::string_view name) {
 
 std::string spelled(std::string_view marked, const Spelling& spelling) {
   constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz-";
-  constexpr char mark = '\x02', end_mark = '\x03';
+  constexpr char mark = '\x02', end_mark = '\x03';  // as requested() has them
   std::string text;
   for (std::size_t begin = 0; begin < marked.size();) {
     const std::size_t name = std::min(marked.find(mark, begin), marked.size());

@@ -86,8 +86,10 @@ std::string method(const Study& study) {
   about.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(about.front())));
   std::string text = fmt::format("    def {}(\n        self,\n{}        *,\n{}        progress: bool | Progress | None = {},\n",
                                  study.python, positional, named, study.progress);
-  text += fmt::format("    ) -> {}:\n        \"\"\"{}, as `softland {}`. Raises InvalidInput.{}{}\"\"\"\n", study.returns, about,
-                      study.name, study.in_python, explained.empty() ? explained : "\n\n" + explained + "        ");
+  std::string more = explained;
+  if (*study.in_python != '\0') more = paragraph(study.in_python) + (explained.empty() ? "" : "\n" + explained);
+  text += fmt::format("    ) -> {}:\n        \"\"\"{}, as `softland {}`. Raises InvalidInput.{}\"\"\"\n", study.returns, about,
+                      study.name, more.empty() ? more : "\n\n" + more + "        ");
   return text + (told.empty() ? fmt::format("        return {}\n", call(study, "{}", objects))
                               : fmt::format("        told: Told = {{\n{}        }}\n        return {}\n", told,
                                             call(study, "told", objects)));

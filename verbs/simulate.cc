@@ -23,7 +23,7 @@ struct SimulateVerb : Usual, SimulateRequest {
   static constexpr auto name = "simulate", about = "simulate the closing that a scene describes", python = "simulate",
                         returns = "Closing", progress = "False",
                         leaves = "folder for report.html, gap.svg, result.json and trajectory.csv";
-  static constexpr auto in_python = " Numerical trouble is the status of the closing.";
+  static constexpr auto in_python = "Numerical trouble is the status of the closing.";
   static constexpr auto remarks =
       "Example:\n  softland simulate scenes/mem-gold.toml --set waveform.main.level=\"1.1 Vdp\" --json -";
   static std::vector<std::string> files() { return {"report.html", "gap.svg", "result.json", "trajectory.csv"}; }

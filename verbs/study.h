@@ -171,7 +171,7 @@ template <class Request>
 [[nodiscard]] Study simulate_study();
 [[nodiscard]] Study tune_study();
 
-/// Those of a scene alone, and all of them, in the order of --help.
+/// The studies of a scene alone, and all studies, in the order of --help.
 [[nodiscard]] const std::vector<Study>& scene_studies();
 [[nodiscard]] const std::vector<Study>& all_studies();
 /// Throws InvalidInput where there is none of this name.

@@ -18,7 +18,7 @@ struct TuneVerb : Usual, TuneRequest {
                         leaves = "folder for the page, the waveform kept and all closings (default: softland-tune)",
                         place = "softland-tune";
   static constexpr auto in_python =
-      "\n\n        The tuning is ready for its first shot: the waveform for the drawing is searched, which takes half a minute "
+      "The tuning is ready for its first shot: the waveform for the drawing is searched, which takes half a minute "
       "or so.";
   static constexpr auto remarks =
       "Every closing is open loop, and what is seen of it is when the contact was closed. After each the device is known "

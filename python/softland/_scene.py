@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Union
+from typing import Any, Literal, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -17,10 +16,9 @@ from . import _softland
 from ._evaluator import Evaluator
 from ._files import write_whole
 from ._outcome import Outcome
-from ._progress import Progress, shown
+from ._progress import Progress
 from ._records import Quantity, read
 from ._studies import Studies
-from ._studying import command, natives
 from ._tuning import Device
 from ._units import units
 from ._waveform import Waveform

@@ -11,7 +11,6 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _softland
-from ._files import write_whole
 from ._outcome import Outcome
 from ._progress import Progress, shown
 from ._waveform import Waveform
