@@ -64,7 +64,7 @@ struct CompositeSection {
 /// Why the beam cannot rest straight under its axial stress; empty when it can.
 [[nodiscard]] std::string why_buckled(const Structure& structure, const std::optional<Surface>& surface = {});
 
-/// Which rule a beam breaks; empty: none.
+/// The rule that a beam breaks; empty: none.
 [[nodiscard]] std::string why_no_beam(const Device& device);
 
 struct BeamSupport {

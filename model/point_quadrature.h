@@ -24,7 +24,7 @@ class PointQuadrature {
   [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
   [[nodiscard]] const Eigen::ArrayXd& positions() const { return positions_; }  ///< [m]
   [[nodiscard]] const Eigen::ArrayXd& weights() const { return weights_; }      ///< [m]
-  /// At the points, and the largest of them at the idle ones behind [m].
+  /// They are those of the points, and at the idle ones behind them the largest [m].
   [[nodiscard]] const Eigen::ArrayXd& rest_gaps() const { return rest_gaps_; }
   /// phi_i(x_p), a row per point and some of no motion behind them, which fill the last block [kg^(-1/2)].
   [[nodiscard]] const Eigen::MatrixXd& shapes() const { return shapes_; }

@@ -11,7 +11,7 @@
 
 namespace softland {
 
-/// What both kinds of beams have beside length, width and thickness.
+/// Both kinds of beams have this beside length, width and thickness.
 struct Beam {
   double youngs_modulus = 0;  ///< E [Pa], used as given unless plate_strain
   double density = 0;         ///< rho [kg/m^3]

@@ -1,5 +1,5 @@
-// What moves: one of the kinds of structures, with what all of them have. A new kind is its header (model/structure/beam.h says
-// what is in it) and a row here.
+// The moving part: one of the kinds of structures, with what all of them have. A new kind is its header (model/structure/kind.h
+// says what is in it) and a row here.
 #pragma once
 
 #include <concepts>
@@ -47,7 +47,7 @@ struct Structure {
   }
   template <class Part>
   [[nodiscard]] constexpr const Part* find() const {
-    return const_cast<Structure*>(this)->find<Part>();  // which changes nothing
+    return const_cast<Structure*>(this)->find<Part>();
   }
   /// The key of the damping ratio, which every kind has.
   [[nodiscard]] static consteval Field<Structure> damping();

@@ -118,7 +118,7 @@ std::shared_ptr<const ModalTable> ModalStructure::example_table() {
   static const auto table = [] {
     constexpr int places = 40;
     constexpr double length = 250e-6, mass = 19300 * 20e-6 * 2e-6 * length;
-    constexpr std::array roots{1.87510406871, 4.69409113297}, frequencies{10394.0, 65139.0};  // of a beam with a free end
+    constexpr std::array roots{1.87510406871, 4.69409113297}, frequencies{10394.0, 65139.0};  // a beam with a free end has these
     std::vector<double> x;
     std::vector<std::vector<double>> shapes(roots.size());
     for (int i = 0; i <= places; ++i) {

@@ -51,8 +51,8 @@ TEST(Schema, EveryKeySetsAMemberOrIsKnownToSetNone) {
       if (!is_bound(key.bound)) without_member.push_back(fmt::format("{}.{}", section.name, key.name));
     }
   }
-  // The areas decide lengths together with a width, the models and the kind what is there to have members. What is said of a file
-  // of modes makes a table.
+  // The areas decide lengths together with a width, the models and the kind what is there to have members. The keys of a file
+  // of modes make a table.
   EXPECT_THAT(without_member,
               UnorderedElementsAre("structure.area", "electrode.area", "contact.model", "gas.model", "structure.kind",
                                    "structure.file", "structure.axis", "structure.direction", "structure.length_unit",

@@ -43,7 +43,7 @@ TYPED_TEST(KindOfStructure, HasAnExampleThatIsASwitch) {
 
 // Orthonormal in mass: of a plate and a beam the density is even, and so are the shapes' squares along them.
 TYPED_TEST(KindOfStructure, HasModesOfUnitMass) {
-  constexpr double table_places = 2e-4;  // of the mass: a table's cubics between its places, and its rounded roots
+  constexpr double table_places = 2e-4;  // a table has cubics between its places, and rounded roots
   const Device device = device_of<TypeParam>();
   const Structure& s = device.structure;
   double mass_per_length = 19300 * s.width * s.thickness;
