@@ -1,23 +1,30 @@
 // A kind of structure is a struct with its numbers and
 //
-//   static constexpr std::string_view name;             its name in a scene
-//   template <class S> static consteval auto fields();  an array of Field<S> (base/field.h), S the Structure: its keys in a scene
-//   template <class S> static S example();              a structure that a switch may have, for tests
-//   static constexpr std::array usual_spread;           how its devices differ where a scene does not say
-//   auto modes(device, known) const;                    what answers as BeamModes does; `known` are modes of a similar switch
+// - `static constexpr std::string_view name`, by which a scene names it
+// - `template <class S> static consteval auto fields()`, an array of Field<S> (base/field.h), S the Structure: its keys.
+//   A number must be above 0 unless its field has another `range`. The unit is any product of the symbols of config/units.cc.
+// - `template <class S> static S example()`, a structure that a switch may have, for tests
+// - `static constexpr std::array usual_spread`, how its devices differ where a scene does not say
+// - `auto modes(device, known) const`, its modes: an object with
+//     angular_frequencies() [rad/s]; length() [m]; scale(), the shapes over the normalised ones [kg^(-1/2)];
+//     normalised(), which points to an object with value(x), slope(x) and pinned_inverse_square(x, near), x over the length;
+//     frequency_scale() [rad/s]: held at x, the structure has the frequency frequency_scale() / sqrt(pinned_inverse_square(x))
+//   `known` are the normalised modes of a similar beam, or null: a beam begins with them.
 //
 // It may also have
 //
-//   std::string why_invalid(device) const;              the rule that it breaks, with the quantity; empty: none
-//   int most_modes() const;                             fewer than Structure::most_modes
-//   double rest_offset(device, x) const;                how far it rests from the straight shape at x, away from the near
-//   electrode auto stretching(modes, structure) const;            an optional stiffness of stretching static constexpr bool
-//   is_rigid, has_far_clamp;      where they are true static constexpr std::string_view why_no_layer, why_no_skins;    why
-//   [piezo] or [surface] cannot be static constexpr std::string_view whose, length_is; for messages: "on a plate", and its length
-//   in words, {} for the value
+// - `std::string why_invalid(device) const`, the rule that it breaks, with the quantity; empty: none
+// - `int most_modes() const`, where it has fewer than Structure::most_modes
+// - `double rest_offset(device, x) const`, how far it rests from the straight shape at x, away from the near electrode [m]
+// - `auto stretching(modes, structure) const`, an optional stiffness of stretching
+// - `static constexpr bool is_rigid` or `has_far_clamp`, where it is true
+// - `static constexpr std::string_view why_no_layer` or `why_no_skins`: why [piezo] or [surface] cannot be
+// - `static constexpr std::string_view whose` and `length_is` for messages: "on a plate", its length in words with {} for it
 //
-// Functions that take a device are templates of its type: a device is made of structures. `Structure`
-// (model/structure/structure.h) answers for the kind in force.
+// Functions that take a device are templates of its type, since a device is made of structures; so they call beam_modes() of
+// model/beam.h without including it, and a class that holds BeamModes is a template, too. `Structure`
+// (model/structure/structure.h) answers for the kind in force. A kind that derives from Beam also has its warning of slenderness,
+// its verdicts by the number of modes and up to 40 modes at rest; one that derives from Cantilever has its curl.
 #pragma once
 
 #include <string_view>
