@@ -1,9 +1,9 @@
 // A kind of structure is a struct with its numbers and
 //
 // - `static constexpr std::string_view name`, by which a scene names it
-// - `template <class S> static consteval auto fields()`, an array of Field<S> (base/field.h), S the Structure: its keys.
+// - `fields()`, consteval of a template argument S, an array of Field (base/field.h) of the Structure S: its keys.
 //   A number must be above 0 unless its field has another `range`. The unit is any product of the symbols of config/units.cc.
-// - `template <class S> static S example()`, a structure that a switch may have, for tests
+// - `example()`, of the same argument, a structure that a switch may have, for tests
 // - `static constexpr std::array usual_spread`, how its devices differ where a scene does not say
 // - `auto modes(device, known) const`, its modes: an object with
 //     angular_frequencies() [rad/s]; length() [m]; scale(), the shapes over the normalised ones [kg^(-1/2)];
