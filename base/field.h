@@ -37,15 +37,15 @@ struct Field {
   double& (*in)(Owner&) = nullptr;   ///< the number, see reach(); null for what is no such number
   int& (*count)(Owner&) = nullptr;   ///< a whole number
   bool& (*flag)(Owner&) = nullptr;   ///< a flag
-  std::string_view or_word = {};     ///< of a whole number: a word that may stand instead of it
+  std::string_view or_word = {};     ///< a word that may stand instead of a whole number
   bool required = false;             ///< else a scene may leave it out, and it keeps the value of an Owner{}
   Range range = positive;            ///< ends that it leaves open are closed in a scene by the extent of the unit
   std::string_view fallback = {};    ///< the value of an Owner{} as a scene writes it; empty where that means "none"
   std::string_view instead_of = {};  ///< the key of another field of the law that this one excludes
   std::string_view not_below = {};   ///< the key of another field of the law, whose value is the least one
   std::string_view such_as = {};     ///< a value for messages, where what is usual of the unit would not do
-  std::string_view beyond = {};  ///< what a scene does where a value must lie outside the range, which is then the scene's alone
-  std::string_view why_fixed = {};                       ///< why devices cannot differ by it; empty: they can
+  std::string_view beyond = {};      ///< advice for a value outside the range, which then binds scenes alone
+  std::string_view why_fixed = {};   ///< why devices cannot differ by it; empty: they can
   std::vector<std::string_view> (*words)() = nullptr;    ///< of a word: what it may be
   void (*choose)(Owner&, std::string_view) = nullptr;    ///< of a word: sets the enumerator
   std::string_view refused_word = {}, why_refused = {};  ///< of a word: one that people may expect here, and why it is not there

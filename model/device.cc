@@ -100,9 +100,12 @@ void check_gap_and_electrodes(const Device& d) {
 
 /// A structure that is not straight at rest touches nothing there.
 void check_rest_shape(const Device& d) {
-  constexpr int places = 64;
-  double lowest = 0;
-  for (int k = 1; k <= places; ++k) lowest = std::min(lowest, d.rest_offset(d.structure.length * k / places));
+  const double lowest = std::visit(
+      [&](const auto& kind) {
+        if constexpr (requires { kind.lowest_rest_offset(d); }) return kind.lowest_rest_offset(d);
+        return 0.0;
+      },
+      d.structure.kind);
   require(lowest > -0.99 * d.gap.electrode, [&] {
     return fmt::format("structure: rests {} nearer to the electrode than a straight one: it would touch it at rest",
                        engineering(-lowest, "m", 4));

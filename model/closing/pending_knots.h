@@ -13,7 +13,8 @@ namespace softland {
 class Course {
  public:
   /// Keeps references.
-  Course(const Device& device, ClosingObserver& observer) : device_(device), observer_(observer) {}
+  Course(const Device& device, ClosingObserver& observer)
+      : device_(device), rest_gap_(device.gap.electrode + device.rest_offset(device.contact_position())), observer_(observer) {}
 
   void push(const TrajectoryPoint& point) { waiting_.push_back(point); }
   /// Of those handed over and those that wait.
@@ -27,7 +28,7 @@ class Course {
   void hand_over() {
     for (const TrajectoryPoint& p : waiting_) {
       observer_.knot(p);
-      largest_squeeze_ = std::max(largest_squeeze_, squeeze_number(device_, p));
+      largest_squeeze_ = std::max(largest_squeeze_, squeeze_number(device_, rest_gap_, p));
     }
     if (!waiting_.empty()) handed_over_ = waiting_.back();
     waiting_.clear();
@@ -37,6 +38,7 @@ class Course {
 
  private:
   const Device& device_;
+  double rest_gap_;  // to the electrode, at the contact point [m]
   ClosingObserver& observer_;
   std::vector<TrajectoryPoint> waiting_;
   TrajectoryPoint handed_over_;

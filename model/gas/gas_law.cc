@@ -29,8 +29,8 @@ double squeeze_number(const FilmState& gas, double width, double gap, double rat
   return 12 * viscosity(gas) * width * width * rate / (gas.pressure * gap * gap);
 }
 
-double squeeze_number(const Device& device, const TrajectoryPoint& point) {
-  const double h = device.gap.electrode + device.rest_offset(device.contact_position()) - point.position;
+double squeeze_number(const Device& device, double rest_gap, const TrajectoryPoint& point) {
+  const double h = rest_gap - point.position;
   if (!device.gas || !std::isfinite(limits_of(*device.gas).most_squeeze) || !(h > 0)) return 0;
   return squeeze_number(*film_of(*device.gas), device.structure.width, h, std::abs(point.velocity) / h);
 }

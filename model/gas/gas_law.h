@@ -42,7 +42,7 @@ using GasLaw = internal::LawsOf<Gas>::Type;
 [[nodiscard]] double squeeze_number(const FilmState& gas, double width, double gap, double rate);
 
 /// At the contact point, with the rate |v| / h; 0 where the device's law has no limit for it.
-[[nodiscard]] double squeeze_number(const Device& device, const TrajectoryPoint& point);
+[[nodiscard]] double squeeze_number(const Device& device, double rest_gap, const TrajectoryPoint& point);
 
 /// One line per limit of the gas law that a closing left, with law, limit and value. Knudsen numbers are taken between the rest
 /// gap and the smallest gap anywhere [m].

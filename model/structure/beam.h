@@ -64,6 +64,10 @@ struct Cantilever : Beam {
   [[nodiscard]] double rest_offset(const Device& device, double x) const {
     return stress_gradient == 0 ? 0 : curl(device, stress_gradient, x);
   }
+  template <class Device>
+  [[nodiscard]] double lowest_rest_offset(const Device& device) const {
+    return stress_gradient < 0 ? rest_offset(device, device.structure.length) : 0;
+  }
 
   template <class S>
   [[nodiscard]] static S example() {

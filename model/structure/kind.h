@@ -16,6 +16,7 @@
 // - `std::string why_invalid(device) const`, the rule that it breaks, with the quantity; empty: none
 // - `int most_modes() const`, where it has fewer than Structure::most_modes
 // - `double rest_offset(device, x) const`, how far it rests from the straight shape at x, away from the near electrode [m]
+//   and with it `double lowest_rest_offset(device) const`, the least of these
 // - `auto stretching(modes, structure) const`, an optional stiffness of stretching
 // - `static constexpr bool is_rigid` or `has_far_clamp`, where it is true
 // - `static constexpr std::string_view why_no_layer` or `why_no_skins`: why [piezo] or [surface] cannot be

@@ -100,7 +100,7 @@ inline std::string_view Structure::why_no_layer() const {
   return std::visit(
       []<class Kind>(const Kind&) -> std::string_view {
         if constexpr (requires { Kind::why_no_layer; }) return Kind::why_no_layer;
-        return {};
+        return std::derived_from<Kind, Beam> ? "" : "a layer needs a beam";
       },
       kind);
 }
@@ -108,7 +108,7 @@ inline std::string_view Structure::why_no_skins() const {
   return std::visit(
       []<class Kind>(const Kind&) -> std::string_view {
         if constexpr (requires { Kind::why_no_skins; }) return Kind::why_no_skins;
-        return {};
+        return std::derived_from<Kind, Beam> ? "" : "a surface needs a beam";
       },
       kind);
 }

@@ -60,6 +60,10 @@ double ModalTable::rest_offset(double x) const {
   return rest_offsets_.front() - std::lerp(rest_offsets_[k - 1], rest_offsets_[k], share);
 }
 
+double ModalTable::lowest_rest_offset() const {
+  return rest_offsets_.empty() ? 0 : rest_offsets_.front() - std::ranges::max(rest_offsets_);
+}
+
 bool ModalTable::is_held_at_both_ends() const {
   constexpr double still = 1e-4;  // of the largest motion
   return std::all_of(shapes_.begin(), shapes_.end(), [](const std::vector<double>& shape) {

@@ -44,6 +44,8 @@ class ModalTable {
   [[nodiscard]] const std::vector<double>& rest_offsets() const { return rest_offsets_; }  ///< [m]
   /// How far the face rests from where it is at the clamp, away from the near electrode [m]: a straight line between positions.
   [[nodiscard]] double rest_offset(double x) const;
+  /// The least of these [m].
+  [[nodiscard]] double lowest_rest_offset() const;
   /// Whether the last place stands still in every mode: the far end is clamped as well.
   [[nodiscard]] bool is_held_at_both_ends() const;
   [[nodiscard]] bool operator==(const ModalTable& other) const {
@@ -138,6 +140,10 @@ struct ModalStructure {
   template <class Device>
   [[nodiscard]] double rest_offset(const Device&, double x) const {
     return table->rest_offset(x);
+  }
+  template <class Device>
+  [[nodiscard]] double lowest_rest_offset(const Device&) const {
+    return table->lowest_rest_offset();
   }
   [[nodiscard]] std::string why_invalid(double length, int modes) const;
   [[nodiscard]] int most_modes() const;
