@@ -109,10 +109,10 @@ constexpr DeviceNumber device_numbers[] = {
     {[](Device& d) -> double& { return d.structure.width; }},
     {[](Device& d) -> double& { return d.structure.length; }},
     {[](Device& d) -> double& { return std::get<StripGas>(*d.gas).film.viscosity; }},
-    {[](Device& d) -> double& { return std::get<UniformAsperities>(d.contact->model).summits.effective_modulus; }, false},
-    {[](Device& d) -> double& { return std::get<UniformAsperities>(d.contact->model).height; }, false},
-    {[](Device& d) -> double& { return std::get<UniformAsperities>(d.contact->model).summits.radius; }, false},
-    {[](Device& d) -> double& { return d.contact->pad_length; }, false},
+    {[](Device& d) -> double& { return std::get<UniformAsperities>(d.contacts.front().model).summits.effective_modulus; }, false},
+    {[](Device& d) -> double& { return std::get<UniformAsperities>(d.contacts.front().model).height; }, false},
+    {[](Device& d) -> double& { return std::get<UniformAsperities>(d.contacts.front().model).summits.radius; }, false},
+    {[](Device& d) -> double& { return d.contacts.front().pad_length; }, false},
 };
 
 SwitchSlopes slopes_by_device(const PreparedScene& p, std::size_t parameters) {

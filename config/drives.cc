@@ -296,7 +296,7 @@ bool begins_closed(const SceneFile::Impl& file, const Device& device) {
   for (const std::string& drive : drive_names(device)) {
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present() || !in.is_given(before_state_key) || in.text(before_state_key) != closed_state_word) continue;
-    in.require(device.contact.has_value(), before_state_key, "needs a [contact]: without one nothing is closed");
+    in.require(device.has_contact(), before_state_key, "needs a [contact]: without one nothing is closed");
     closed = join_path(in.path(), before_state_key);
   }
   if (closed.empty()) return false;

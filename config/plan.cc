@@ -107,13 +107,13 @@ class KeyFinder {
       for (const internal::Section& one : internal::schema()) known.push_back(one.name);
       return fmt::format("'{}': unknown section{}", shortened(name), internal::hint(parts.front(), known));
     });
-    require(parts.size() == (section->is_named ? 3U : 2U), [&] {
-      return fmt::format("'{}' is no key; one of this section is {}.{}KEY", shortened(name), parts.front(),
-                         section->is_named ? "NAME." : "");
+    const bool named = file_.is_named(*section);
+    require(parts.size() == (named ? 3U : 2U), [&] {
+      return fmt::format("'{}' is no key; one of this section is {}.{}KEY", shortened(name), parts.front(), named ? "NAME." : "");
     });
     require(section->always_in_force || file_.find({parts.begin(), parts.end() - 1}) != nullptr,
             [&] { return fmt::format("'{}': the scene has no such section (--set puts one in)", shortened(name)); });
-    const SectionReader in(file_, parts.front(), section->is_named ? std::string_view(entry) : std::string_view());
+    const SectionReader in(file_, parts.front(), named ? std::string_view(entry) : std::string_view());
     found.schema = in.find(parts.back());
     require(found.schema != nullptr, [&] {
       std::vector<std::string_view> known;

@@ -45,12 +45,12 @@ void read_section(Scene& scene, const internal::Section& section, const SectionR
 void read_sections(Scene& scene, const SceneFile::Impl& file) {
   for (const internal::Section& section : internal::schema()) {
     if (section.begin == nullptr) continue;
-    if (!section.is_named) {
+    if (!file.is_named(section)) {
       read_section(scene, section, SectionReader(file, section.name));
       continue;
     }
     for (const std::string& name : file.names_in(std::string(section.name))) {
-      internal::check_drive_name(file, name);
+      if (section.is_named) internal::check_drive_name(file, name);
       read_section(scene, section, SectionReader(file, section.name, name), name);
     }
   }
@@ -63,6 +63,13 @@ void check_electrodes(const Device& device, const SceneFile::Impl& file) {
   const SectionReader in(file, "electrode", device.electrodes[conflict->electrode].name);
   for (const std::string_view key : {"span", "area"}) in.require(!in.is_given(key), key, conflict->why);
   in.fail(conflict->why);
+}
+
+void check_contacts(const Device& device, const SceneFile::Impl& file) {
+  const auto conflict = contact_conflict(device);
+  if (!conflict) return;
+  const std::string& name = device.contacts[conflict->contact].name;
+  file.fail_section(name.empty() ? "contact" : "contact." + name, conflict->why);
 }
 
 Calibration read_calibration(const SceneFile::Impl& file, const Device& device) {
@@ -131,7 +138,7 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
         "beam's Poisson's ratio; give e31 = d31 E / (1 - nu) of the layer",
         file.origin("piezo.d31").text, 100 * more));
   }
-  if (const auto* adhesive = device.contact ? std::get_if<AdhesiveAsperities>(&device.contact->model) : nullptr) {
+  if (const auto* adhesive = device.has_contact() ? std::get_if<AdhesiveAsperities>(&device.contacts.front().model) : nullptr) {
     const double tabor = adhesive->tabor_number();
     if (tabor > AdhesiveAsperities::largest_tabor_number)
       warnings.push_back(
@@ -153,7 +160,7 @@ toml::table sections_of(const SceneFile::Impl& file, KeysOf&& keys_of) {
       if (toml::table spread = internal::resolved_spread(file); !spread.empty()) root.insert(name, std::move(spread));
     } else if (name.empty()) {
       root = keys_of(SectionReader(file, ""));
-    } else if (!section.is_named) {
+    } else if (!file.is_named(section)) {
       const SectionReader in(file, name);
       if (in.is_present() || section.always_in_force) root.insert(name, keys_of(in));
     } else {
@@ -176,11 +183,12 @@ Scene read_scene(const SceneFile& file) {
       .title = {}, .device = {}, .simulate = {}, .metrics = {}, .need_pull_in = {}, .standing = {}, .warnings = {}, .file = file};
   read_sections(scene, impl);
   if (impl.own_contact) {
-    if (scene.device.contact)
+    if (scene.device.has_contact())
       impl.fail_section("contact", "the scene was given a contact law of a program: there can be no other");
-    scene.device.contact = impl.own_contact;
+    scene.device.contacts = {*impl.own_contact};
   }
   check_electrodes(scene.device, impl);
+  check_contacts(scene.device, impl);
   internal::check_drives(impl, scene);
   internal::read_spread(scene, impl);
   scene.calibration = read_calibration(impl, scene.device);

@@ -109,7 +109,7 @@ std::vector<std::string_view> key_names(const Section* section) {
 /// A section and what is below it. Inline tables stay inline: an entry of [spread] reads best on one line.
 void write_section(std::string& out, const toml::table& table, const std::string& path, std::size_t depth,
                    const Section* section) {
-  const bool holds_keys = section && (section->is_named ? depth == 2 : depth == 1);
+  const bool holds_keys = section && (depth == (section->is_named ? 2U : 1U) || (section->may_be_named && depth == 2));
   const std::vector<Entry> entries = ordered(table, holds_keys ? key_names(section) : std::vector<std::string_view>{});
   const auto is_subsection = [](const Entry& entry) { return entry.node->is_table() && !entry.node->as_table()->is_inline(); };
   if (entries.empty() || !std::all_of(entries.begin(), entries.end(), is_subsection)) {
@@ -381,7 +381,7 @@ void SceneFile::Impl::insert(const std::vector<std::string>& path, const toml::n
     if (!table) throw InvalidInput(fmt::format("{}: {} is not a section", place.text, written(path_text)));
   }
   if (const internal::Section* section = internal::find_section(path.front(), path.size() > 1 ? path[1] : std::string());
-      section && path.size() == (section->is_named ? 3 : 2)) {
+      section && (path.size() == (section->is_named ? 3U : 2U) || (section->may_be_named && path.size() == 3))) {
     for (const internal::Key& key : section->keys) {
       if (key.name != path.back()) continue;
       for (const std::string_view other : key.instead_of) {
@@ -409,6 +409,13 @@ toml::array SceneFile::Impl::with_element(const std::vector<std::string>& path, 
   return changed;
 }
 
+bool SceneFile::Impl::is_named(const internal::Section& section) const {
+  if (!section.may_be_named) return section.is_named;
+  const toml::node* node = find({std::string(section.name)});
+  return node != nullptr && node->is_table() &&
+         std::ranges::any_of(*node->as_table(), [](const auto& entry) { return entry.second.is_table(); });
+}
+
 std::vector<std::string> SceneFile::Impl::names_in(const std::string& section) const {
   std::vector<std::string> names;
   const toml::node* node = find({section});
@@ -419,6 +426,9 @@ std::vector<std::string> SceneFile::Impl::names_in(const std::string& section) c
     if (!beside.empty() && key.str() == beside) continue;
     if (!value.is_table()) {
       const std::string key_beside = beside.empty() ? "" : fmt::format(" or the key '{}'", beside);
+      if (internal::find_section(section)->may_be_named)
+        fail(join_path(section, key.str()),
+             fmt::format("[{}] is the only one of its kind: it cannot stand beside [{}.NAME]", section, section));
       fail(join_path(section, key.str()), fmt::format("expected a section [{}.NAME]{}", section, key_beside));
     }
     names.emplace_back(key.str());

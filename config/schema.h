@@ -82,6 +82,7 @@ struct Section {
   std::string_view name;         ///< empty: the keys above the first section
   std::string_view entry = {};   ///< of a named section: the one NAME these keys are for; empty: every other one
   bool is_named = false;         ///< [name.NAME], any number of them
+  bool may_be_named = false;     ///< [name], or [name.NAME] of several
   std::string_view beside = {};  ///< a key that stands among the NAMEs and is read by code of its own
   bool required = false;
   bool always_in_force = false;    ///< its defaults hold when the section is absent

@@ -218,6 +218,7 @@ SectionReader::Value SectionReader::parse(const Key& key, const toml::node& node
         }
         return all;
       }
+      if (text && std::ranges::find(key.words, text->get()) != key.words.end()) return std::vector{text->get()};
       break;
     case KeyType::choice:
       if (text) return parse_choice(key, text->get());
@@ -336,6 +337,7 @@ void SectionReader::set_members(Scene& scene, std::size_t entry) const {
   for (const auto& [name, value] : values_) {
     const Bound& bound = find(name)->bound;
     if (bound.place != nullptr) {
+      if (is_word(name)) continue;  // the place that holds where none is said
       for (std::size_t k = 0; k < quantities(name).size(); ++k) bound.place(scene, entry, k) = place_of(quantities(name)[k]);
     } else if (bound.number != nullptr) {
       bound.number(scene, entry) = number(name);

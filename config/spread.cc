@@ -134,9 +134,10 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
   std::vector<std::string_view> candidates;
   const std::string entry_name = parts.size() > 1 ? parts[1] : std::string();
   const Section* section = find_section(parts.front(), entry_name);
-  const std::size_t depth = section && section->is_named ? 3 : 2;
+  const bool named = section && file.is_named(*section);
+  const std::size_t depth = named ? 3 : 2;
   if (section && section->may_vary && parts.size() == depth && file.find({parts.begin(), parts.end() - 1})) {
-    const SectionReader of_key(file, parts[0], section->is_named ? entry_name : std::string());
+    const SectionReader of_key(file, parts[0], named ? entry_name : std::string());
     for (const Key& key : section->keys) {
       const bool is_number = key.type == KeyType::quantity ? element == 0
                                                            : key.bound.place != nullptr && element >= 1 && element <= key.count &&
@@ -162,14 +163,18 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
                                 .drive = {},
                                 .refusal = {}},
                      .dimensions = {given.dimension}};
-      if (key.bound.number != nullptr || element > 0) {
+      if (key.bound.number != nullptr || key.bound.place != nullptr) {
         std::size_t entry = 0;
         if (section->name == "electrode") {
           const auto& all = scene.device.electrodes;
           while (entry < all.size() && all[entry].name != entry_name) ++entry;
+        } else if (section->name == "contact") {
+          const auto& all = scene.device.contacts;
+          while (entry + 1 < all.size() && all[entry].name != entry_name) ++entry;
         }
         found.varied.member = [bound = key.bound, entry, element = element](Scene& s) -> double& {
-          return element > 0 ? bound.place(s, entry, element - 1).value : bound.number(s, entry);
+          if (bound.number != nullptr) return bound.number(s, entry);
+          return bound.place(s, entry, element > 0 ? element - 1 : 0).value;
         };
       }
       found.varied.refusal = refusal_outside(key.range_of(given.dimension), found.varied.unit);

@@ -48,7 +48,7 @@ int main(int argc, char** argv) try {
   row("of softland", simulate(given, false).metrics);
 
   // 2. That law gives way to one with the same numbers: no scene file could say it, so it is added to what was read.
-  const Contact& contact = *given.scene.device.contact;
+  const Contact& contact = given.scene.device.contacts.front();
   const auto& rough = std::get<UniformAsperities>(contact.model);
   const ContactPad pad{.width = given.scene.device.structure.width, .length = contact.pad_length};
   const double strength = rough.summits.hertz(pad) / rough.height;

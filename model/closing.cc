@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "base/engineering.h"
@@ -19,6 +20,12 @@ namespace {
 // Of the energy that bends the beam by the contact gap: see closing.h.
 constexpr double worth_warning = 0.01, not_credible = 0.2;
 
+// The one of two that comes first in an order; NaN where one of them is.
+template <class Order>
+double both_or_none(double a, double b, Order before) {
+  return std::isnan(a) || before(a, b) ? a : b;
+}
+
 class Run {
  public:
   Run(const Switch& model, std::span<const Signal> signals, const ClosingOptions& options, ClosingObserver& observer)
@@ -28,7 +35,7 @@ class Run {
         plane_(model.contact_gap()),
         parts_(model, signals, options, observer),
         stepping_(parts_),
-        audit_(model, parts_.drives, parts_.phase, parts_.equations, stepping_.here()) {
+        audit_(model, parts_.drives, parts_.phases, parts_.equations, stepping_.here()) {
     out_.contact_gap = plane_;
     out_.in_contact_period = model.basis().in_contact_period();
     out_.smallest_gap = model.device().gap.electrode;
@@ -37,7 +44,7 @@ class Run {
   Trajectory run() {
     const auto begin = std::chrono::steady_clock::now();
     if (parts_.rest) {
-      out_.began_closed = parts_.phase.in_contact();
+      out_.began_closed = begins_closed(options_) && parts_.phases.in_contact();
       go_through_stretches();
       finish();
     } else {
@@ -71,8 +78,8 @@ class Run {
       stop_ = stops[i + 1];
       audit_.enter_stretch(here(), i == 0);
       restart();
-      parts_.course.push(parts_.point(here()));
-      parts_.course.hand_over();
+      parts_.push(here());
+      parts_.hand_over();
       measure_landing();
       while (!ended_ && here().time < stop_) advance();
     }
@@ -83,27 +90,28 @@ class Run {
 
   void restart() {
     if (!stepping_.restart()) return fail(stepping_.message());
-    if (parts_.phase.phase() == Phase::rest) parts_.plate.begin(here(), stop_);
+    if (parts_.first().phase.phase() == Phase::rest) parts_.plate.begin(here(), stop_);
   }
 
   void advance() {
     if (!stepping_.check_work()) return fail(stepping_.message());
-    if (parts_.phase.phase() == Phase::rest) return stay();
+    if (parts_.first().phase.phase() == Phase::rest) return stay();
     const std::optional<Stepping::Step> step = stepping_.advance(stop_, audit_);
     if (!step) return fail(stepping_.message());
     if (step->event) pass(*step->event);
-    parts_.course.hand_over();
+    parts_.hand_over();
     out_.smallest_gap = std::min(out_.smallest_gap, step->field.smallest_gap);
     check_interval(step->field);
   }
 
   // At an event: settles the energies, records what it is, and goes on to the next phase.
   void pass(const Event& event) {
-    TrajectoryPoint& p = parts_.course.last_waiting();
+    FollowedContact& c = parts_.contacts[event.contact];
+    TrajectoryPoint& p = c.course.last_waiting();
     if (event.edge) p.position = event.edge->level;  // to rounding
-    if (p.position == plane_ && !model_.has_pad_contact()) p.contact_force = 0;
+    if (p.position == c.plane && !model_.has_pad_contact()) p.contact_force = 0;
     audit_.settle(here());
-    if (parts_.touches.note(event, p)) {
+    if (c.touches.note(event, p)) {
       if (!model_.has_contact()) {
         out_.warnings.emplace_back("no [contact] section: the run ends at first touch");
         out_.ends_at_touch = true;
@@ -111,17 +119,17 @@ class Run {
       }
       if (model_.rigid_contact() != nullptr) return strike();
     }
-    PhaseChange change{.before = parts_.phase.law(), .after = {}};
+    PhaseChange change{.before = c.phase.law(), .after = {}};
     if (event.edge) {
-      change.kind = parts_.phase.phase() == Phase::rest ? PhaseChange::Kind::leaves : PhaseChange::Kind::edge;
+      change.kind = c.phase.phase() == Phase::rest ? PhaseChange::Kind::leaves : PhaseChange::Kind::edge;
       change.level = event.edge->level;
-      parts_.phase.enter(event.edge->next, event.edge->zone);
+      c.phase.enter(event.edge->next, event.edge->zone);
     } else {
       change.kind = PhaseChange::Kind::turn;
       // What is left of the velocity still carries it this much deeper.
-      parts_.phase.turn(p.position - plane_ - (p.acceleration < 0 ? p.velocity * p.velocity / (2 * p.acceleration) : 0));
+      c.phase.turn(p.position - c.plane - (p.acceleration < 0 ? p.velocity * p.velocity / (2 * p.acceleration) : 0));
     }
-    change.after = parts_.phase.law();
+    change.after = c.phase.law();
     parts_.observer.pass(here(), change);
     restart();
   }
@@ -129,19 +137,19 @@ class Run {
   // On a rigid contact: reverses the velocity, or ends the motion where the rebound would be too low.
   void strike() {
     const RestingPlate::Impact impact = parts_.plate.strike(here());
-    Touch& touch = parts_.touches.last();
+    Touch& touch = parts_.first().touches.last();
     touch.peak_force = std::numeric_limits<double>::quiet_NaN();
     touch.peak_energy = impact.energy;
-    parts_.force.pass_maximum();
-    if (!impact.rests) parts_.touches.end(here().time);
+    parts_.first().force.pass_maximum();
+    if (!impact.rests) parts_.first().touches.end(here().time);
     parts_.observer.pass(here(), {.kind = impact.rests ? PhaseChange::Kind::rests : PhaseChange::Kind::impact,
                                   .level = plane_,
-                                  .before = parts_.phase.law(),
+                                  .before = parts_.first().phase.law(),
                                   .after = {}});
-    parts_.phase.enter(impact.rests ? Phase::rest : Phase::flight);
+    parts_.first().phase.enter(impact.rests ? Phase::rest : Phase::flight);
     audit_.impact(impact.lost, model_.damped() ? parts_.equations.dissipation(here().state.data()) : 0);
     restart();
-    parts_.course.push(parts_.point(here()));
+    parts_.push(here());
   }
 
   // The plate rests until its drives stop pressing it on.
@@ -151,11 +159,11 @@ class Run {
     audit_.rest(here(), stay.until);
     here().time = stay.until;
     const FieldFigures field = parts_.equations.field(here().state.data());
-    const TrajectoryPoint before = parts_.course.last(), now = parts_.point(here());
-    if (now.time > before.time) parts_.force.take_line(before, now);
-    parts_.course.push(now);
+    const TrajectoryPoint before = parts_.first().course.last(), now = parts_.point(parts_.first(), here());
+    if (now.time > before.time) parts_.first().force.take_line(before, now);
+    parts_.first().course.push(now);
     if (stay.leaves) pass({.time = stay.until, .edge = Edge{.level = plane_, .side = 1, .next = Phase::flight}});
-    parts_.course.hand_over();
+    parts_.hand_over();
     check_interval(field);
   }
 
@@ -172,9 +180,8 @@ class Run {
       return end(Status::done);
     }
     measure_landing();
-    const bool touched = parts_.touches.count() > 0;
-    const double over = touched ? std::max(parts_.touches.first_begin() + options_.after_contact, options_.no_end_before)
-                                : options_.no_contact_before;
+    const double over = parts_.has_touched() ? std::max(parts_.first_touch() + options_.after_contact, options_.no_end_before)
+                                             : options_.no_contact_before;
     if (now.time >= over) {
       return end(Status::done);
     }
@@ -182,7 +189,7 @@ class Run {
 
   // At the first touch under the hold levels, or when they are reached after it.
   void measure_landing() {
-    if (ended_ || parts_.touches.count() == 0 || std::isfinite(out_.landing_excess)) return;
+    if (ended_ || !parts_.has_touched() || std::isfinite(out_.landing_excess)) return;
     if (!std::isfinite(options_.closed_potential) || !parts_.drives.at_hold()) return;
     out_.landing_excess = audit_.above_rest(here()) - options_.closed_potential;
   }
@@ -204,17 +211,13 @@ class Run {
   }
 
   void finish() {
-    parts_.course.hand_over();
-    parts_.touches.finish();
+    parts_.hand_over();
+    for (FollowedContact& c : parts_.contacts) c.touches.finish();
     audit_.settle(here());
     out_.energy = audit_.balance();
     out_.energy_error = audit_.error();
     out_.layer_energy = layer_charging_energy(model_.device(), signals_, here().time);
-    out_.deepest_penetration = parts_.touches.deepest_penetration();
-    if (parts_.touches.count() > 0) {
-      out_.steady_force_time = parts_.force.steady_from();
-      out_.least_force_after_touch = parts_.force.least();
-    }
+    gather_contacts();
     const double error = out_.energy_error / model_.bending_energy();
     if (!(error <= not_credible) && out_.status != Status::numerical_failure) {
       fail(
@@ -225,15 +228,54 @@ class Run {
           fmt::format("energy balance: off by {:.2g} % of the bending energy: the tolerance {} is too loose for this closing",
                       100 * error, engineering(options_.tolerance, "")));
     }
-    for (std::string& warning : gas_warnings(model_.device(), out_.smallest_gap, parts_.course.largest_squeeze())) {
+    for (std::string& warning : gas_warnings(model_.device(), out_.smallest_gap, parts_.first().course.largest_squeeze())) {
       out_.warnings.push_back(std::move(warning));
     }
-    if (const auto& contact = model_.device().contact;
-        contact && out_.deepest_penetration > largest_interference(contact->model)) {
-      out_.warnings.push_back(fmt::format("contact law {}: interference {} exceeds the asperity height {}",
-                                          name_of(contact->model), engineering(out_.deepest_penetration, "m", 3),
-                                          engineering(largest_interference(contact->model), "m", 3)));
+    for (std::size_t c = 0; c < model_.contacts(); ++c) {
+      const Contact& contact = model_.device().contacts[c];
+      const double deepest = parts_.contacts[c].touches.deepest_penetration();
+      if (!(deepest > largest_interference(contact.model))) continue;
+      out_.warnings.push_back(fmt::format("contact law {}{}: interference {} exceeds the asperity height {}",
+                                          name_of(contact.model), contact.name.empty() ? "" : " of contact." + contact.name,
+                                          engineering(deepest, "m", 3),
+                                          engineering(largest_interference(contact.model), "m", 3)));
     }
+  }
+
+  // What the contacts did; of several what their connection did, too.
+  void gather_contacts() {
+    const bool needs_all = model_.device().connection == Connection::all;
+    bool is_first = true;
+    for (const FollowedContact& c : parts_.contacts) {
+      const bool touched = c.touches.count() > 0;
+      ContactOutcome own{.name = model_.has_contact() ? model_.device().contacts[c.number].name : std::string(),
+                         .gap = c.plane,
+                         .deepest_penetration = c.touches.deepest_penetration()};
+      if (touched) {
+        own.steady_force_time = c.force.steady_from();
+        own.least_force_after_touch = c.force.least();
+      }
+      out_.deepest_penetration = std::max(out_.deepest_penetration, own.deepest_penetration);
+      if (!parts_.connection || model_.device().contacts[c.number].connects) {
+        double &steady = out_.steady_force_time, &least = out_.least_force_after_touch;
+        if (is_first) {
+          steady = own.steady_force_time;
+          least = own.least_force_after_touch;
+        } else if (needs_all) {
+          steady = both_or_none(steady, own.steady_force_time, std::greater<>());
+          least = both_or_none(least, own.least_force_after_touch, std::less<>());
+        } else {
+          steady = std::fmin(steady, own.steady_force_time);
+          least = std::fmax(least, own.least_force_after_touch);
+        }
+        is_first = false;
+      }
+      if (parts_.connection) out_.contacts.push_back(std::move(own));
+    }
+    if (!parts_.connection) return;
+    parts_.connection->finish();
+    out_.first_touch = parts_.connection->first_touch();
+    out_.first_touch_velocity = parts_.connection->impact_velocity();
   }
 
   const Switch& model_;
@@ -263,6 +305,7 @@ Integrator automatic_integrator(const Switch& model) { return model.film_states(
 
 std::string why_always_restarted(const Switch& model) {
   if (model.rigid_contact() != nullptr) return "an impact on a rigid contact is no force";
+  if (model.contacts() > 1) return "there are several contacts";
   if (model.has_contact() && has_memory(model.contact())) return "a contact law with memory turns at the deepest point";
   return {};
 }
@@ -279,6 +322,7 @@ Trajectory observe_closing(const Switch& model, std::span<const Signal> drives, 
           fmt::format("begins_closed: {} coordinates for a switch with {} modes and {} contact", options.begins_closed.size(),
                       model.modes(), model.has_contact() ? "a" : "no"));
   require(options.start == StartState::open || model.has_contact(), "start = closed: the switch has no contact to begin on");
+  require(model.contacts() < 2 || !observer.follows_motion(), "several contacts: nobody can follow the motion of all modes");
   require(options.restart_at_contact || why_always_restarted(model).empty(),
           fmt::format("restart_at_contact = false: {}", why_always_restarted(model)));
   return Run(model, drives, options, observer).run();

@@ -128,31 +128,55 @@ void check_gas(const Gas& g, const Structure& s) {
           "gas.model = linear: needs either damping or quality_factor");
 }
 
-void check_contact(const Device& d) {
-  const Contact& c = *d.contact;
+void check_place_of_contact(const Device& d, std::size_t i, const std::string& path) {
+  const Contact& c = d.contacts[i];
+  const double x = d.contact_position(i), length = d.structure.length;
+  require(x > 0 && x <= length * (1 + 1e-12), [&] {
+    return fmt::format("{}.at = {}: must lie on the beam, whose length is {}", path, engineering(x, "m"),
+                       engineering(length, "m"));
+  });
+  const double gap = d.contact_gap(i);
+  require(gap > 0 && gap < 1,
+          [&] { return fmt::format("{}.gap: rests {} from its plane, must be positive", path, engineering(gap, "m", 4)); });
+  require(c.side == Side::far || gap < d.gap.electrode + d.rest_offset(x), [&] {
+    return fmt::format("{}.gap = {}: must be below gap.electrode = {}", path, engineering(gap, "m"),
+                       engineering(d.gap.electrode, "m"));
+  });
+  require(c.count >= 1 && c.count <= 1e6 && c.count == std::floor(c.count),
+          [&] { return fmt::format("{}.count = {}: must be a whole number from 1 on", path, c.count); });
+}
+
+void check_contact(const Device& d, std::size_t i) {
+  const Contact& c = d.contacts[i];
   const Structure& s = d.structure;
+  const std::string path = c.name.empty() ? "contact" : "contact." + c.name;
   const bool rigid = std::holds_alternative<RigidStop>(c.model);
-  require(!rigid || s.is_rigid(), "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
-  require(!rigid || !d.gas || !is_compressible(*d.gas),
-          "contact.model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests");
+  require(!rigid || s.is_rigid(),
+          [&] { return path + ".model = rigid: needs a plate; a beam has modes that take part in an impact"; });
+  require(!rigid || !d.gas || !is_compressible(*d.gas), [&] {
+    return path + ".model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests";
+  });
   const bool no_pad = s.is_rigid() && !acts_per_area(c.model) && c.pad_length == 0;  // only its area would count
   require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {
-    return fmt::format("contact.pad_length = {}: must be positive and below structure.length = {}",
+    return fmt::format("{}.pad_length = {}: must be positive and below structure.length = {}", path,
                        engineering(c.pad_length, "m"), engineering(s.length, "m"));
   });
+  require(std::isnan(c.pad_width) || (c.pad_width > 0 && c.pad_width < 1),
+          [&] { return fmt::format("{}.pad_width = {}: must be positive", path, engineering(c.pad_width, "m")); });
   std::visit(
       [&](const auto& law) {
-        check_fields("contact", law);
-        if constexpr (requires { law.why_invalid(d.contact_gap()); }) {
-          const std::string wrong = law.why_invalid(d.contact_gap());
+        check_fields(path, law);
+        if constexpr (requires { law.why_invalid(d.contact_gap(i)); }) {
+          const std::string wrong = law.why_invalid(d.contact_gap(i));
           require(wrong.empty(), wrong);
         }
       },
       c.model);
   if (c.distribution == ContactDistribution::pad) {
     const std::string wrong = why_not_along_pad(s, c);
-    require(wrong.empty(), [&] { return "contact.distribution = pad: " + wrong; });
+    require(wrong.empty(), [&] { return path + ".distribution = pad: " + wrong; });
   }
+  check_place_of_contact(d, i, path);
 }
 
 void check_piezo(const Piezo& p, const Structure& s) {
@@ -181,10 +205,18 @@ void check_dispersion(const Dispersion& v, const Gap& gap) {
 
 }  // namespace
 
-double Device::contact_position() const {
+double Device::contact_position(std::size_t contact) const {
+  const Contact* const c = contact < contacts.size() ? &contacts[contact] : nullptr;
+  if (c != nullptr && c->at) return c->at->on(structure.length);
   if (structure.has_far_clamp()) return structure.length / 2;
-  if (!contact || contact->distribution == ContactDistribution::pad) return structure.length;
-  return structure.length - contact->pad_length / 2;
+  if (c == nullptr || c->distribution == ContactDistribution::pad) return structure.length;
+  return structure.length - c->pad_length / 2;
+}
+
+double Device::contact_gap(std::size_t contact) const {
+  const double offset = rest_offset(contact_position(contact));
+  if (contact == 0) return gap.contact + offset;
+  return contacts[contact].gap + (contacts[contact].side == Side::far ? -offset : offset);
 }
 
 double Device::rest_offset(double x) const {
@@ -236,9 +268,39 @@ std::optional<ElectrodeConflict> electrode_conflict(const Structure& s, const st
   return std::nullopt;
 }
 
+std::optional<ContactConflict> contact_conflict(const Device& d) {
+  const std::vector<Contact>& all = d.contacts;
+  if (all.empty()) return std::nullopt;
+  if (all.front().side != Side::near)
+    return ContactConflict{0, "a back stop closes nothing: a contact of side = \"near\" is missing"};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Contact& c = all[i];
+    if (c.side == Side::both) return ContactConflict{i, "stands on one side, \"near\" or \"far\""};
+    if (c.count > 1 && std::holds_alternative<OwnContact>(c.model))
+      return ContactConflict{i, "a law of one's own is that of all contacts together: count must be 1"};
+    if (all.size() == 1) break;
+    if (std::holds_alternative<RigidStop>(c.model))
+      return ContactConflict{i, "model = \"rigid\" stands for a contact that is alone"};
+    if (c.distribution == ContactDistribution::pad)
+      return ContactConflict{i, "distribution = \"pad\" stands for a contact that is alone"};
+    if (i > 0 && c.side == Side::near && all[i - 1].side == Side::far)
+      return ContactConflict{i, "the contacts of the near side come first"};
+    for (std::size_t k = 0; k < i && !d.structure.is_rigid(); ++k) {
+      if (all[k].side != c.side) continue;
+      if (std::abs(d.contact_position(k) - d.contact_position(i)) > 1e-9 * d.structure.length) continue;
+      if (d.contact_gap(k) == d.contact_gap(i))
+        return ContactConflict{i, fmt::format("stands at the place of contact.{}, with the same gap: one contact with count = 2 "
+                                              "says the same",
+                                              all[k].name)};
+    }
+  }
+  return std::nullopt;
+}
+
 std::string why_not_along_pad(const Structure& structure, const Contact& contact) {
   constexpr double longest = 0.1;  // of the beam: the first mode is then straight along the pad to 5e-5
   if (structure.is_rigid()) return "a plate touches with all of its pad at once, as at the centre";
+  if (contact.at) return "needs a pad that ends at the free end: 'at' says another place";
   if (structure.has_far_clamp()) {
     return "needs a cantilever, whose tilted pad is straight and touches first with its free end; between two clamps the pad "
            "lies flat about the middle";
@@ -258,7 +320,10 @@ void validate(const Device& d) {
   check_gap_and_electrodes(d);
   check_rest_shape(d);
   if (d.gas) check_gas(*d.gas, d.structure);
-  if (d.contact) check_contact(d);
+  for (std::size_t i = 0; i < d.contacts.size(); ++i) check_contact(d, i);
+  if (const auto conflict = contact_conflict(d)) {
+    throw InvalidInput(fmt::format("contact.{}: {}", d.contacts[conflict->contact].name, conflict->why));
+  }
   if (d.piezo) check_piezo(*d.piezo, d.structure);
   if (d.surface) {
     const std::string wrong = why_no_surface(d);

@@ -15,47 +15,14 @@
 #include "model/contact/contact.h"
 #include "model/forces/fringing.h"
 #include "model/gas/gas.h"
+#include "model/place.h"
 #include "model/structure/structure.h"
 
 namespace softland {
 
 struct Gap {
   double electrode = 0;  ///< d0, rest distance beam to electrode [m]
-  double contact = 0;    ///< dt, rest distance contact point to contact plane [m]
-};
-
-/// The contact's side of the moving part, towards which deflections are positive, the other one, or both.
-enum class Side { near, far, both };
-inline constexpr auto sides = std::to_array<Named<Side>>({{Side::near, "near"}, {Side::far, "far"}, {Side::both, "both"}});
-static_assert(is_complete<sides>());
-
-/// A place on the beam, from the clamped end: a distance [m], or a share of the beam's length, which it follows.
-struct Place {
-  constexpr Place() = default;
-  constexpr Place(double distance) : value(distance) {}  // a length is a place
-  [[nodiscard]] static constexpr Place share(double of_length) {
-    Place place(of_length);
-    place.is_share = true;
-    return place;
-  }
-  /// [m]
-  [[nodiscard]] constexpr double on(double length) const { return is_share ? value * length : value; }
-  [[nodiscard]] bool operator==(const Place&) const = default;
-
-  double value = 0;
-  bool is_share = false;
-};
-
-/// From where to where something lies along the beam.
-struct Span {
-  Place begin, end;
-  [[nodiscard]] bool operator==(const Span&) const = default;
-};
-
-/// The same on a beam of some length [m].
-struct Stretch {
-  double begin = 0, end = 0;
-  [[nodiscard]] bool holds(double x) const { return x >= begin && x < end; }
+  double contact = 0;    ///< dt, rest distance of the first contact to its plane, or of the contact point without contact [m]
 };
 
 /// One voltage, on one pad or several.
@@ -127,25 +94,31 @@ struct Device {
   Gap gap = {};
   std::vector<Electrode> electrodes = {};
   std::optional<Gas> gas = {};
-  std::optional<Contact> contact = {};
+  std::vector<Contact> contacts = {};  ///< those of the near side first: the first one closes the switch
+  Connection connection = Connection::all;
   std::optional<Piezo> piezo = {};
   std::optional<Dispersion> dispersion = {};
   std::optional<Surface> surface = {};
 
-  /// x_c, the centre of the pad [m]: the contact force acts and all figures of merit are taken there. The pad ends at the free
-  /// end, or lies about the middle of a beam between two clamps. Without contact: the free end, or the middle. Of a contact along
-  /// the pad: the free end, which touches first.
-  [[nodiscard]] double contact_position() const;
+  [[nodiscard]] bool has_contact() const { return !contacts.empty(); }
+  /// x_c, the centre of a contact's pad [m]: its force acts there, and figures of merit are taken at that of the first one. A pad
+  /// whose place is not said ends at the free end, or lies about the middle of a beam between two clamps. Without contact: the
+  /// free end, or the middle. A contact along the pad has the free end, which touches first.
+  [[nodiscard]] double contact_position(std::size_t contact = 0) const;
   /// How far the structure rests from the straight shape at x, away from the near electrode [m].
   [[nodiscard]] double rest_offset(double x) const;
-  /// Rest distance of the contact point to the contact plane [m]: gap.contact of the straight shape and what the rest shape adds.
-  [[nodiscard]] double contact_gap() const { return gap.contact + rest_offset(contact_position()); }
+  /// Rest distance of a contact's place to its plane [m]: that of the straight shape and what the rest shape adds.
+  [[nodiscard]] double contact_gap(std::size_t contact = 0) const;
   /// Whether the contact acts along its pad, not at one place.
-  [[nodiscard]] bool touches_along_pad() const { return contact && contact->distribution == ContactDistribution::pad; }
-  /// Where the pad begins and ends [m]; of a device with a contact.
+  [[nodiscard]] bool touches_along_pad() const {
+    return has_contact() && contacts.front().distribution == ContactDistribution::pad;
+  }
+  /// Where the pad of the first contact begins and ends [m]; of a device with a contact.
   [[nodiscard]] std::pair<double, double> pad() const {
-    const double end = structure.has_far_clamp() ? (structure.length + contact->pad_length) / 2 : structure.length;
-    return {end - contact->pad_length, end};
+    const Contact& first = contacts.front();
+    if (first.at) return {contact_position() - first.pad_length / 2, contact_position() + first.pad_length / 2};
+    const double end = structure.has_far_clamp() ? (structure.length + first.pad_length) / 2 : structure.length;
+    return {end - first.pad_length, end};
   }
 };
 
@@ -158,6 +131,15 @@ struct ElectrodeConflict {
 /// plate: the force would count twice. Edges may touch, within rounding. Nothing when all of them fit.
 [[nodiscard]] std::optional<ElectrodeConflict> electrode_conflict(const Structure& structure,
                                                                   const std::vector<Electrode>& electrodes);
+
+/// A contact that cannot stand beside the others, and why.
+struct ContactConflict {
+  std::size_t contact = 0;  ///< its number
+  std::string why;
+};
+/// The first contact is one on the near side, two on one side lie at two places, and a rigid one or one along its pad stands
+/// alone. Nothing when all is well.
+[[nodiscard]] std::optional<ContactConflict> contact_conflict(const Device& device);
 
 /// Why this contact cannot act along the pad of this structure; empty when it can.
 [[nodiscard]] std::string why_not_along_pad(const Structure& structure, const Contact& contact);

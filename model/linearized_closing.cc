@@ -147,6 +147,7 @@ void move_to(double t, const RecordedMotion::Motion& from, const RecordedMotion:
 
 std::string LinearizedClosing::refusal(const Switch& model) {
   if (model.film_states() > 0) return "the states of a compressible gas film have no derivatives here";
+  if (model.contacts() > 1) return "the motion between several contacts has no derivatives here";
   if (model.has_contact() && is_own(model.contact()))
     return "a contact law of one's own has derivatives by differences only, which are not exact";
   return model.modes() > most_modes ? "a closing has fewer modes" : "";

@@ -16,6 +16,7 @@ ModalBasis::ModalBasis(Eigen::VectorXd angular_frequencies, const Scales& scales
       pad_slope_(Eigen::VectorXd::Zero(modes())),
       piezo_shape_(Eigen::VectorXd::Zero(modes())),
       in_contact_period_(2 * pi / (scales.frequency / std::sqrt(sampled.pinned_inverse_square))) {
+  for (const Eigen::VectorXd& shape : sampled.further_contact_shapes) further_contact_shapes_.emplace_back(scales.shape * shape);
   const Structure& s = device.structure;
   const double slope_scale = scales.shape / scales.length;
   if (device.touches_along_pad()) pad_slope_ = slope_scale * sampled.contact_slope;

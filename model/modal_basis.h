@@ -29,6 +29,8 @@ class ModalBasis {
   [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s]
   [[nodiscard]] const Eigen::VectorXd& squares() const { return squares_; }                  ///< of these
   [[nodiscard]] const Eigen::VectorXd& contact_shape() const { return contact_shape_; }      ///< phi_i(x_c) [kg^(-1/2)]
+  /// The same at the places of further contacts.
+  [[nodiscard]] const std::vector<Eigen::VectorXd>& further_contact_shapes() const { return further_contact_shapes_; }
   /// phi_i'(x_c) of a contact that acts along the pad [kg^(-1/2)/m]; 0 of every other.
   [[nodiscard]] const Eigen::VectorXd& pad_slope() const { return pad_slope_; }
   /// Force on mode i per volt on the piezo [N kg^(-1/2) / V]; zero where there is no layer.
@@ -61,6 +63,7 @@ class ModalBasis {
   }
 
  private:
+  std::vector<Eigen::VectorXd> further_contact_shapes_;
   Eigen::VectorXd frequencies_, squares_, contact_shape_, pad_slope_, piezo_shape_;
   std::vector<double> stiffness_lanes_, friction_lanes_, contact_lanes_, piezo_lanes_;  // omega^2, 2 zeta omega, phi(x_c), theta
   double in_contact_period_ = 0;

@@ -385,7 +385,7 @@ ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
   if (model.contact_reach() > 0) {
     // Adhesion inside may make a deeper well than the first.
     constexpr int looks = 256;
-    const double step = largest_interference(model.device().contact->model) / looks;
+    const double step = largest_interference(model.device().contacts.front().model) / looks;
     double best = branch(plane), at = 0;
     for (int k = 1; k < looks; ++k) {
       const double value = branch(plane + k * step);

@@ -23,6 +23,7 @@ struct SampledModes {
   struct Places {
     std::vector<double> corners;                         // of the panels [m]
     double contact = 0, piezo_begin = 0, piezo_end = 0;  // [m]
+    std::vector<double> further_contacts;                // after the first one [m]
     double points_per_length = 0;
     int fewest_points = 0;  // of a panel
 
@@ -37,10 +38,13 @@ struct SampledModes {
         const auto [begin, end] = d.pad();
         corners.insert({begin, end});
       }
+      std::vector<double> further_contacts;
+      for (std::size_t c = 1; c < d.contacts.size(); ++c) further_contacts.push_back(d.contact_position(c));
       return {.corners = {corners.begin(), corners.end()},
               .contact = d.contact_position(),
               .piezo_begin = piezo_begin,
               .piezo_end = piezo_end,
+              .further_contacts = std::move(further_contacts),
               .points_per_length = points_per_length,
               .fewest_points = fewest_points};
     }
@@ -53,6 +57,7 @@ struct SampledModes {
   Eigen::ArrayXd positions, weights;             // [m]
   Eigen::MatrixXd shapes;                        // points x modes
   Eigen::VectorXd contact_shape, contact_slope, piezo_begin_slope, piezo_end_slope;
+  std::vector<Eigen::VectorXd> further_contact_shapes;
   double pinned_inverse_square = 0;  // of the beam held at its contact
 
   template <class Modes>
@@ -74,6 +79,7 @@ struct SampledModes {
     positions = Eigen::Map<Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size()));
     weights = Eigen::Map<Eigen::ArrayXd>(w.data(), positions.size());
     contact_shape = normalised.value(places.contact / length);
+    for (const double x : places.further_contacts) further_contact_shapes.push_back(normalised.value(x / length));
     contact_slope = normalised.slope(places.contact / length);
     piezo_begin_slope = normalised.slope(places.piezo_begin / length);
     piezo_end_slope = normalised.slope(places.piezo_end / length);

@@ -75,7 +75,7 @@ void Switch::set_modes(const Modes& structure, double points_per_length, int few
   Eigen::ArrayXd gaps = Eigen::ArrayXd::Constant(sampled_->positions.size(), device_.gap.electrode);
   for (Eigen::Index p = 0; p < gaps.size(); ++p) gaps[p] += device_.rest_offset(sampled_->positions[p]);
   quadrature_ = PointQuadrature(sampled_->positions, sampled_->weights, structure.scale() * sampled_->shapes, gaps);
-  if (device_.touches_along_pad()) pad_.emplace(device_.contact->pad_length);
+  if (device_.touches_along_pad()) pad_.emplace(device_.contacts.front().pad_length);
 }
 
 Switch::Switch(const Device& device, const SwitchOptions& options, const Switch* like) : device_(device) {
@@ -144,8 +144,14 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
   const double compliance = basis_.contact_shape().cwiseAbs2().cwiseQuotient(basis_.squares()).sum();
   const double force = contact_gap_ / compliance;
   bending_energy_ = force * contact_gap_ / 2;
-  if (device_.contact) {
-    contact_ = contact_law(*device_.contact, s.width);
+  if (device_.has_contact()) {
+    contact_ = contact_law(device_.contacts.front(), s.width);
+    for (std::size_t c = 1; c < device_.contacts.size(); ++c) {
+      const Contact& contact = device_.contacts[c];
+      further_.push_back({.law = contact_law(contact, s.width),
+                          .shape = (contact.side == Side::far ? -1 : 1) * basis_.further_contact_shapes()[c - 1],
+                          .gap = device_.contact_gap(c)});
+    }
     penetration_scale_ = penetration_under(force);
   }
   rest_ = Eigen::VectorXd::Zero(modes());
@@ -229,8 +235,9 @@ Switch::Workspace Switch::workspace() const {
   return {.field = {.gap = zero, .velocity = zero, .smallest_gap = 0}, .load = zero, .by_deflection = zero, .by_velocity = zero};
 }
 
-void Switch::accelerations(const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
+void Switch::accelerations(const double* q, const double* v, std::span<const double> volts, const ContactStates& contacts,
                            Workspace& work, double* result, const double* film) const {
+  const ContactState& contact = contacts.first;
   const auto n = static_cast<std::size_t>(modes());
   quadrature_.set_field(q, v, work.field);
   using Block = PointQuadrature::Block;
@@ -254,11 +261,17 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
     store_lane(own + quadrature_.projected(work.load, i), result, i, n);
   }
   if (contact.active && pad_) add_pad_force(q, v, result);
+  for_further_contacts(q, contacts, [&](const FurtherContact& c, const ContactState& state, double d) {
+    const auto rate = [&] { return basis_.at(v).dot(c.shape); };
+    const double force = visit_inline([&](const auto& law) { return force_of(law, d, state, rate); }, c.law);
+    add_modal_force<double>({c.shape.data(), n}, -force, result);
+  });
   if (stretching_) stretching_->add_force(q, result);
 }
 
-void Switch::jacobian(const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
+void Switch::jacobian(const double* q, const double* v, std::span<const double> volts, const ContactStates& contacts,
                       Workspace& work, Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const {
+  const ContactState& contact = contacts.first;
   quadrature_.set_field(q, v, work.field);
   work.by_deflection.setZero();
   work.by_velocity.setZero();
@@ -287,6 +300,15 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
       if (has_damped_contact()) by_v.noalias() -= (share * slope(0, 1) * shape) * shape.transpose();
     });
   }
+  for_further_contacts(q, contacts, [&](const FurtherContact& c, const ContactState& state, double d) {
+    const double rate = basis_.at(v).dot(c.shape);
+    const auto slope = [&](double by_d, double by_rate) {
+      return std::visit(
+          [&](const auto& law) { return force_of(law, Dual(d, by_d), state, [&] { return Dual(rate, by_rate); }).slope; }, c.law);
+    };
+    by_q.noalias() -= (slope(1, 0) * c.shape) * c.shape.transpose();
+    if (is_rate_dependent(c.law)) by_v.noalias() -= (slope(0, 1) * c.shape) * c.shape.transpose();
+  });
   if (stretching_) stretching_->add_derivative(q, by_q);
 }
 
@@ -374,6 +396,21 @@ void Switch::for_contact_points(const double* q, F&& f) const {
   pad_->over_contact(d, basis_.pad_tilt(q), f);
 }
 
+template <class F>
+void Switch::for_further_contacts(const double* q, const ContactStates& contacts, F&& f) const {
+  for (std::size_t k = 0; k < further_.size(); ++k) {
+    const FurtherContact& c = further_[k];
+    const double d = basis_.at(q).dot(c.shape) - c.gap;
+    const ContactState state = contacts.further.empty() ? ContactState(d > -softland::contact_reach(c.law)) : contacts.further[k];
+    if (state.active) f(c, state, d);
+  }
+}
+
+bool Switch::has_damped_contact() const {
+  return (contact_ && is_rate_dependent(*contact_)) ||
+         std::ranges::any_of(further_, [](const FurtherContact& c) { return is_rate_dependent(c.law); });
+}
+
 double Switch::contact_rate(const double* v, double xi) const { return contact_deflection(v) - xi * basis_.pad_tilt(v); }
 
 void Switch::add_pad_force(const double* q, const double* v, double* result) const {
@@ -389,20 +426,27 @@ void Switch::add_pad_force(const double* q, const double* v, double* result) con
   add_modal_force<double>({basis_.pad_slope().data(), n}, moment, result);
 }
 
-double Switch::contact_push(const double* q, const double* v, const ContactState& contact) const {
+double Switch::contact_push(const double* q, const double* v, const ContactState& contact, std::size_t c) const {
+  if (c > 0) {
+    return contact_force(this->contact(c), contact_deflection(q, c) - contact_gap(c), contact, contact_deflection(v, c));
+  }
   double sum = 0;
   for_contact_points(
       q, [&](double xi, double share, double d) { sum += share * contact_force(*contact_, d, contact, contact_rate(v, xi)); });
   return sum;
 }
 
-double Switch::contact_stored(const double* q, const ContactState& contact) const {
+double Switch::contact_stored(const double* q, const ContactState& contact, std::size_t c) const {
+  if (c > 0) return stored_energy(this->contact(c), contact_deflection(q, c) - contact_gap(c), contact);
   double sum = 0;
   for_contact_points(q, [&](double, double share, double d) { sum += share * stored_energy(*contact_, d, contact); });
   return sum;
 }
 
-double Switch::contact_dissipation(const double* q, const double* v) const {
+double Switch::contact_dissipation(const double* q, const double* v, std::size_t c) const {
+  if (c > 0) {
+    return softland::contact_dissipation(contact(c), contact_deflection(q, c) - contact_gap(c), contact_deflection(v, c));
+  }
   double sum = 0;
   for_contact_points(q, [&](double xi, double share, double d) {
     sum += share * softland::contact_dissipation(*contact_, d, contact_rate(v, xi));
@@ -410,7 +454,8 @@ double Switch::contact_dissipation(const double* q, const double* v) const {
   return sum;
 }
 
-double Switch::potential(const double* q, std::span<const double> volts, const ContactState& contact, Workspace& work) const {
+double Switch::potential(const double* q, std::span<const double> volts, const ContactStates& contacts, Workspace& work) const {
+  const ContactState& contact = contacts.first;
   double energy = elastic_energy(q);
   for (std::size_t k = 0; k < driven_laws_.size(); ++k) {
     if (const double drive = strength(k, volts[k]); drive != 0) energy += drive * law_potential(k, q, work);
@@ -421,6 +466,9 @@ double Switch::potential(const double* q, std::span<const double> volts, const C
       energy += share * (contact.unloading ? stored_energy(*contact_, d, contact) : contact_energy(*contact_, d));
     });
   }
+  for_further_contacts(q, contacts, [&](const FurtherContact& c, const ContactState& state, double d) {
+    energy += state.unloading ? stored_energy(c.law, d, state) : contact_energy(c.law, d);
+  });
   return energy;
 }
 

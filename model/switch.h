@@ -13,6 +13,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -38,6 +39,17 @@ struct SwitchOptions {
   int points_per_panel = 3;       ///< at least: what is more accurate needs more of both
   /// Of a beam, instead of those that its structure has, up to most_static_modes: beyond most_modes for statics only.
   std::optional<int> modes = {};
+};
+
+/// What all contacts of a switch do: each in a state of its own, or the first one in this state and each of the others, on first
+/// loading, wherever it is within its reach.
+struct ContactStates {
+  ContactStates(const ContactState& first_one) : first(first_one) {}  // NOLINT: most switches have one contact
+  ContactStates(std::same_as<bool> auto acts) : first(acts) {}        // NOLINT: for most laws that is all there is
+  ContactStates(const ContactState& first_one, std::span<const ContactState> others) : first(first_one), further(others) {}
+
+  ContactState first;
+  std::span<const ContactState> further = {};
 };
 
 enum class DriveKind { electrode, dispersion, piezo };
@@ -69,9 +81,11 @@ class Switch {
   }
   [[nodiscard]] bool has_piezo() const { return device_.piezo.has_value(); }
   [[nodiscard]] bool has_contact() const { return contact_.has_value(); }
-  [[nodiscard]] const ContactLaw& contact() const { return *contact_; }
+  /// Number of contacts. What is asked without the number of one is about the first, which closes the switch.
+  [[nodiscard]] std::size_t contacts() const { return contact_ ? 1 + further_.size() : 0; }
+  [[nodiscard]] const ContactLaw& contact(std::size_t c = 0) const { return c == 0 ? *contact_ : further_[c - 1].law; }
   /// How far above the plane of first touch the contact acts [m]; 0 for most laws, and without contact.
-  [[nodiscard]] double contact_reach() const { return contact_ ? softland::contact_reach(*contact_) : 0; }
+  [[nodiscard]] double contact_reach(std::size_t c = 0) const { return contact_ ? softland::contact_reach(contact(c)) : 0; }
   /// Whether the contact acts along the pad. It is active then at all times, and acts wherever the pad is beyond the plane.
   [[nodiscard]] bool has_pad_contact() const { return pad_.has_value(); }
   /// State of a contact that has not been touched yet: it acts only within its reach.
@@ -84,7 +98,7 @@ class Switch {
   [[nodiscard]] const std::optional<GasLaw>& gas() const { return gas_; }
   [[nodiscard]] const std::optional<MidPlaneStretching>& stretching() const { return stretching_; }
   /// Rest distance of the contact point to the contact plane [m].
-  [[nodiscard]] double contact_gap() const { return contact_gap_; }
+  [[nodiscard]] double contact_gap(std::size_t c = 0) const { return c == 0 ? contact_gap_ : further_[c - 1].gap; }
   /// Gap below which every law is continued by its tangent and a run counts as having touched the electrode: a hundredth of d0
   /// [m].
   [[nodiscard]] double gap_floor() const { return device_.gap.electrode / 100; }
@@ -107,20 +121,20 @@ class Switch {
 
   /// Modal accelerations [m kg^(1/2) / s^2] for coordinates q, velocities v and drive voltages [V]; arrays of modes() doubles.
   /// `film` are the states of a compressible film; without them it is at rest.
-  void accelerations(const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
+  void accelerations(const double* q, const double* v, std::span<const double> volts, const ContactStates& contacts,
                      Workspace& work, double* result, const double* film = nullptr) const;
   /// Everything but q' of a state (q, v, film): accelerations, then the rates of the film.
-  void rates(const double* state, std::span<const double> volts, const ContactState& contact, Workspace& work,
+  void rates(const double* state, std::span<const double> volts, const ContactStates& contacts, Workspace& work,
              double* result) const {
     const double* film = film_ ? state + 2 * modes() : nullptr;
-    accelerations(state, state + modes(), volts, contact, work, result, film);
+    accelerations(state, state + modes(), volts, contacts, work, result, film);
     if (film_) film_->rates(work.field, film, result + modes());
   }
   /// Modal forces of the drives at unit strength (of the piezo: per volt) in the field last computed with `work`, whose load they
   /// overwrite: modes x drives.
   void drive_forces(Workspace& work, Eigen::Ref<Eigen::MatrixXd> by_strength) const;
   /// Their derivatives with respect to q and v: modes x modes each.
-  void jacobian(const double* q, const double* v, std::span<const double> volts, const ContactState& contact, Workspace& work,
+  void jacobian(const double* q, const double* v, std::span<const double> volts, const ContactStates& contacts, Workspace& work,
                 Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const;
   /// Adds the film's part to the derivatives of (v, rates) by the state (q, v, film) whose field `work` holds.
   void add_film_derivatives(const double* state, const Workspace& work, Eigen::Ref<Eigen::MatrixXd> derivatives) const;
@@ -139,8 +153,14 @@ class Switch {
   [[nodiscard]] Eigen::MatrixXd free_motion_curvature(const double* q, const double* v, std::span<const double> strengths,
                                                       const double* multipliers, Workspace& work) const;
 
-  /// y(x_c) [m]; also the velocity when given v.
-  [[nodiscard]] double contact_deflection(const double* q) const { return basis_.contact_deflection(q); }
+  /// y(x_c) [m]; also the velocity when given v. Positive towards the plane of the contact that is asked about.
+  [[nodiscard]] double contact_deflection(const double* q, std::size_t c = 0) const {
+    return c == 0 ? basis_.contact_deflection(q) : basis_.at(q).dot(further_[c - 1].shape);
+  }
+  /// phi_i(x_c) [kg^(-1/2)], positive towards the plane of the contact.
+  [[nodiscard]] const Eigen::VectorXd& contact_shape(std::size_t c = 0) const {
+    return c == 0 ? basis_.contact_shape() : further_[c - 1].shape;
+  }
   /// Smallest local gap in the last field computed with `work` [m].
   [[nodiscard]] static double smallest_gap(const Workspace& work) { return work.field.smallest_gap; }
   /// Whether the beam comes within a hundredth of the rest gap of an electrode or a film's wall on its far side in that field.
@@ -165,7 +185,7 @@ class Switch {
   [[nodiscard]] bool damped() const {
     return !passive_laws_.empty() || film_ || device_.structure.damping_ratio > 0 || has_damped_contact();
   }
-  [[nodiscard]] bool has_damped_contact() const { return contact_ && is_rate_dependent(*contact_); }
+  [[nodiscard]] bool has_damped_contact() const;
   /// Power taken out by gas and modal damping [W]; a compressible film is at rest without its states.
   [[nodiscard]] double dissipated_power(const double* q, const double* v, Workspace& work, const double* film = nullptr) const;
   /// The same in the field last computed with `work`, whose velocities are `v`.
@@ -174,14 +194,14 @@ class Switch {
   [[nodiscard]] double film_energy(const double* state, Workspace& work) const;
   /// What a contact does in a state in which it is active: its force on the beam [N], what it stores [J], the power it takes out
   /// [W].
-  [[nodiscard]] double contact_push(const double* q, const double* v, const ContactState& contact) const;
-  [[nodiscard]] double contact_stored(const double* q, const ContactState& contact) const;
-  [[nodiscard]] double contact_dissipation(const double* q, const double* v) const;
+  [[nodiscard]] double contact_push(const double* q, const double* v, const ContactState& contact, std::size_t c = 0) const;
+  [[nodiscard]] double contact_stored(const double* q, const ContactState& contact, std::size_t c = 0) const;
+  [[nodiscard]] double contact_dissipation(const double* q, const double* v, std::size_t c = 0) const;
   /// Energy that bends the beam by the contact gap at the contact point [J]: the scale of a closing's energies.
   [[nodiscard]] double bending_energy() const { return bending_energy_; }
   /// Energy of the closed system under constant voltages: elastic + contact + dispersion - 1/2 C V^2 - V theta q [J]. Its
   /// gradient is minus the static force.
-  [[nodiscard]] double potential(const double* q, std::span<const double> volts, const ContactState& contact,
+  [[nodiscard]] double potential(const double* q, std::span<const double> volts, const ContactStates& contacts,
                                  Workspace& work) const;
 
  private:
@@ -193,6 +213,15 @@ class Switch {
   void for_contact_points(const double* q, F&& f) const;
   /// Of the pad at xi [m/s].
   [[nodiscard]] double contact_rate(const double* v, double xi) const;
+  /// A contact after the first one.
+  struct FurtherContact {
+    ContactLaw law;
+    Eigen::VectorXd shape;  // positive towards its plane [kg^(-1/2)]
+    double gap = 0;         // [m]
+  };
+  /// Calls f(contact, state, interference) for every further contact that is active.
+  template <class F>
+  void for_further_contacts(const double* q, const ContactStates& contacts, F&& f) const;
   void add_pad_force(const double* q, const double* v, double* result) const;
   [[nodiscard]] double penetration_under(double force) const;
   void set_free_field(const double* q, const double* v, Workspace& work) const;
@@ -208,6 +237,7 @@ class Switch {
   std::vector<std::shared_ptr<const DistributedLaw>> driven_laws_;   // one per electrode, then the dispersion force
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // these dissipate
   std::optional<ContactLaw> contact_;
+  std::vector<FurtherContact> further_;
   std::optional<PadQuadrature> pad_;  // of a contact along the pad
   std::optional<GasLaw> gas_;
   std::optional<ReynoldsFilm> film_;

@@ -45,6 +45,19 @@ struct EnergyBalance {
   [[nodiscard]] double residual() const { return source_work - stored - dissipated; }
 };
 
+/// One contact of several, at the end of a run.
+struct ContactOutcome {
+  std::string name;
+  std::vector<TrajectoryPoint> points;  ///< what its place did
+  std::vector<Touch> touches;
+  double gap = 0;                                                             ///< rest distance to its plane [m]
+  double deepest_penetration = 0;                                             ///< [m]
+  double hold_force = std::numeric_limits<double>::quiet_NaN();               ///< as Trajectory::hold_force [N]
+  double steady_force_time = std::numeric_limits<double>::quiet_NaN();        ///< [s]
+  double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();  ///< [N]
+};
+
+/// Of a switch with several contacts the members are those of the connection that they make (model/closing/connection.h).
 struct Trajectory {
   Status status = Status::not_run;
   std::string message;  ///< why, where it is not done
@@ -77,6 +90,12 @@ struct Trajectory {
   /// Of the contact, from its first maximum after the first touch to the end of the run; at the end where it only rises [N].
   /// NaN where nothing touched.
   double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
+  /// Of several contacts each; empty where there is one.
+  std::vector<ContactOutcome> contacts;
+  /// Where there are several: first touch of any that makes the connection [s], and the speed there [m/s]. NaN where there is
+  /// one, or nothing touched.
+  double first_touch = std::numeric_limits<double>::quiet_NaN();
+  double first_touch_velocity = std::numeric_limits<double>::quiet_NaN();
   EnergyBalance energy;     ///< at the end
   double layer_energy = 0;  ///< layer_charging_energy() of the piezo, which no balance holds [J]
   /// Largest residual of the energy balance at any make or break of contact and at the end [J].

@@ -15,7 +15,11 @@ constexpr std::size_t most_kept = 8;  // of a bucket
 }  // namespace
 
 CourseRecorder::CourseRecorder(double contact_gap, const MetricsOptions& options, std::size_t most_knots)
-    : contact_gap_(contact_gap), most_knots_(most_knots), figures_(contact_gap, options), finder_(contact_gap) {
+    : contact_gap_(contact_gap),
+      options_(options),
+      most_knots_(most_knots),
+      figures_(contact_gap, options),
+      finder_(contact_gap) {
   require(most_knots >= 4 * most_kept, "a course needs 32 knots or more");
 }
 
@@ -44,7 +48,28 @@ std::vector<Rebound> CourseRecorder::rebounds() const {
   return all;
 }
 
+void CourseRecorder::follow_contacts(std::span<const double> gaps) {
+  for (const double gap : gaps) contacts_.push_back(std::make_unique<CourseRecorder>(gap, options_, most_knots_));
+}
+
+Metrics CourseRecorder::metrics_of(std::size_t contact, const Trajectory& end) {
+  const ContactOutcome& own = end.contacts[contact];
+  Trajectory alone = end;
+  alone.contacts.clear();
+  alone.contact_gap = own.gap;
+  alone.hold_force = own.hold_force;
+  alone.is_held = own.hold_force > 0;
+  alone.steady_force_time = own.steady_force_time;
+  alone.least_force_after_touch = own.least_force_after_touch;
+  alone.landing_excess = Metrics::unset;
+  return contacts_[contact]->metrics(alone);
+}
+
 void CourseRecorder::hand_over(Trajectory& run) {
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    run.contacts[c].points = std::move(contacts_[c]->points_);
+    run.contacts[c].touches = std::move(contacts_[c]->touches_);
+  }
   run.points = std::move(points_);
   run.touches = std::move(touches_);
 }

@@ -7,6 +7,8 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "objectives/metrics.h"
@@ -20,8 +22,15 @@ class CourseRecorder final : public ClosingObserver {
   /// `contact_gap` [m]; `most_knots`: at least 32.
   explicit CourseRecorder(double contact_gap, const MetricsOptions& options = {}, std::size_t most_knots = most_recorded_knots);
 
+  /// Records each of several contacts, with these gaps to their planes [m], beside the connection that they make.
+  void follow_contacts(std::span<const double> gaps);
+
   void knot(const TrajectoryPoint& point) override;
   void touch(const Touch& touch) override;
+
+  [[nodiscard]] ClosingObserver* contact(std::size_t number) override {
+    return number < contacts_.size() ? contacts_[number].get() : nullptr;
+  }
 
   /// Figures of the run, once it has ended: see metrics(). Those of all knots.
   [[nodiscard]] Metrics metrics(const Trajectory& end) { return figures_.metrics(end); }
@@ -29,6 +38,9 @@ class CourseRecorder final : public ClosingObserver {
   [[nodiscard]] std::vector<Rebound> rebounds() const;
   /// Whether some knots are left out.
   [[nodiscard]] bool is_thinned() const { return is_thinned_; }
+  /// Figures and rebounds of one of several contacts, once the run has ended.
+  [[nodiscard]] Metrics metrics_of(std::size_t contact, const Trajectory& end);
+  [[nodiscard]] std::vector<Rebound> rebounds_of(std::size_t contact) const { return contacts_[contact]->rebounds(); }
   /// Moves the knots and touches that are kept into the run.
   void hand_over(Trajectory& run);
 
@@ -41,6 +53,7 @@ class CourseRecorder final : public ClosingObserver {
   void reduce(std::size_t begin);
 
   double contact_gap_;
+  MetricsOptions options_;
   std::size_t most_knots_;
   MetricsObserver figures_;
   ReboundFinder finder_;
@@ -51,6 +64,7 @@ class CourseRecorder final : public ClosingObserver {
   std::size_t in_last_ = 0;        // knots since the last full one
   std::vector<Touch> touches_;
   std::vector<Rebound> rebounds_;
+  std::vector<std::unique_ptr<CourseRecorder>> contacts_;
 };
 
 }  // namespace softland

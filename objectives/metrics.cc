@@ -56,9 +56,10 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   const bool sound = course.sound;
   if (ran_to_the_end && !sound) result.status = Status::numerical_failure;
 
+  const bool is_connection = !end.contacts.empty();
   if (!end.began_closed) {
-    result.initial_contact_time = course.first_touch;
-    result.impact_velocity = course.impact_velocity;
+    result.initial_contact_time = is_connection ? end.first_touch : course.first_touch;
+    result.impact_velocity = is_connection ? end.first_touch_velocity : course.impact_velocity;
   }
   if (touched_ && !end.began_closed) result.largest_impact_velocity = largest_impact_velocity_;
   if (!ran_to_the_end || !sound) return result;
@@ -72,7 +73,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   }
   if (!course.touched) {
     result.closest = course.closest;
-    if (end.status == Status::done) result.status = Status::no_contact;
+    if (end.status == Status::done) result.status = result.touched() ? Status::not_settled : Status::no_contact;
     return result;
   }
   if (end.ends_at_touch) return result;  // what follows depends on a contact that is not described
@@ -90,7 +91,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   result.separated = separated_ + (course.above ? course.last_time - latest_.begin : 0);
   result.reopened = course.above && latest_.height > end.contact_gap / 2;
   if (std::isfinite(end.landing_excess)) result.landing_excess = std::max(0.0, end.landing_excess);
-  const double permanent = significant_ > 0 ? last_end_ : result.initial_contact_time;
+  const double permanent = significant_ > 0 ? last_end_ : course.first_touch;
   result.last_rebound_end = std::isnan(permanent) ? course.last_time : permanent;
   const double rest = course.last_time - permanent;
   // A period that nobody knows matters only after a rebound.

@@ -113,7 +113,9 @@ class MetricsObserver final : public ClosingObserver {
 
 /// Never throws: trouble is in the status (the trajectory's own if that is not `done`, else done | no_contact | not_settled, or
 /// numerical_failure when a knot is not finite or goes back in time). A run that did not reach the end of its window gives
-/// initial_contact_time and impact_velocity when it touched before, and nothing else. No touch: drive_energy and capacitance
+/// initial_contact_time and impact_velocity when it touched before, and nothing else. Of several contacts these two are those of
+/// the first touch of any; rebounds count from where all that make the connection, or any of them, are closed, and a connection
+/// that never closes is not_settled. No touch: drive_energy and capacitance
 /// alone; so for a run that began closed, which has no landing and is not_settled until set_open_figures() finds it open and at
 /// rest. A run that ends at the touch, for want of a contact: initial_contact_time, impact_velocity and drive_energy. Not
 /// settled: less than one in_contact_period after permanent contact (first contact where there is no significant rebound), or a

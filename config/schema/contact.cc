@@ -1,39 +1,102 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "config/schema/laws.h"
 #include "config/schema/sections.h"
 
 namespace softland::internal {
 namespace {
 
-Contact& contact(Scene& scene, std::size_t) { return *scene.device.contact; }
-ContactModel& contact_model(Scene& scene, std::size_t) { return scene.device.contact->model; }
+Contact& contact(Scene& scene, std::size_t k) { return scene.device.contacts[k]; }
+ContactModel& contact_model(Scene& scene, std::size_t k) { return scene.device.contacts[k].model; }
 using OfContact = Of<contact>;
+
+Key place_key() {
+  Key key =
+      internal::number("at", {dimension::length, dimension::none}, not_negative,
+                       "the pad's centre, from the clamped end; absent: the pad ends at the free end, or lies about the middle");
+  key.words = {tip};
+  key.bound.place = [](Scene& scene, std::size_t k, std::size_t) -> Place& {
+    std::optional<Place>& at = contact(scene, k).at;
+    if (!at) at.emplace();
+    return *at;
+  };
+  return key;
+}
+
+Key gap_key() {
+  Key key = internal::number("gap", {dimension::length}, positive,
+                             "rest distance of its place to its plane; of a [contact.NAME], and required there");
+  key.bound.number = [](Scene& scene, std::size_t k) -> double& {
+    return k == 0 ? scene.device.gap.contact : contact(scene, k).gap;
+  };
+  return key;
+}
 
 std::vector<Key> contact_keys() {
   std::vector<Key> keys = keys_of_laws<ContactModel, contact_model>("law of the contact force");
   const auto of_every_law = {
       OfContact::number<&Contact::pad_length>("pad_length", dimension::length, positive,
                                               "the pad ends at the free end, or lies about the middle between two clamps"),
+      OfContact::number<&Contact::pad_width>("pad_width", dimension::length, positive, "absent: that of the beam"),
       OfContact::choice<contact_distributions, &Contact::distribution>(
           "distribution", "where the force acts: at the pad's centre, or wherever the pad is beyond the plane")
-          .by_default("'centre'")};
+          .by_default("'centre'"),
+      place_key(),
+      gap_key(),
+      one_of("side", {name_of(sides, Side::near), name_of(sides, Side::far)},
+             "far: a back stop, on the side away from the electrode; of a [contact.NAME]; default near"),
+      OfContact::number<&Contact::count>("count", dimension::none, {.least = 1, .most = 1000},
+                                         "equal contacts side by side across the beam; default 1")
+          .such_as("2")
+          .fixed("it is a number of contacts")};
   keys.insert(keys.begin() + 1, of_every_law);
   return keys;
 }
 
-void check_pad_length(const Device& d, const SectionReader& in) {
-  const bool per_area = acts_per_area(d.contact->model);
+void check_pad_length(const Device& d, const Contact& c, const SectionReader& in) {
+  const bool per_area = acts_per_area(c.model);
   if (!in.is_given("pad_length")) {
     if (d.structure.is_rigid() && !per_area) return;  // only the area of a plate's pad would count
     in.fail(R"(missing key 'pad_length' (a length such as "2 um"))");
   }
-  if (per_area) in.require_of_structure("pad_length", "width", d.structure);
-  in.require(d.contact->pad_length < d.structure.length, "pad_length", "must be less than " + in.written_length(d.structure));
+  if (per_area && !in.is_given("pad_width")) in.require_of_structure("pad_length", "width", d.structure);
+  in.require(c.pad_length < d.structure.length, "pad_length", "must be less than " + in.written_length(d.structure));
 }
 
-void check_contact(Scene& scene, const SectionReader& in, std::size_t) {
-  const Device& d = scene.device;
-  const Contact& c = *d.contact;
-  check_pad_length(d, in);
+/// What only one of several contacts has.
+void check_named(const Device& d, std::size_t k, const SectionReader& in) {
+  const Contact& c = d.contacts[k];
+  constexpr std::size_t longest = 64;
+  if (!is_bare_key(c.name) || c.name.size() > longest)
+    in.fail(fmt::format("a name may hold letters, digits, '_' and '-', at most {} of them", longest));
+  if (!in.is_given("gap")) in.fail(R"(missing key 'gap' (a length such as "2 um"))");
+  const double own = in.number("gap");
+  const SectionReader gap(in.file(), "gap");
+  constexpr double most = 0.99;  // see check_gap()
+  in.require(c.side == Side::far || own < most * d.gap.electrode, "gap",
+             fmt::format("must be less than {:g} times {}", most, gap.written("electrode")));
+}
+
+void check_contact(Scene& scene, const SectionReader& in, std::size_t k) {
+  Device& d = scene.device;
+  Contact& c = d.contacts[k];
+  if (in.is_given("side")) c.side = find_named(sides, in.text("side"))->value;
+  c.connects = c.side == Side::near;
+  check_pad_length(d, c, in);
+  if (in.is_given("at")) {
+    in.require(!d.structure.is_rigid(), "at", "belongs to a beam: a plate touches with all of it");
+    in.require(d.contact_position(k) > 0 && d.contact_position(k) <= d.structure.length, "at",
+               "must lie on the beam: " + in.written_length(d.structure));
+  }
+  if (in.is_given("count")) in.require(c.count == std::floor(c.count), "count", "must be a whole number");
+  if (c.name.empty()) {
+    for (const std::string_view key : {"gap", "side"})
+      in.require(!in.is_given(key), key, "belongs to one of several, [contact.NAME]; the plane of [contact] is at gap.contact");
+  } else {
+    check_named(d, k, in);
+  }
   if (std::holds_alternative<RigidStop>(c.model)) {
     in.require(d.structure.is_rigid(), "model", "needs a plate: a beam has modes that take part in an impact");
     in.require(!d.gas || !is_compressible(*d.gas), "model",
@@ -50,14 +113,15 @@ void check_contact(Scene& scene, const SectionReader& in, std::size_t) {
 
 Section contact_section() {
   return {.name = "contact",
+          .may_be_named = true,
           .may_vary = true,
           .selector = "model",
           .keys = contact_keys(),
-          .about = "contact under the tip; absent: the tip meets nothing",
+          .about = "contact under the tip, or [contact.NAME] of several; absent: the tip meets nothing",
           .begin =
-              [](Scene& scene, const SectionReader& in, std::string_view) {
-                scene.device.contact = Contact{.model = law_of<ContactModel>(in)};
-                return std::size_t{0};
+              [](Scene& scene, const SectionReader& in, std::string_view name) {
+                scene.device.contacts.push_back({.model = law_of<ContactModel>(in), .name = std::string(name)});
+                return scene.device.contacts.size() - 1;
               },
           .check = check_contact};
 }

@@ -11,6 +11,11 @@ using OfGap = Of<gap>;
 
 void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
   const Gap& gap = scene.device.gap;
+  if (in.file().is_named(*find_section("contact"))) {
+    in.require(!in.is_given("contact"), "contact", "belongs to one [contact]: every [contact.NAME] has a gap of its own");
+    return;
+  }
+  if (!in.is_given("contact")) in.fail(R"(missing key 'contact' (a length such as "2 um"))");
   in.require(gap.contact < gap.electrode, "contact", "must be less than " + in.written("electrode"));
   // A run that comes within a hundredth of the electrode gap of the electrode has failed: see Switch::gap_floor().
   constexpr double most = 0.99;
@@ -28,8 +33,8 @@ Section gap_section() {
       .may_vary = true,
       .keys =
           {OfGap::number<&Gap::electrode>("electrode", dimension::length, positive, "rest distance beam to electrode").needed(),
-           OfGap::number<&Gap::contact>("contact", dimension::length, positive, "rest distance contact point to contact plane")
-               .needed()},
+           OfGap::number<&Gap::contact>("contact", dimension::length, positive,
+                                        "rest distance contact point to contact plane; not where a [contact.NAME] has its own")},
       .about = "rest distances",
       .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
       .check = check_gap};

@@ -1,3 +1,9 @@
+#include <algorithm>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
 #include "base/engineering.h"
 #include "config/schema/sections.h"
 #include "config/section_reader.h"
@@ -8,12 +14,61 @@ namespace {
 MetricsOptions& metrics_options(Scene& scene, std::size_t) { return scene.metrics; }
 using OfMetrics = Of<metrics_options>;
 
+Key connection_key() {
+  Key key{.name = "closed",
+          .type = KeyType::texts,
+          .about = "of several contacts: \"all\" (default), \"any\", or a list of those that must all be closed"};
+  for (const auto& row : connections) key.words.push_back(row.name);
+  return key;
+}
+
+// Which contacts make the connection, and whether it needs all of them.
+void set_connection(Device& d, const SectionReader& in) {
+  if (!in.is_given("closed")) return;
+  const bool is_list = in.is_list("closed");
+  in.require(d.contacts.size() > 1, "closed", "says which of several contacts make the connection: the scene has none such");
+  const std::vector<std::string>& given = in.texts("closed");
+  if (!is_list) {
+    d.connection = find_named(connections, given.front())->value;
+    return;
+  }
+  in.require(!given.empty(), "closed", "needs a contact, \"all\" or \"any\"");
+  for (const std::string& name : given) {
+    const auto named = std::ranges::find(d.contacts, name, &Contact::name);
+    std::vector<std::string_view> known;
+    for (const Contact& c : d.contacts) known.push_back(c.name);
+    in.require(named != d.contacts.end(), "closed", "there is no [contact." + name + "]" + hint(name, known));
+    in.require(named->side == Side::near, "closed", "[contact." + name + "] is a back stop: it makes no connection");
+  }
+  for (Contact& c : d.contacts) c.connects = std::ranges::find(given, c.name) != given.end();
+}
+
+// The first contact closes the switch and is what statics are about. The order must not depend on that of the file: those that
+// make the connection come first, back stops last, and of equals the outermost and then the nearest.
+void order_contacts(Device& d) {
+  if (d.contacts.size() < 2) return;
+  d.contacts.front().gap = d.gap.contact;
+  const auto rank = [&](const Contact& c) {
+    const double place = d.contact_position(static_cast<std::size_t>(&c - d.contacts.data()));
+    return std::tuple(!c.connects, c.side == Side::far, -place, c.gap, c.name);
+  };
+  std::vector<std::pair<decltype(rank(d.contacts.front())), Contact>> ranked;
+  for (const Contact& c : d.contacts) ranked.emplace_back(rank(c), c);
+  std::ranges::sort(ranked, {}, [](const auto& one) { return one.first; });
+  for (std::size_t k = 0; k < ranked.size(); ++k) d.contacts[k] = ranked[k].second;
+  d.gap.contact = d.contacts.front().gap;
+}
+
 void check_metrics(Scene& scene, const SectionReader& in, std::size_t) {
+  set_connection(scene.device, in);
+  order_contacts(scene.device);
   const double rebound = scene.metrics.significant_rebound;
   if (rebound < scene.device.gap.contact) return;
-  const SectionReader gap(in.file(), "gap");
-  in.require(!in.is_given("significant_rebound"), "significant_rebound", "must be less than " + gap.written("contact"));
-  gap.require(false, "contact", "must exceed metrics.significant_rebound, which is " + engineering(rebound, "m"));
+  const bool named = in.file().is_named(*find_section("contact"));
+  const SectionReader gap(in.file(), named ? "contact" : "gap", named ? scene.device.contacts.front().name : std::string());
+  const std::string_view key = named ? "gap" : "contact";
+  in.require(!in.is_given("significant_rebound"), "significant_rebound", "must be less than " + gap.written(key));
+  gap.require(false, key, "must exceed metrics.significant_rebound, which is " + engineering(rebound, "m"));
 }
 
 }  // namespace
@@ -27,7 +82,8 @@ Section metrics_section() {
                    OfMetrics::number<&MetricsOptions::steady_force>(
                        "steady_force", dimension::none, {.least = 0, .most = 1, .least_open = true, .most_open = true},
                        "of the hold force, default 10 %: from there on the contact force is steady")
-                       .such_as("10 %")},
+                       .such_as("10 %"),
+                   connection_key()},
           .about = "figures of merit",
           .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
           .check = check_metrics};

@@ -2,25 +2,26 @@
 
 namespace softland {
 
-ContactPhase::ContactPhase(const Switch& model)
+ContactPhase::ContactPhase(const Switch& model, std::size_t contact)
     : model_(model),
-      plane_(model.contact_gap()),
-      reach_(model.contact_reach()),
+      contact_(contact),
+      plane_(model.contact_gap(contact)),
+      reach_(model.contact_reach(contact)),
       has_contact_(model.has_contact()),
       acts_along_pad_(model.has_pad_contact()),
-      remembers_(has_contact_ && has_memory(model.contact())) {
-  if (has_contact_) kinks_ = contact_kinks(model.contact());
+      remembers_(has_contact_ && has_memory(model.contact(contact))) {
+  if (has_contact_) kinks_ = contact_kinks(model.contact(contact));
   enter(Phase::flight);
 }
 
 double ContactPhase::lost(double position) const {
   if (!remembers_) return 0;
-  return healed_ + (phase_ == Phase::loading ? dent(model_.contact(), position - plane_) : dent_).lost;
+  return healed_ + (phase_ == Phase::loading ? dent(model_.contact(contact_), position - plane_) : dent_).lost;
 }
 
 void ContactPhase::turn(double deepest) {
   deepest_ = deepest;
-  dent_ = dent(model_.contact(), deepest);
+  dent_ = dent(model_.contact(contact_), deepest);
   enter(Phase::unloading);
 }
 

@@ -12,6 +12,7 @@
 // sees smooth right-hand sides.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -33,8 +34,8 @@ struct Edge {
 
 class ContactPhase {
  public:
-  /// In flight, never touched.
-  explicit ContactPhase(const Switch& model);
+  /// Of one of the switch's contacts: in flight, never touched.
+  explicit ContactPhase(const Switch& model, std::size_t contact = 0);
 
   [[nodiscard]] Phase phase() const { return phase_; }
   /// Whether the contact point is at or below the plane of first touch.
@@ -61,6 +62,7 @@ class ContactPhase {
 
  private:
   const Switch& model_;
+  std::size_t contact_;
   double plane_;  // of first touch [m]
   double reach_;  // how far above the plane the law acts [m]
   bool has_contact_, acts_along_pad_, remembers_;
@@ -72,6 +74,35 @@ class ContactPhase {
   double deepest_ = 0;  // interference that the law remembers [m]
   Dent dent_;           // what it has left
   double healed_ = 0;   // energy lost to dents that are forgotten [J]
+};
+
+/// The phases of all contacts of a switch, at least of one: that of the contact point, which a switch without contact has too.
+class ContactPhases {
+ public:
+  explicit ContactPhases(const Switch& model) {
+    const std::size_t count = std::max<std::size_t>(1, model.contacts());
+    for (std::size_t c = 0; c < count; ++c) phases_.emplace_back(model, c);
+    further_.resize(count - 1);
+    apart_.resize(count - 1);
+  }
+
+  [[nodiscard]] std::size_t size() const { return phases_.size(); }
+  [[nodiscard]] ContactPhase& operator[](std::size_t c) { return phases_[c]; }
+  [[nodiscard]] const ContactPhase& operator[](std::size_t c) const { return phases_[c]; }
+  [[nodiscard]] const ContactPhase& first() const { return phases_.front(); }
+  /// What the contacts do in their phases; valid until the next call.
+  [[nodiscard]] ContactStates states() {
+    for (std::size_t c = 1; c < size(); ++c) further_[c - 1] = phases_[c].law();
+    return {phases_.front().law(), further_};
+  }
+  /// As if no contact acted.
+  [[nodiscard]] ContactStates apart() const { return {false, apart_}; }
+  /// Whether any of them is at or below its plane.
+  [[nodiscard]] bool in_contact() const { return std::ranges::any_of(phases_, &ContactPhase::in_contact); }
+
+ private:
+  std::vector<ContactPhase> phases_;
+  std::vector<ContactState> further_, apart_;
 };
 
 }  // namespace softland

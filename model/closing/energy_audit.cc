@@ -10,21 +10,21 @@ constexpr double worth_care = 1e-4;  // of the bending energy: from there on dis
 
 }  // namespace
 
-EnergyAudit::EnergyAudit(const Switch& model, DriveCourse& drives, const ContactPhase& phase, ClosingEquations& equations,
+EnergyAudit::EnergyAudit(const Switch& model, DriveCourse& drives, ContactPhases& phases, ClosingEquations& equations,
                          const Knot& start)
     : model_(model),
       drives_(drives),
-      phase_(phase),
+      phases_(phases),
       equations_(equations),
       modes_(static_cast<std::size_t>(model.modes())),
-      rest_energy_(model.potential(start.state.data(), drives.before(), false, equations.workspace())) {
+      rest_energy_(model.potential(start.state.data(), drives.before(), phases.apart(), equations.workspace())) {
   const std::vector<double> before = drives.before();
   for (std::size_t k = 0; k < before.size(); ++k) {
     if (before[k] != 0 && holds_charge(k)) rest_energy_ += before[k] * charge(k, before[k], start.state.data());
   }
-  if (!phase.in_contact()) return;
-  if (phase.law().active) rest_energy_ += model.contact_stored(start.state.data(), phase.law());
-  dissipated_ = -phase.lost(model.contact_deflection(start.state.data()));
+  if (!phases.in_contact()) return;
+  rest_energy_ += stored_in_contacts(start.state.data());
+  dissipated_ = -lost_in_contacts(start.state.data());
 }
 
 void EnergyAudit::enter_stretch(const Knot& here, bool first) {
@@ -50,7 +50,24 @@ void EnergyAudit::add_charges(const Knot& here, double sign) {
 }
 
 double EnergyAudit::contact_dissipation(const double* state) const {
-  return phase_.law().active && model_.has_damped_contact() ? model_.contact_dissipation(state, state + modes_) : 0;
+  if (!model_.has_damped_contact()) return 0;
+  double power = 0;
+  for (std::size_t c = 0; c < phases_.size(); ++c)
+    if (phases_[c].law().active) power += model_.contact_dissipation(state, state + modes_, c);
+  return power;
+}
+
+double EnergyAudit::stored_in_contacts(const double* q) const {
+  double energy = 0;
+  for (std::size_t c = 0; c < phases_.size(); ++c)
+    if (phases_[c].law().active) energy += model_.contact_stored(q, phases_[c].law(), c);
+  return energy;
+}
+
+double EnergyAudit::lost_in_contacts(const double* q) const {
+  double energy = 0;
+  for (std::size_t c = 0; c < phases_.size(); ++c) energy += phases_[c].lost(model_.contact_deflection(q, c));
+  return energy;
 }
 
 void EnergyAudit::step(const Knot& here, const Knot& next, double dissipation_at_end, StepMotion& motion, bool implicit) {
@@ -99,7 +116,7 @@ void EnergyAudit::impact(double lost, double dissipation) {
 double EnergyAudit::above_rest(const Knot& here) {
   const double* q = here.state.data();
   const std::span<const double> values = drives_.values(here.time);
-  return model_.basis().kinetic_energy(q + modes_) + model_.potential(q, values, phase_.law(), equations_.workspace()) +
+  return model_.basis().kinetic_energy(q + modes_) + model_.potential(q, values, phases_.states(), equations_.workspace()) +
          impacts_ + model_.film_energy(q, equations_.workspace());
 }
 
@@ -109,8 +126,8 @@ void EnergyAudit::settle(const Knot& here) {
   const std::span<const double> values = drives_.values(here.time);
   Switch::Workspace& work = equations_.workspace();
   balance_ = {.source_work = source_work_,
-              .stored = model_.basis().kinetic_energy(q + modes_) + model_.potential(q, values, false, work) - rest_energy_ +
-                        model_.film_energy(q, work),
+              .stored = model_.basis().kinetic_energy(q + modes_) + model_.potential(q, values, phases_.apart(), work) -
+                        rest_energy_ + model_.film_energy(q, work),
               .dissipated = dissipated_ + impacts_};
   for (std::size_t k = 0; k < drives_.size(); ++k) {
     if (values[k] == 0 || !holds_charge(k)) continue;
@@ -118,8 +135,8 @@ void EnergyAudit::settle(const Knot& here) {
     balance_.source_work += work_of_charge;
     balance_.stored += work_of_charge;
   }
-  if (phase_.law().active) balance_.stored += model_.contact_stored(q, phase_.law());
-  balance_.dissipated += phase_.lost(model_.contact_deflection(q));
+  balance_.stored += stored_in_contacts(q);
+  balance_.dissipated += lost_in_contacts(q);
   if (!(std::abs(balance_.residual()) <= error_)) error_ = std::abs(balance_.residual());  // keeps what is not a number
   careful_ = careful_ || error_ > worth_care * model_.bending_energy();
 }

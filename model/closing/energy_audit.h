@@ -20,8 +20,7 @@ class EnergyAudit {
  public:
   /// Keeps references. The switch is at rest at `start`, under what its drives have been before t = 0 or on its contact; there
   /// they are charged at once.
-  EnergyAudit(const Switch& model, DriveCourse& drives, const ContactPhase& phase, ClosingEquations& equations,
-              const Knot& start);
+  EnergyAudit(const Switch& model, DriveCourse& drives, ContactPhases& phases, ClosingEquations& equations, const Knot& start);
 
   /// All drives go on to the pieces that hold after `here`; a jump charges its electrode at fixed deflection, the limit of ever
   /// steeper edges.
@@ -47,12 +46,16 @@ class EnergyAudit {
     return model_.charge(k, value, q, equations_.workspace());
   }
   [[nodiscard]] double contact_dissipation(const double* state) const;
+  /// Stored in the contacts that act [J].
+  [[nodiscard]] double stored_in_contacts(const double* q) const;
+  /// Lost to dents so far [J].
+  [[nodiscard]] double lost_in_contacts(const double* q) const;
   void add_charges(const Knot& here, double sign);
   [[nodiscard]] double mean_dissipation(double at_end, StepMotion& motion, bool implicit);
 
   const Switch& model_;
   DriveCourse& drives_;
-  const ContactPhase& phase_;
+  ContactPhases& phases_;
   ClosingEquations& equations_;
   std::size_t modes_;
   double rest_energy_;      // stored at the start [J]

@@ -11,15 +11,15 @@ namespace softland {
 
 class ClosingEquations {
  public:
-  /// Keeps references. `phase_decides`: the contact law's state is that of the phase, else that of the position, whatever the
-  /// phase.
-  ClosingEquations(const Switch& model, DriveCourse& drives, const ContactPhase& phase, bool phase_decides);
+  /// Keeps references. `phase_decides`: the state of a contact law is that of its phase, else that of the position, whatever
+  /// the phase.
+  ClosingEquations(const Switch& model, DriveCourse& drives, ContactPhases& phases, bool phase_decides);
   ClosingEquations(const ClosingEquations&) = delete;
   ClosingEquations& operator=(const ClosingEquations&) = delete;
 
   [[nodiscard]] const OdeSystem& system() const { return system_; }
   /// All rates but q' of a state at time t, with the contact law in the state of the phase.
-  void rates(double t, const double* state, double* result) { rates(t, state, phase_.law(), result); }
+  void rates(double t, const double* state, double* result) { rates(t, state, phases_.states(), result); }
   void rates(Knot& knot) { rates(knot.time, knot.state.data(), knot.rates.data()); }
   /// In the field of the last evaluation, which must have been at this state but for a shift by rounding.
   [[nodiscard]] FieldFigures field(const double* state);
@@ -32,15 +32,15 @@ class ClosingEquations {
   [[nodiscard]] long evaluations() const { return evaluations_; }
 
  private:
-  void rates(double t, const double* state, const ContactState& law, double* result);
-  void jacobian(double t, const double* state, const ContactState& law, double* result);
+  void rates(double t, const double* state, const ContactStates& laws, double* result);
+  void jacobian(double t, const double* state, const ContactStates& laws, double* result);
   [[nodiscard]] const double* film_of(const double* state) const {
     return model_.film_states() > 0 ? state + 2 * modes_ : nullptr;
   }
 
   const Switch& model_;
   DriveCourse& drives_;
-  const ContactPhase& phase_;
+  ContactPhases& phases_;
   std::size_t modes_;
   Switch::Workspace work_;
   OdeSystem system_;

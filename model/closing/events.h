@@ -12,6 +12,7 @@ namespace softland {
 struct Event {
   double time = 0;  ///< [s]
   std::optional<Edge> edge;
+  std::size_t contact = 0;  ///< to which it happens
 };
 
 /// The first event in (from, to] of a piece of a step.

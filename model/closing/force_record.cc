@@ -10,20 +10,20 @@
 namespace softland {
 namespace {
 
-bool rises_with_depth(const Switch& model) {
+bool rises_with_depth(const Switch& model, std::size_t contact) {
   if (!model.has_contact()) return true;
   return std::visit(
       [](const auto& law) {
         if constexpr (requires { law.grows_with_depth; }) return law.grows_with_depth;
         return false;
       },
-      model.contact());
+      model.contact(contact));
 }
 
 }  // namespace
 
-ForceRecord::ForceRecord(const Switch& model, double threshold)
-    : model_(model), threshold_(threshold), rises_with_depth_(rises_with_depth(model)) {}
+ForceRecord::ForceRecord(const Switch& model, double threshold, std::size_t contact)
+    : model_(model), contact_(contact), threshold_(threshold), rises_with_depth_(rises_with_depth(model, contact)) {}
 
 // An extremum in between shows where the force leaves both ends to the same side.
 template <class Force>
@@ -67,8 +67,10 @@ double ForceRecord::least() const {
 
 void ForceRecord::take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law) {
   if (!law.active || model_.has_pad_contact()) return take_line(from, to);
-  const double plane = model_.contact_gap();
-  const auto force = [&](double t) { return contact_force(model_.contact(), tip.position(t) - plane, law, tip.velocity(t)); };
+  const double plane = model_.contact_gap(contact_);
+  const auto force = [&](double t) {
+    return contact_force(model_.contact(contact_), tip.position(t) - plane, law, tip.velocity(t));
+  };
   if (!(from.velocity * to.velocity < 0)) return follow_way(force, from.time, from.contact_force, to.time, to.contact_force);
   const double turn = tip.turn(), there = force(turn);
   follow_way(force, from.time, from.contact_force, turn, there);

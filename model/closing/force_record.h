@@ -16,8 +16,8 @@ namespace softland {
 
 class ForceRecord {
  public:
-  /// Keeps a reference. `threshold` [N]; NaN: there is none.
-  ForceRecord(const Switch& model, double threshold);
+  /// Of one of the contacts. Keeps a reference. `threshold` [N]; NaN: there is none.
+  ForceRecord(const Switch& model, double threshold, std::size_t contact = 0);
 
   /// Takes a piece of a step after the first touch, under a contact law in this state.
   void take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law);
@@ -42,6 +42,7 @@ class ForceRecord {
   void follow(const Force& force, double begin, double from, double end, double to);
 
   const Switch& model_;
+  std::size_t contact_;
   double threshold_;  // [N]
   bool rises_with_depth_;
   bool has_risen_ = false, has_fallen_ = false;

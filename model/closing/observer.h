@@ -28,6 +28,9 @@ class ClosingObserver {
   virtual void knot(const TrajectoryPoint&) {}
   /// A touch that is over, or at the end of the run the one that holds, whose end is NaN.
   virtual void touch(const Touch&) {}
+  /// Who receives knots and touches of one contact of several, while this observer receives those of the connection that they
+  /// make; null: nobody does. A switch with one contact does not ask.
+  [[nodiscard]] virtual ClosingObserver* contact(std::size_t /*number*/) { return nullptr; }
   /// Whether the observer follows the motion of all modes; then it is told every step and what happens between steps, in order
   /// of time.
   [[nodiscard]] virtual bool follows_motion() const { return false; }

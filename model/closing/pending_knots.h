@@ -13,8 +13,10 @@ namespace softland {
 class Course {
  public:
   /// Keeps references.
-  Course(const Device& device, ClosingObserver& observer)
-      : device_(device), rest_gap_(device.gap.electrode + device.rest_offset(device.contact_position())), observer_(observer) {}
+  Course(const Device& device, std::size_t contact, ClosingObserver& observer)
+      : device_(device),
+        rest_gap_(device.gap.electrode + device.rest_offset(device.contact_position(contact))),
+        observer_(observer) {}
 
   void push(const TrajectoryPoint& point) { waiting_.push_back(point); }
   /// Of those handed over and those that wait.

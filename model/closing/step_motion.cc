@@ -12,13 +12,13 @@ std::vector<double> as_vector(const Eigen::VectorXd& v) { return {v.begin(), v.e
 
 }  // namespace
 
-StepMotion::StepMotion(const Switch& model, double tolerance)
+StepMotion::StepMotion(const Switch& model, double tolerance, std::size_t contact)
     : modes_(static_cast<std::size_t>(model.modes())),
       film_(model.film_states()),
       fastest_(model.basis().angular_frequencies().maxCoeff()),
       knot_phase_(std::pow(46080 * std::min(tolerance, 1e-5), 1.0 / 6)),
       omega_(padded_to_lanes(as_vector(model.basis().angular_frequencies()), 1)),
-      motion_(as_vector(model.basis().angular_frequencies()), as_vector(model.basis().contact_shape())),
+      motion_(as_vector(model.basis().angular_frequencies()), as_vector(model.contact_shape(contact))),
       between_(2 * modes_ + film_) {}
 
 void StepMotion::set(const Knot& begin, const Knot& end_knot, const TrajectoryPoint& end, bool accurate_rates) {

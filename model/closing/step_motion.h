@@ -18,7 +18,8 @@ namespace softland {
 class StepMotion {
  public:
   /// `tolerance`: of the integrator; the quintic of a piece errs by as much of the fastest mode's amplitude, at most by 1e-5.
-  StepMotion(const Switch& model, double tolerance);
+  /// `contact`: whose place is the contact point.
+  StepMotion(const Switch& model, double tolerance, std::size_t contact = 0);
 
   /// Considers the step between two knots; `end` is the contact point at its end. Keeps references to the knots.
   /// `accurate_rates`: whether accelerations at the knots may be used, which may be an implicit method's errors times the

@@ -42,34 +42,42 @@ std::optional<Eigen::VectorXd> start_of(const Switch& model, std::span<const Sig
   return keeps_closed(model, closed) ? std::optional(std::move(closed->q)) : std::nullopt;
 }
 
-TrajectoryPoint ClosingParts::point(const Knot& knot) const {
+TrajectoryPoint ClosingParts::point(const FollowedContact& contact, const Knot& knot) const {
+  const std::size_t c = contact.number;
   const double *q = knot.state.data(), *v = q + model.modes();
   TrajectoryPoint p{.time = knot.time,
-                    .position = model.contact_deflection(q),
-                    .velocity = model.contact_deflection(v),
-                    .acceleration = model.contact_deflection(knot.rates.data())};
-  if (phase.law().active) {
-    p.contact_force = model.contact_push(q, v, phase.law());
-  } else if (phase.phase() == Phase::rest) {
+                    .position = model.contact_deflection(q, c),
+                    .velocity = model.contact_deflection(v, c),
+                    .acceleration = model.contact_deflection(knot.rates.data(), c)};
+  if (contact.phase.law().active) {
+    p.contact_force = model.contact_push(q, v, contact.phase.law(), c);
+  } else if (contact.phase.phase() == Phase::rest) {
     p.contact_force = plate.force();
   }
   return p;
 }
 
-void ClosingParts::record(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to) {
-  touches.take(tip, from, to);
-  if (touches.count() == 0) return;
-  if (!phase.in_contact()) force.pass_maximum();
-  force.take(tip, from, to, phase.law());
+void ClosingParts::record(FollowedContact& contact, const TipMotion& tip, const TrajectoryPoint& from,
+                          const TrajectoryPoint& to) {
+  contact.touches.take(tip, from, to);
+  if (contact.touches.count() == 0) return;
+  if (!contact.phase.in_contact()) contact.force.pass_maximum();
+  contact.force.take(tip, from, to, contact.phase.law());
+}
+
+double ClosingParts::first_touch() const {
+  double first = std::numeric_limits<double>::quiet_NaN();
+  for (const FollowedContact& c : contacts)
+    if (!model.has_contact() || model.device().contacts[c.number].side == Side::near)
+      first = std::fmin(first, c.touches.first_begin());
+  return first;
 }
 
 Stepping::Stepping(ClosingParts& parts)
     : parts_(parts),
       n_(static_cast<std::size_t>(parts.model.modes())),
-      plane_(parts.model.contact_gap()),
       fastest_(parts.model.basis().angular_frequencies().maxCoeff()),
       tolerances_(parts.model, parts.options.tolerance),
-      motion_(parts.model, parts.options.tolerance),
       here_(at_rest(parts)),
       next_(here_) {
   const Integrator asked = parts.options.integrator;
@@ -84,13 +92,15 @@ bool Stepping::fail(const std::string& why) {
 
 // A law that acts beyond the plane changes over lengths like those of penetration.
 const std::vector<double>& Stepping::tolerances() const {
-  const bool touching = parts_.phase.in_contact() || parts_.phase.phase() == Phase::near || !parts_.options.restart_at_contact;
+  const bool touching = !parts_.options.restart_at_contact || std::ranges::any_of(parts_.contacts, [](const FollowedContact& c) {
+    return c.phase.in_contact() || c.phase.phase() == Phase::near;
+  });
   return touching ? tolerances_.touching : tolerances_.in_flight;
 }
 
 bool Stepping::restart() {
   parts_.equations.rates(here_);
-  if (parts_.phase.phase() == Phase::rest) return true;
+  if (parts_.first().phase.phase() == Phase::rest) return true;
   const double longest = parts_.drives.resolving_step(here_.time);
   const double first = last_step_ > 0 ? std::min(last_step_, longest) : 0.01 / fastest_;
   return stepper_->restart(here_.time, here_.state.data(), here_.rates.data(), tolerances(), first, longest) ||
@@ -103,7 +113,7 @@ bool Stepping::check_work() {
   if (work_.steps >= options.max_steps) return fail(fmt::format("more than {} steps needed", options.max_steps));
   next_look_ = options.max_steps;
   if (options.integrator != Integrator::automatic || work_.integrator != Integrator::lawson) return true;
-  const bool stiff = stepper_->stiffness() > held_back && parts_.phase.phase() != Phase::rest;
+  const bool stiff = stepper_->stiffness() > held_back && parts_.first().phase.phase() != Phase::rest;
   stiff_looks_ = stiff ? stiff_looks_ + 1 : 0;
   if (stiff_looks_ < patience) {
     next_look_ = std::min(next_look_, work_.steps + steps_to_look);
@@ -130,15 +140,16 @@ std::optional<Stepping::Step> Stepping::advance(double stop, EnergyAudit& audit)
   if (step.event) {
     if (!step_again(*step.event)) return std::nullopt;
     consider_step();
-    parts_.course.take_back(next_.time, here_.time);  // the event may have moved before knots on the way to it
+    // The event may have moved before knots on the way to it.
+    for (FollowedContact& c : parts_.contacts) c.course.take_back(next_.time, here_.time);
   }
   step.field = parts_.equations.field(next_.state.data());
   account(step.field, audit);
-  if (parts_.observer.follows_motion() && next_.time > here_.time) parts_.observer.step(here_, next_, parts_.phase.law());
+  if (parts_.observer.follows_motion() && next_.time > here_.time) parts_.observer.step(here_, next_, parts_.first().phase.law());
   std::swap(here_.state, next_.state);
   std::swap(here_.rates, next_.rates);
   here_.time = next_.time;
-  parts_.course.push(end_);
+  for (FollowedContact& c : parts_.contacts) c.course.push(c.end);
   return step;
 }
 
@@ -151,75 +162,108 @@ void Stepping::take_state() {
 
 // Takes next_ for the end of the step from here_.
 void Stepping::consider_step() {
-  end_ = parts_.point(next_);
-  motion_.set(here_, next_, end_, !implicit());
+  for (FollowedContact& c : parts_.contacts) {
+    c.end = parts_.point(c, next_);
+    c.motion.set(here_, next_, c.end, !implicit());
+  }
 }
 
 // Peaks and energies over the step from here_ to next_, in whose field these figures were found.
 void Stepping::account(const FieldFigures& field, EnergyAudit& audit) {
   if (here_.time == next_.time) return;
-  const TrajectoryPoint& from = parts_.course.last();
-  if (end_.time > from.time) parts_.record(TipMotion(motion_, from, end_), from, end_);
-  parts_.touches.take(here_, next_, motion_);
-  audit.step(here_, next_, field.dissipation, motion_, implicit());
+  for (FollowedContact& c : parts_.contacts) {
+    const TrajectoryPoint& from = c.course.last();
+    if (c.end.time > from.time) parts_.record(c, TipMotion(c.motion, from, c.end), from, c.end);
+    c.touches.take(here_, next_, c.motion);
+  }
+  audit.step(here_, next_, field.dissipation, parts_.first().motion, implicit());
 }
 
 // The knot after k pieces of the step. The force along a pad, which more than the contact point decides, is drawn on a line.
-TrajectoryPoint Stepping::knot(int k) {
-  if (k == motion_.pieces()) return end_;
-  const ModalMotion::Sample& s = motion_.knot(k);
-  TrajectoryPoint p{.time = here_.time + (next_.time - here_.time) * k / motion_.pieces(),
+TrajectoryPoint Stepping::knot(FollowedContact& contact, int k) {
+  StepMotion& motion = contact.motion;
+  if (k == motion.pieces()) return contact.end;
+  const ModalMotion::Sample& s = motion.knot(k);
+  TrajectoryPoint p{.time = here_.time + (next_.time - here_.time) * k / motion.pieces(),
                     .position = s.position,
                     .velocity = s.velocity,
                     .acceleration = s.acceleration};
-  const ContactState& law = parts_.phase.law();
+  const ContactState& law = contact.phase.law();
   if (parts_.model.has_pad_contact()) {
-    p.contact_force = force_on_line(p.time);
+    p.contact_force = force_on_line(contact, p.time);
   } else if (law.active) {
-    p.contact_force = contact_force(parts_.model.contact(), s.position - plane_, law, s.velocity);
+    p.contact_force = contact_force(parts_.model.contact(contact.number), s.position - contact.plane, law, s.velocity);
   }
   return p;
 }
 
-double Stepping::force_on_line(double time) const {
-  const TrajectoryPoint& from = parts_.course.last();
-  return std::lerp(from.contact_force, end_.contact_force, (time - from.time) / (end_.time - from.time));
+double Stepping::force_on_line(const FollowedContact& contact, double time) {
+  const TrajectoryPoint &from = contact.course.last(), &to = contact.end;
+  return std::lerp(from.contact_force, to.contact_force, (time - from.time) / (to.time - from.time));
 }
 
-// Follows the contact point through the step from here_ to next_: knots where the interpolant needs them, up to the first event
-// at which to start anew. False: failed.
+// Follows the contacts through the step from here_ to next_, up to the first event of any at which to start anew. False: failed.
 bool Stepping::follow(std::optional<Event>& event) {
-  for (int k = 1; k <= motion_.pieces(); ++k) {
-    const TrajectoryPoint from = parts_.course.last(), to = knot(k);
-    const TipMotion tip(motion_, from, to);
-    event = first_event(tip, from, to, parts_.phase);
-    if (event) {
-      if (parts_.options.restart_at_contact || !parts_.model.has_contact()) return true;
-      if (!go_through(*event, tip)) return false;
-      if (event->time < to.time) --k;  // what is left of the piece
-      event.reset();
-    } else if (k < motion_.pieces()) {
-      parts_.record(tip, from, to);
-      parts_.course.push(to);
+  const double until = parts_.contacts.size() > 1 ? first_event_time() : next_.time;
+  return std::ranges::all_of(parts_.contacts, [&](FollowedContact& c) { return follow(c, until, event); });
+}
+
+// Of several contacts, what is recorded of each ends where the first event of any of them is.
+double Stepping::first_event_time() {
+  double first = next_.time;
+  for (FollowedContact& c : parts_.contacts) {
+    TrajectoryPoint from = c.course.last();
+    for (int k = 1; k <= c.motion.pieces() && from.time < first; ++k) {
+      const TrajectoryPoint to = knot(c, k);
+      if (const auto event = first_event(TipMotion(c.motion, from, to), from, to, c.phase)) {
+        first = std::min(first, event->time);
+        break;
+      }
+      from = to;
+    }
+  }
+  return first;
+}
+
+// One contact: knots where the interpolant needs them, up to its first event, or to where another has one.
+bool Stepping::follow(FollowedContact& contact, double until, std::optional<Event>& event) {
+  StepMotion& motion = contact.motion;
+  for (int k = 1; k <= motion.pieces(); ++k) {
+    const TrajectoryPoint from = contact.course.last(), to = knot(contact, k);
+    const TipMotion tip(motion, from, to);
+    std::optional<Event> found = first_event(tip, from, to, contact.phase);
+    if (found && found->time <= until) {
+      if (parts_.options.restart_at_contact || !parts_.model.has_contact()) {
+        found->contact = contact.number;
+        if (!event) event = found;  // of two at the same time the other one comes next
+        return true;
+      }
+      if (!go_through(contact, *found, tip)) return false;
+      if (found->time < to.time) --k;  // what is left of the piece
+    } else if (to.time > until) {
+      return true;
+    } else if (k < motion.pieces()) {
+      parts_.record(contact, tip, from, to);
+      contact.course.push(to);
     }
   }
   return true;
 }
 
 // An event at which the integrator is not restarted. False: there are too many.
-bool Stepping::go_through(const Event& event, const TipMotion& tip) {
-  const TrajectoryPoint from = parts_.course.last();
+bool Stepping::go_through(FollowedContact& contact, const Event& event, const TipMotion& tip) {
+  const TrajectoryPoint from = contact.course.last();
   TrajectoryPoint at{.time = event.time,
                      .position = event.edge->level,
                      .velocity = tip.velocity(event.time),
                      .acceleration = tip.acceleration(event.time)};
-  if (parts_.model.has_pad_contact()) at.contact_force = force_on_line(at.time);
-  if (at.time > from.time) parts_.record(TipMotion(motion_, from, at), from, at);
-  parts_.course.push(at);
-  parts_.touches.note(event, at);
-  parts_.phase.enter(event.edge->next, event.edge->zone);
-  end_ = parts_.point(next_);  // in the new phase
-  return parts_.touches.count() <= parts_.options.max_steps ||
+  if (parts_.model.has_pad_contact()) at.contact_force = force_on_line(contact, at.time);
+  if (at.time > from.time) parts_.record(contact, TipMotion(contact.motion, from, at), from, at);
+  contact.course.push(at);
+  contact.touches.note(event, at);
+  contact.phase.enter(event.edge->next, event.edge->zone);
+  contact.end = parts_.point(contact, next_);  // in the new phase
+  return contact.touches.count() <= parts_.options.max_steps ||
          fail(fmt::format("more than {} steps needed", parts_.options.max_steps));
 }
 
@@ -244,13 +288,14 @@ bool Stepping::step_again(const Event& event) {
       ++work_.steps;
     } while (stepper_->time() < time);
     take_state();
-    if (!event.edge || i == most_corrections || meet(*event.edge)) return true;
-    const double off = model.contact_deflection(next_.state.data()) - event.edge->level;
+    if (!event.edge || i == most_corrections || meet(event)) return true;
+    const double off = model.contact_deflection(next_.state.data(), event.contact) - event.edge->level;
     if (model.has_contact() && model.rigid_contact() == nullptr &&
-        std::abs(contact_energy(model.contact(), std::abs(off))) <= parts_.options.tolerance * model.bending_energy()) {
+        std::abs(contact_energy(model.contact(event.contact), std::abs(off))) <=
+            parts_.options.tolerance * model.bending_energy()) {
       return true;
     }
-    time -= off / model.contact_deflection(next_.state.data() + n_);
+    time -= off / model.contact_deflection(next_.state.data() + n_, event.contact);
   }
   if (!(time > here_.time)) next_ = here_;
   parts_.equations.rates(next_);  // so that the field belongs to next_ again
@@ -258,10 +303,12 @@ bool Stepping::step_again(const Event& event) {
 }
 
 // Moves next_ onto an edge that is less than a thousandth of a radian away.
-bool Stepping::meet(const Edge& edge) {
+bool Stepping::meet(const Event& event) {
   constexpr double short_of_a_radian = 1e-3;
   const double* v = next_.state.data() + n_;
-  double later = (edge.level - parts_.model.contact_deflection(next_.state.data())) / parts_.model.contact_deflection(v);
+  const Switch& model = parts_.model;
+  double later = (event.edge->level - model.contact_deflection(next_.state.data(), event.contact)) /
+                 model.contact_deflection(v, event.contact);
   if (!(std::abs(later) * fastest_ < short_of_a_radian)) return false;
   later = std::max(later, here_.time - next_.time);  // a step that began beyond the edge, by rounding, ends where it began
   for (std::size_t i = 0; i < n_; ++i) next_.state[i] += later * (v[i] + later / 2 * next_.rates[i]);

@@ -1,6 +1,7 @@
-// Steps of the integrator through a closing, each up to the next event of the contact point.
+// Steps of the integrator through a closing, each up to the next event of a contact.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "integrators/stepper.h"
 #include "model/closing.h"
+#include "model/closing/connection.h"
 #include "model/closing/energy_audit.h"
 #include "model/closing/equations.h"
 #include "model/closing/events.h"
@@ -28,18 +30,39 @@ namespace softland {
 [[nodiscard]] std::optional<Eigen::VectorXd> start_of(const Switch& model, std::span<const Signal> signals,
                                                       const ClosingOptions& options);
 
+/// One contact of a closing, or the contact point of a switch without one.
+struct FollowedContact {
+  FollowedContact(const Switch& model, std::size_t contact, ContactPhase& contact_phase, const ClosingOptions& options,
+                  ClosingObserver& observer)
+      : number(contact),
+        plane(model.contact_gap(contact)),
+        phase(contact_phase),
+        touches(model, contact, contact_phase, observer),
+        force(model, options.steady_force, contact),
+        course(model.device(), contact, observer),
+        motion(model, options.tolerance, contact) {}
+
+  std::size_t number;
+  double plane;  ///< of first touch [m]
+  ContactPhase& phase;
+  TouchRecord touches;
+  ForceRecord force;
+  Course course;
+  StepMotion motion;    ///< of the step that is considered
+  TrajectoryPoint end;  ///< of that step
+};
+
 /// What a closing is made of; the parts keep references to each other.
 struct ClosingParts {
   const Switch& model;
   const ClosingOptions& options;
   std::optional<Eigen::VectorXd> rest;  ///< where the run starts; none where there is no such equilibrium
   DriveCourse drives;
-  ContactPhase phase;
+  ContactPhases phases;
   ClosingEquations equations;
   RestingPlate plate;
-  TouchRecord touches;
-  ForceRecord force;
-  Course course;
+  std::optional<ConnectionCourse> connection;  ///< of several contacts
+  std::vector<FollowedContact> contacts;       ///< at least one: see ContactPhases
   ClosingObserver& observer;
 
   ClosingParts(const Switch& switch_model, std::span<const Signal> signals, const ClosingOptions& closing_options,
@@ -48,24 +71,42 @@ struct ClosingParts {
         options(closing_options),
         rest(start_of(switch_model, signals, closing_options)),
         drives(signals),
-        phase(model),
-        equations(model, drives, phase, options.restart_at_contact),
+        phases(model),
+        equations(model, drives, phases, options.restart_at_contact),
         plate(model, drives, equations),
-        touches(model, phase, closing_observer),
-        force(model, options.steady_force),
-        course(model.device(), closing_observer),
         observer(closing_observer) {
-    if (!rest || !begins_closed(options)) return;
-    phase.begin_closed(model.contact_deflection(rest->data()) - model.contact_gap());
-    if (phase.in_contact()) touches.begin_closed();
+    if (model.contacts() > 1) connection.emplace(model, observer);
+    contacts.reserve(phases.size());
+    for (std::size_t c = 0; c < phases.size(); ++c)
+      contacts.emplace_back(model, c, phases[c], options, connection ? connection->contact(c) : observer);
+    if (!rest || !(begins_closed(options) || model.contacts() > 1)) return;
+    for (FollowedContact& c : contacts) {
+      const double interference = model.contact_deflection(rest->data(), c.number) - c.plane;
+      if (!begins_closed(options) && !(interference > 0)) continue;
+      c.phase.begin_closed(interference);
+      if (c.phase.in_contact()) c.touches.begin_closed();
+    }
   }
   ClosingParts(const ClosingParts&) = delete;
   ClosingParts& operator=(const ClosingParts&) = delete;
 
+  [[nodiscard]] FollowedContact& first() { return contacts.front(); }
   /// Records the peaks and the contact force of a piece of a step.
-  void record(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
-  /// The contact point at a knot.
-  [[nodiscard]] TrajectoryPoint point(const Knot& knot) const;
+  void record(FollowedContact& contact, const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
+  /// The place of a contact at a knot.
+  [[nodiscard]] TrajectoryPoint point(const FollowedContact& contact, const Knot& knot) const;
+  /// Every contact's course goes on to a knot.
+  void push(const Knot& knot) {
+    for (FollowedContact& c : contacts) c.course.push(point(c, knot));
+  }
+  /// Hands over what nothing changes any more.
+  void hand_over() {
+    for (FollowedContact& c : contacts) c.course.hand_over();
+    if (connection) connection->hand_over();
+  }
+  /// Begin of the first touch of a contact of the near side [s]; NaN before.
+  [[nodiscard]] double first_touch() const;
+  [[nodiscard]] bool has_touched() const { return !std::isnan(first_touch()); }
 };
 
 class Stepping {
@@ -101,21 +142,20 @@ class Stepping {
   void take_state();
   void consider_step();
   bool follow(std::optional<Event>& event);
-  bool go_through(const Event& event, const TipMotion& tip);
+  bool follow(FollowedContact& contact, double until, std::optional<Event>& event);
+  [[nodiscard]] double first_event_time();
+  bool go_through(FollowedContact& contact, const Event& event, const TipMotion& tip);
   bool step_again(const Event& event);
-  bool meet(const Edge& edge);
-  [[nodiscard]] TrajectoryPoint knot(int k);
-  [[nodiscard]] double force_on_line(double time) const;
+  bool meet(const Event& event);
+  [[nodiscard]] TrajectoryPoint knot(FollowedContact& contact, int k);
+  [[nodiscard]] static double force_on_line(const FollowedContact& contact, double time);
   void account(const FieldFigures& field, EnergyAudit& audit);
 
   ClosingParts& parts_;
   std::size_t n_;   // modes
-  double plane_;    // of first touch [m]
   double fastest_;  // angular frequency of the last mode [rad/s]
   Tolerances tolerances_;
-  StepMotion motion_;  // of the step from here_ to next_
-  Knot here_, next_;
-  TrajectoryPoint end_;  // of that step
+  Knot here_, next_;  // of the step that is considered
   Work work_;
   std::unique_ptr<Stepper> stepper_;
   double last_step_ = 0;  // that no stop cut short [s]

@@ -18,8 +18,13 @@ double peak(double begin, double middle, double end) {
 
 }  // namespace
 
-TouchRecord::TouchRecord(const Switch& model, const ContactPhase& phase, ClosingObserver& observer)
-    : model_(model), phase_(phase), observer_(observer), plane_(model.contact_gap()), first_begin_(none) {}
+TouchRecord::TouchRecord(const Switch& model, std::size_t contact, const ContactPhase& phase, ClosingObserver& observer)
+    : model_(model),
+      contact_(contact),
+      phase_(phase),
+      observer_(observer),
+      plane_(model.contact_gap(contact)),
+      first_begin_(none) {}
 
 void TouchRecord::begin(double time, double velocity) {
   if (count_ > 0) observer_.touch(touch_);
@@ -42,8 +47,8 @@ void TouchRecord::take(const TipMotion& tip, const TrajectoryPoint& from, const 
   const double deepest = from.velocity > 0 && to.velocity < 0 ? tip.position(tip.turn()) : std::max(from.position, to.position);
   const double d = deepest - plane_;
   if (phase_.law().active && !model_.has_pad_contact()) {
-    touch_.peak_force = std::max(touch_.peak_force, contact_force(model_.contact(), d, phase_.law(), 0));
-    touch_.peak_energy = std::max(touch_.peak_energy, stored_energy(model_.contact(), d, phase_.law()));
+    touch_.peak_force = std::max(touch_.peak_force, contact_force(model_.contact(contact_), d, phase_.law(), 0));
+    touch_.peak_energy = std::max(touch_.peak_energy, stored_energy(model_.contact(contact_), d, phase_.law()));
   }
   deepest_ = std::max(deepest_, d);
 }
@@ -52,11 +57,11 @@ void TouchRecord::take(const Knot& begin, const Knot& end, StepMotion& step) {
   if (!phase_.in_contact() || !(model_.has_damped_contact() || model_.has_pad_contact())) return;
   const std::vector<double>& middle = step.halfway();
   const auto push = [&](const std::vector<double>& y) {
-    return model_.contact_push(y.data(), y.data() + model_.modes(), phase_.law());
+    return model_.contact_push(y.data(), y.data() + model_.modes(), phase_.law(), contact_);
   };
   touch_.peak_force = std::max(touch_.peak_force, peak(push(begin.state), push(middle), push(end.state)));
   if (!model_.has_pad_contact()) return;
-  const auto stored = [&](const std::vector<double>& y) { return model_.contact_stored(y.data(), phase_.law()); };
+  const auto stored = [&](const std::vector<double>& y) { return model_.contact_stored(y.data(), phase_.law(), contact_); };
   touch_.peak_energy = std::max(touch_.peak_energy, peak(stored(begin.state), stored(middle), stored(end.state)));
 }
 

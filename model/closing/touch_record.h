@@ -1,4 +1,4 @@
-// The touches of a closing as they come: when each begins and ends, and its peaks.
+// The touches of one contact of a closing as they come: when each begins and ends, and its peaks.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace softland {
 class TouchRecord {
  public:
   /// Keeps references; hands every touch to the observer when it is over.
-  TouchRecord(const Switch& model, const ContactPhase& phase, ClosingObserver& observer);
+  TouchRecord(const Switch& model, std::size_t contact, const ContactPhase& phase, ClosingObserver& observer);
 
   [[nodiscard]] long count() const { return count_; }
   [[nodiscard]] double first_begin() const { return first_begin_; }      ///< [s]; NaN before the first touch
@@ -39,6 +39,7 @@ class TouchRecord {
   void begin(double time, double velocity);
 
   const Switch& model_;
+  std::size_t contact_;
   const ContactPhase& phase_;
   ClosingObserver& observer_;
   double plane_;

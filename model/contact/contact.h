@@ -1,8 +1,10 @@
-// The contact of a device: the parameters of one of its laws, and the pad it acts on. A law is a header and a row here; where its
+// A contact of a device: the parameters of one of its laws, and the pad it acts on. A law is a header and a row here; where its
 // force takes much code, that stands in a header of its own, which contact_law.h includes.
 #pragma once
 
 #include <limits>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <variant>
 
@@ -17,6 +19,7 @@
 #include "model/contact/plastic_asperities.h"
 #include "model/contact/rigid.h"
 #include "model/contact/uniform_asperities.h"
+#include "model/place.h"
 
 namespace softland {
 
@@ -30,10 +33,23 @@ inline constexpr auto contact_distributions =
     std::to_array<Named<ContactDistribution>>({{ContactDistribution::centre, "centre"}, {ContactDistribution::pad, "pad"}});
 static_assert(is_complete<contact_distributions>());
 
+/// When the connection of several contacts is closed: while all of those that make it are, or any of them.
+enum class Connection { all, any };
+inline constexpr auto connections = std::to_array<Named<Connection>>({{Connection::all, "all"}, {Connection::any, "any"}});
+static_assert(is_complete<connections>());
+
 struct Contact {
   ContactModel model = UniformAsperities{};
   ContactDistribution distribution = ContactDistribution::centre;
-  double pad_length = 0;  ///< lt [m]: see Device::contact_position()
+  double pad_length = 0;                                        ///< lt [m]: see Device::contact_position()
+  double pad_width = std::numeric_limits<double>::quiet_NaN();  ///< [m]; NaN: that of the moving part
+  std::string name = {};                                        ///< empty: it is the only one
+  std::optional<Place> at = {};                                 ///< the centre of its pad; none: see Device::contact_position()
+  /// Rest distance of its place to its plane [m]; that of the first contact stands in Device::gap.
+  double gap = std::numeric_limits<double>::quiet_NaN();
+  Side side = Side::near;  ///< far: a back stop
+  double count = 1;        ///< how many such contacts stand side by side across the beam
+  bool connects = true;    ///< whether it is one of those that make the connection
 };
 
 /// Whether the law acts per area of the pad, so that a plate needs a width and a length of the pad.

@@ -48,7 +48,13 @@ struct KernelsOf<std::variant<Models...>>
 /// The force of every law of ContactModel: what its parameters' law(pad) gives, one or one of several.
 using ContactLaw = internal::KernelsOf<ContactModel>::Type;
 
-/// The law of a valid device's contact, whose moving part has this width [m].
+/// The pads of a contact, whose moving part has this width [m].
+[[nodiscard]] inline ContactPad pad_of(const Contact& contact, double width) {
+  const double one = contact.pad_width > 0 ? contact.pad_width : width;
+  return {.width = one * contact.count, .length = contact.pad_length, .count = contact.count};
+}
+
+/// The law of a valid device's contact, whose moving part has this width [m]: the force of all its pads together.
 [[nodiscard]] inline ContactLaw contact_law(const Contact& contact, double width) {
   const auto as_law = [](auto kernel) -> ContactLaw {
     if constexpr (requires { kernel.valueless_by_exception(); }) {
@@ -57,7 +63,7 @@ using ContactLaw = internal::KernelsOf<ContactModel>::Type;
       return kernel;
     }
   };
-  const ContactPad pad{.width = width, .length = contact.pad_length};
+  const ContactPad pad = pad_of(contact, width);
   return std::visit([&](const auto& model) { return as_law(model.law(pad)); }, contact.model);
 }
 

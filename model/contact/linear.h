@@ -48,8 +48,8 @@ struct LinearSpring {
     // clang-format on
   }
   [[nodiscard]] static constexpr LinearSpring example() { return {.stiffness = 1e4}; }
-  [[nodiscard]] std::variant<LinearContact, HuntCrossley<LinearContact>> law(const ContactPad&) const {
-    return damped(LinearContact{.stiffness = stiffness}, damping);
+  [[nodiscard]] std::variant<LinearContact, HuntCrossley<LinearContact>> law(const ContactPad& pad) const {
+    return damped(LinearContact{.stiffness = stiffness * pad.count}, damping);
   }
 };
 

@@ -74,8 +74,8 @@ struct ContactWithMemory {
   }
 };
 
-inline HystereticContact HystereticSpring::law(const ContactPad&) const {
-  return {.loading = {.stiffness = stiffness}, .elastic = {.stiffness = unloading_stiffness}};
+inline HystereticContact HystereticSpring::law(const ContactPad& pad) const {
+  return {.loading = {.stiffness = stiffness * pad.count}, .elastic = {.stiffness = unloading_stiffness * pad.count}};
 }
 
 inline std::variant<PlasticAsperityContact<ZmcAsperity>, PlasticAsperityContact<KogutEtsionAsperity>> PlasticAsperities::law(

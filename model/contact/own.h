@@ -9,7 +9,7 @@
 //     std::string_view name() const override { return "cubic spring"; }
 //     double force(double d, double) const override { return 1e20 * d * d * d; }
 //   };
-//   device.contact = Contact{.model = OwnContact{std::make_shared<const Cubic>()}, .pad_length = 5e-6};    // or, of a scene,
+//   device.contacts = {Contact{.model = OwnContact{std::make_shared<const Cubic>()}, .pad_length = 5e-6}};    // or, of a scene,
 //   file.add_contact({.model = OwnContact{std::make_shared<const Cubic>()}, .pad_length = 5e-6});          // which has no
 //   [contact]
 //

@@ -9,8 +9,9 @@ namespace softland {
 
 /// What a contact law is made for.
 struct ContactPad {
-  double width = 0;   ///< of the moving part [m]
+  double width = 0;   ///< [m]; times the number of pads side by side
   double length = 0;  ///< lt [m]
+  double count = 1;   ///< pads side by side
 };
 
 struct Summits {

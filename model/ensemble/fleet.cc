@@ -70,7 +70,7 @@ struct ElasticContact {
   double unloading = 0;  // stiffness of a contact with a memory; 0: has none [N/m]
 };
 std::optional<ElasticContact> lane_contact(const Switch& model) {
-  if (!model.has_contact() || model.has_pad_contact()) return std::nullopt;
+  if (model.contacts() != 1 || model.has_pad_contact()) return std::nullopt;
   using Lane = fleet::LaneContact;
   const ContactLaw& law = model.contact();
   const auto rough = [](const UniformAsperityContact& c, double damping) {

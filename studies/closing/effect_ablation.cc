@@ -131,7 +131,7 @@ void add_omissible_gas(const PreparedScene& prepared, std::vector<OmissibleEffec
 
 void add_omissible_contact(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
-  const Contact& contact = *d.contact;
+  const Contact& contact = d.contacts.front();
   if (contact.distribution == ContactDistribution::pad) {
     const double rise = 1.5 * d.contact_gap() / d.structure.length * contact.pad_length;  // of a uniform beam bent by its end
     list.push_back({.effect = "contact.distribution",
@@ -156,7 +156,7 @@ std::vector<OmissibleEffect> omissible_effects(const PreparedScene& prepared) {
   add_omissible_structure(prepared, list);
   add_omissible_fringing(prepared, list);
   if (d.gas) add_omissible_gas(prepared, list);
-  if (d.contact) add_omissible_contact(prepared, list);
+  if (d.has_contact()) add_omissible_contact(prepared, list);
   if (d.dispersion && !prepared.drives.at(dispersion_drive).waveform) {
     const double bent =
         prepared.model.rest() ? prepared.model.contact_deflection(prepared.model.rest()->data()) : d.contact_gap();

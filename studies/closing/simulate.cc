@@ -41,6 +41,7 @@ struct Run {
   Trajectory trajectory;
   Metrics metrics;
   std::vector<Rebound> rebounds;
+  std::vector<ContactClosing> contacts = {};
   bool is_thinned = false;
   double tolerance = 0;
   SwitchOptions quadrature;
@@ -163,6 +164,11 @@ class ClosingRuns {
         count_++ == 0 ? "closing" : fmt::format("closing again at tolerance {}, for its errors", engineering(tolerance, "", 1));
     const Hold hold = hold_of(model, signals_);
     CourseRecorder recorder(prepared_.scene.device.contact_gap(), prepared_.scene.metrics);
+    if (model.contacts() > 1) {
+      std::vector<double> gaps;
+      for (std::size_t c = 0; c < model.contacts(); ++c) gaps.push_back(model.contact_gap(c));
+      recorder.follow_contacts(gaps);
+    }
     r.trajectory = observe_closing(model, signals_,
                                    {.duration = prepared_.duration,
                                     .tolerance = tolerance,
@@ -177,6 +183,8 @@ class ClosingRuns {
     set_rest(r.trajectory, model, signals_, hold);
     r.metrics = recorder.metrics(r.trajectory);
     r.rebounds = recorder.rebounds();
+    for (std::size_t c = 0; c < r.trajectory.contacts.size(); ++c)
+      r.contacts.push_back({.metrics = recorder.metrics_of(c, r.trajectory), .rebounds = recorder.rebounds_of(c)});
     r.is_thinned = recorder.is_thinned();
     set_open_figures(r.metrics, r.trajectory, model, signals_);
     return r;
@@ -389,6 +397,7 @@ Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watc
   }
   c.trajectory = std::move(best.trajectory);
   c.rebounds = std::move(best.rebounds);
+  c.contacts = std::move(best.contacts);
   c.is_thinned = best.is_thinned;
   c.tolerance = best.tolerance;
   c.quadrature = best.quadrature;
@@ -432,19 +441,63 @@ std::string hold_warning(const Switch& model, const std::vector<Signal>& signals
   return unstable.empty() ? std::string(not_held) : unstable;
 }
 
+namespace {
+
+// The same device, of which another contact is the first.
+Device with_first_contact(Device device, std::size_t c) {
+  device.contacts.front().gap = device.gap.contact;
+  std::swap(device.contacts.front(), device.contacts[c]);
+  device.gap.contact = device.contacts.front().gap;
+  return device;
+}
+
+// What several contacts carry where the switch rests under these levels, and what the connection that they make does.
+Hold hold_of_connection(const Switch& model, const std::vector<double>& levels, Hold hold) {
+  const bool needs_all = model.device().connection == Connection::all;
+  std::optional<Eigen::VectorXd> rest;
+  if (keeps_closed(model, hold.closed)) rest = hold.closed->q;
+  // Another contact than the first one may hold the beam.
+  for (std::size_t c = 1; c < model.contacts() && !rest && !needs_all; ++c) {
+    if (!model.device().contacts[c].connects) continue;
+    const Switch other(with_first_contact(model.device(), c));
+    const std::optional<ClosedEquilibrium> closed = closed_equilibrium(other, levels);
+    if (keeps_closed(other, closed)) rest = closed->q;
+  }
+  hold.is_held = false;
+  hold.force = Metrics::unset;
+  if (!rest) return hold;
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
+  double force = needs_all ? std::numeric_limits<double>::infinity() : 0;
+  for (std::size_t c = 0; c < model.contacts(); ++c) {
+    const bool acts = model.contact_deflection(rest->data(), c) > model.contact_gap(c) - model.contact_reach(c);
+    const double own = acts ? model.contact_push(rest->data(), still.data(), true, c) : 0;
+    hold.forces.push_back(own);
+    if (!model.device().contacts[c].connects) continue;
+    force = needs_all ? std::min(force, own) : std::max(force, own);
+  }
+  hold.is_held = force > 0;
+  if (hold.is_held) hold.force = force;
+  return hold;
+}
+
+}  // namespace
+
 Hold hold_of(const Switch& model, const std::vector<Signal>& signals, const std::optional<ClosedEquilibrium>& near) {
   const std::vector<double> levels = hold_levels(signals);
   Hold hold{.closed = near ? closed_equilibrium_near(model, levels, *near) : closed_equilibrium(model, levels)};
   const bool stays = keeps_closed(model, hold.closed);
   if (stays) hold.force = hold.closed->contact_force;
-  const std::optional<Contact>& contact = model.device().contact;
-  hold.is_held = stays || !contact || (may_stick(contact->model) && !hold.closed);
+  if (model.contacts() > 1) return hold_of_connection(model, levels, std::move(hold));
+  const bool sticks = model.has_contact() && may_stick(model.device().contacts.front().model);
+  hold.is_held = stays || !model.has_contact() || (sticks && !hold.closed);
   return hold;
 }
 
 void set_hold(Trajectory& trajectory, const Hold& hold) {
   trajectory.hold_force = hold.force;
   trajectory.is_held = hold.is_held;
+  for (std::size_t c = 0; c < std::min(trajectory.contacts.size(), hold.forces.size()); ++c)
+    if (hold.forces[c] > 0) trajectory.contacts[c].hold_force = hold.forces[c];
 }
 
 void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold) {

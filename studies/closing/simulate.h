@@ -29,11 +29,18 @@ struct Judge {
   SwitchOptions quadrature;
 };
 
+/// One of several contacts in a closing.
+struct ContactClosing {
+  Metrics metrics;
+  std::vector<Rebound> rebounds;
+};
+
 struct Closing {
   Trajectory trajectory;
   bool is_thinned = false;             ///< the trajectory lacks knots: it draws the picture, and no more (CourseRecorder)
   std::vector<Rebound> rebounds = {};  ///< of all knots
   Metrics metrics;
+  std::vector<ContactClosing> contacts = {};  ///< in the order of Trajectory::contacts; empty where there is one
   /// Absolute error estimates: the difference to the judge's and what rounding leaves, that of the drive energy at least the
   /// residual of the energies, or what certify() makes of it. NaN where
   /// not estimated: t_p, t_b and N_B have none but from certify(), nor what comes after the runs part in a rebound's height,
@@ -74,7 +81,8 @@ inline constexpr std::string_view not_held =
 /// What the hold levels of drives do to a closed switch.
 struct Hold {
   std::optional<ClosedEquilibrium> closed;  ///< if there is one
-  double force = Metrics::unset;            ///< of the contact, where it is stable [N]
+  double force = Metrics::unset;            ///< of the contact, where it is stable, or of the connection of several [N]
+  std::vector<double> forces = {};          ///< of each of several contacts [N]; empty where no state holds
   /// Whether anything holds the switch: not where it has a contact and no such equilibrium, unless the contact may hold on by
   /// adhesion, nor where it is unstable.
   bool is_held = true;

@@ -30,18 +30,18 @@ double touching_share(const Law& law, double d) {
 
 std::optional<SummitsAtHold> summits_at_hold(const Switch& model, const ClosedEquilibrium& closed) {
   const Device& device = model.device();
-  if (!device.contact || device.touches_along_pad()) return std::nullopt;
+  if (!device.has_contact() || device.touches_along_pad()) return std::nullopt;
   const double d = model.contact_deflection(closed.q.data()) - device.contact_gap();
   return std::visit(
       [&]<class Law>(const Law& law) -> std::optional<SummitsAtHold> {
         if constexpr (requires { law.summits.density; }) {
-          const double all = law.summits.count({.width = device.structure.width, .length = device.contact->pad_length});
+          const double all = law.summits.count(pad_of(device.contacts.front(), device.structure.width));
           return SummitsAtHold{.touching = all * touching_share(law, d), .all = all};
         } else {
           return std::nullopt;
         }
       },
-      device.contact->model);
+      device.contacts.front().model);
 }
 
 std::string summits_words(const SummitsAtHold& summits) {

@@ -307,7 +307,7 @@ IdentificationStudy identify(SceneFile file, const IdentificationOptions& option
   const Scene scene = read_scene(file);
   require_open_start(scene, "calibrate closes every device");
   const Device& device = scene.device;
-  require(device.contact.has_value(), "calibrate needs a [contact] section: without contact there is nothing to land on");
+  require(device.has_contact(), "calibrate needs a [contact] section: without contact there is nothing to land on");
   require(has_pulling_electrode(device), "calibrate needs an electrode that pulls in: its voltage is what devices differ in");
   const SearchSetting setting = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", watch);
   const PreparedScene& nominal = setting.given;

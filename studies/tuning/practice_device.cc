@@ -19,7 +19,7 @@ namespace {
 
 // Only a contact tells a lab that a switch has closed.
 void require_contact(const PreparedScene& nominal) {
-  require(nominal.scene.device.contact.has_value(), [&] {
+  require(nominal.scene.device.has_contact(), [&] {
     return fmt::format("{}: there is no [contact]: a lab would see nothing of a closing", nominal.scene.file.name());
   });
 }
@@ -49,7 +49,7 @@ void change_gas(SceneFile& file, const Scene& scene, const std::string& name) {
 }
 
 void stiffen(SceneFile& file, const Scene& scene, double factor) {
-  const ContactModel& law = scene.device.contact->model;
+  const ContactModel& law = scene.device.contacts.front().model;
   bool is_stiff = false;
   for (const std::string key : {"stiffness", "unloading_stiffness", "effective_modulus", "asperity_pressure", "wall_pressure"}) {
     if (!file.written("contact." + key)) continue;

@@ -65,9 +65,9 @@ TEST(Scene, EverySectionOfTheSmallSceneArrives) {
   EXPECT_EQ(scene.device.electrodes[0].end, 240e-6);
   ASSERT_TRUE(scene.device.gas);
   EXPECT_EQ(std::get<StripGas>(*scene.device.gas).film.viscosity, 1.86e-5);
-  ASSERT_TRUE(scene.device.contact);
-  EXPECT_EQ(std::get<LinearSpring>(scene.device.contact->model).stiffness, 100);
-  EXPECT_EQ(scene.device.contact->pad_length, 5e-6);
+  ASSERT_TRUE(scene.device.has_contact());
+  EXPECT_EQ(std::get<LinearSpring>(scene.device.contacts.front().model).stiffness, 100);
+  EXPECT_EQ(scene.device.contacts.front().pad_length, 5e-6);
   ASSERT_TRUE(scene.device.piezo);
   EXPECT_EQ(scene.device.piezo->begin, 5e-6);
   EXPECT_EQ(scene.device.piezo->end, 240e-6);
@@ -292,7 +292,7 @@ TEST(Scene, EveryFringingLawHasAName) {
 }
 
 TEST(Scene, AsperitiesArrive) {
-  const auto contact = std::get<UniformAsperities>(read_file("mem-gold.toml").device.contact->model);
+  const auto contact = std::get<UniformAsperities>(read_file("mem-gold.toml").device.contacts.front().model);
   EXPECT_EQ(contact.summits.radius, 100e-9);
   EXPECT_EQ(contact.summits.density, 1e11);
   EXPECT_EQ(contact.height, 100e-9);
@@ -301,7 +301,7 @@ TEST(Scene, AsperitiesArrive) {
 
 TEST(Scene, EveryContactLawArrives) {
   const auto contact = [](const std::string& keys) {
-    return *read(edited(small_scene, "model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"", keys)).device.contact;
+    return read(edited(small_scene, "model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"", keys)).device.contacts.front();
   };
   const std::string summits =
       "pad_length = \"5 um\"\nasperity_radius = \"100 nm\"\nasperity_density = \"1e11 1/m^2\"\neffective_modulus = \"48 GPa\"\n";
@@ -375,7 +375,7 @@ TEST(Scene, AdhesiveRepulsiveContactHasThePublishedNumbersUnlessTold) {
   const auto pressure = [](const std::string& keys) {
     const Scene scene = read(edited(small_scene, "model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"",
                                     "model = \"adhesive-repulsive\"\npad_length = \"5 um\"" + keys));
-    return std::get<AdhesiveRepulsiveSurfaces>(scene.device.contact->model).pressure;
+    return std::get<AdhesiveRepulsiveSurfaces>(scene.device.contacts.front().model).pressure;
   };
   const SurfacePressure published, read_back = pressure("");
   EXPECT_DOUBLE_EQ(read_back.asperity_pressure, published.asperity_pressure);
@@ -411,7 +411,7 @@ contact = "2 um"
 )");
   EXPECT_TRUE(scene.device.electrodes.empty());
   EXPECT_FALSE(scene.device.gas);
-  EXPECT_FALSE(scene.device.contact);
+  EXPECT_FALSE(scene.device.has_contact());
   EXPECT_FALSE(scene.device.piezo);
   EXPECT_EQ(scene.drives({}).size(), 0U);
   EXPECT_THAT(scene.warnings, testing::ElementsAre("x.toml: neither an electrode nor a piezo layer: nothing drives this switch"));

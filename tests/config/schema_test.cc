@@ -31,7 +31,7 @@ Scene whole_scene() {
               .warnings = {},
               .file = SceneFile::parse("", "x.toml")};
   scene.device.gas.emplace();
-  scene.device.contact.emplace();
+  scene.device.contacts.emplace_back();
   scene.device.piezo.emplace();
   scene.device.dispersion.emplace();
   scene.device.surface.emplace();
@@ -78,7 +78,7 @@ TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {
 /// How many members of a scene under these laws the keys set.
 int members_set(const ContactModel& contact, const Gas& gas) {
   Scene scene = whole_scene();
-  scene.device.contact->model = contact;
+  scene.device.contacts.front().model = contact;
   scene.device.gas = gas;
   std::map<const void*, std::string> owners;
   for (const Section& section : schema()) {

@@ -104,7 +104,7 @@ gaps = { keys = ["gap.electrode", "gap.contact"], distribution = "normal", cov =
   }
   EXPECT_DOUBLE_EQ(scene.device.gap.electrode, 1.5 * 3.5e-6);
   EXPECT_DOUBLE_EQ(scene.device.gap.contact, 1.5 * 2e-6);
-  EXPECT_DOUBLE_EQ(std::get<LinearSpring>(scene.device.contact->model).stiffness, 150);
+  EXPECT_DOUBLE_EQ(std::get<LinearSpring>(scene.device.contacts.front().model).stiffness, 150);
   EXPECT_DOUBLE_EQ(film_of(*scene.device.gas)->viscosity, 1.5 * 1.86e-5);
 }
 

@@ -25,7 +25,7 @@ Device soft_plate(double stiffness) {
   return {.structure = {.length = side, .width = side, .kind = Plate{.mass = 1e-10, .stiffness = stiffness}},
           .gap = {.electrode = 10_um, .contact = 2_um},
           .electrodes = {{.name = "main", .begin = 0, .end = side, .fringing = Fringing::none}},
-          .contact = Contact{.model = AdhesiveRepulsiveSurfaces(), .pad_length = pad_length}};
+          .contacts = {Contact{.model = AdhesiveRepulsiveSurfaces(), .pad_length = pad_length}}};
 }
 
 /// The published pressure, without reach [Pa].
@@ -73,7 +73,7 @@ TEST(AdhesiveRepulsive, StaticPullInIsTheFoldThatItsAttractionMakes) {
   EXPECT_NEAR(found.voltage, std::sqrt(fold.value), scanned * found.voltage);
   EXPECT_NEAR(found.deflection, fold.at, 1e-4 * fold.at);
   Device without = d;
-  without.contact.reset();
+  without.contacts.clear();
   EXPECT_EQ(static_pull_in(Switch(without), 0).kind, StaticKind::contact);
   EXPECT_LT(found.voltage, static_pull_in(Switch(without), 0).voltage);
 }

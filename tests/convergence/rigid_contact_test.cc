@@ -27,7 +27,7 @@ Device falling(double restitution) {
   return {.structure = {.length = 100_um, .width = 100_um, .kind = Plate{.mass = mass, .stiffness = stiffness}},
           .gap = {.electrode = electrode, .contact = gap},
           .electrodes = {{.name = "main", .begin = 0, .end = 100_um, .fringing = Fringing::none}},
-          .contact = Contact{.model = RigidStop{.restitution = restitution}}};
+          .contacts = {Contact{.model = RigidStop{.restitution = restitution}}}};
 }
 
 // At rest, and at the plane; where the two are the same (no springs) the rebounds' times are a geometric series too.
@@ -101,7 +101,7 @@ TEST(RigidContact, HundredsOfReboundsAreHundredsOfEventsAndNoMore) {
 /// A plate with a film and two electrodes on a rigid contact.
 Device stopped_plate(double restitution) {
   Device d = test::full_plate();
-  d.contact = Contact{.model = RigidStop{.restitution = restitution}};
+  d.contacts = {Contact{.model = RigidStop{.restitution = restitution}}};
   return d;
 }
 
@@ -217,7 +217,7 @@ TEST(RigidContact, IsTheLimitOfStiffDampedSprings) {
   };
   const auto run = [](const ContactModel& law) {
     Device d = stopped_plate(0.5);
-    d.contact->model = law;
+    d.contacts.front().model = law;
     const std::vector<Signal> drives{Signal::constant(110), Signal()};
     return metrics(simulate_closing(Switch(d), drives, {.duration = 60_us, .tolerance = 1e-8}));
   };

@@ -28,11 +28,11 @@ const double omega = std::sqrt(stiffness / mass);
 const double dynamic = std::sqrt(stiffness * gap * gap * gap / (4 * vacuum_permittivity * area));
 const double statically = std::sqrt(8 * stiffness * gap * gap * gap / (27 * vacuum_permittivity * area));
 
-Device plate(double contact, std::optional<Contact> law = Contact{.model = LinearSpring{.stiffness = 1e7}}) {
+Device plate(double contact, std::vector<Contact> contacts = {Contact{.model = LinearSpring{.stiffness = 1e7}}}) {
   return {.structure = {.length = 100_um, .width = 100_um, .kind = Plate{.mass = mass, .stiffness = stiffness}},
           .gap = {.electrode = gap, .contact = contact},
           .electrodes = {{.name = "main", .begin = 0, .end = 100_um, .fringing = Fringing::none}},
-          .contact = law};
+          .contacts = std::move(contacts)};
 }
 
 double gained(double volts, double s) {

@@ -40,7 +40,7 @@ constexpr double step_level = 17.771;  // [V], about 1.25 Vdp of the gold cantil
 Device gold_on(const Contact& contact, bool gas = false) {
   Device d = test::gold_cantilever();
   if (!gas) d.gas.reset();
-  d.contact = contact;
+  d.contacts = {contact};
   return d;
 }
 Device gold_on_spring(double stiffness) { return gold_on({.model = LinearSpring{.stiffness = stiffness}, .pad_length = 5_um}); }
@@ -121,7 +121,7 @@ std::vector<Case> cases() {
     d.gap = {.electrode = 5_nm, .contact = 4.8_nm};
     d.dispersion->model = DispersionModel::van_der_waals;
     d.dispersion->equilibrium_distance = repulsion;
-    d.contact->pad_length = 2_nm;
+    d.contacts.front().pad_length = 2_nm;
     test::rough(d).summits.density = 1e17;
     test::rough(d).height = 0.02_nm;
     test::rough(d).summits.effective_modulus = 1e12;
@@ -143,7 +143,7 @@ std::vector<Case> cases() {
   {
     Device plate = test::full_plate();
     plate.gap.contact = 1_um;
-    plate.contact->model = LinearSpring{.stiffness = 1e9};
+    plate.contacts.front().model = LinearSpring{.stiffness = 1e9};
     const double pull_in = static_pull_in(Switch(plate), 0).voltage;
     all.push_back({"a plate under 1000 times its pull-in voltage", plate, {Signal::constant(1000 * pull_in), Signal()}, 100_ns});
   }
@@ -151,13 +151,13 @@ std::vector<Case> cases() {
     const Pulse to_and_fro{.levels = {step_level, 0, step_level, 0}, .times = {45_us, 80_us, 125_us}, .edge = 1_us};
     all.push_back({"released and closed again", test::gold_cantilever(), {signal(to_and_fro)}, 160_us});
     Device plate = test::full_plate();
-    plate.contact = Contact{.model = RigidStop{.restitution = 0.3}};
+    plate.contacts = {Contact{.model = RigidStop{.restitution = 0.3}}};
     const Pulse plates{.levels = {110, 0, 110, 0}, .times = {90_us, 120_us, 200_us}, .edge = 1_us};
     all.push_back({"a plate released from a rigid contact and closed again", plate, {signal(plates), Signal()}, 250_us});
   }
   for (const double restitution : {0.0, 0.99}) {  // more than 600 impacts, after which the plate rests
     Device plate = test::full_plate();
-    plate.contact = Contact{.model = RigidStop{.restitution = restitution}};
+    plate.contacts = {Contact{.model = RigidStop{.restitution = restitution}}};
     all.push_back({fmt::format("a plate on a rigid contact with restitution {:g}", restitution),
                    plate,
                    {Signal::constant(150), Signal()},

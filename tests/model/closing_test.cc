@@ -54,7 +54,7 @@ TEST(Closing, BeginsOnTheContactWhereItIsTold) {
   for (const Contact& contact : test::contacts()) {
     SCOPED_TRACE(name_of(contact.model));
     Device device = test::gold_cantilever();
-    device.contact = contact;
+    device.contacts = {contact};
     const Switch model(device);
     const std::vector<double> holds{step_level};
     const auto closed = closed_equilibrium(model, holds);
@@ -267,7 +267,7 @@ TEST(Closing, GivesUpWaitingForContactWhenTold) {
 
 TEST(Closing, EndsWhereTheBeamReachesTheElectrode) {
   Device d = test::gold_cantilever();
-  d.contact->model = LinearSpring{.stiffness = 1_N_m};  // far too soft to hold the beam
+  d.contacts.front().model = LinearSpring{.stiffness = 1_N_m};  // far too soft to hold the beam
   const Switch device(d);
   for (const Integrator integrator :
        {Integrator::lawson, Integrator::arkode_erk, Integrator::esdirk, Integrator::bdf, Integrator::adams}) {
@@ -329,7 +329,7 @@ TEST(Closing, ShowsEveryStepToItsObserverAndEndsAtItsWord) {
 
 TEST(Closing, WithoutAContactLawEndsAtFirstTouch) {
   Device d = test::gold_cantilever();
-  d.contact.reset();
+  d.contacts.clear();
   const Trajectory t = simulate_closing(Switch(d), step(), {.duration = 100_us});
   EXPECT_EQ(t.status, Status::done);
   EXPECT_TRUE(t.ends_at_touch);
@@ -355,7 +355,7 @@ TEST(ContactMemory, TakesFromTheMotionWhatTheDentSays) {
     Device d = test::gold_cantilever();
     d.gas.reset();
     d.structure.modes = 1;
-    d.contact->model = law;
+    d.contacts.front().model = law;
     const Switch device(d);
     // One undamped mode, kicked at the contact and then left alone.
     const std::vector<Signal> kick{Signal::piecewise_linear({{0, 0}, {0, 300}, {0.3_us, 300}, {0.3_us, 0}})};
@@ -391,7 +391,7 @@ TEST(ThroughContact, IsTheSameClosingUnderEveryLawWithoutMemory) {
   int tried = 0;
   for (const Contact& contact : contacts) {
     Device device = test::gold_cantilever();
-    device.contact = contact;
+    device.contacts = {contact};
     const Switch with(device);
     if (!why_always_restarted(with).empty()) continue;
     ++tried;
@@ -436,11 +436,11 @@ TEST(ThroughContact, IsRefusedWhereTheContactIsNoFunctionOfTheState) {
     return [=] { (void)simulate_closing(Switch(device), step(), {.duration = 1e-4, .restart_at_contact = false}); };
   };
   Device device = test::gold_cantilever();
-  device.contact->model = HystereticSpring{.stiffness = 1e4, .unloading_stiffness = 2e4};
+  device.contacts.front().model = HystereticSpring{.stiffness = 1e4, .unloading_stiffness = 2e4};
   test::expect_refused(run(device), "restart_at_contact = false: a contact law with memory turns at the deepest point");
   device = test::full_plate();
   device.electrodes.pop_back();
-  device.contact = Contact{.model = RigidStop{.restitution = 0.5}};
+  device.contacts = {Contact{.model = RigidStop{.restitution = 0.5}}};
   test::expect_refused(run(device), "restart_at_contact = false: an impact on a rigid contact is no force");
 }
 

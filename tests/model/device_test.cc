@@ -124,7 +124,7 @@ TEST(Device, NamesWhatIsWrongWithIt) {
                  "gas.model = linear: needs either damping or quality_factor");
   expect_message([](Device& d) { d.gas = LinearGas{.damping = 0}; },
                  "gas.damping = 0 N s/m^2: must be greater than 0 and below 1e30");
-  expect_message([](Device& d) { d.contact->pad_length = 1; },
+  expect_message([](Device& d) { d.contacts.front().pad_length = 1; },
                  "contact.pad_length = 1 m: must be positive and below structure.length = 250 um");
   expect_message([](Device& d) { test::rough(d).summits.radius = 0; },
                  "contact.asperity_radius = 0 m: must be greater than 0 and below 1e30");
@@ -134,38 +134,38 @@ TEST(Device, NamesWhatIsWrongWithIt) {
                  "contact.asperity_height = 0 m: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { test::rough(d).summits.effective_modulus = 0; },
                  "contact.effective_modulus = 0 Pa: must be greater than 0 and below 1e30");
-  expect_message([](Device& d) { d.contact->model = LinearSpring(); },
+  expect_message([](Device& d) { d.contacts.front().model = LinearSpring(); },
                  "contact.stiffness = 0 N/m: must be greater than 0 and below 1e30");
-  expect_message([](Device& d) { d.contact->model = GaussianAsperities{.summits = Summits::example()}; },
+  expect_message([](Device& d) { d.contacts.front().model = GaussianAsperities{.summits = Summits::example()}; },
                  "contact.asperity_deviation = 0 m: must be greater than 0 and below 1e30");
-  expect_message([](Device& d) { d.contact->model = AdhesiveAsperities{.summits = Summits::example(), .height = 100_nm}; },
+  expect_message([](Device& d) { d.contacts.front().model = AdhesiveAsperities{.summits = Summits::example(), .height = 100_nm}; },
                  "contact.adhesion_energy = 0 J/m^2: must be greater than 0 and below 1e30");
-  expect_message([](Device& d) { d.contact->model = PlasticAsperities{.summits = Summits::example(), .height = 100_nm}; },
+  expect_message([](Device& d) { d.contacts.front().model = PlasticAsperities{.summits = Summits::example(), .height = 100_nm}; },
                  "contact.hardness = 0 Pa: must be greater than 0 and below 1e30");
-  expect_message([](Device& d) { d.contact->model = HystereticSpring{.stiffness = 100, .unloading_stiffness = 50}; },
+  expect_message([](Device& d) { d.contacts.front().model = HystereticSpring{.stiffness = 100, .unloading_stiffness = 50}; },
                  "contact.unloading_stiffness = 50 N/m: must not be below contact.stiffness = 100 N/m, and below 1e30 N/m");
-  expect_message([](Device& d) { d.contact->model = RigidStop(); },
+  expect_message([](Device& d) { d.contacts.front().model = RigidStop(); },
                  "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
-  expect_message([](Device& d) { d.contact->model = AdhesiveRepulsiveSurfaces{.pressure = {.wall_range = 0}}; },
+  expect_message([](Device& d) { d.contacts.front().model = AdhesiveRepulsiveSurfaces{.pressure = {.wall_range = 0}}; },
                  "contact.wall_range = 0 m: must be greater than 0 and below 1e30");
-  expect_message([](Device& d) { d.contact->model = AdhesiveRepulsiveSurfaces{.pressure = {.reach = 100_nm}}; },
+  expect_message([](Device& d) { d.contacts.front().model = AdhesiveRepulsiveSurfaces{.pressure = {.reach = 100_nm}}; },
                  "contact.reach = 100 nm: must exceed asperity_distance + adhesion_range = 112 nm and be at most 1 m");
   expect_message(
       [](Device& d) {
-        d.contact->model = AdhesiveRepulsiveSurfaces();
+        d.contacts.front().model = AdhesiveRepulsiveSurfaces();
         d.gap.contact = 0.5_um;
       },
       "contact.reach = 1 um: acts 837.940355224 nm above the plane of first touch, which must be less than gap.contact = 500 nm");
   const auto along_pad = [](auto&& change) {
     return [change](Device& d) {
-      d.contact->distribution = ContactDistribution::pad;
+      d.contacts.front().distribution = ContactDistribution::pad;
       change(d);
     };
   };
   expect_message(
-      along_pad([](Device& d) { d.contact->model = PlasticAsperities::example(); }),
+      along_pad([](Device& d) { d.contacts.front().model = PlasticAsperities::example(); }),
       "contact.distribution = pad: not with model = \"elastic-plastic\": every point of the pad would keep a dent of its own");
-  expect_message(along_pad([](Device& d) { d.contact->model = AdhesiveRepulsiveSurfaces(); }),
+  expect_message(along_pad([](Device& d) { d.contacts.front().model = AdhesiveRepulsiveSurfaces(); }),
                  "contact.distribution = pad: not with model = \"adhesive-repulsive\", which acts before the free end touches");
   expect_message(
       along_pad([](Device& d) {
@@ -174,10 +174,10 @@ TEST(Device, NamesWhatIsWrongWithIt) {
       }),
       "contact.distribution = pad: needs a cantilever, whose tilted pad is straight and touches first with its free end; "
       "between two clamps the pad lies flat about the middle");
-  expect_message(along_pad([](Device& d) { d.contact->pad_length = 26_um; }),
+  expect_message(along_pad([](Device& d) { d.contacts.front().pad_length = 26_um; }),
                  "contact.distribution = pad: the pad counts as straight, so pad_length must not exceed a tenth of the beam's "
                  "length, 25 um");
-  expect_message([](Device& d) { std::get<UniformAsperities>(d.contact->model).damping = -1; },
+  expect_message([](Device& d) { std::get<UniformAsperities>(d.contacts.front().model).damping = -1; },
                  "contact.damping = -1 s/m: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.piezo->begin = -1e-6, d.piezo->end = 2e-4; },
                  "piezo.span = [-1 um, 200 um]: must increase and lie on the beam, from 0 m to 250 um");
@@ -206,19 +206,19 @@ TEST(Device, NamesWhatIsWrongWithAPlate) {
   expect([](Device& d) { d.structure.thickness = 0; }, "structure.thickness = 0 m: must be greater than 0 and below 1e30");
   expect([](Device& d) { d.piezo = test::gold_pzt_cantilever().piezo; },
          "piezo: a rigid plate does not bend; a layer needs a beam");
-  expect([](Device& d) { d.contact->model = UniformAsperities::example(); },
+  expect([](Device& d) { d.contacts.front().model = UniformAsperities::example(); },
          "contact.pad_length = 0 m: must be positive and below structure.length = 100 um");
   EXPECT_NO_THROW(expect_valid(
-      [](Device& d) { d.contact = Contact{.model = HystereticSpring{.stiffness = 100, .unloading_stiffness = 200}}; }));
-  EXPECT_NO_THROW(expect_valid([](Device& d) { d.contact = Contact{.model = RigidStop{.restitution = 0}}; }));
+      [](Device& d) { d.contacts = {Contact{.model = HystereticSpring{.stiffness = 100, .unloading_stiffness = 200}}}; }));
+  EXPECT_NO_THROW(expect_valid([](Device& d) { d.contacts = {Contact{.model = RigidStop{.restitution = 0}}}; }));
   expect(
       [](Device& d) {
-        d.contact = Contact{.model = RigidStop{.restitution = 0}};
+        d.contacts = {Contact{.model = RigidStop{.restitution = 0}}};
         d.gas = ReynoldsGas{};
       },
       "contact.model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests");
   for (const double e : {-0.1, 1.0, std::nan("")}) {
-    expect([e](Device& d) { d.contact = Contact{.model = RigidStop{.restitution = e}}; }, "contact.restitution = " +
+    expect([e](Device& d) { d.contacts = {Contact{.model = RigidStop{.restitution = e}}}; }, "contact.restitution = " +
                                                                                               std::string(e < 0    ? "-0.1"
                                                                                                           : e == 1 ? "1"
                                                                                                                    : "nan") +
@@ -229,7 +229,7 @@ TEST(Device, NamesWhatIsWrongWithAPlate) {
 TEST(Device, TakesItsFiguresAtTheCentreOfThePad) {
   Device device = test::gold_cantilever();
   EXPECT_DOUBLE_EQ(device.contact_position(), 247.5_um);
-  device.contact.reset();
+  device.contacts.clear();
   EXPECT_DOUBLE_EQ(device.contact_position(), 250_um);
 }
 

@@ -54,7 +54,7 @@ void expect_balanced(bool layer, const Loss& loss, const Contact& contact, int k
   Device d = layer ? test::gold_pzt_cantilever() : test::gold_cantilever();
   if (!loss.gas) d.gas.reset();
   d.structure.damping_ratio = loss.damping_ratio;
-  d.contact = contact;
+  d.contacts = {contact};
   const Switch model(d);
   const Trajectory t =
       simulate_closing(model, waveforms(kind, layer ? 28_V : step_level, layer), {.duration = 150_us, .tolerance = tolerance});
@@ -109,7 +109,7 @@ TEST(EnergyBalance, ClosesForEveryContactAlongThePad) {
     for (const Contact& contact : test::pad_contacts()) {
       Device d = test::gold_cantilever();
       if (!gas) d.gas.reset();
-      d.contact = contact;
+      d.contacts = {contact};
       const Trajectory t = simulate_closing(Switch(d), waveforms(1, step_level, false), {.duration = 100_us, .tolerance = 1e-9});
       const std::string name = fmt::format("gas {}, contact {}", gas, test::described(contact));
       ASSERT_EQ(t.status, Status::done) << name;
@@ -169,7 +169,7 @@ TEST(EnergyBalance, ClosesForThePlate) {
         Device d = test::full_plate();
         if (!gas) d.gas.reset();
         const bool rigid = restitution >= 0;
-        if (rigid) d.contact = Contact{.model = RigidStop{.restitution = restitution}};
+        if (rigid) d.contacts = {Contact{.model = RigidStop{.restitution = restitution}}};
         d.structure.damping_ratio = damping;
         const std::vector<Signal> drives{Signal::constant(110),
                                          signal(Pulse{.levels = {50_V, 0_V}, .times = {10_us}, .edge = 2_us})};
@@ -307,7 +307,7 @@ TEST(EnergyBalance, OfEveryRunIsCheckedAtEveryTouch) {
 
 TEST(EnergyBalance, ShowsWhatTooLooseATolerancePutsIn) {
   Device d = test::gold_cantilever();
-  d.contact->model = LinearSpring{.stiffness = 1e9_N_m};
+  d.contacts.front().model = LinearSpring{.stiffness = 1e9_N_m};
   const Switch model(d);
   const std::vector<Signal> drives{Signal::constant(step_level)};
   const auto run = [&](Integrator integrator, double tolerance) {
@@ -393,7 +393,7 @@ TEST(Contact, StoresNoMoreThanTheFieldHasGiven) {
   for (const double stiffness : {1e5, 1e7, 1e9}) {
     Device d = test::gold_cantilever();
     d.gas.reset();
-    d.contact->model = LinearSpring{.stiffness = stiffness};
+    d.contacts.front().model = LinearSpring{.stiffness = stiffness};
     const Switch model(d);
     Switch::Workspace work = model.workspace();
     const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());

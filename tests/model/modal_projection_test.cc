@@ -79,7 +79,7 @@ std::array<S, modes> accelerations(const Beam& b, const Sample<S>& sample, const
   const ElectrostaticForce<MeijsFokkemaFringingOf<S>> electrode{{.width = sample.width, .thickness = sample.thickness}};
   const StripSqueezeFilmOf<S> film{.viscosity = sample.viscosity, .width = sample.width};
   const Device d = device();
-  const auto law = std::get<UniformAsperityContact>(contact_law(*d.contact, d.structure.width));
+  const auto law = std::get<UniformAsperityContact>(contact_law(d.contacts.front(), d.structure.width));
   std::array<S, modes> a;
   for (std::size_t i = 0; i < modes; ++i) {
     const double omega = b.frequencies[static_cast<Eigen::Index>(i)];

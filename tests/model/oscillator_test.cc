@@ -25,7 +25,7 @@ Device oscillator(double damping_ratio) {
   Device device = test::gold_pzt_cantilever();
   device.electrodes.clear();
   device.gas.reset();
-  device.contact.reset();
+  device.contacts.clear();
   device.structure.damping_ratio = damping_ratio;
   return device;
 }
@@ -156,7 +156,7 @@ TEST(Touch, ThatGrazesThePlaneIsFoundAndItsNearMissIsNot) {
   constexpr double margin = 1e-7, volts = -0.2;
   Device d = oscillator(0);
   d.structure.modes = 1;
-  d.contact = test::gold_cantilever().contact;
+  d.contacts = test::gold_cantilever().contacts;
   const Switch probe(d);
   const double w = probe.basis().angular_frequencies()[0];
   const double peak = 2 * volts * probe.basis().piezo_shape()[0] * probe.basis().contact_shape()[0] / (w * w);

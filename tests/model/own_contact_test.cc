@@ -28,7 +28,7 @@ UniformAsperities asperities(double damping) {
 }
 Switch gold_under(const Contact& contact) {
   Device device = test::gold_cantilever();
-  device.contact = contact;
+  device.contacts = {contact};
   return Switch(device);
 }
 
@@ -98,10 +98,10 @@ TEST(OwnContactLaw, IsRefusedWhereItsLawWouldHaveToBeKnown) {
   EXPECT_NE(LinearizedClosing::refusal(own).find("by differences"), std::string::npos);
   EXPECT_FALSE(why_not_in_lanes(own).empty());
   Device device = test::gold_cantilever();
-  device.contact->model = OwnContact{};
+  device.contacts.front().model = OwnContact{};
   EXPECT_THROW(validate(device), InvalidInput);
-  device.contact = test::own_contact();
-  device.contact->distribution = ContactDistribution::pad;
+  device.contacts = {test::own_contact()};
+  device.contacts.front().distribution = ContactDistribution::pad;
   EXPECT_THROW(validate(device), InvalidInput);
 }
 

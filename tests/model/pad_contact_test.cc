@@ -27,7 +27,7 @@ using namespace literals;
 
 Device padded(const Contact& contact) {
   Device d = test::gold_cantilever();
-  d.contact = contact;
+  d.contacts = {contact};
   return d;
 }
 
@@ -115,7 +115,7 @@ TEST(PadContact, IsTheLawIntegratedAlongTheBentBeam) {
     const Device& d = model.device();
     const BeamModes modes(beam_sections(d), model.modes());
     Device without = d;
-    without.contact->distribution = ContactDistribution::centre;
+    without.contacts.front().distribution = ContactDistribution::centre;
     const Switch free(without);
     Switch::Workspace work = model.workspace(), free_work = free.workspace();
     for (const auto& tilt : tilts) {
@@ -205,7 +205,7 @@ TEST(PadContact, OfAVeryShortPadIsTheContactAtItsCentre) {
   short_pad.pad_length /= 1000;
   Device d = padded(short_pad);
   const Switch pad(d);
-  d.contact->distribution = ContactDistribution::centre;
+  d.contacts.front().distribution = ContactDistribution::centre;
   const Switch centre(d);
   const Eigen::VectorXd q = tilted(pad, 20_nm, 0.01), still = Eigen::VectorXd::Zero(pad.modes());
   const double expected = centre.contact_push(q.data(), still.data(), true);
@@ -231,15 +231,15 @@ TEST(PadContact, IsSeenFromTheFreeEnd) {
 TEST(PadContact, LeavesTheFoldOfTheStaticBranchWhereItIs) {
   Device d = test::gold_cantilever();
   const double expected = static_pull_in(Switch(d), 0).voltage;
-  d.contact->distribution = ContactDistribution::pad;
+  d.contacts.front().distribution = ContactDistribution::pad;
   const StaticPullIn found = static_pull_in(Switch(d), 0);
   EXPECT_EQ(found.kind, StaticKind::fold);
   EXPECT_NEAR(found.voltage, expected, 1e-7 * expected) << "seen from another point of the same beam";
 }
 
 TEST(PadContact, PushesFromTheTouchOfTheFreeEndOn) {
-  Device d = padded(*test::gold_cantilever().contact);
-  d.contact->distribution = ContactDistribution::pad;
+  Device d = padded(test::gold_cantilever().contacts.front());
+  d.contacts.front().distribution = ContactDistribution::pad;
   const Switch model(d);
   const std::vector<Signal> drives{Signal::constant(17.771)};
   const Trajectory t = simulate_closing(model, drives, {.duration = 100_us, .tolerance = 1e-8});

@@ -234,7 +234,7 @@ TEST(StaticPullIn, OfFacesOnBothSidesIsTheMaximumOfTheBalance) {
 TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishes) {
   constexpr double margin = 1e-5;
   Device spring = test::gold_cantilever();
-  spring.contact->model = LinearSpring{.stiffness = 1e3_N_m};
+  spring.contacts.front().model = LinearSpring{.stiffness = 1e3_N_m};
   for (const Switch& model : {gold(), Switch(spring), contact_first()}) {
     const double release = release_voltage(model, 0);
     EXPECT_FALSE(closed_equilibrium(model, std::vector<double>{(1 - margin) * release}));
@@ -272,9 +272,9 @@ std::vector<Device> contacts_of_every_stiffness() {
   };
   for (int k = 0; k < 30; ++k) {
     Device d = k % 3 == 0 ? contact_first().device() : test::gold_cantilever();
-    d.contact->model = LinearSpring{.stiffness = log_uniform(0.01_N_m, 1e8_N_m)};
+    d.contacts.front().model = LinearSpring{.stiffness = log_uniform(0.01_N_m, 1e8_N_m)};
     all.push_back(d);
-    d.contact->model = UniformAsperities::example();
+    d.contacts.front().model = UniformAsperities::example();
     test::rough(d).summits.density = log_uniform(1e4, 1e14);
     test::rough(d).height = log_uniform(3_nm, 1_um);
     all.push_back(d);
@@ -289,10 +289,10 @@ TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishesForEveryContact_optimize
     const Switch model(d);
     const double release = release_voltage(model, 0);
     const auto closed = [&](double volts) { return closed_equilibrium(model, std::vector<double>{volts}); };
-    const std::string name = std::holds_alternative<LinearSpring>(d.contact->model)
-                                 ? fmt::format("linear, {} N/m", std::get<LinearSpring>(d.contact->model).stiffness)
-                                 : fmt::format("asperities, {} 1/m^2, {} m", number_of(d.contact->model, "asperity_density", 0),
-                                               number_of(d.contact->model, "asperity_height", 0));
+    const std::string name = std::holds_alternative<LinearSpring>(d.contacts.front().model)
+                                 ? fmt::format("linear, {} N/m", std::get<LinearSpring>(d.contacts.front().model).stiffness)
+                                 : fmt::format("asperities, {} 1/m^2, {} m", number_of(d.contacts.front().model, "asperity_density", 0),
+                                               number_of(d.contacts.front().model, "asperity_height", 0));
     if (std::isnan(release)) {  // too soft to keep the beam off the electrode at any voltage
       ++never;
       for (double volts = 1; volts < 40; volts *= 1.05) EXPECT_FALSE(closed(volts)) << name << ", " << volts << " V";
@@ -316,7 +316,7 @@ TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishesForEveryContact_optimize
 
 TEST(ReleaseVoltage, NeedsAContact) {
   Device d = test::gold_cantilever();
-  d.contact.reset();
+  d.contacts.clear();
   EXPECT_TRUE(std::isnan(release_voltage(Switch(d), 0)));
   EXPECT_FALSE(closed_equilibrium(Switch(d), std::vector<double>{20}));
 }
@@ -347,7 +347,7 @@ TEST(ClosedEquilibrium, IsAnEquilibrium) {
 TEST(ClosedEquilibrium, IsFoundBetweenASoftContactAndTheElectrode) {
   // A spring softer than the beam gives way by much of what is left between contact plane and electrode.
   Device d = test::gold_cantilever();
-  d.contact->model = LinearSpring{.stiffness = 0.15_N_m};
+  d.contacts.front().model = LinearSpring{.stiffness = 0.15_N_m};
   d.electrodes[0].begin = 0;
   d.electrodes[0].end = d.structure.length / 2;
   const Switch model(d);
@@ -365,7 +365,7 @@ TEST(ClosedEquilibrium, IsWhereABouncingSwitchComesToRest) {
   Device d = test::gold_cantilever();
   d.structure.damping_ratio = 0.3;
   for (const ContactDistribution distribution : {ContactDistribution::centre, ContactDistribution::pad}) {
-    d.contact->distribution = distribution;
+    d.contacts.front().distribution = distribution;
     const Switch model(d);
     const auto closed = closed_equilibrium(model, std::vector<double>{17.771});
     ASSERT_TRUE(closed.has_value());
@@ -390,7 +390,7 @@ TEST(ClosedEquilibrium, IsOneForEveryContactLaw) {
   for (const Contact& along_pad : test::pad_contacts()) contacts.push_back(along_pad);
   for (const Contact& contact : contacts) {
     Device d = test::gold_cantilever();
-    d.contact = contact;
+    d.contacts = {contact};
     const Switch model(d);
     const auto closed = closed_equilibrium(model, volts);
     ASSERT_TRUE(closed.has_value()) << name_of(contact.model);

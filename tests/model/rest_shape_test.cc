@@ -72,7 +72,7 @@ TEST(RestShape, IsRefusedWhereItWouldTouchAtRest) {
   test::expect_refused([] { validate(curled(test::gold_cantilever(), -15e12)); },
                        "structure: rests 6.01 um nearer to the electrode than a straight one: it would touch it at rest");
   Device along_pad = curled(test::gold_cantilever());
-  along_pad.contact->distribution = ContactDistribution::pad;
+  along_pad.contacts.front().distribution = ContactDistribution::pad;
   test::expect_refused(
       [&] { validate(along_pad); },
       "contact.distribution = pad: not with a structure that is curled at rest, whose pad is tilted before it moves");

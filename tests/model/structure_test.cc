@@ -22,7 +22,7 @@ Device device_of() {
   return {.structure = s,
           .gap = {.electrode = 3.5e-6, .contact = 2e-6},
           .electrodes = {{.name = "main", .begin = 0, .end = s.length, .fringing = Fringing::none}},
-          .contact = Contact{.model = LinearSpring::example(), .pad_length = 5e-6}};
+          .contacts = {Contact{.model = LinearSpring::example(), .pad_length = 5e-6}}};
 }
 
 /// What a new kind must answer for: every test below runs on each.

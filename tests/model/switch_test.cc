@@ -36,8 +36,8 @@ std::vector<Combination> combinations() {
             d.electrodes[0].fringing = fringing.value;
             d.structure.damping_ratio = damping;
             if (!gas) d.gas.reset();
-            d.contact = contact;
-            if (double* const corners = number_of(d.contact->model, "asperity_distance"))
+            d.contacts = {contact};
+            if (double* const corners = number_of(d.contacts.front().model, "asperity_distance"))
               *corners = 60_nm;  // they lie beyond the states looked at
             all.push_back({fmt::format("fringing {}, piezo {}, gas {}, damping {}, contact {}", fringing.name, layer, gas,
                                        damping, test::described(contact)),
@@ -219,7 +219,7 @@ TEST(Switch, BuiltLikeAnotherIsTheSameSwitch) {
       [](Device& d) { d.gap.electrode *= 1.02, d.gap.contact *= 1.02; },
       [](Device& d) { d.structure.length *= 1.01; },
       [](Device& d) { d.electrodes[0].begin.value += 0.01 * d.structure.length; },
-      [](Device& d) { d.contact->pad_length *= 1.1; },
+      [](Device& d) { d.contacts.front().pad_length *= 1.1; },
       [](Device& d) { d.structure.modes = 3; },
       [](Device& d) { d.piezo.reset(); },
       [](Device& d) {
@@ -232,7 +232,7 @@ TEST(Switch, BuiltLikeAnotherIsTheSameSwitch) {
     const Switch nominal(c.device);
     for (std::size_t k = 0; k < changes.size(); ++k) {
       Device changed = c.device;
-      if (changed.electrodes.empty() || !changed.contact) continue;
+      if (changed.electrodes.empty() || !changed.has_contact()) continue;
       changes[k](changed);
       SCOPED_TRACE(fmt::format("{}, change {}", c.name, k));
       const bool one_shape = changed.structure.is_rigid() ||
@@ -319,9 +319,9 @@ TEST(Switch, DissipatedPowerIsWhatTheVelocityDependentForcesTakeOut) {
     if (in_contact) power += device.contact_dissipation(s.q.data(), s.v.data());
     EXPECT_NEAR(power, -s.v.dot(moving - still), rounding * (std::abs(power) + s.v.norm() * still.norm())) << c.name;
     EXPECT_GE(power, 0) << c.name;
-    EXPECT_EQ(device.damped(), c.device.gas || c.device.structure.damping_ratio > 0 || test::damping(*c.device.contact) > 0)
+    EXPECT_EQ(device.damped(), c.device.gas || c.device.structure.damping_ratio > 0 || test::damping(c.device.contacts.front()) > 0)
         << c.name;
-    if (!c.device.gas && c.device.structure.damping_ratio == 0 && !(in_contact && test::damping(*c.device.contact) > 0)) {
+    if (!c.device.gas && c.device.structure.damping_ratio == 0 && !(in_contact && test::damping(c.device.contacts.front()) > 0)) {
       EXPECT_EQ(power, 0) << c.name;
     } else {
       EXPECT_GT(power, 0) << c.name;
@@ -355,7 +355,7 @@ TEST(Switch, CapacitanceAtRestIsThatOfTheStraightBeam) {
 
 TEST(Quadrature, CornersThatDifferByARoundingAreOne) {
   Device d = test::gold_cantilever();
-  d.electrodes[0].end = d.structure.length - d.contact->pad_length;
+  d.electrodes[0].end = d.structure.length - d.contacts.front().pad_length;
   const Eigen::Index points = Switch(d).quadrature().points();
   d.electrodes[0].end = std::nextafter(d.electrodes[0].end.value, 0.0);
   EXPECT_EQ(Switch(d).quadrature().points(), points);
@@ -379,7 +379,7 @@ TEST(Switch, QuadratureKnowsEveryCorner) {
 
 TEST(Switch, ElectrodeUpToTheFreeEndCountsEveryPoint) {
   Device d = test::gold_cantilever();
-  d.contact.reset();
+  d.contacts.clear();
   d.electrodes[0] = {.name = "all", .begin = 0, .end = d.structure.length, .fringing = Fringing::none};
   const Switch device(d);
   Switch::Workspace work = device.workspace();
@@ -393,7 +393,7 @@ TEST(Switch, ElectrodeUpToTheFreeEndCountsEveryPoint) {
 TEST(Switch, UniformPressureOnAStiffBeamGivesTheTextbookDeflection) {
   // A small voltage: force per length f = eps0 a V^2 / (2 d0^2) on the whole beam, tip f L^4 / (8 EI).
   Device d = test::gold_cantilever();
-  d.contact.reset();
+  d.contacts.clear();
   d.structure.modes = 20;
   d.electrodes[0] = {.name = "all", .begin = 0, .end = d.structure.length, .fringing = Fringing::none};
   const Switch device(d);
@@ -423,7 +423,7 @@ TEST(Switch, PiezoForceBelongsToItsCharge) {
 
 TEST(Switch, PenetrationScaleCarriesTheForceThatBendsTheBeamByTheGap) {
   Device d = test::gold_cantilever();
-  d.contact->model = LinearSpring{.stiffness = 1e4};
+  d.contacts.front().model = LinearSpring{.stiffness = 1e4};
   d.structure.modes = 1;
   const Switch device(d);
   const double stiffness = std::pow(device.basis().angular_frequencies()[0] / device.basis().contact_shape()[0], 2);
@@ -435,7 +435,7 @@ TEST(Switch, InContactItVibratesAsTheBeamPinnedAtTheContact) {
   Device d = test::gold_cantilever();
   d.electrodes.clear();
   d.structure.modes = 20;
-  d.contact->model = LinearSpring{.stiffness = 1e9};
+  d.contacts.front().model = LinearSpring{.stiffness = 1e9};
   const Switch device(d);
   Switch::Workspace work = device.workspace();
   const Eigen::Index n = device.modes();
@@ -455,7 +455,7 @@ TEST(Switch, BetweenTwoClampsHasItsContactInTheMiddle) {
   EXPECT_DOUBLE_EQ(d.pad().second, 127.5_um);
   // The middle is a node of every second mode.
   for (const int i : {1, 3}) EXPECT_NEAR(device.basis().contact_shape()[i], 0, 1e-9 * device.basis().contact_shape()[0]);
-  d.contact.reset();
+  d.contacts.clear();
   EXPECT_DOUBLE_EQ(d.contact_position(), 125_um);
 }
 

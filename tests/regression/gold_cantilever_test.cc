@@ -80,7 +80,7 @@ TEST(GoldCantilever, LandsOnItsFreeEndWhenContactActsAlongThePad) {
   // Reference: Runge-Kutta of fixed steps of 2 ns, the law at 1000 midpoints of the bent pad; figures at the free end.
   constexpr double t_i = 33.9426_us, v_i = 86.5422e-3, b_h = 560.756_nm, peak = 8.89426e-6;
   Device d = test::gold_cantilever();
-  d.contact->distribution = ContactDistribution::pad;
+  d.contacts.front().distribution = ContactDistribution::pad;
   const Metrics m = metrics(step_closing(Switch(d), 100_us, fine));
   EXPECT_NEAR(m.initial_contact_time, t_i, time_digits * t_i);
   EXPECT_NEAR(m.impact_velocity, v_i, impact_digits * v_i);

@@ -371,7 +371,7 @@ TEST(Derivatives, ForwardAreThoseBackward_optimized) {
     };
     set(0, [](Device& d) -> double& { return d.structure.thickness; });
     set(2, [](Device& d) -> double& {
-      ContactModel& contact = d.contact->model;
+      ContactModel& contact = d.contacts.front().model;
       if (auto* const plastic = std::get_if<PlasticAsperities>(&contact)) return plastic->height;
       return std::get<UniformAsperities>(contact).height;
     });

@@ -42,7 +42,7 @@ inline constexpr double published_undercut = 0.4e-6, textbook_modulus = 169e9;
                               .slit_height = 2_um,
                               .slit_length = finger / 2,
                               .far_gap = 7.75_um + 2 * undercut},
-          .contact = Contact{.model = LinearSpring{.stiffness = 1e5_N_m}}};
+          .contacts = {Contact{.model = LinearSpring{.stiffness = 1e5_N_m}}}};
 }
 
 /// Voltages at which three chips pulled in and one let go [V]; instrument error 1 V.

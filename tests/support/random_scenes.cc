@@ -388,7 +388,7 @@ SceneFile random_scene(std::uint64_t seed, std::uint64_t index) {
 std::optional<SceneFile> random_film_scene(std::uint64_t seed, std::uint64_t index) {
   SceneFile file = random_scene(seed, index);
   const Device d = device_of(file);
-  if (d.contact && std::holds_alternative<RigidStop>(d.contact->model)) return std::nullopt;
+  if (d.has_contact() && std::holds_alternative<RigidStop>(d.contacts.front().model)) return std::nullopt;
   Dice dice(seed, index, most_draws);  // a draw that the scene itself does not use
   file.erase("gas");
   put(file, "gas.model", "reynolds");

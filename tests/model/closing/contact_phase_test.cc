@@ -13,7 +13,7 @@ using namespace literals;
 
 Switch gold_with(const ContactModel& model) {
   Device device = test::gold_cantilever();
-  device.contact->model = model;
+  device.contacts.front().model = model;
   return Switch(device);
 }
 
@@ -111,7 +111,7 @@ TEST(ContactPhase, GoesThroughTheReachAndTheKinksOfALaw) {
 
 TEST(ContactPhase, OfAPadActsAlways) {
   Device device = test::gold_cantilever();
-  device.contact = test::pad_contacts().front();
+  device.contacts = {test::pad_contacts().front()};
   const Switch model(device);
   ContactPhase phase(model);
   for (const Phase one : {Phase::flight, Phase::loading}) {

@@ -40,8 +40,8 @@ struct Parts {
         signals(std::move(s)),
         model(device),
         drives(signals),
-        phase(model),
-        equations(model, drives, phase, true) {
+        phases(model),
+        equations(model, drives, phases, true) {
     start.state.assign(2, 0);
     start.rates.assign(1, 0);
   }
@@ -49,14 +49,14 @@ struct Parts {
   std::vector<Signal> signals;
   Switch model;
   DriveCourse drives;
-  ContactPhase phase;
+  ContactPhases phases;
   ClosingEquations equations;
   Knot start;
 };
 
 TEST(EnergyAudit, ChargesACapacitorAtRest) {
   Parts p(test::nickel_plate(), {Signal::constant(20)});
-  EnergyAudit audit(p.model, p.drives, p.phase, p.equations, p.start);
+  EnergyAudit audit(p.model, p.drives, p.phases, p.equations, p.start);
   audit.enter_stretch(p.start, true);
   audit.settle(p.start);
   const double capacitance = vacuum_permittivity * 510_um * 123_um / 3.49_um;
@@ -68,7 +68,7 @@ TEST(EnergyAudit, ChargesACapacitorAtRest) {
 TEST(EnergyAudit, BalancesAFreeSwingAndMissesWhatAStepLoses) {
   // Half a period of the plate on its springs, from a push, without any drive.
   Parts p(test::nickel_plate(), {Signal::constant(0)});
-  EnergyAudit audit(p.model, p.drives, p.phase, p.equations, p.start);
+  EnergyAudit audit(p.model, p.drives, p.phases, p.equations, p.start);
   audit.enter_stretch(p.start, true);
   const double w = p.model.basis().angular_frequencies()[0];
   Knot moving = p.start;
@@ -86,7 +86,7 @@ TEST(EnergyAudit, IntegratesTheDissipationOfADampedMode) {
   Device device = test::nickel_plate();
   device.structure.damping_ratio = 0.1;
   Parts p(device, {Signal::constant(0)});
-  EnergyAudit audit(p.model, p.drives, p.phase, p.equations, p.start);
+  EnergyAudit audit(p.model, p.drives, p.phases, p.equations, p.start);
   audit.enter_stretch(p.start, true);
   const double w = p.model.basis().angular_frequencies()[0], zeta = 0.1, wd = w * std::sqrt(1 - zeta * zeta), v0 = 1e-9 * w;
   const auto at = [&](double t) {
@@ -115,7 +115,7 @@ TEST(EnergyAudit, IntegratesTheDissipationOfADampedMode) {
 
 Device on_stop(double restitution) {
   Device device = test::nickel_plate();
-  device.contact = Contact{.model = RigidStop{.restitution = restitution}};
+  device.contacts = {Contact{.model = RigidStop{.restitution = restitution}}};
   return device;
 }
 

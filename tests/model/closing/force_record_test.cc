@@ -51,7 +51,7 @@ TEST(ForceRecord, IsBracketedByTheKnotsUnderEveryLaw) {
   for (const Contact& padded : test::pad_contacts()) all.push_back(padded);
   for (const Contact& contact : all) {
     Device device = test::gold_cantilever();
-    device.contact = contact;
+    device.contacts = {contact};
     const Switch model(device);
     for (const std::vector<Signal>& drives : {std::vector{Signal::constant(test::step_level)}, thrown()}) {
       SCOPED_TRACE(fmt::format("{}, {} pieces", test::described(contact), drives[0].pieces().size()));
@@ -125,7 +125,7 @@ TEST(ForceRecord, OfAContactThatPullsIsTheMostThatItPulls) {
     Device device = test::gold_cantilever();
     AdhesiveAsperities law = AdhesiveAsperities::example();
     law.adhesion_energy = energy;
-    device.contact->model = law;
+    device.contacts.front().model = law;
     const Switch model(device);
     double most = 0;
     for (double d = 0; d < 20e-9; d += 1e-13) most = std::min(most, contact_force(model.contact(), d, true, 0));
@@ -161,7 +161,7 @@ TEST(ForceRecord, OfWhatNeverTouchesIsNotKnown) {
 /// A plate that does not rebound rests at once: its force is that of the electrode less that of the spring.
 TEST(ForceRecord, FollowsAPlateAtRest) {
   Device device = test::nickel_plate();
-  device.contact = Contact{.model = RigidStop{.restitution = 0}};
+  device.contacts = {Contact{.model = RigidStop{.restitution = 0}}};
   const Switch model(device);
   const double volts = 1.2 * dynamic_pull_in(model, 0, static_pull_in(model, 0)).voltage, later = 1_ms;
   const std::vector<Signal> drives{Signal::piecewise_linear({{0, volts}, {later, volts}, {2 * later, 2 * volts}})};
@@ -181,7 +181,7 @@ TEST(ForceRecord, FollowsAPlateAtRest) {
   EXPECT_GT(between.steady_force_time, later);
   EXPECT_LT(between.steady_force_time, 2 * later);
   EXPECT_TRUE(std::isnan(at(1.01 * hold).steady_force_time));
-  device.contact->model = RigidStop{.restitution = 0.5};
+  device.contacts.front().model = RigidStop{.restitution = 0.5};
   const Trajectory bouncing = simulate_closing(Switch(device), drives, {.duration = 3 * later, .tolerance = 1e-8});
   EXPECT_EQ(bouncing.least_force_after_touch, 0) << "it opens";
 }

@@ -141,7 +141,7 @@ TEST_F(Events, FindAGrazingTouchBetweenTwoKnots) {
 TEST_F(Events, TakeTheFirstOfTwo) {
   const Switch model = [] {
     Device device = test::gold_cantilever();
-    device.contact->model = HystereticSpring{.stiffness = 1e4, .unloading_stiffness = 4e4};
+    device.contacts.front().model = HystereticSpring{.stiffness = 1e4, .unloading_stiffness = 4e4};
     return Switch(device);
   }();
   ContactPhase phase(model);
@@ -181,7 +181,7 @@ class Listener final : public ClosingObserver {
 TEST(TouchRecord, HandsOverEveryTouchOnce) {
   Listener listener;
   ContactPhase phase(gold());
-  TouchRecord record(gold(), phase, listener);
+  TouchRecord record(gold(), 0, phase, listener);
   const Edge in = phase.edges()[0];
   EXPECT_TRUE(record.note({.time = 1, .edge = in}, {.time = 1, .position = swing_plane, .velocity = 0.1}));
   phase.enter(Phase::loading);
@@ -204,7 +204,7 @@ TEST(TouchRecord, HandsOverEveryTouchOnce) {
 TEST(TouchRecord, TakesThePeakBetweenTheKnots) {
   Listener listener;
   ContactPhase phase(gold());
-  TouchRecord record(gold(), phase, listener);
+  TouchRecord record(gold(), 0, phase, listener);
   StepMotion motion(gold(), 1e-8);
   const std::size_t n = static_cast<std::size_t>(gold().modes());
   const Knot begin{.time = 0, .state = std::vector<double>(2 * n), .rates = std::vector<double>(n)};
@@ -226,7 +226,7 @@ TEST(TouchRecord, TakesThePeakBetweenTheKnots) {
 
 TEST(Course, HandsOverInOrderAndTakesBackWhatAnEventOvertook) {
   Listener listener;
-  Course course(gold().device(), listener);
+  Course course(gold().device(), 0, listener);
   course.push({.time = 0});
   course.hand_over();
   for (const double t : {1.0, 2.0, 3.0}) course.push({.time = t});

@@ -1,0 +1,79 @@
+// The connection that several contacts of a switch make, as one contact point that an observer follows.
+//
+// The connection is closed while all of the contacts that make it are, or while any of them is (Device::connection). Its
+// separation is the largest of theirs, or the smallest; its place counts from the plane of the first contact, at the separation
+// of the connection. Between two knots of any contact the one that is furthest (or nearest) at both ends decides, and where that
+// changes there is a knot at which both are equally far. Its force is the least force of a contact that makes it, or the largest.
+// A touch of the connection holds the largest force and impact speed, and the energies, of the touches of its contacts.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "model/closing/observer.h"
+#include "model/switch.h"
+
+namespace softland {
+
+class ConnectionCourse {
+ public:
+  /// Keeps references. The observer receives the connection, and the observers that it names receive the contacts.
+  ConnectionCourse(const Switch& model, ClosingObserver& observer);
+  ConnectionCourse(const ConnectionCourse&) = delete;
+  ConnectionCourse& operator=(const ConnectionCourse&) = delete;
+
+  /// Who receives the course of a contact.
+  [[nodiscard]] ClosingObserver& contact(std::size_t c) { return followed_[c]; }
+  /// Hands over the connection as far as all contacts are known.
+  void hand_over();
+  /// Hands over the last touch, once all contacts have handed over theirs.
+  void finish();
+
+  /// First touch of any contact that makes the connection [s], and the speed there [m/s]; NaN before.
+  [[nodiscard]] double first_touch() const { return first_touch_; }
+  [[nodiscard]] double impact_velocity() const { return impact_velocity_; }
+
+ private:
+  class Followed final : public ClosingObserver {
+   public:
+    Followed(ConnectionCourse& connection, ClosingObserver* own, double gap, bool connects)
+        : connection_(connection), own_(own), gap_(gap), connects_(connects) {}
+    void knot(const TrajectoryPoint& point) override;
+    void touch(const Touch& touch) override;
+
+    [[nodiscard]] bool connects() const { return connects_; }
+    [[nodiscard]] TrajectoryPoint at(double time) const;
+    [[nodiscard]] double separation(double time) const { return gap_ - at(time).position; }
+    [[nodiscard]] double gap() const { return gap_; }
+
+    std::optional<TrajectoryPoint> last;  ///< that the connection has been followed to
+    std::vector<TrajectoryPoint> fresh;
+
+   private:
+    ConnectionCourse& connection_;
+    ClosingObserver* own_;
+    double gap_;  // [m]
+    bool connects_;
+  };
+
+  /// The contact that decides at a time, `present` among equals.
+  [[nodiscard]] std::size_t decides(double time, std::size_t present) const;
+  void follow_to(double time);
+  void tell(double time);
+  void take(const Touch& touch);
+
+  ClosingObserver& observer_;
+  bool needs_all_;
+  double plane_;  // of the first contact [m]
+  std::vector<Followed> followed_;
+  std::size_t deciding_ = 0;
+  double here_ = 0;  // [s]
+  std::optional<Touch> touch_;
+  Touch pending_;
+  bool is_closed_ = false;
+  double last_closed_ = 0;  // [s]
+  double first_touch_ = std::numeric_limits<double>::quiet_NaN(), impact_velocity_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+}  // namespace softland

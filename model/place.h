@@ -1,0 +1,42 @@
+// Where something lies on a beam, and on which side of it.
+#pragma once
+
+#include "base/choice.h"
+
+namespace softland {
+
+/// The contact's side of the moving part, towards which deflections are positive, the other one, or both.
+enum class Side { near, far, both };
+inline constexpr auto sides = std::to_array<Named<Side>>({{Side::near, "near"}, {Side::far, "far"}, {Side::both, "both"}});
+static_assert(is_complete<sides>());
+
+/// A place on the beam, from the clamped end: a distance [m], or a share of the beam's length, which it follows.
+struct Place {
+  constexpr Place() = default;
+  constexpr Place(double distance) : value(distance) {}  // a length is a place
+  [[nodiscard]] static constexpr Place share(double of_length) {
+    Place place(of_length);
+    place.is_share = true;
+    return place;
+  }
+  /// [m]
+  [[nodiscard]] constexpr double on(double length) const { return is_share ? value * length : value; }
+  [[nodiscard]] bool operator==(const Place&) const = default;
+
+  double value = 0;
+  bool is_share = false;
+};
+
+/// From where to where something lies along the beam.
+struct Span {
+  Place begin, end;
+  [[nodiscard]] bool operator==(const Span&) const = default;
+};
+
+/// The same on a beam of some length [m].
+struct Stretch {
+  double begin = 0, end = 0;
+  [[nodiscard]] bool holds(double x) const { return x >= begin && x < end; }
+};
+
+}  // namespace softland
