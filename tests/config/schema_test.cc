@@ -31,7 +31,7 @@ Scene whole_scene() {
               .warnings = {},
               .file = SceneFile::parse("", "x.toml")};
   scene.device.gas.emplace();
-  scene.device.contacts.emplace_back();
+  scene.device.contacts.resize(2);
   scene.device.piezo.emplace();
   scene.device.dispersion.emplace();
   scene.device.surface.emplace();
@@ -52,12 +52,13 @@ TEST(Schema, EveryKeySetsAMemberOrIsKnownToSetNone) {
     }
   }
   // The areas decide lengths together with a width, the models and the kind what is there to have members. The keys of a file
-  // of modes make a table.
-  EXPECT_THAT(without_member,
-              UnorderedElementsAre("structure.area", "electrode.area", "contact.model", "gas.model", "structure.kind",
-                                   "structure.file", "structure.axis", "structure.direction", "structure.length_unit",
-                                   "structure.mass_unit", "structure.mass", "structure.mass_normalised", "structure.clamp",
-                                   "structure.positions", "structure.frequencies", "structure.shapes", "structure.rest_offsets"));
+  // of modes make a table. The side of a contact and what is closed decide which of them make the connection.
+  EXPECT_THAT(
+      without_member,
+      UnorderedElementsAre("structure.area", "electrode.area", "contact.model", "contact.side", "metrics.closed", "gas.model",
+                           "structure.kind", "structure.file", "structure.axis", "structure.direction", "structure.length_unit",
+                           "structure.mass_unit", "structure.mass", "structure.mass_normalised", "structure.clamp",
+                           "structure.positions", "structure.frequencies", "structure.shapes", "structure.rest_offsets"));
 }
 
 TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {
@@ -65,8 +66,9 @@ TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {
     for (const Key& key : section.keys) {
       if (!is_bound(key.bound)) continue;
       SCOPED_TRACE(fmt::format("{}.{}", section.name, key.name));
-      EXPECT_EQ(key.bound.number != nullptr, key.type == KeyType::quantity);
-      EXPECT_EQ(key.bound.place != nullptr, key.type == KeyType::quantities);
+      const bool is_one_place = key.bound.place != nullptr && key.count == 0;
+      EXPECT_EQ(key.bound.number != nullptr || is_one_place, key.type == KeyType::quantity);
+      EXPECT_EQ(key.bound.place != nullptr && !is_one_place, key.type == KeyType::quantities);
       EXPECT_EQ(key.bound.flag != nullptr, key.type == KeyType::flag);
       EXPECT_EQ(key.bound.integer != nullptr, key.type == KeyType::integer);
       EXPECT_EQ(key.bound.text != nullptr, key.type == KeyType::text);
@@ -78,7 +80,7 @@ TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {
 /// How many members of a scene under these laws the keys set.
 int members_set(const ContactModel& contact, const Gas& gas) {
   Scene scene = whole_scene();
-  scene.device.contacts.front().model = contact;
+  for (Contact& one : scene.device.contacts) one.model = contact;
   scene.device.gas = gas;
   std::map<const void*, std::string> owners;
   for (const Section& section : schema()) {
@@ -88,11 +90,13 @@ int members_set(const ContactModel& contact, const Gas& gas) {
       if (section.name == "contact" && !key.belongs_to(name_of(contact))) continue;
       if (section.name == "gas" && !key.belongs_to(name_of(gas))) continue;
       const Bound& b = key.bound;
-      for (const void* member : {b.number != nullptr ? static_cast<const void*>(&b.number(scene, 0)) : nullptr,
-                                 b.place != nullptr ? static_cast<const void*>(&b.place(scene, 0, 0)) : nullptr,
-                                 b.place != nullptr ? static_cast<const void*>(&b.place(scene, 0, 1)) : nullptr,
-                                 b.flag != nullptr ? static_cast<const void*>(&b.flag(scene, 0)) : nullptr,
-                                 b.integer != nullptr ? static_cast<const void*>(&b.integer(scene, 0)) : nullptr}) {
+      const std::size_t entry = section.name == "contact" ? 1 : 0;  // the gap of the first contact is that of [gap]
+      const bool is_span = b.place != nullptr && key.count == 2;
+      for (const void* member : {b.number != nullptr ? static_cast<const void*>(&b.number(scene, entry)) : nullptr,
+                                 b.place != nullptr ? static_cast<const void*>(&b.place(scene, entry, 0)) : nullptr,
+                                 is_span ? static_cast<const void*>(&b.place(scene, entry, 1)) : nullptr,
+                                 b.flag != nullptr ? static_cast<const void*>(&b.flag(scene, entry)) : nullptr,
+                                 b.integer != nullptr ? static_cast<const void*>(&b.integer(scene, entry)) : nullptr}) {
         if (member == nullptr) continue;
         const auto [owner, is_new] = owners.emplace(member, fmt::format("{}.{}", section.name, key.name));
         EXPECT_TRUE(is_new) << section.name << "." << key.name << " sets the member of " << owner->second;
