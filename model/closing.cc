@@ -130,7 +130,7 @@ class Run {
       c.phase.turn(p.position - c.plane - (p.acceleration < 0 ? p.velocity * p.velocity / (2 * p.acceleration) : 0));
     }
     change.after = c.phase.law();
-    parts_.observer.pass(here(), change);
+    if (event.contact == 0) parts_.observer.pass(here(), change);
     restart();
   }
 
@@ -322,7 +322,6 @@ Trajectory observe_closing(const Switch& model, std::span<const Signal> drives, 
           fmt::format("begins_closed: {} coordinates for a switch with {} modes and {} contact", options.begins_closed.size(),
                       model.modes(), model.has_contact() ? "a" : "no"));
   require(options.start == StartState::open || model.has_contact(), "start = closed: the switch has no contact to begin on");
-  require(model.contacts() < 2 || !observer.follows_motion(), "several contacts: nobody can follow the motion of all modes");
   require(options.restart_at_contact || why_always_restarted(model).empty(),
           fmt::format("restart_at_contact = false: {}", why_always_restarted(model)));
   return Run(model, drives, options, observer).run();

@@ -32,7 +32,7 @@ class ClosingObserver {
   /// make; null: nobody does. A switch with one contact does not ask.
   [[nodiscard]] virtual ClosingObserver* contact(std::size_t /*number*/) { return nullptr; }
   /// Whether the observer follows the motion of all modes; then it is told every step and what happens between steps, in order
-  /// of time.
+  /// of time. Of several contacts it is told the state of the first, which does not say all that acts.
   [[nodiscard]] virtual bool follows_motion() const { return false; }
   /// A step under a contact law in this state.
   virtual void step(const Knot& /*begin*/, const Knot& /*end*/, const ContactState& /*contact*/) {}
