@@ -49,7 +49,7 @@ json overview_json(const StoredPlan& plan, const Overview& found) {
     if (!(e.least <= e.most)) continue;
     figures[column.key] = {{"least", e.least}, {"least_at", e.least_at}, {"most", e.most}, {"most_at", e.most_at}};
   }
-  return {{"variables", variables}, {"figures", figures}, {"by_status", found.by_status}};
+  return {{"kind", "exploration"}, {"variables", variables}, {"figures", figures}, {"by_status", found.by_status}};
 }
 
 std::string overview_text(const StoredPlan& plan, const Overview& found) {

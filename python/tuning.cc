@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/require.h"
 #include "python/scene.h"
 #include "reports/result_json.h"
 #include "reports/tuning_lines.h"
@@ -23,8 +24,6 @@ namespace {
 struct PyTuning {
   TuningSession session;
   std::string command;
-
-  [[nodiscard]] Provenance provenance() const { return {.command = command}; }
 };
 
 std::unique_ptr<PyTuning> made(const PyScene& scene, const verbs::Told& told, const std::string& log, std::string command,
@@ -60,9 +59,10 @@ void learn(PyTuning& tuning, const std::string& answer, const py::object& progre
 }
 
 Outcome outcome_of(const PyTuning& tuning, const std::string& name) {
-  const TuningEnd end = tuning_end(name);
-  const auto files = std::make_shared<const std::map<std::string, std::string>>(tuning.session.files(end, tuning.provenance()));
-  Outcome outcome{.json = json_text(tuning.session.json(end, tuning.provenance()))};
+  const auto* const end = find_named(tuning_ends, name);
+  require(end != nullptr, "a tuning is " + listed(tuning_ends) + ", and never " + name);
+  const auto files = std::make_shared<const std::map<std::string, std::string>>(tuning.session.files(end->value, tuning.command));
+  Outcome outcome{.json = json_text(json_of(tuning.session.report(end->value, tuning.command)))};
   for (const auto& [file, ignored] : *files) outcome.files[file] = [files, file = file] { return files->at(file); };
   return outcome;
 }
@@ -98,7 +98,7 @@ void bind_tuning(py::module_& m) {
       .def("ends",
            [](PyTuning& t, int closings) {
              const std::optional<TuningEnd> end = t.session.ends(closings);
-             return end ? std::optional(std::string(name_of(*end))) : std::nullopt;
+             return end ? std::optional(std::string(name_of(tuning_ends, *end))) : std::nullopt;
            })
       .def("throw_if_failing", [](const PyTuning& t) { t.session.throw_if_failing(); })
       .def("outcome", &outcome_of);

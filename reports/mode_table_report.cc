@@ -4,22 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "base/clamped_spline.h"
 #include "base/printable.h"
 #include "reports/chart.h"
 #include "reports/document.h"
-#include "reports/json_number.h"
 #include "reports/quantity.h"
+#include "reports/study_members.h"
 #include "reports/svg.h"
 
 namespace softland {
 namespace {
 
-using internal::json_number;
 using internal::quantity;
 
 constexpr int table_digits = 6;
@@ -111,36 +110,85 @@ void draw_left_out(internal::Picture& drawn, const ModeTable& table, const ModeF
 
 }  // namespace
 
-nlohmann::json mode_table_json(const ModeTable& table) {
-  nlohmann::json modes = nlohmann::json::array(), frequencies = nlohmann::json::array();
-  for (const double frequency : table.frequencies) frequencies.push_back(2 * std::numbers::pi * frequency);
+ModesRecord record_of(const ModeTable& table, const std::string& command) {
+  ModesRecord::File file{.summary = summary(table),
+                         .format = table.format,
+                         .nodes = table.nodes,
+                         .length = table.positions.back(),
+                         .modes = {},
+                         .left_out = table.left_out,
+                         .notes = table.notes};
   for (const ModeFound& found : modes_of(table)) {
     const std::optional<std::size_t> column = taken_column(table, found);
-    modes.push_back({{"number", found.number},
-                     {"frequency_Hz", json_number(found.frequency)},
-                     {"kind", found.name()},
-                     {"share", json_number(found.share)},
-                     {"taken_as", column ? nlohmann::json(fmt::format("mode_{}", *column + 1)) : nlohmann::json()}});
+    file.modes.push_back({.number = found.number,
+                          .frequency = found.frequency,
+                          .share = found.share,
+                          .kind = found.name(),
+                          .taken_as = column ? fmt::format("mode_{}", *column + 1) : ""});
   }
-  return {{"format", table.format},
-          {"nodes", table.nodes},
-          {"length_m", table.positions.back()},
-          {"natural_frequencies_rad_s", frequencies},
-          {"modes", modes},
-          {"left_out", table.left_out},
-          {"notes", table.notes}};
+  ModesRecord record{.origin = origin_of("modes", command), .frequencies = {}};
+  for (const double frequency : table.frequencies) record.frequencies.push_back(2 * std::numbers::pi * frequency);
+  record.file = std::move(file);
+  return record;
 }
 
-std::string mode_table_text(const ModeTable& table) {
-  ReportTable modes{.head = {"mode", "frequency", {"taken as", "words"}, {"what it is", "words"}}, .rows = {}};
-  for (const ModeFound& found : modes_of(table)) {
-    const std::optional<std::size_t> column = taken_column(table, found);
-    const bool has_share = !table.found.empty() && found.kind != ModeKind::unused;
-    modes.rows.push_back({fmt::format("{}", found.number), quantity(found.frequency, "Hz", table_digits),
-                          column ? fmt::format("mode_{}", *column + 1) : std::string("left out"),
-                          found.name() + (has_share ? fmt::format(", {:.3g} % of the motion", 100 * found.share) : "")});
+template <class A>
+void members(A& a, ModesRecord::Mode& mode) {
+  a("number", mode.number);
+  a("frequency_Hz", mode.frequency);
+  a("kind", mode.kind);
+  a("share", mode.share);
+  a("taken_as", internal::OrNull{mode.taken_as});
+}
+
+template <class A>
+void members(A& a, ModesRecord::File& file) {
+  a("summary", file.summary);
+  a("format", file.format);
+  a("nodes", file.nodes);
+  a("length_m", file.length);
+  a("modes", file.modes);
+  a("left_out", file.left_out);
+  a("notes", file.notes);
+}
+
+// Those of a file stand beside the others.
+template <class A>
+void members(A& a, ModesRecord& record) {
+  members(a, record.origin);
+  a("natural_frequencies_rad_s", record.frequencies);
+  if constexpr (A::reads) {
+    if (a.at("format").is_string()) record.file.emplace();
   }
-  return terminal_text({.headline = summary(table), .sections = {{.id = "modes", .heading = "Modes", .parts = {modes}}}});
+  if (record.file)
+    members(a, *record.file);
+  else
+    a("warnings", record.warnings);
+}
+
+nlohmann::json json_of(const ModesRecord& record) { return internal::record_json(record); }
+
+ModesRecord read_modes(const nlohmann::json& from) { return internal::whole_record<ModesRecord>(from); }
+
+std::string text_of(const ModesRecord& record) {
+  ReportSection modes{.id = "modes", .heading = "Modes", .parts = {}};
+  if (!record.file) {
+    ReportTable table{.head = {"mode", "angular frequency", "frequency"}, .rows = {}};
+    for (const double omega : record.frequencies)
+      table.rows.push_back({std::to_string(table.rows.size() + 1), quantity(omega, "rad/s", table_digits),
+                            quantity(omega / (2 * std::numbers::pi), "Hz", table_digits)});
+    modes.parts.emplace_back(std::move(table));
+    return terminal_text({.sections = {std::move(modes)}, .warnings = record.warnings});
+  }
+  ReportTable table{.head = {"mode", "frequency", {"taken as", "words"}, {"what it is", "words"}}, .rows = {}};
+  for (const ModesRecord::Mode& mode : record.file->modes) {
+    const bool has_share = record.file->nodes > 0 && mode.kind != ModeFound{.kind = ModeKind::unused}.name();
+    table.rows.push_back({fmt::format("{}", mode.number), quantity(mode.frequency, "Hz", table_digits),
+                          mode.taken_as.empty() ? std::string("left out") : mode.taken_as,
+                          mode.kind + (has_share ? fmt::format(", {:.3g} % of the motion", 100 * mode.share) : "")});
+  }
+  modes.parts.emplace_back(std::move(table));
+  return terminal_text({.headline = record.file->summary, .sections = {std::move(modes)}});
 }
 
 std::string mode_table_csv(const ModeTable& table) {

@@ -1,19 +1,43 @@
 // Modes that another program computed, for people and programs, and as the table that a scene reads.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "exchange/mode_table.h"
+#include "reports/origin.h"
 
 namespace softland {
 
-/// {"format","nodes","length_m","natural_frequencies_rad_s":[],"modes":[{"number","frequency_Hz","kind","share","taken_as"}],
-/// "left_out":[],"notes":[]}; `taken_as` is null of a mode that is left out.
-[[nodiscard]] nlohmann::json mode_table_json(const ModeTable& table);
-
-/// A line about the file, and a table of its modes.
-[[nodiscard]] std::string mode_table_text(const ModeTable& table);
+/// The findings of `softland modes` about a scene or a file.
+struct ModesRecord {
+  struct Mode {
+    int number = 0;                   ///< its number in the file
+    double frequency = 0, share = 0;  ///< [Hz]; see ModeFound
+    std::string kind;
+    std::string taken_as;  ///< "mode_2", by the table that a scene reads; empty of a mode that is left out
+  };
+  struct File {
+    std::string summary;  ///< the file in one line
+    std::string format;
+    std::uint64_t nodes = 0;  ///< nodes of the mesh; 0 of a table
+    double length = 0;        ///< [m]
+    std::vector<Mode> modes;
+    std::vector<std::string> left_out, notes;
+  };
+  Origin origin;
+  std::vector<double> frequencies;         ///< [rad/s]
+  std::vector<std::string> warnings = {};  ///< warnings of the scene
+  std::optional<File> file = {};
+};
+[[nodiscard]] ModesRecord record_of(const ModeTable& table, const std::string& command);
+[[nodiscard]] nlohmann::json json_of(const ModesRecord& record);
+[[nodiscard]] ModesRecord read_modes(const nlohmann::json& from);
+/// A line about the file, and a table of the modes.
+[[nodiscard]] std::string text_of(const ModesRecord& record);
 
 /// x_m,width_m,rest_offset_m,mode_1,... in m and 1/sqrt(kg), below the header the row frequency_Hz; every digit. A width that is
 /// not known stays empty.

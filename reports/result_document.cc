@@ -7,8 +7,6 @@
 #include <cmath>
 #include <span>
 
-#include "base/require.h"
-#include "config/scene.h"
 #include "reports/chart.h"
 #include "reports/closing_words.h"
 #include "reports/devices_report.h"
@@ -16,6 +14,7 @@
 #include "reports/figure_text.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
+#include "reports/record.h"
 #include "reports/result_view.h"
 #include "reports/result_words.h"
 #include "reports/seeds_report.h"
@@ -136,13 +135,8 @@ ReportTable figures_table(const Result& result) {
 std::string uncounted_layer_caption(const Result& result) {
   const bool told = std::isfinite(figure_of_run(result.best, &Metrics::drive_energy)) ||
                     std::isfinite(figure_of_run(result.baseline, &Metrics::drive_energy));
-  if (!told || result.scene.text.find("piezo") == std::string::npos) return {};
-  try {
-    const SceneFile scene = SceneFile::parse(result.scene.text, "scene");
-    if (!scene.written("piezo.thickness") || scene.written("piezo.relative_permittivity")) return {};
-  } catch (const InvalidInput&) {  // somebody has edited the result
-    return {};
-  }
+  const JsonReader piezo(JsonReader(result.scene.tree).at("piezo"));
+  if (!told || piezo.at("thickness").is_null() || !piezo.at("relative_permittivity").is_null()) return {};
   return "The drive energy does not count the charging of the piezo layer: the scene has no piezo.relative_permittivity.";
 }
 

@@ -1,7 +1,6 @@
 #include "reports/result_json.h"
 
 #include "reports/result_words.h"
-#include "reports/seeds_report.h"
 #include "reports/study_members.h"
 
 namespace softland {
@@ -87,7 +86,6 @@ json result_json(const Result& r) {
   j["scene"] = r.scene.tree;
   j["scene_toml"] = r.scene.text;
   if (r.is_search) {
-    if (r.seeds) j["seeds"] = seeds_json(*r.seeds);
     add_verdict(j, r);
     return j;
   }
@@ -104,11 +102,7 @@ json without_curves(json record) {
 
 json summary_json(json result) {
   for (const char* key : {"curves", "scene_toml", "search"}) result.erase(key);
-  if (result.contains("baseline")) {
-    result["baseline"].erase("waveforms");
-  } else {
-    result.erase("best");  // a single run: its figures stand above
-  }
+  if (!result.contains("baseline")) result.erase("best");  // a single run: its figures stand above
   return result;
 }
 

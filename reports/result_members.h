@@ -56,6 +56,8 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] nlohmann::json voltages_json(const std::map<std::string, ByModes>& of_electrodes);
 [[nodiscard]] std::map<std::string, ByModes> read_voltages(const nlohmann::json& of_electrodes);
 [[nodiscard]] HoldWindows read_windows(const nlohmann::json& windows);
+/// The outcome of all searches together.
+[[nodiscard]] nlohmann::json seeds_summary(const ResultSeeds& seeds);
 
 }  // namespace internal
 
@@ -294,6 +296,25 @@ void members(A& a, SearchOfSeed& search) {
   a.object("metrics", [&](auto& metrics) { metrics.figures(search.figures, internal::every_figure); });
 }
 
+template <class A>
+void members(A& a, ResultSeeds& seeds) {
+  a("planned", seeds.planned);
+  a("searches", seeds.searches);
+  const auto seed_of = [&](std::size_t k) {
+    return k < seeds.searches.size() ? nlohmann::json(seeds.searches[k].seed) : nlohmann::json();
+  };
+  a.custom("best_seed", seeds.best, seed_of, [&](const nlohmann::json& seed) {
+    std::size_t best = seeds.searches.size();
+    while (best > 0 && seed_of(--best) != seed) {
+    }
+    return best;
+  });
+  if constexpr (!A::reads) {
+    const nlohmann::json summary = internal::seeds_summary(seeds);
+    for (const auto& [key, value] : summary.items()) a(key, value);
+  }
+}
+
 /// Of a search alone.
 template <class A>
 void members_of_search(A& a, Result& result) {
@@ -324,6 +345,7 @@ void members_of_search(A& a, Result& result) {
   a("reproduce", result.reproduce);
   a("robust", result.robust);
   a("devices", result.devices);
+  a("seeds", result.seeds);
   if (result.devices) {
     a.object("drawing", [&](auto& drawing) {
       internal::figures_and_status(drawing, result.devices->drawing, result.devices->drawing_status, internal::every_figure);
@@ -341,7 +363,7 @@ void members_of_search(A& a, Result& result) {
   if (a.has(!result.checks.empty())) a("evaluations_with_more_modes", internal::Count{result.evaluations_of_modes});
 }
 
-/// But for what is worked out from others, kind, scene and seeds.
+/// But for what is worked out from others, kind and scene.
 template <class A>
 void members(A& a, Result& result) {
   a("version", result.version);

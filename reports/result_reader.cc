@@ -64,18 +64,6 @@ auto members_of(const json& object, const Read& read) {
   return all;
 }
 
-std::optional<ResultSeeds> seeds(const json& found) {
-  if (!found.is_object()) return std::nullopt;
-  ResultSeeds all;
-  internal::JsonReader archive(found);
-  archive("planned", all.planned);
-  archive("searches", all.searches);
-  for (std::size_t k = 0; k < all.searches.size(); ++k) {
-    if (at(found, {"best_seed"}) == all.searches[k].seed) all.best = k;
-  }
-  return all;
-}
-
 bool is_search(const json& result) {
   const std::string kind = text(result, {"kind"});
   return kind == "optimize" || (kind.empty() && !at(result, {"baseline"}).is_null());
@@ -110,14 +98,9 @@ void require_version(const json& record, const std::string& name) {
           fmt::format("{}: is a result of softland {}, of which softland {} makes no report", name, shortened(made_by), version));
 }
 
-void require_reportable(const json& result, const std::string& name) {
-  const std::string kind = text(result, {"kind"});
-  require(kind == "simulate" || kind == "optimize",
-          [&] { return fmt::format("{}: is of kind '{}', of which no report is made", name, shortened(printable_line(kind))); });
-  require_version(result, name);
-  for (const char* part : {is_search(result) ? "baseline" : "metrics", "curves", "scene"}) {
-    require(at(result, {part}).is_object(),
-            fmt::format("{}: \"{}\" is missing; name the result.json in the folder that --out named", name, part));
+void require_reportable(const json& result) {
+  for (const char* part : {is_search(result) ? "baseline" : "metrics", "scene"}) {
+    require(at(result, {part}).is_object(), fmt::format("\"{}\" is missing", part));
   }
 }
 
@@ -195,7 +178,6 @@ Result read_result(const json& result) {
   require(result.is_object(), "the result is not a JSON object");
   Result r = internal::JsonReader::read<Result>(result);
   r.is_search = is_search(result);
-  r.seeds = seeds(at(result, {"seeds"}));
   if (r.best.status.empty()) r.best.status = r.status;
   r.scene = read_result_scene(at(result, {"scene"}), text(result, {"scene_toml"}));
   return r;

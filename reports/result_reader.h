@@ -19,9 +19,8 @@ void require_version(const nlohmann::json& record, const std::string& name);
 /// missing or of another type. `name` stands for the file in messages. Throws InvalidInput for anything else.
 [[nodiscard]] nlohmann::json parse_result(std::string_view content, const std::string& name);
 
-/// Throws InvalidInput unless a report can be made of this result: it is of this version of softland and has figures, curves and
-/// a scene.
-void require_reportable(const nlohmann::json& result, const std::string& name);
+/// Throws InvalidInput unless a report can be made of this result: it has figures and a scene.
+void require_reportable(const nlohmann::json& result);
 
 /// The result that the JSON describes. Every part of it is optional: what is missing, null or of another type is not available.
 /// Throws InvalidInput when `result` is not an object.

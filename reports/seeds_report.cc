@@ -11,7 +11,7 @@
 
 #include "reports/figure_text.h"
 #include "reports/quantity.h"
-#include "reports/result_members.h"
+#include "reports/study_members.h"
 #include "sampling/statistics.h"
 
 namespace softland {
@@ -105,25 +105,31 @@ void rank(ResultSeeds& seeds, const Aim& target, double significant, bool over_d
   seeds.best = static_cast<std::size_t>(best - seeds.searches.begin());
 }
 
-json seeds_json(const ResultSeeds& seeds) {
-  json searches = json::array(), failed = json::array(), figures = json::object();
-  std::size_t met = 0, confirmed = 0;
+json internal::seeds_summary(const ResultSeeds& seeds) {
+  json failed = json::array(), figures = json::object();
   for (const SearchOfSeed& one : seeds.searches) {
-    searches.push_back(record_json(one));
-    met += one.goal_met ? 1 : 0;
-    confirmed += one.confirmed ? 1 : 0;
     if (const std::string why = failure(one); !why.empty()) failed.push_back({{"seed", one.seed}, {"reason", why}});
   }
   for (const Figure& f : shown_figures) figures[std::string(f.key)] = five_json(spread_of(seeds, f));
-  return {{"planned", seeds.planned},
-          {"searches", std::move(searches)},
-          {"best_seed", seeds.searches.empty() ? json() : json(seeds.searches.at(seeds.best).seed)},
-          {"goal_met", met},
-          {"confirmed", confirmed},
+  return {{"goal_met", std::ranges::count_if(seeds.searches, &SearchOfSeed::goal_met)},
+          {"confirmed", std::ranges::count_if(seeds.searches, &SearchOfSeed::confirmed)},
           {"failed", std::move(failed)},
           {"cost", five_json(spread_of_cost(seeds))},
           {"metrics", std::move(figures)}};
 }
+
+template <class A>
+void members(A& a, SeedsRecord& record) {
+  members(a, record.origin);
+  a.derived("status", std::string("interrupted"));
+  a("seeds", record.seeds);
+}
+
+json json_of(const SeedsRecord& record) { return internal::record_json(record); }
+
+SeedsRecord read_seeds(const json& from) { return internal::whole_record<SeedsRecord>(from); }
+
+std::string text_of(const SeedsRecord& record) { return terminal_text({.sections = {seeds_section(record.seeds)}}); }
 
 namespace internal {
 

@@ -8,6 +8,7 @@
 
 #include "objectives/cost.h"
 #include "reports/document.h"
+#include "reports/origin.h"
 #include "reports/result.h"
 
 namespace softland {
@@ -17,7 +18,14 @@ namespace softland {
 /// of targets by cost alone; over devices that differ what fulfils its conditions, by cost. Of equals the first seed.
 void rank(ResultSeeds& seeds, const Aim& target, double significant, bool over_devices);
 
-[[nodiscard]] nlohmann::json seeds_json(const ResultSeeds& seeds);
+/// The record that an interrupted study of several seeds leaves.
+struct SeedsRecord {
+  Origin origin;
+  ResultSeeds seeds;
+};
+[[nodiscard]] nlohmann::json json_of(const SeedsRecord& record);
+[[nodiscard]] SeedsRecord read_seeds(const nlohmann::json& from);
+[[nodiscard]] std::string text_of(const SeedsRecord& record);
 
 namespace internal {
 

@@ -1,10 +1,8 @@
 #include "reports/tuning_report.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -13,9 +11,8 @@
 
 #include "base/require.h"
 #include "reports/escape.h"
-#include "reports/json_number.h"
-#include "reports/origin.h"
 #include "reports/quantity.h"
+#include "reports/study_members.h"
 #include "reports/tuning_lines.h"
 #include "waveforms/export.h"
 
@@ -23,46 +20,9 @@ namespace softland {
 namespace {
 
 using internal::escaped;
-using internal::json_number;
 using internal::percent;
 using internal::quantity;
 using nlohmann::json;
-
-constexpr std::array end_names{"under_way", "done", "closings_used", "stopped", "interrupted", "failed"};
-
-// Of a shot, by drive: rows of time [s] and voltage [V]; a factor of the dispersion force is no voltage.
-std::map<std::string, std::vector<std::pair<double, double>>> rows_of(const PreparedScene& scene, const TunerShot& shot) {
-  std::map<std::string, std::vector<std::pair<double, double>>> all;
-  const std::vector<std::string> names = scene.drive_names();
-  for (std::size_t k = 0; k < names.size() && k < shot.waveforms.size(); ++k) {
-    if (names[k] == dispersion_drive) continue;
-    const Signal told = scene.told(k, shot.waveforms[k]);
-    all[names[k]] = polyline(told, told.pieces().back().begin, 1e-4 * told.peak(), 0);
-  }
-  return all;
-}
-
-json predicted_json(const PredictedRecord& p) {
-  return {{"touches", json_number(p.touches)},          {"touch_median_s", json_number(p.touch_median)},
-          {"touch_low_s", json_number(p.touch_low)},    {"touch_high_s", json_number(p.touch_high)},
-          {"bounces", json_number(p.bounces)},          {"rebound_median_m", json_number(p.rebound_median)},
-          {"rebound_95_m", json_number(p.rebound_high)}};
-}
-
-json shot_report(const PreparedScene& scene, const TunerShot& shot) {
-  return {{"shot", shot.number},
-          {"waveforms", rows_of(scene, shot)},
-          {"hold_s", json_number(shot.hold_time)},
-          {"expected_cost", json_number(shot.expected_cost)},
-          {"predicted", predicted_json(shot.predicted)}};
-}
-
-json closing_json(const PreparedScene& scene, const TunedClosing& closing) {
-  json one = shot_report(scene, closing.shot);
-  one["record"] = record_json(closing.shot.number, closing.record);
-  one["bounce_free"] = is_bounce_free(closing.record);
-  return one;
-}
 
 json normal_json(const NormalBelief& belief) {
   json covariance = json::array();
@@ -85,27 +45,12 @@ NormalBelief normal_of(const json& written) {
   return belief;
 }
 
-json quantity_json(const BelievedQuantity& q) {
-  return {{"name", q.name},
-          {"unit", q.unit},
-          {"prior_mean", json_number(q.prior_mean)},
-          {"prior_deviation", json_number(q.prior_deviation)},
-          {"mean", json_number(q.mean)},
-          {"deviation", json_number(q.deviation)}};
-}
-
-json belief_json(const BeliefSummary& belief) {
-  json quantities = json::array();
-  for (const BelievedQuantity& q : belief.quantities) quantities.push_back(quantity_json(q));
-  return {{"quantities", quantities},
-          {"gap_ratio", belief.gap_ratio ? quantity_json(*belief.gap_ratio) : json()},
-          {"effective_devices", json_number(belief.effective_devices)},
-          {"touch_misfit",
-           {{"least", json_number(belief.touch_misfit.least)},
-            {"bound", json_number(belief.touch_misfit.bound)},
-            {"records", belief.touch_misfit.records}}},
-          {"correlated", belief.correlated},
-          {"coordinates", belief_json(belief.coordinates)}};
+TunedBelief read_belief(const json& coordinates) {
+  try {
+    return {.prior = normal_of(coordinates.at("prior")), .posterior = normal_of(coordinates.at("posterior"))};
+  } catch (const json::exception&) {
+    throw InvalidInput("holds no belief about a device that was tuned");
+  }
 }
 
 std::string bounces_words(int count) {
@@ -139,15 +84,15 @@ std::string expected_words(const PredictedRecord& p) {
   return fmt::format("touch at {}, {}", range_words(p.touch_low, p.touch_high), rebound_words(p));
 }
 
-const TunedClosing* recorded(const TuningReport& report, int shot) {
+const TuningReport::Closing* recorded(const TuningReport& report, int shot) {
   const auto found = std::find_if(report.closings.begin(), report.closings.end(),
-                                  [&](const TunedClosing& one) { return one.shot.number == shot; });
+                                  [&](const TuningReport::Closing& one) { return one.shot.number == shot; });
   return found == report.closings.end() ? nullptr : &*found;
 }
 
 std::size_t learned(const TuningReport& report) {
-  return static_cast<std::size_t>(std::count_if(report.closings.begin(), report.closings.end(),
-                                                [](const TunedClosing& one) { return one.record.error.empty(); }));
+  return static_cast<std::size_t>(
+      std::count_if(report.closings.begin(), report.closings.end(), [](const auto& one) { return one.record.error.empty(); }));
 }
 
 std::string closings_words(std::size_t count) { return count == 1 ? "one closing" : fmt::format("{} closings", count); }
@@ -276,7 +221,7 @@ std::string record_bars(const ContactRecord& record, const Shown& shown) {
   return bars;
 }
 
-TableRow record_row(const TunedClosing& one, const Shown& shown) {
+TableRow record_row(const TuningReport::Closing& one, const Shown& shown) {
   const std::optional<double> touch = first_touch(one.record);
   const std::optional<int> count = bounce_count(one.record);
   const std::string bounces = !one.record.error.empty() ? "no record"
@@ -329,7 +274,7 @@ ReportSection records_section(const TuningReport& report) {
 
 internal::Picture picture_of(const TuningReport& report) {
   internal::Picture drawn;
-  const auto kept = rows_of(report.scene, report.kept), next = rows_of(report.scene, report.next);
+  const auto &kept = report.kept.waveforms, &next = report.next.waveforms;
   const bool differ = kept != next;
   const double hold = 0.25;  // of the time before it, shown of the hold level
   for (const auto& [name, rows] : kept) {
@@ -345,18 +290,18 @@ internal::Picture picture_of(const TuningReport& report) {
                           .group = "drives",
                           .height = 220};
     double last = 0;
-    for (const auto& shot : {kept, next}) {
-      for (const auto& one : shot) last = std::max(last, one.second.back().first);
+    for (const auto* shot : {&kept, &next}) {
+      for (const auto& [drive, points] : *shot) last = std::max(last, points.back()[0]);
     }
     const double end = last > 0 ? (1 + hold) * last : 1e-6;
-    const auto add = [&](const std::vector<std::pair<double, double>>& points, const char* label, internal::Role role) {
+    const auto add = [&](const Points& points, const char* label, internal::Role role) {
       internal::CurveTable& table = drawn.tables[fmt::format("{}-{}", chart.id, chart.series.size())];
       for (const auto& [time, voltage] : points) {
         table["time_s"].push_back(time);
         table["volts"].push_back(voltage);
       }
       table["time_s"].push_back(end);
-      table["volts"].push_back(points.back().second);
+      table["volts"].push_back(points.back()[1]);
       chart.series.push_back(
           {.table = fmt::format("{}-{}", chart.id, chart.series.size()), .column = "volts", .label = label, .role = role});
     };
@@ -388,81 +333,160 @@ std::vector<KeyNumber> keys_of(const TuningReport& report) {
 }  // namespace
 
 bool TuningReport::was_bounce_free(int shot) const {
-  const TunedClosing* const one = recorded(*this, shot);
+  const Closing* const one = recorded(*this, shot);
   return one != nullptr && is_bounce_free(one->record);
 }
 
 bool TuningReport::ever_bounce_free() const {
-  return std::any_of(closings.begin(), closings.end(), [](const TunedClosing& one) { return is_bounce_free(one.record); });
+  return std::any_of(closings.begin(), closings.end(), [](const Closing& one) { return is_bounce_free(one.record); });
 }
 
 namespace {
 
 // The last one that gave a record; null where none did.
-const TunedClosing* last_record(const std::vector<TunedClosing>& closings) {
-  const auto last =
-      std::find_if(closings.rbegin(), closings.rend(), [](const TunedClosing& one) { return one.record.error.empty(); });
+template <class Closing>
+const Closing* last_record(const std::vector<Closing>& closings) {
+  const auto last = std::find_if(closings.rbegin(), closings.rend(), [](const auto& one) { return one.record.error.empty(); });
   return last == closings.rend() ? nullptr : &*last;
 }
 
 }  // namespace
 
 bool TuningReport::lands() const {
-  const TunedClosing* const last = last_record(closings);
+  const Closing* const last = last_record(closings);
   return last != nullptr && last->shot.number == kept.number && is_bounce_free(last->record);
 }
 
-std::string_view name_of(TuningEnd end) { return end_names.at(static_cast<std::size_t>(end)); }
-
-TuningEnd tuning_end(std::string_view name) {
-  const auto found = std::find(end_names.begin(), end_names.end(), name);
-  require(found != end_names.end(),
-          [&] { return fmt::format("a tuning is {}, and never {}", fmt::join(end_names, ", "), name); });
-  return static_cast<TuningEnd>(found - end_names.begin());
+TunerShot kept_shot(const Tuner& tuner, const std::vector<TunedClosing>& closings, TuningEnd end) {
+  const TunedClosing* const last = last_record(closings);
+  const bool landed = end != TuningEnd::under_way && last != nullptr && is_bounce_free(last->record) && !tuner.was_kept_last();
+  return landed ? last->shot : tuner.kept();
 }
 
-TuningReport tuning_report(const Tuner& tuner, std::vector<TunedClosing> closings, const TunerOptions& options, TuningEnd end) {
-  TunerShot kept = tuner.kept();
-  if (const TunedClosing* const last = last_record(closings);
-      end != TuningEnd::under_way && last != nullptr && is_bounce_free(last->record) && !tuner.was_kept_last())
-    kept = last->shot;
-  return {.scene = tuner.scene(),
-          .closings = std::move(closings),
-          .next = tuner.next(),
-          .kept = std::move(kept),
-          .belief = tuner.belief(),
-          .broken_assumption = tuner.broken_assumption(),
-          .step_closing_time = tuner.step_closing_time(),
-          .approach = tuner.approach(),
-          .step_permanent_contact = tuner.step_permanent_contact(),
-          .bounce_free_in_a_row = tuner.bounce_free_in_a_row(),
-          .spread_assumed = tuner.spread_is_assumed(),
-          .seed = options.seed,
-          .end = end};
+TuningReport::Shot shot_of(const PreparedScene& scene, const TunerShot& shot) {
+  TuningReport::Shot found{
+      .number = shot.number, .hold_time = shot.hold_time, .expected_cost = shot.expected_cost, .predicted = shot.predicted};
+  const std::vector<std::string> names = scene.drive_names();
+  for (std::size_t k = 0; k < names.size() && k < shot.waveforms.size(); ++k) {
+    if (names[k] == dispersion_drive) continue;
+    const Signal told = scene.told(k, shot.waveforms[k]);
+    for (const auto& [time, voltage] : polyline(told, told.pieces().back().begin, 1e-4 * told.peak(), 0))
+      found.waveforms[names[k]].push_back({time, voltage});
+  }
+  return found;
 }
 
-json tuning_json(const TuningReport& report, const Provenance& provenance) {
-  json closings = json::array();
-  for (const TunedClosing& one : report.closings) closings.push_back(closing_json(report.scene, one));
-  json best = shot_report(report.scene, report.kept);
-  best["bounce_free"] = report.was_bounce_free(report.kept.number);
-  best["landed_last"] = report.lands();
-  const PreparedScene& scene = report.scene;
-  return with_origin({{"kind", "tune"},
-                      {"status", name_of(report.end)},
-                      {"title", scene.scene.title},
-                      {"closings", closings},
-                      {"bounce_free_in_a_row", report.bounce_free_in_a_row},
-                      {"best", best},
-                      {"next", shot_report(scene, report.next)},
-                      {"belief", belief_json(report.belief)},
-                      {"broken_assumption", report.broken_assumption ? json(*report.broken_assumption) : json(nullptr)},
-                      {"approach", name_of(approaches, report.approach)},
-                      {"step_closing_time_s", json_number(report.step_closing_time)},
-                      {"step_permanent_contact_time_s", json_number(report.step_permanent_contact)},
-                      {"spread_assumed", report.spread_assumed},
-                      {"seed", report.seed}},
-                     scene, provenance.command);
+TuningReport tuning_report(const Tuner& tuner, const std::vector<TunedClosing>& closings, const TunerOptions& options,
+                           TuningEnd end, const std::string& command) {
+  const PreparedScene& scene = tuner.scene();
+  TuningReport report{.origin = whole_origin_of("tune", scene, command),
+                      .next = shot_of(scene, tuner.next()),
+                      .kept = shot_of(scene, kept_shot(tuner, closings, end)),
+                      .belief = tuner.belief(),
+                      .broken_assumption = tuner.broken_assumption(),
+                      .step_closing_time = tuner.step_closing_time(),
+                      .approach = tuner.approach(),
+                      .step_permanent_contact = tuner.step_permanent_contact(),
+                      .bounce_free_in_a_row = tuner.bounce_free_in_a_row(),
+                      .spread_assumed = tuner.spread_is_assumed(),
+                      .seed = options.seed,
+                      .tolerance = scene.tolerance,
+                      .end = end};
+  for (const TunedClosing& one : closings) report.closings.push_back({.shot = shot_of(scene, one.shot), .record = one.record});
+  return report;
+}
+
+template <class A>
+void members(A& a, PredictedRecord& predicted) {
+  a("touches", predicted.touches);
+  a("touch_median_s", predicted.touch_median);
+  a("touch_low_s", predicted.touch_low);
+  a("touch_high_s", predicted.touch_high);
+  a("bounces", predicted.bounces);
+  a("rebound_median_m", predicted.rebound_median);
+  a("rebound_95_m", predicted.rebound_high);
+}
+
+template <class A>
+void members(A& a, TuningReport::Shot& shot) {
+  a("shot", shot.number);
+  a("waveforms", shot.waveforms);
+  a("hold_s", shot.hold_time);
+  a("expected_cost", shot.expected_cost);
+  a("predicted", shot.predicted);
+}
+
+template <class A>
+void members(A& a, TuningReport::Closing& closing) {
+  members(a, closing.shot);
+  a.custom(
+      "record", closing.record, [&](const ContactRecord& record) { return record_json(closing.shot.number, record); },
+      [&](const json& line) { return read_record(line, closing.shot.number); });
+  a.derived("bounce_free", is_bounce_free(closing.record));
+}
+
+template <class A>
+void members(A& a, BelievedQuantity& quantity) {
+  a("name", quantity.name);
+  a("unit", quantity.unit);
+  a("prior_mean", quantity.prior_mean);
+  a("prior_deviation", quantity.prior_deviation);
+  a("mean", quantity.mean);
+  a("deviation", quantity.deviation);
+}
+
+template <class A>
+void members(A& a, TouchMisfit& misfit) {
+  a("least", misfit.least);
+  a("bound", misfit.bound);
+  a("records", misfit.records);
+}
+
+template <class A>
+void members(A& a, BeliefSummary& belief) {
+  a("quantities", belief.quantities);
+  a("gap_ratio", internal::OrNull{belief.gap_ratio});
+  a("effective_devices", belief.effective_devices);
+  a("touch_misfit", belief.touch_misfit);
+  a("correlated", belief.correlated);
+  a.custom("coordinates", belief.coordinates, belief_json, read_belief);
+}
+
+template <class A>
+void members(A& a, TuningReport& report) {
+  members(a, report.origin);
+  a("status", internal::Chosen{report.end, tuning_ends});
+  a.derived("title", title_of(report.origin));
+  a("closings", report.closings);
+  a("bounce_free_in_a_row", report.bounce_free_in_a_row);
+  a.object("best", [&](auto& best) {
+    members(best, report.kept);
+    best.derived("bounce_free", report.was_bounce_free(report.kept.number));
+    best.derived("landed_last", report.lands());
+  });
+  a("next", report.next);
+  a("belief", report.belief);
+  a("broken_assumption", internal::OrNull{report.broken_assumption});
+  a("approach", internal::Chosen{report.approach, approaches});
+  a("step_closing_time_s", report.step_closing_time);
+  a("step_permanent_contact_time_s", report.step_permanent_contact);
+  a("spread_assumed", report.spread_assumed);
+  a("seed", report.seed);
+  a("tolerance", report.tolerance);
+  if (a.has(!report.setting.is_null())) a("tuning", report.setting);
+}
+
+json json_of(const TuningReport& report) { return internal::record_json(report); }
+
+TuningReport read_tuning(const json& from) {
+  TuningReport report = internal::whole_record<TuningReport>(from);
+  for (const TuningReport::Shot* shot : {&report.kept, &report.next}) {
+    const bool is_drawn = std::ranges::all_of(shot->waveforms, [&](const auto& one) {
+      return !one.second.empty() && report.kept.waveforms.contains(one.first) && report.next.waveforms.contains(one.first);
+    });
+    require(is_drawn, "\"best\" and \"next\" must have the same drives");
+  }
+  return report;
 }
 
 json belief_json(const TunedBelief& belief) {
@@ -470,35 +494,31 @@ json belief_json(const TunedBelief& belief) {
 }
 
 TunedBelief tuned_belief(const json& written) {
-  try {
-    const json& coordinates = written.at("belief").at("coordinates");
-    return {.prior = normal_of(coordinates.at("prior")), .posterior = normal_of(coordinates.at("posterior"))};
-  } catch (const json::exception&) {
-    throw InvalidInput("holds no belief about a device that was tuned");
-  }
+  const internal::JsonReader tuning(written);
+  return read_belief(internal::JsonReader(tuning.at("belief")).at("coordinates"));
 }
 
 std::string closing_words(const TuningReport& report) {
-  const TunedClosing& last = report.closings.back();
+  const TuningReport::Closing& last = report.closings.back();
   return fmt::format("closing {} {}; expected of the next: {}", last.shot.number, record_words(last.record),
                      expected_words(report.next.predicted));
 }
 
-Document tuning_document(const TuningReport& report, const Provenance& provenance) {
-  Document document{.title = report.scene.scene.title,
+Document tuning_document(const TuningReport& report) {
+  Document document{.title = title_of(report.origin),
                     .origin = "tune",
                     .doubt = report.broken_assumption.value_or(""),
                     .keys = keys_of(report),
                     .sections = {records_section(report), belief_section(report.belief)},
                     .draw = [&report] { return picture_of(report); },
-                    .made = internal::origin(report.scene, provenance.command)};
+                    .made = internal::made_of(report.origin)};
   std::tie(document.headline, document.headline_rest) = headline_of(report);
   if (report.end == TuningEnd::interrupted)
     document.headline = "Interrupted: what follows is what there is. " + document.headline;
   document.sections.push_back(
       {.id = "waveforms", .heading = "What the source is told", .parts = {internal::all_charts()}, .shown = ShownIn::page});
   document.made.seed = report.seed;
-  document.made.tolerance = report.scene.tolerance;
+  document.made.tolerance = report.tolerance;
   return document;
 }
 

@@ -160,27 +160,26 @@ void TuningSession::throw_if_failing() const {
   });
 }
 
-TuningReport TuningSession::report(TuningEnd end) const { return tuning_report(tuner(), closings(), state_->options, end); }
-
-Json TuningSession::json(TuningEnd end, const Provenance& provenance) const {
-  Json told = tuning_json(report(end), provenance);
-  told[origin_key] = state_->origin;
-  return told;
+TuningReport TuningSession::report(TuningEnd end, const std::string& command) const {
+  TuningReport report = tuning_report(tuner(), closings(), state_->options, end, command);
+  report.setting = state_->origin;
+  return report;
 }
 
-std::map<std::string, std::string> TuningSession::files(TuningEnd end, const Provenance& provenance) const {
-  const TuningReport now = report(end);
+std::map<std::string, std::string> TuningSession::files(TuningEnd end, const std::string& command) const {
+  const TuningReport now = report(end, command);
   const PreparedScene& scene = tuner().scene();
-  const SentSignals kept = sent_signals(scene, now.kept.waveforms);
+  const TunerShot best = kept_shot(tuner(), closings(), end);
+  const SentSignals kept = sent_signals(scene, best.waveforms);
   DriveWaveforms waveforms;
   const std::vector<std::string> names = scene.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (kept.signals.contains(names[k])) waveforms.emplace(names[k], now.kept.waveforms[k]);
+    if (kept.signals.contains(names[k])) waveforms.emplace(names[k], best.waveforms[k]);
   }
   return {{"best.toml", with_waveforms(scene, waveforms).text()},
           {"best.csv", csv(kept.signals, scene.duration, kept.sample_rates)},
-          {"tune.json", json_text(json(end, provenance), 1)},
-          {"tune.html", page_html(tuning_document(now, provenance))}};
+          {"tune.json", json_text(json_of(now), 1)},
+          {"tune.html", page_html(tuning_document(now))}};
 }
 
 }  // namespace softland

@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -57,11 +56,10 @@ class TuningSession {
   /// Throws InvalidInput where the last three shots gave no record.
   void throw_if_failing() const;
 
-  [[nodiscard]] TuningReport report(TuningEnd end) const;
-  /// tune.json: the report, and what tells apart tunings that cannot go on with each other.
-  [[nodiscard]] nlohmann::json json(TuningEnd end, const Provenance& provenance) const;
+  /// The record that tune.json holds; `command`: the command line.
+  [[nodiscard]] TuningReport report(TuningEnd end, const std::string& command = {}) const;
   /// best.toml, best.csv, tune.json and tune.html as they stand.
-  [[nodiscard]] std::map<std::string, std::string> files(TuningEnd end, const Provenance& provenance) const;
+  [[nodiscard]] std::map<std::string, std::string> files(TuningEnd end, const std::string& command) const;
 
  private:
   struct State;

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "optimizers/problem.h"
+#include "reports/seeds_report.h"
 #include "studies/search/searched_families.h"
+#include "verbs/report_outcome.h"
 
 namespace softland::verbs {
 namespace {
@@ -43,6 +45,11 @@ struct OptimizeVerb : Usual, OptimizeRequest {
       "The result has the keys of result.json, and `files` such as best.toml. `softland optimize --help` lists the "
       "optimizers.";
   static constexpr Takes takes{.scene = false};
+  static Outcome shown_again(const nlohmann::json& json) {
+    if (json.contains("baseline") || !json.contains("seeds")) return result_shown_again(json);
+    const SeedsRecord record = read_seeds(json);  // a study of several seeds was interrupted
+    return {.json = json_of(record), .text = text_of(record)};
+  }
   static std::string remarks() {
     return "Without a scene: scenes/mem-gold-pzt.toml. The hold level is the scene's own; its [driver.*] limits are never left.\n"
            "A scene that holds a landing already (best.toml of an earlier search) is refined and, without --robust, never ends "

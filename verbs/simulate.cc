@@ -27,6 +27,7 @@ struct SimulateVerb : Usual, SimulateRequest {
   static constexpr auto remarks =
       "Example:\n  softland simulate scenes/mem-gold.toml --set waveform.main.level=\"1.1 Vdp\" --json -";
   static std::vector<std::string> files() { return {"report.html", "gap.svg", "result.json", "trajectory.csv"}; }
+  static Outcome shown_again(const nlohmann::json& json) { return result_shown_again(json); }
 };
 
 template <class Archive>
@@ -55,8 +56,7 @@ Outcome run(const Setting& setting, const SimulateVerb& request) {
   const auto [prepared, closing] = simulated(setting.prepared(false), request, setting.watch);
   const auto result = std::make_shared<const Result>(result_of(*prepared, closing, {.command = setting.command}));
   const Status status = closing.metrics.status;
-  Outcome outcome{.json = summary_json(result_json(*result)), .text = terminal_text(result_document(*result))};
-  outcome.files = files_of_report(result);
+  Outcome outcome = result_shown(result);
   outcome.fault =
       closing.trajectory.message.empty() ? std::string() : fmt::format("{} ({})", closing.trajectory.message, to_string(status));
   if (status != Status::interrupted && prepared->effects && !prepared->effects->choice.left_out.empty() && setting.note)

@@ -81,7 +81,7 @@ struct Study {
   /// Reads what was told; the study itself runs when that is called. Throws InvalidRequest. Empty where a door runs the verb.
   std::function<std::function<Outcome(const Setting&)>(const Told&)> ask = {};
   /// Makes of the JSON of an outcome what can be made of it again: its text and files. Throws InvalidInput for other JSON. Empty
-  /// where the verb leaves no record, or the result of one closing or a search, which reports/result_reader.h reads.
+  /// where the verb leaves no record.
   std::function<Outcome(const nlohmann::json&)> shown_again = {};
 
   /// The name of an option in Python.
@@ -112,45 +112,47 @@ template <class Request>
   return request;
 }
 
-/// The description of a request: a struct with name, about, python and remarks, and a template options(archive, request).
+/// The description of a request: a struct with name, about, python and remarks, and a template options(archive, request). It has
+/// shown_again(json) where it leaves a record.
 template <class Request>
 [[nodiscard]] Study described() {
   OptionList list;
   Request defaults;
   options(list, defaults);
-  return {.name = Request::name,
-          .about = Request::about,
-          .python = Request::python,
-          .returns = Request::returns,
-          .progress = Request::progress,
-          .in_python = Request::in_python,
-          .subject = Request::subject,
-          .scene = Request::scene,
-          .takes = Request::takes,
-          .is_explorable = Request::is_explorable,
-          .leaves = Request::leaves,
-          .place = Request::place,
-          .leaving = Request::leaving,
-          .changes = Request::changes,
-          .remarks =
-              [] {
-                if constexpr (requires { Request::remarks(); })
-                  return Request::remarks();
-                else
-                  return Request::remarks;
-              }(),
-          .files = Request::files(),
-          .options = list.all()};
+  Study study{.name = Request::name,
+              .about = Request::about,
+              .python = Request::python,
+              .returns = Request::returns,
+              .progress = Request::progress,
+              .in_python = Request::in_python,
+              .subject = Request::subject,
+              .scene = Request::scene,
+              .takes = Request::takes,
+              .is_explorable = Request::is_explorable,
+              .leaves = Request::leaves,
+              .place = Request::place,
+              .leaving = Request::leaving,
+              .changes = Request::changes,
+              .remarks =
+                  [] {
+                    if constexpr (requires { Request::remarks(); })
+                      return Request::remarks();
+                    else
+                      return Request::remarks;
+                  }(),
+              .files = Request::files(),
+              .options = list.all()};
+  if constexpr (requires { Request::shown_again; }) study.shown_again = Request::shown_again;
+  return study;
 }
 
-/// The study of a request that has run(setting, request), too, and shown_again(json) where it leaves a record.
+/// The study of a request that has run(setting, request), too.
 template <class Request>
 [[nodiscard]] Study study_of() {
   Study study = described<Request>();
   study.ask = [](const Told& told) -> std::function<Outcome(const Setting&)> {
     return [request = read_options<Request>(told)](const Setting& setting) { return run(setting, request); };
   };
-  if constexpr (requires { Request::shown_again; }) study.shown_again = Request::shown_again;
   return study;
 }
 

@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "config/criterion.h"
 #include "config/told_quantity.h"
+#include "reports/tuning_report.h"
+#include "verbs/study.h"
 
 namespace softland::verbs {
 namespace {
@@ -17,6 +21,8 @@ struct TuneVerb : Usual, TuneRequest {
                         python = "tuning", returns = "Tuning",
                         leaves = "folder for the page, the waveform kept and all closings (default: softland-tune)",
                         place = "softland-tune";
+  static std::vector<std::string> files() { return {"tune.html", "tune.json"}; }
+  static Outcome shown_again(const nlohmann::json& json);
   static constexpr auto in_python =
       "The tuning is ready for its first shot: the waveform for the drawing is searched, which takes half a minute "
       "or so.";
@@ -34,6 +40,13 @@ struct TuneVerb : Usual, TuneRequest {
       "  softland tune my.toml --by-hand --resume --out device-17\n"
       "  softland tune my.toml --by-hand --wafer device-17 --wafer device-18 --out device-19";
 };
+
+Outcome TuneVerb::shown_again(const nlohmann::json& json) {
+  const auto report = std::make_shared<const TuningReport>(read_tuning(json));
+  return {.json = json_of(*report),
+          .text = terminal_text(tuning_document(*report)),
+          .files = {{"tune.html", [report] { return page_html(tuning_document(*report)); }, "tune.html"}}};
+}
 
 void read_touch(const std::string& option, const std::string& text, std::optional<Criterion>& touch) {
   try {

@@ -19,18 +19,13 @@
 #include "config/told_quantity.h"
 #include "config/units.h"
 #include "exchange/mode_table.h"
-#include "model/constants.h"
-#include "reports/document.h"
 #include "reports/files.h"
 #include "reports/mode_table_report.h"
-#include "reports/quantity.h"
 #include "reports/text.h"
 #include "studies/closing/auto_settings.h"
 
 namespace softland::apps {
 namespace {
-
-using internal::quantity;
 
 struct ModesRequest {
   std::string from, axis, direction, length_unit, mass_unit, mass, clamp, frequencies, plot;
@@ -41,17 +36,10 @@ int frequencies_of_scene(const Common& c) {
   const SceneFile file = load_scene_or_result(c);
   const PreparedScene prepared = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
   static_cast<void>(claim_places(c, {}));
-  nlohmann::json list = nlohmann::json::array();
-  constexpr int digits = 6;
-  ReportTable table{.head = {"mode", "angular frequency", "frequency"}, .rows = {}};
-  for (const double omega : prepared.model.basis().angular_frequencies()) {
-    list.push_back(omega);
-    table.rows.push_back(
-        {std::to_string(list.size()), quantity(omega, "rad/s", digits), quantity(omega / (2 * pi), "Hz", digits)});
-  }
-  const std::string text =
-      terminal_text({.sections = {{.id = "modes", .heading = "Modes", .parts = {table}}}, .warnings = prepared.scene.warnings});
-  print_json_or(c, {{"natural_frequencies_rad_s", list}, {"warnings", prepared.scene.warnings}}, text);
+  const Eigen::VectorXd& omega = prepared.model.basis().angular_frequencies();
+  const ModesRecord record{
+      .origin = origin_of("modes", c.command), .frequencies = {omega.begin(), omega.end()}, .warnings = prepared.scene.warnings};
+  print_json_or(c, json_of(record), text_of(record));
   return exit_done;
 }
 
@@ -102,7 +90,8 @@ int table_of_file(const Common& c, const ModesRequest& r) {
   claim_file("--json", json, {});
   claim_file("--out", c.out, {json});
   claim_file("--plot", r.plot, {json, c.out});
-  std::string text = mode_table_text(table);
+  const ModesRecord record = record_of(table, c.command);
+  std::string text = text_of(record);
   if (!c.out.empty()) {
     write_whole(c.out, mode_table_csv(table));
     text += "\n" +
@@ -114,7 +103,7 @@ int table_of_file(const Common& c, const ModesRequest& r) {
     write_whole(r.plot, mode_table_svg(table));
     text += wrapped(fmt::format("In {}: a picture of the modes", r.plot)) + "\n";
   }
-  print_json_or(c, mode_table_json(table), text);
+  print_json_or(c, json_of(record), text);
   return exit_done;
 }
 
@@ -139,6 +128,11 @@ int modes_verb(const Common& c, const ModesRequest& r) {
 }
 
 }  // namespace
+
+verbs::Outcome modes_shown_again(const nlohmann::json& json) {
+  const ModesRecord record = read_modes(json);
+  return {.json = json_of(record), .text = text_of(record)};
+}
 
 void add_modes(Verb& verb) {
   const auto r = std::make_shared<ModesRequest>();

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -48,7 +47,6 @@ namespace {
 namespace fs = std::filesystem;
 using internal::percent;
 using internal::quantity;
-using nlohmann::json;
 
 // How a winner does on devices of its scene's spread, beside the plain step, in a sentence; empty where nothing varies, or when
 // asked to stop.
@@ -197,9 +195,9 @@ int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, 
     places.folder().write("best.toml", best);
     left += left_in(places.folder().place("best.toml").parent_path(), {"best.toml (of the best that is done)"});
   }
-  const json j = with_origin({{"status", "interrupted"}, {"seeds", seeds_json(seeds)}}, c.command);
-  print_json_or(c, j,
-                terminal_text({.sections = {internal::seeds_section(seeds)}}) + left + "\n" +
+  const SeedsRecord record{.origin = origin_of("optimize", c.command), .seeds = seeds};
+  print_json_or(c, json_of(record),
+                text_of(record) + left + "\n" +
                     wrapped(fmt::format("--resume goes on with the {} that are missing.", study.missing())) + "\n");
   return exit_interrupted;
 }

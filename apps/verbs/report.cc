@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -16,12 +17,13 @@
 #include "apps/scenes.h"
 #include "apps/streams.h"
 #include "apps/verbs/verbs.h"
+#include "base/printable.h"
 #include "base/read_file.h"
 #include "base/require.h"
+#include "base/shortened.h"
 #include "reports/exploration_report.h"
 #include "reports/explored.h"
-#include "reports/report_files.h"
-#include "reports/result_document.h"
+#include "reports/record.h"
 #include "reports/result_reader.h"
 #include "reports/text.h"
 #include "store/study_store.h"
@@ -48,6 +50,8 @@ std::size_t column_named(const ExplorationReport& report, const std::string& nam
   throw InvalidInput(fmt::format("--map {}: is no {} of this exploration: {}", name, is_variable ? "variable" : "figure", there));
 }
 
+std::string folder_of(const std::filesystem::path& file) { return file.has_parent_path() ? file.parent_path().string() : "."; }
+
 // The picture that --map asks for, FIGURE or FIGURE:ACROSS:UP.
 std::string map_of(const ExplorationReport& report, const std::string& words) {
   std::vector<std::string> parts{""};
@@ -67,12 +71,14 @@ std::string map_of(const ExplorationReport& report, const std::string& words) {
   return exploration_map_svg(report, axes[0], axes[1], figure);
 }
 
-int report_exploration(const Common& given, const ReportRequest& request) {
+// `record`: the JSON that named the store; empty where the store is what was named.
+int report_exploration(const Common& given, const ReportRequest& request, const std::filesystem::path& record = {}) {
   const std::filesystem::path path = request.result;
   const StudyReader store(path);
   std::optional<WatchedWork> work(std::in_place, given.quiet, given.stop);
   ExplorationReport report = explored(store, request.pareto);
-  std::vector<std::string> files{"report.html", "exploration.json"};
+  std::vector<std::string> files{"report.html"};
+  if (record.empty()) files.emplace_back("exploration.json");
   std::string map;
   if (!request.map.empty()) {
     map = map_of(report, request.map);
@@ -81,20 +87,24 @@ int report_exploration(const Common& given, const ReportRequest& request) {
   add_front_waveforms(report, store, work->watch());
   work.reset();
   Common c = given;
-  if (c.out.empty()) c.out = (path.parent_path() / path.stem()).string() + "-report";
+  if (c.out.empty()) c.out = record.empty() ? (path.parent_path() / path.stem()).string() + "-report" : folder_of(record);
   ResultFolder folder = *claim_places(c, files);
   const Document document = exploration_document(report);
   folder.write("report.html", page_html(document));
-  folder.write("exploration.json", json_text(exploration_json(report), 2) + "\n");
+  if (record.empty()) {
+    nlohmann::json summary = exploration_json(report);
+    summary["store"] = std::filesystem::proximate(path, folder.path()).string();
+    folder.write("exploration.json", json_text(summary, 2) + "\n");
+  }
   if (!map.empty()) folder.write("map.svg", map);
   folder.publish(false);
   print(terminal_text(document) + left_in(c.out, files));
   return exit_done;
 }
 
-// The JSON of a folder: the result of simulate or optimize, or what a study left there.
+// The JSON that a verb left in a folder.
 std::filesystem::path record_in(const std::filesystem::path& folder) {
-  std::vector<std::string> names{"result.json"};
+  std::vector<std::string> names;
   for (const verbs::Study& study : verbs::all_studies()) {
     std::ranges::copy_if(study.files, std::back_inserter(names), [](const auto& name) { return name.ends_with(".json"); });
   }
@@ -111,7 +121,7 @@ int leave(Common c, const std::filesystem::path& record, std::vector<verbs::Outc
   std::vector<std::string> files;
   for (const auto& file : all) files.push_back(file.name);
   if (files.empty()) return print(text), exit_done;
-  if (c.out.empty()) c.out = record.has_parent_path() ? record.parent_path().string() : ".";
+  if (c.out.empty()) c.out = folder_of(record);
   ResultFolder folder = *claim_places(c, files);
   for (const verbs::Outcome::File& file : all) folder.write(file.name, file.text());
   folder.publish(false);
@@ -119,37 +129,66 @@ int leave(Common c, const std::filesystem::path& record, std::vector<verbs::Outc
   return exit_done;
 }
 
+// The store that the JSON of an exploration names, as seen from the JSON's folder or from the current one.
+std::string store_of(const nlohmann::json& j, const std::filesystem::path& record) {
+  const std::filesystem::path named = internal::JsonReader::read<std::string>(internal::JsonReader(j).at("store"));
+  for (const std::filesystem::path& place : {record.parent_path() / named, named}) {
+    if (!named.empty() && is_store(place.string())) return place.string();
+  }
+  throw InvalidInput(fmt::format("{}: \"store\" must name the store of the exploration, and '{}' is none", record.string(),
+                                 shortened(printable_line(named.string()))));
+}
+
+// The figures of its front, as --pareto names them.
+std::string aims_of(const nlohmann::json& j) {
+  std::string aims;
+  for (const nlohmann::json& one : internal::JsonReader(internal::JsonReader(j).at("pareto")).at("aims")) {
+    const internal::JsonReader aim(one);
+    aims += (aims.empty() ? "" : ",") + std::string(aim.at("better") == "large" ? largest_mark : "") +
+            internal::JsonReader::read<std::string>(aim.at("figure"));
+  }
+  return aims;
+}
+
+std::function<verbs::Outcome(const nlohmann::json&)> reader_of(const std::string& kind) {
+  if (kind == "modes") return modes_shown_again;
+  const auto study = std::ranges::find(verbs::all_studies(), kind, [](const verbs::Study& one) { return one.name; });
+  return study == verbs::all_studies().end() ? nullptr : study->shown_again;
+}
+
 int report_verb(const Common& given, const ReportRequest& request) {
   if (is_store(request.result)) return report_exploration(given, request);
-  require(request.pareto.empty() && request.map.empty(),
-          [&] { return fmt::format("{}: --pareto and --map are for the store of an exploration", request.result); });
   const std::filesystem::path path =
       is_folder(request.result) ? record_in(request.result) : std::filesystem::path(request.result);
   const nlohmann::json j = parse_record(read_file(path), path.string());
-  const auto study = std::ranges::find(verbs::all_studies(), j["kind"], [](const verbs::Study& one) { return one.name; });
-  if (study != verbs::all_studies().end() && study->shown_again) {
+  const std::string kind = j["kind"].get<std::string>();
+  if (kind == "exploration") {
     require_version(j, path.string());
-    const verbs::Outcome found = [&] {
-      try {
-        return study->shown_again(j);
-      } catch (const InvalidInput& error) {
-        throw InvalidInput(fmt::format("{}: {}", path.string(), error.what()));
-      }
-    }();
-    return leave(given, path, found.files, found.text + found.last);
+    const std::string pareto = request.pareto.empty() ? aims_of(j) : request.pareto;
+    return report_exploration(given, {.result = store_of(j, path), .pareto = pareto, .map = request.map}, path);
   }
-  require_reportable(j, path.string());
-  const Result r = read_result(j);
-  std::vector<verbs::Outcome::File> files;
-  for (const ReportFile<Result>& file : files_of(r)) files.push_back({file.name, [&r, text = file.text] { return text(r); }});
-  return leave(given, path, files, terminal_text(result_document(r)));
+  require(request.pareto.empty() && request.map.empty(),
+          [&] { return fmt::format("{}: --pareto and --map are for an exploration", request.result); });
+  const auto shown_again = reader_of(kind);
+  require(shown_again != nullptr, [&] {
+    return fmt::format("{}: is of kind '{}', of which no report is made", path.string(), shortened(printable_line(kind)));
+  });
+  require_version(j, path.string());
+  const verbs::Outcome found = [&] {
+    try {
+      return shown_again(j);
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(fmt::format("{}: {}", path.string(), error.what()));
+    }
+  }();
+  return leave(given, path, found.files, found.text + found.last);
 }
 
 }  // namespace
 
 void add_report(Verb& verb) {
   const auto request = std::make_shared<ReportRequest>();
-  verb.positional("RESULT", request->result, "folder that --out named, or the JSON of any study; or the store of an exploration");
+  verb.positional("RESULT", request->result, "folder that --out named, or the JSON of any verb; or the store of an exploration");
   verb.with_out("folder to write them to (default: beside the result; STORE-report for a store)");
   verb.with_quiet();
   verb.option("--pareto", request->pareto, "FIGURES",

@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -35,8 +34,6 @@
 
 namespace softland::apps {
 namespace {
-
-using nlohmann::json;
 
 constexpr const char* log_file = "closings.jsonl";
 
@@ -72,8 +69,7 @@ class Tuning {
   TuningEnd run(TuningLab& lab, int closings);
   /// The files as they stand.
   void write(TuningEnd end);
-  [[nodiscard]] json told_json(TuningEnd end) const { return session_.json(end, {.command = common_.command}); }
-  [[nodiscard]] TuningReport report(TuningEnd end) const { return session_.report(end); }
+  [[nodiscard]] TuningReport report(TuningEnd end) const { return session_.report(end, common_.command); }
   [[nodiscard]] const ResultFolder& folder() const { return *folder_; }
   [[nodiscard]] const PreparedScene& scene() const { return session_.tuner().scene(); }
 
@@ -116,7 +112,7 @@ TuningEnd Tuning::run(TuningLab& lab, int closings) {
 }
 
 void Tuning::write(TuningEnd end) {
-  for (const auto& [name, content] : session_.files(end, {.command = common_.command})) folder_->write(name, content);
+  for (const auto& [name, content] : session_.files(end, common_.command)) folder_->write(name, content);
   folder_->publish(false);
 }
 
@@ -158,8 +154,8 @@ int run_tune(const Common& c, const verbs::Told& told) {
   }
   tuning.write(end);
   const TuningReport report = tuning.report(end);
-  print_json_or(c, tuning.told_json(end),
-                terminal_text(tuning_document(report, {})) +
+  print_json_or(c, json_of(report),
+                terminal_text(tuning_document(report)) +
                     left_in(tuning.folder().path(), {"tune.html", "tune.json", "best.toml", "best.csv", log_file}));
   if (end == TuningEnd::interrupted) return exit_interrupted;
   return report.lands() ? exit_done : exit_no_success;

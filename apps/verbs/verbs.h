@@ -18,6 +18,9 @@ void add_new(Verb& verb);
 void add_report(Verb& verb);
 void add_read(Verb& verb);
 
+/// What `report` makes of the JSON of `modes`, which verbs/study.h does not list. Throws InvalidInput for other JSON.
+[[nodiscard]] verbs::Outcome modes_shown_again(const nlohmann::json& json);
+
 // Verbs of verbs/study.h that the program runs in its own way.
 [[nodiscard]] int run_optimize(const Common& common, const verbs::Told& told);
 [[nodiscard]] int run_explore(const Common& common, const verbs::Told& told);
@@ -45,7 +48,7 @@ inline constexpr std::array other_verbs{
     VerbRow{"merge", "make one store of the parts of a study", add_merge},
     VerbRow{"slurm", "print the script of a study for a cluster with Slurm", add_slurm},
     VerbRow{"new", "print a commented scene to start from", add_new},
-    VerbRow{"report", "make the report of a result.json again, or the page of an exploration", add_report},
+    VerbRow{"report", "make text, pages and pictures again: of the JSON of a verb, or of an exploration", add_report},
     VerbRow{"read", "what a file of an oscilloscope or another instrument holds", add_read},
 };
 

@@ -28,7 +28,8 @@ class BadInput : public ::testing::Test {
     file("odd.json", R"({"kind": 3})");
     file("bare.json", R"({"kind": "simulate", "version": "0.1.0"})");
     file("damaged.json", R"({"kind": "calibrate", "version": "0.1.0", "command": ""})");
-    file("tuned.json", R"({"kind": "tune", "version": "0.1.0"})");
+    file("tuned.json", R"({"kind": "tuned", "version": "0.1.0"})");
+    file("explored.json", R"({"kind": "exploration", "version": "0.1.0"})");
     file("foreign.json", R"({"kind": "simulate", "version": "9.1"})");
     fs::create_directory(here->path() / "folder");
     fs::create_directory(here->path() / "earlier");
@@ -316,11 +317,12 @@ TEST_F(BadInput, Results) {
       {{"report", "none"}, "none: cannot be read: No such file or directory"},
       {{"report", "folder"}, "folder: holds no result: none of result.json, …"},
       {{"report", "damaged.json"}, "damaged.json: \"devices\" is missing"},
-      {{"report", "tuned.json"}, "tuned.json: is of kind 'tune', of which no report is made"},
+      {{"report", "tuned.json"}, "tuned.json: is of kind 'tuned', of which no report is made"},
+      {{"report", "explored.json"}, "explored.json: \"store\" must name the store of the exploration, and '' is none"},
       {{"report", "odd"}, "odd/result.json: is a folder, it must be a regular file"},
       {{"report", "gold.toml"}, "gold.toml: is not a result of softland"},
       {{"report", "odd.json"}, "odd.json: is not a result of softland"},
-      {{"report", "bare.json"}, "bare.json: \"metrics\" is missing; name the result.json in the folder that --out named"},
+      {{"report", "bare.json"}, "bare.json: \"metrics\" is missing"},
       {{"report", "foreign.json"}, "foreign.json: is a result of softland 9.1, of which softland 0.1.0 makes no report"},
       {{"new", "magnet"},
        "new magnet: must be one of cantilever, cantilever-pzt, clamped-clamped, nem-cantilever, nem-casimir, plate, "

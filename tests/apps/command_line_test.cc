@@ -417,7 +417,7 @@ TEST(Modes, PrintsTheAgreedJson) {
   ASSERT_EQ(o.status, 0);
   EXPECT_EQ(o.err, "");
   const json j = json::parse(o.out);
-  EXPECT_EQ(keys(j), (std::set<std::string>{"natural_frequencies_rad_s", "warnings"}));
+  EXPECT_EQ(keys(j), (std::set<std::string>{"command", "kind", "made_with", "natural_frequencies_rad_s", "version", "warnings"}));
   const std::vector<double> omega = j["natural_frequencies_rad_s"];
   EXPECT_EQ(omega.size(), 6U);
   EXPECT_TRUE(std::is_sorted(omega.begin(), omega.end()));

@@ -128,6 +128,9 @@ TEST_F(Seeds, ThatAreInterruptedTellWhatIsDoneAndGoOn) {
   EXPECT_EQ(j["seeds"]["planned"], 400);
   const std::size_t there = rows_of(store).size();
   EXPECT_EQ(j["seeds"]["searches"].size(), there);
+  const std::string again = here.run({"report", "out.json"}).out;
+  EXPECT_THAT(again, HasSubstr("of 400 searches are done"));
+  EXPECT_TRUE(o.out.starts_with(again)) << o.out << again;
   EXPECT_TRUE(fs::exists(at("out/unfinished/best.toml")));
   EXPECT_FALSE(fs::exists(at("out/result.json")));
 }

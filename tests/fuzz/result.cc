@@ -1,19 +1,12 @@
-#include "reports/accuracy_report.h"
-#include "reports/check_report.h"
-#include "reports/effects_report.h"
-#include "reports/fit_report.h"
-#include "reports/limit_report.h"
-#include "reports/measurement_report.h"
-#include "reports/pull_in_report.h"
-#include "reports/release_report.h"
+#include "reports/mode_table_report.h"
 #include "reports/result_document.h"
 #include "reports/result_reader.h"
-#include "reports/robustness_report.h"
 #include "reports/svg.h"
 #include "reports/text.h"
 #include "tests/fuzz/scene_checks.h"
 #include "tests/fuzz/targets.h"
 #include "tests/reports/xml.h"
+#include "verbs/study.h"
 
 namespace softland::fuzz {
 namespace {
@@ -26,25 +19,12 @@ std::size_t scripts(std::string_view page) {
   return count;
 }
 
-// The text of a record of a study.
-template <class Record>
-std::string told(const Record& record) {
-  if constexpr (requires { text_of(record); })
-    return text_of(record);
-  else
-    return terminal_text(document_of(record));
-}
-
+// The text that `report` makes.
 std::string told(const std::string& kind, const json& read) {
-  if (kind == "check") return told(read_check(read));
-  if (kind == "pull-in") return told(read_pull_ins(read));
-  if (kind == "effects") return told(read_effects(read));
-  if (kind == "accuracy") return told(read_accuracy(read));
-  if (kind == "limit") return told(read_limit(read));
-  if (kind == "release") return told(read_release(read));
-  if (kind == "robustness") return told(read_robustness(read));
-  if (kind == "fit") return told(read_fit(read));
-  if (kind == "calibrate") return told(read_measurements(read));
+  if (kind == "modes") return text_of(read_modes(read));
+  for (const verbs::Study& study : verbs::all_studies()) {
+    if (kind == study.name && study.shown_again) return study.shown_again(read).text;
+  }
   return "of no study";
 }
 

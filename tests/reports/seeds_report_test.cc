@@ -55,13 +55,16 @@ TEST(SeedsReport, TellsTheSpreadAndWhatFails) {
   EXPECT_EQ(internal::seeds_caption(seeds),
             "4 of 5 searches are done. The best is that of seed 1, with cost 0.1. Cost: median 0.25, quartiles 0.175 and 0.325, "
             "from 0.1 to 0.4. 2 of 4 fail: 3 (goal not met), 4 (no better than the plain step).");
-  const nlohmann::json j = seeds_json(seeds);
+  const SeedsRecord record{.origin = origin_of("optimize", ""), .seeds = seeds};
+  const nlohmann::json j = json_of(record)["seeds"];
+  EXPECT_EQ(text_of(read_seeds(json_of(record))), text_of(record));
+  EXPECT_EQ(json_of(read_seeds(json_of(record))), json_of(record));
   EXPECT_EQ(j["best_seed"], 1);
   EXPECT_EQ(j["goal_met"], 2);
   EXPECT_DOUBLE_EQ(j["cost"]["upper_quartile"].get<double>(), 0.325);
   // One that found nothing is worse than all.
   seeds.searches[2].cost = Metrics::unset;
-  EXPECT_TRUE(seeds_json(seeds)["cost"]["most"].is_null());
+  EXPECT_TRUE(json_of(SeedsRecord{.origin = {}, .seeds = seeds})["seeds"]["cost"]["most"].is_null());
   EXPECT_EQ(internal::seeds_caption(ResultSeeds{.planned = 3}), "None of 3 searches is done.");
 }
 
@@ -71,7 +74,7 @@ TEST(SeedsReport, OfAResultIsReadBackAndStandsInEveryReport) {
   result.seeds = ResultSeeds{.planned = 2, .searches = {search(1, 0.1), search(2, 0.2)}, .best = 1};
   const Result again = read_result(result_json(result));
   ASSERT_TRUE(again.seeds);
-  EXPECT_EQ(seeds_json(*again.seeds), seeds_json(*result.seeds));
+  EXPECT_EQ(result_json(again)["seeds"], result_json(result)["seeds"]);
   EXPECT_EQ(again.seeds->best, 1U);
   EXPECT_NE(page_html(result_document(again)).find("Searches from other seeds"), std::string::npos);
   EXPECT_NE(terminal_text(result_document(again)).find("\n2     goal met, confirmed"), std::string::npos)
