@@ -59,6 +59,10 @@ bool settles(const FigureValues& figures) {
 
 bool ends_at_touch(const FigureValues& figures) { return touches(figures) && !std::isfinite(figures[&Metrics::bounce_count]); }
 
+bool touches_in_part(const ResultRun& run) {
+  return run.figures && run.status == "not_settled" && ends_at_touch(*run.figures);
+}
+
 bool began_closed(const ResultRun& run) {
   if (!run.figures || touches(*run.figures)) return false;
   return run.status == "not_settled" || (run.status == "done" && std::isfinite((*run.figures)[&Metrics::open_settling_time]));
@@ -119,6 +123,10 @@ std::string closing_clause(const Actor& actor, const ResultRun& run, double wind
     return fmt::format("{} does not close{}{}", actor.subject, actor.object.empty() ? "" : " " + actor.object,
                        end.empty() ? "" : " within " + end);
   }
+  if (touches_in_part(run)) {
+    return fmt::format("{} first touches at {} with {}; the connection is never closed{}", actor.subject, first_touch(figures),
+                       impact_speed(figures), end.empty() ? "" : " within " + end);
+  }
   if (ends_at_touch(figures)) {
     return fmt::format("{} reaches the contact plane at {} with {}; without a [contact] section the run ends there",
                        actor.subject, first_touch(figures), impact_speed(figures));
@@ -148,6 +156,8 @@ std::string landing_clause(const std::string& subject, const ResultRun& run) {
     const double least = closest(run.curve);
     return subject + " never touches" + (std::isfinite(least) ? " (no nearer than " + quantity(least, "m") + ")" : "");
   }
+  if (touches_in_part(run))
+    return fmt::format("{} touches with {}, and never closes the connection", subject, impact_speed(figures));
   if (ends_at_touch(figures))
     return fmt::format("{} first touches at {} with {}", subject, first_touch(figures), impact_speed(figures));
   const double height = rebound_height(figures);

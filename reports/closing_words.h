@@ -13,6 +13,8 @@ namespace softland::internal {
 [[nodiscard]] bool settles(const FigureValues& figures);
 /// Touched, and nothing is known of what followed: the scene has no contact, or the run stopped.
 [[nodiscard]] bool ends_at_touch(const FigureValues& figures);
+/// Whether one contact of several has touched, and those that make the connection were never closed together.
+[[nodiscard]] bool touches_in_part(const ResultRun& run);
 /// Tells whether a run began closed: it came to its end, and no touch is its own.
 [[nodiscard]] bool began_closed(const ResultRun& run);
 /// Touched and settled without a significant rebound.

@@ -213,6 +213,24 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   if (!p.start_equilibrium() && (p.scene.begins_closed || p.model.rest()))
     warnings.push_back("a run does not begin: " + start_words(p));
   if (!p.model.has_contact()) add("contact", "none: a run ends at first touch");
+  if (p.model.contacts() > 1) {
+    std::vector<std::string> connecting;
+    for (std::size_t c = 0; c < p.model.contacts(); ++c) {
+      const Contact& contact = p.scene.device.contacts[c];
+      const std::string place = p.scene.device.structure.is_rigid()
+                                    ? std::string()
+                                    : "at " + given_quantity(p.scene.device.contact_position(c), "m", 4) + ", ";
+      add("contact " + contact.name,
+          fmt::format("{}gap {}, {}{}{}", place, given_quantity(p.model.contact_gap(c), "m", 4), name_of(contact.model),
+                      contact.count > 1 ? fmt::format(", {} of them", contact.count) : "",
+                      contact.side == Side::far ? ", a back stop" : ""));
+      if (contact.connects) connecting.push_back(contact.name);
+    }
+    add("connection", fmt::format("closed while {} {} closed; static figures are those of {}",
+                                  fmt::join(connecting, p.scene.device.connection == Connection::all ? " and " : " or "),
+                                  connecting.size() > 1 && p.scene.device.connection == Connection::all ? "are" : "is",
+                                  p.scene.device.contacts.front().name));
+  }
   add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
   if (p.model.has_contact()) {
     record.stable_path = stable_path_of(p, watch);

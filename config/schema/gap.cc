@@ -12,6 +12,7 @@ using OfGap = Of<gap>;
 void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
   const Gap& gap = scene.device.gap;
   if (in.file().is_named(*find_section("contact"))) {
+    static_cast<void>(in.file().names_in("contact"));  // refuses [contact] beside [contact.NAME]
     in.require(!in.is_given("contact"), "contact", "belongs to one [contact]: every [contact.NAME] has a gap of its own");
     return;
   }

@@ -13,6 +13,7 @@
 #include "model/closing.h"
 #include "model/pull_in.h"
 #include "objectives/metrics.h"
+#include "tests/model/expect_refused.h"
 #include "tests/support/devices.h"
 
 namespace softland {
@@ -217,6 +218,87 @@ TEST(SeveralContacts, ABackStopCatchesAPlateThatIsLetGo) {
   expect_near(stop.end - stop.begin, 6.954392757572174e-07, 1e-7, "time on the back stop");
   expect_near(run.contacts[1].deepest_penetration, 2.0718951770174487e-07, 1e-7, "depth there");
   expect_near(each.contacts[0]->touches[1].begin, 1.1230335369107874e-05, 1e-7, "time of the return");
+}
+
+// Two contacts and a back stop, all in touch or within reach, two of them damped.
+Device three_contacts() {
+  Device device = cantilever(
+      {spring("tip", 247.5_um, 2_um, 2000), spring("inner", 175_um, 1.1_um, 3000), spring("stop", 200_um, 0.2_um, 1500)}, 4);
+  std::get<LinearSpring>(device.contacts[0].model).damping = 0.3;
+  std::get<LinearSpring>(device.contacts[2].model).damping = 0.7;
+  device.contacts[2].side = Side::far;
+  device.contacts[2].connects = false;
+  return device;
+}
+
+TEST(SeveralContacts, ForcesHaveTheirPotentialAndDerivatives) {
+  const Switch model(three_contacts());
+  Switch::Workspace work = model.workspace();
+  const std::vector<double> volts{12};
+  const Eigen::Index n = model.modes();
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
+  int touching = 0;
+  for (const double place : {1.7e-6, 2.02e-6, -0.4e-6}) {
+    // A shape that does not bring all contacts down together.
+    Eigen::VectorXd q = Eigen::VectorXd::Unit(n, 0) * (place / model.contact_shape()[0]);
+    q[1] = 0.01 * q[0];
+    Eigen::VectorXd v(n), force(n), damped(n);
+    for (Eigen::Index i = 0; i < n; ++i) v[i] = 1e-7 * static_cast<double>(i + 1);
+    for (std::size_t c = 0; c < 3; ++c) touching += model.contact_deflection(q.data(), c) > model.contact_gap(c);
+    model.accelerations(q.data(), still.data(), volts, true, work, force.data());
+    Eigen::MatrixXd by_q(n, n), by_v(n, n);
+    model.accelerations(q.data(), v.data(), volts, true, work, damped.data());
+    model.jacobian(q.data(), v.data(), volts, true, work, by_q, by_v);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double h = 1e-5 * q.cwiseAbs().maxCoeff(), dv = 1e-5 * v.cwiseAbs().maxCoeff();
+      const auto moved = [&](double by) { return (q + by * Eigen::VectorXd::Unit(n, i)).eval(); };
+      const double slope =
+          (model.potential(moved(h).data(), volts, true, work) - model.potential(moved(-h).data(), volts, true, work)) / (2 * h);
+      EXPECT_NEAR(force[i], -slope, 1e-6 * force.cwiseAbs().maxCoeff()) << place << " " << i;
+      Eigen::VectorXd more(n), less(n);
+      model.accelerations(moved(h).data(), v.data(), volts, true, work, more.data());
+      model.accelerations(moved(-h).data(), v.data(), volts, true, work, less.data());
+      EXPECT_LT(((more - less) / (2 * h) - by_q.col(i)).cwiseAbs().maxCoeff(), 1e-6 * by_q.cwiseAbs().maxCoeff()) << place;
+      const Eigen::VectorXd faster = v + dv * Eigen::VectorXd::Unit(n, i), slower = v - dv * Eigen::VectorXd::Unit(n, i);
+      model.accelerations(q.data(), faster.data(), volts, true, work, more.data());
+      model.accelerations(q.data(), slower.data(), volts, true, work, less.data());
+      EXPECT_LT(((more - less) / (2 * dv) - by_v.col(i)).cwiseAbs().maxCoeff(),
+                1e-6 * by_v.cwiseAbs().maxCoeff() + 1e-9 * model.basis().angular_frequencies()[0])
+          << place;
+    }
+  }
+  EXPECT_GE(touching, 3) << "each contact acts in one of the places";
+}
+
+TEST(SeveralContacts, EnergiesBalanceWithDamping) {
+  Device device = three_contacts();
+  ObservedRun run(device, 20, 200e-6);
+  ASSERT_EQ(run.end.status, Status::done) << run.end.message;
+  EXPECT_GE(run.each.contacts[0]->touches.size(), 1u);
+  EXPECT_GT(run.each.contacts[1]->touches.size(), 1u);
+  EXPECT_GT(run.end.energy.dissipated, 1e-3 * run.model.bending_energy());
+  EXPECT_LT(run.end.energy_error, 1e-5 * run.model.bending_energy());
+}
+
+TEST(SeveralContacts, RefusesWhatCannotStandTogether) {
+  const auto refused = [](auto change, const std::string& message) {
+    Device device = three_contacts();
+    change(device);
+    test::expect_refused([&] { validate(device); }, message);
+  };
+  refused(
+      [](Device& d) {
+        d.contacts[1].at = d.contacts[0].at;
+        d.contacts[1].gap = d.gap.contact;
+      },
+      "contact.inner: stands at the place of contact.tip, with the same gap: one contact with count = 2 says the same");
+  refused([](Device& d) { std::swap(d.contacts[1], d.contacts[2]); }, "contact.inner: the contacts of the near side come first");
+  refused([](Device& d) { std::swap(d.contacts[0], d.contacts[2]); },
+          "contact.stop: a back stop closes nothing: a contact of side = \"near\" is missing");
+  refused([](Device& d) { d.contacts[1].gap = 3.6_um; }, "contact.inner.gap = 3.6 um: must be below gap.electrode = 3.5 um");
+  refused([](Device& d) { d.contacts[2].at = Place(251_um); },
+          "contact.stop.at = 251 um: must lie on the beam, whose length is 250 um");
+  refused([](Device& d) { d.contacts[1].count = 1.5; }, "contact.inner.count = 1.5: must be a whole number from 1 on");
 }
 
 }  // namespace

@@ -1,0 +1,116 @@
+// Scenes with several contacts: what they are read as, and what is refused.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "config/scene.h"
+#include "tests/config/message.h"
+#include "tests/config/small_scene.h"
+
+namespace softland {
+namespace {
+
+const std::string one_contact = "[contact]\nmodel = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"\n";
+
+std::string section(const std::string& name, const std::string& keys) {
+  return "[contact." + name + "]\nmodel = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"\n" + keys + "\n";
+}
+
+/// The small scene with these sections instead of its contact.
+std::string with(const std::string& contacts, const std::string& more = "") {
+  return edited(edited(small_scene, "contact = \"2 um\"\n", ""), one_contact, contacts) + more;
+}
+
+const std::string left = section("left", "gap = \"2 um\""), right = section("right", "gap = \"2.1 um\"\ncount = 2"),
+                  inner = section("inner", "gap = \"1.2 um\"\nat = \"70 %\""),
+                  stop = section("a_stop", "gap = \"0.5 um\"\nat = \"200 um\"\nside = \"far\"");
+
+TEST(Contacts, HaveAPlaceAGapAndASide) {
+  const Device d = read_scene(SceneFile::parse(with(inner + stop + right + left), "x.toml")).device;
+  ASSERT_EQ(d.contacts.size(), 4u);
+  // The outermost comes first, of two at one place the nearer one; back stops come last.
+  const std::vector<std::string> names{"left", "right", "inner", "a_stop"};
+  const std::vector<double> places{247.5e-6, 247.5e-6, 175e-6, 200e-6}, gaps{2e-6, 2.1e-6, 1.2e-6, 0.5e-6};
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    EXPECT_EQ(d.contacts[c].name, names[c]);
+    EXPECT_DOUBLE_EQ(d.contact_position(c), places[c]) << names[c];
+    EXPECT_DOUBLE_EQ(d.contact_gap(c), gaps[c]) << names[c];
+    EXPECT_EQ(d.contacts[c].side, c == 3 ? Side::far : Side::near);
+    EXPECT_EQ(d.contacts[c].connects, c != 3);
+    EXPECT_EQ(d.contacts[c].count, c == 1 ? 2 : 1);
+  }
+  EXPECT_EQ(d.connection, Connection::all);
+}
+
+TEST(Contacts, ThatMakeTheConnectionAreNamed) {
+  const auto read = [](const std::string& closed) {
+    return read_scene(SceneFile::parse(with(left + inner + stop, "[metrics]\nclosed = " + closed), "x.toml")).device;
+  };
+  EXPECT_EQ(read("\"any\"").connection, Connection::any);
+  const Device d = read("[\"inner\"]");
+  EXPECT_EQ(d.contacts[0].name, "inner") << "what makes the connection comes first";
+  EXPECT_EQ(d.gap.contact, 1.2e-6);
+  EXPECT_TRUE(d.contacts[0].connects);
+  EXPECT_FALSE(d.contacts[1].connects);
+}
+
+TEST(Contacts, MayDifferFromDeviceToDevice) {
+  const Scene scene = read_scene(SceneFile::parse(
+      with(left + inner,
+           "[spread]\n\"contact.left.gap\" = { distribution = \"normal\", cov = \"2 %\" }\n\"contact.inner.gap\" = { "
+           "distribution = \"normal\", cov = \"2 %\" }\n\"contact.inner.at\" = { distribution = \"normal\", cov = "
+           "\"1 %\" }\n"),
+      "x.toml"));
+  Scene changed = scene;
+  ASSERT_EQ(scene.spread.variables.size(), 3u);
+  for (const auto& variable : scene.spread.variables) variable.keys.front().member(changed) *= 1.5;
+  EXPECT_DOUBLE_EQ(changed.device.contact_gap(0), 3e-6);
+  EXPECT_DOUBLE_EQ(changed.device.contact_gap(1), 1.8e-6);
+  EXPECT_DOUBLE_EQ(changed.device.contact_position(1), 1.05 * 250e-6);
+}
+
+TEST(Contacts, AreWrittenAsTheyWereRead) {
+  const SceneFile file = SceneFile::parse(with(left + inner + stop, "[metrics]\nclosed = [\"left\"]\n"), "x.toml");
+  const std::string text = file.text();
+  const SceneFile again = SceneFile::parse(text, "x.toml");
+  EXPECT_EQ(again.text(), text);
+  EXPECT_EQ(read_scene(again).device.contacts.size(), 3u);
+  EXPECT_EQ(read_scene(again).device.contacts[1].name, "inner");
+}
+
+TEST(Contacts, RefuseWhatContradictsItself) {
+  EXPECT_EQ(softland::message(with(left + inner + stop)), "");
+  EXPECT_EQ(
+      softland::message(edited(small_scene, one_contact, one_contact + inner)),
+      "x.toml:18: contact.model = \"linear\": [contact] is the only one of its kind: it cannot stand beside [contact.NAME]");
+  EXPECT_EQ(softland::message(edited(small_scene, one_contact, left + inner)),
+            "x.toml:11: gap.contact = \"2 um\": belongs to one [contact]: every [contact.NAME] has a gap of its own");
+  EXPECT_EQ(softland::message(edited(small_scene, "contact = \"2 um\"\n", "")),
+            "x.toml:9: [gap]: missing key 'contact' (a length such as \"2 um\")");
+  EXPECT_EQ(softland::message(with(left + section("right", "gap = \"2 um\""))),
+            "x.toml:21: [contact.right]: stands at the place of contact.left, with the same gap: one contact with count = 2 says "
+            "the same");
+  EXPECT_EQ(softland::message(with(left + section("right", "count = 2"))),
+            "x.toml:21: [contact.right]: missing key 'gap' (a length such as \"2 um\")");
+  EXPECT_EQ(softland::message(with(left + section("right", "gap = \"2.1 um\"\ncount = 2.5"))),
+            "x.toml:26: contact.right.count = 2.5: must be a whole number");
+  EXPECT_EQ(softland::message(with(left + section("right", "gap = \"1 um\"\nat = \"251 um\""))),
+            "x.toml:26: contact.right.at = \"251 um\": must lie on the beam: structure.length = \"250 um\"");
+  EXPECT_EQ(softland::message(with(left + section("right", "gap = \"3.5 um\""))),
+            "x.toml:25: contact.right.gap = \"3.5 um\": must be less than 0.99 times gap.electrode = \"3.5 um\"");
+  EXPECT_EQ(softland::message(with(section("stop", "gap = \"1 um\"\nside = \"far\""))),
+            "x.toml:16: [contact.stop]: a back stop closes nothing: a contact of side = \"near\" is missing");
+  EXPECT_EQ(softland::message(edited(small_scene, one_contact, one_contact + "gap = \"1 um\"\n")),
+            "x.toml:21: contact.gap = \"1 um\": belongs to one of several, [contact.NAME]; the plane of [contact] is at "
+            "gap.contact");
+  EXPECT_EQ(softland::message(with(left + inner, "[metrics]\nclosed = [\"outer\"]\n")),
+            "x.toml:47: metrics.closed = [\"outer\"]: there is no [contact.outer] (known: inner, left)");
+  EXPECT_EQ(softland::message(with(left + stop, "[metrics]\nclosed = [\"a_stop\"]\n")),
+            "x.toml:48: metrics.closed = [\"a_stop\"]: [contact.a_stop] is a back stop: it makes no connection");
+  EXPECT_EQ(softland::message(std::string(small_scene) + "[metrics]\nclosed = \"all\"\n"),
+            "x.toml:41: metrics.closed = \"all\": says which of several contacts make the connection: the scene has none such");
+}
+
+}  // namespace
+}  // namespace softland
