@@ -59,9 +59,7 @@ bool settles(const FigureValues& figures) {
 
 bool ends_at_touch(const FigureValues& figures) { return touches(figures) && !std::isfinite(figures[&Metrics::bounce_count]); }
 
-bool touches_in_part(const ResultRun& run) {
-  return run.figures && run.status == "not_settled" && ends_at_touch(*run.figures);
-}
+bool touches_in_part(const ResultRun& run) { return run.figures && run.status == "not_settled" && ends_at_touch(*run.figures); }
 
 bool began_closed(const ResultRun& run) {
   if (!run.figures || touches(*run.figures)) return false;

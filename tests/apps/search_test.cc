@@ -280,7 +280,7 @@ TEST_F(Search, PrintsItsResultAsJsonAndNothingElse) {
                                                   "made_with"}));
   EXPECT_EQ(keys(printed["best"]),
             (std::set<std::string>{"bounds", "collapse_time_s", "cost", "metrics", "parameters", "waveforms"}));
-  EXPECT_EQ(keys(printed["baseline"]), (std::set<std::string>{"collapse_time_s", "cost", "errors", "metrics"}));
+  EXPECT_EQ(keys(printed["baseline"]), (std::set<std::string>{"collapse_time_s", "cost", "errors", "metrics", "waveforms"}));
   for (const char* key : {"metrics", "errors", "best", "scene", "checks"}) EXPECT_EQ(printed[key], whole[key]) << key;
 }
 

@@ -301,7 +301,8 @@ TEST(Scene, AsperitiesArrive) {
 
 TEST(Scene, EveryContactLawArrives) {
   const auto contact = [](const std::string& keys) {
-    return read(edited(small_scene, "model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"", keys)).device.contacts.front();
+    return read(edited(small_scene, "model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"", keys))
+        .device.contacts.front();
   };
   const std::string summits =
       "pad_length = \"5 um\"\nasperity_radius = \"100 nm\"\nasperity_density = \"1e11 1/m^2\"\neffective_modulus = \"48 GPa\"\n";

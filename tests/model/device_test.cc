@@ -138,8 +138,9 @@ TEST(Device, NamesWhatIsWrongWithIt) {
                  "contact.stiffness = 0 N/m: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.contacts.front().model = GaussianAsperities{.summits = Summits::example()}; },
                  "contact.asperity_deviation = 0 m: must be greater than 0 and below 1e30");
-  expect_message([](Device& d) { d.contacts.front().model = AdhesiveAsperities{.summits = Summits::example(), .height = 100_nm}; },
-                 "contact.adhesion_energy = 0 J/m^2: must be greater than 0 and below 1e30");
+  expect_message(
+      [](Device& d) { d.contacts.front().model = AdhesiveAsperities{.summits = Summits::example(), .height = 100_nm}; },
+      "contact.adhesion_energy = 0 J/m^2: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.contacts.front().model = PlasticAsperities{.summits = Summits::example(), .height = 100_nm}; },
                  "contact.hardness = 0 Pa: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.contacts.front().model = HystereticSpring{.stiffness = 100, .unloading_stiffness = 50}; },
@@ -219,10 +220,10 @@ TEST(Device, NamesWhatIsWrongWithAPlate) {
       "contact.model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests");
   for (const double e : {-0.1, 1.0, std::nan("")}) {
     expect([e](Device& d) { d.contacts = {Contact{.model = RigidStop{.restitution = e}}}; }, "contact.restitution = " +
-                                                                                              std::string(e < 0    ? "-0.1"
-                                                                                                          : e == 1 ? "1"
-                                                                                                                   : "nan") +
-                                                                                              ": must be in [0, 1)");
+                                                                                                 std::string(e < 0    ? "-0.1"
+                                                                                                             : e == 1 ? "1"
+                                                                                                                      : "nan") +
+                                                                                                 ": must be in [0, 1)");
   }
 }
 

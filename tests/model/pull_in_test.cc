@@ -289,10 +289,11 @@ TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishesForEveryContact_optimize
     const Switch model(d);
     const double release = release_voltage(model, 0);
     const auto closed = [&](double volts) { return closed_equilibrium(model, std::vector<double>{volts}); };
-    const std::string name = std::holds_alternative<LinearSpring>(d.contacts.front().model)
-                                 ? fmt::format("linear, {} N/m", std::get<LinearSpring>(d.contacts.front().model).stiffness)
-                                 : fmt::format("asperities, {} 1/m^2, {} m", number_of(d.contacts.front().model, "asperity_density", 0),
-                                               number_of(d.contacts.front().model, "asperity_height", 0));
+    const std::string name =
+        std::holds_alternative<LinearSpring>(d.contacts.front().model)
+            ? fmt::format("linear, {} N/m", std::get<LinearSpring>(d.contacts.front().model).stiffness)
+            : fmt::format("asperities, {} 1/m^2, {} m", number_of(d.contacts.front().model, "asperity_density", 0),
+                          number_of(d.contacts.front().model, "asperity_height", 0));
     if (std::isnan(release)) {  // too soft to keep the beam off the electrode at any voltage
       ++never;
       for (double volts = 1; volts < 40; volts *= 1.05) EXPECT_FALSE(closed(volts)) << name << ", " << volts << " V";

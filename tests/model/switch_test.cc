@@ -319,7 +319,8 @@ TEST(Switch, DissipatedPowerIsWhatTheVelocityDependentForcesTakeOut) {
     if (in_contact) power += device.contact_dissipation(s.q.data(), s.v.data());
     EXPECT_NEAR(power, -s.v.dot(moving - still), rounding * (std::abs(power) + s.v.norm() * still.norm())) << c.name;
     EXPECT_GE(power, 0) << c.name;
-    EXPECT_EQ(device.damped(), c.device.gas || c.device.structure.damping_ratio > 0 || test::damping(c.device.contacts.front()) > 0)
+    EXPECT_EQ(device.damped(),
+              c.device.gas || c.device.structure.damping_ratio > 0 || test::damping(c.device.contacts.front()) > 0)
         << c.name;
     if (!c.device.gas && c.device.structure.damping_ratio == 0 && !(in_contact && test::damping(c.device.contacts.front()) > 0)) {
       EXPECT_EQ(power, 0) << c.name;

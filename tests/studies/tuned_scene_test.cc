@@ -29,7 +29,8 @@ TEST(TunedScenes, TheOriginIsTheNominalDevice) {
   EXPECT_DOUBLE_EQ(own.structure.thickness, nominal.structure.thickness);
   EXPECT_DOUBLE_EQ(own.gap.contact, nominal.gap.contact);
   constexpr double median_of_lognormal = 0.006;  // below its mean, of a deviation of 10 %
-  EXPECT_NEAR(number_of(own.contacts.front().model, "effective_modulus", 0) / number_of(nominal.contacts.front().model, "effective_modulus", 0),
+  EXPECT_NEAR(number_of(own.contacts.front().model, "effective_modulus", 0) /
+                  number_of(nominal.contacts.front().model, "effective_modulus", 0),
               1, median_of_lognormal);
 }
 

@@ -27,9 +27,10 @@ namespace softland::test {
       .gap = {.electrode = 3.5_um, .contact = 2_um},
       .electrodes = {{.name = "main", .begin = 60_um, .end = 240_um, .fringing = Fringing::meijs_fokkema}},
       .gas = StripGas{.film = {.viscosity = 1.86e-5_Pa_s}},
-      .contacts = {Contact{.model = UniformAsperities{.summits = {.radius = 100_nm, .density = 1e11_per_m2, .effective_modulus = 48_GPa},
-                                             .height = 100_nm},
-                  .pad_length = 5_um}},
+      .contacts = {Contact{
+          .model = UniformAsperities{.summits = {.radius = 100_nm, .density = 1e11_per_m2, .effective_modulus = 48_GPa},
+                                     .height = 100_nm},
+          .pad_length = 5_um}},
   };
 }
 
@@ -38,7 +39,9 @@ namespace softland::test {
   return {.model = model, .pad_length = gold_cantilever().contacts.front().pad_length};
 }
 /// The summits of a contact of the law asperity-uniform.
-[[nodiscard]] inline UniformAsperities& rough(Device& device) { return std::get<UniformAsperities>(device.contacts.front().model); }
+[[nodiscard]] inline UniformAsperities& rough(Device& device) {
+  return std::get<UniformAsperities>(device.contacts.front().model);
+}
 
 /// The gas of that device, under the law strip.
 [[nodiscard]] inline FilmState& film(Device& device) { return std::get<StripGas>(*device.gas).film; }
@@ -163,9 +166,10 @@ template <class Law>
                     .kind = Cantilever{{.youngs_modulus = 220_GPa, .density = 5400_kg_m3}}},
       .gap = {.electrode = 20_nm, .contact = 15_nm},
       .electrodes = {{.name = "main", .begin = 0, .end = 300_nm, .fringing = Fringing::meijs_fokkema}},
-      .contacts = {Contact{.model = UniformAsperities{.summits = {.radius = 10_nm, .density = 4e15_per_m2, .effective_modulus = 120_GPa},
-                                             .height = 2_nm},
-                  .pad_length = 30_nm}},
+      .contacts = {Contact{
+          .model = UniformAsperities{.summits = {.radius = 10_nm, .density = 4e15_per_m2, .effective_modulus = 120_GPa},
+                                     .height = 2_nm},
+          .pad_length = 30_nm}},
       .dispersion = Dispersion{.model = DispersionModel::automatic, .hamaker_constant = 4e-19, .equilibrium_distance = 0.3_nm},
   };
 }
@@ -181,9 +185,10 @@ template <class Law>
                     .damping_ratio = 0.01,
                     .kind = Cantilever{{.youngs_modulus = 78_GPa, .density = 19300_kg_m3}}},
       .gap = {.electrode = 50_nm, .contact = 30_nm},
-      .contacts = {Contact{.model = UniformAsperities{.summits = {.radius = 20_nm, .density = 1e14_per_m2, .effective_modulus = 48_GPa},
-                                             .height = 4_nm},
-                  .pad_length = 200_nm}},
+      .contacts = {Contact{
+          .model = UniformAsperities{.summits = {.radius = 20_nm, .density = 1e14_per_m2, .effective_modulus = 48_GPa},
+                                     .height = 4_nm},
+          .pad_length = 200_nm}},
       .dispersion = Dispersion{.model = DispersionModel::casimir, .conductor = Conductor::gold},
   };
 }
