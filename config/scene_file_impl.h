@@ -79,7 +79,7 @@ struct SceneFile::Impl {
   [[nodiscard]] toml::array with_element(const std::vector<std::string>& path, std::size_t element, const toml::node& value,
                                          const std::string& option) const;
   [[nodiscard]] std::vector<std::string> names_in(const std::string& section) const;
-  /// Whether the keys of a section stand in [section.NAME] here.
+  /// True where the keys of a section stand in [section.NAME] in this file.
   [[nodiscard]] bool is_named(const internal::Section& section) const;
 
   /// Puts a value at this path, which comes from `place`, and makes the sections on the way. A value that can be given in one of

@@ -42,7 +42,7 @@ class SectionReader {
   [[nodiscard]] int integer(std::string_view key) const;
   /// Whether a word stands where a number could.
   [[nodiscard]] bool is_word(std::string_view key) const;
-  /// Whether a list stands there.
+  /// True where the key has a list.
   [[nodiscard]] bool is_list(std::string_view key) const { return is_given(key) && table_->get(key)->is_array(); }
   /// Whether a list of lists stands there.
   [[nodiscard]] bool is_nested(std::string_view key) const;

@@ -242,7 +242,7 @@ class Run {
     }
   }
 
-  // What the contacts did; of several what their connection did, too.
+  // Takes over what the contacts did. Where there are several, it tells of their connection too.
   void gather_contacts() {
     const bool needs_all = model_.device().connection == Connection::all;
     bool is_first = true;

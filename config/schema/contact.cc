@@ -65,7 +65,7 @@ void check_pad_length(const Device& d, const Contact& c, const SectionReader& in
   in.require(c.pad_length < d.structure.length, "pad_length", "must be less than " + in.written_length(d.structure));
 }
 
-/// What only one of several contacts has.
+/// Checks the name and the gap, which only one of several contacts has.
 void check_named(const Device& d, std::size_t k, const SectionReader& in) {
   const Contact& c = d.contacts[k];
   constexpr std::size_t longest = 64;

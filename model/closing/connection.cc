@@ -26,7 +26,7 @@ void ConnectionCourse::Followed::touch(const Touch& touch) {
   if (connects_) connection_.take(touch);
 }
 
-// On the knots as they are; between them on the quintic, the force on a line.
+// Knots are given as they are. Between them the place is that of the quintic, and the force goes on a line.
 TrajectoryPoint ConnectionCourse::Followed::at(double time) const {
   const TrajectoryPoint* from = &*last;
   for (const TrajectoryPoint& to : fresh) {
@@ -98,7 +98,7 @@ void ConnectionCourse::follow_to(double time) {
 }
 
 void ConnectionCourse::tell(double time) {
-  constexpr double on_the_plane = 1e-12;  // of the gap
+  constexpr double on_the_plane = 1e-12;  // relative to the gap
   const Followed& decisive = followed_[deciding_];
   TrajectoryPoint point = decisive.at(time);
   const double separation = decisive.gap() - point.position;

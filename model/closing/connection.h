@@ -47,7 +47,7 @@ class ConnectionCourse {
     [[nodiscard]] double separation(double time) const { return gap_ - at(time).position; }
     [[nodiscard]] double gap() const { return gap_; }
 
-    std::optional<TrajectoryPoint> last;  ///< that the connection has been followed to
+    std::optional<TrajectoryPoint> last;  ///< up to which the connection has been followed
     std::vector<TrajectoryPoint> fresh;
 
    private:
@@ -65,7 +65,7 @@ class ConnectionCourse {
 
   ClosingObserver& observer_;
   bool needs_all_;
-  double plane_;  // of the first contact [m]
+  double plane_;  // rest distance of the first contact to its plane [m]
   std::vector<Followed> followed_;
   std::size_t deciding_ = 0;
   double here_ = 0;  // [s]

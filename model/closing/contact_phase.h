@@ -34,7 +34,7 @@ struct Edge {
 
 class ContactPhase {
  public:
-  /// Of one of the switch's contacts: in flight, never touched.
+  /// Follows one contact of the switch, which is in flight and has never touched.
   explicit ContactPhase(const Switch& model, std::size_t contact = 0);
 
   [[nodiscard]] Phase phase() const { return phase_; }
