@@ -150,7 +150,7 @@ py::tuple shapes_of(const PreparedScene& p, int places) {
   return py::make_tuple(all.places, all.shapes);
 }
 
-Result result_of(const PyClosing& c) { return softland::result_of(*c.prepared, c.closing, {.command = c.command}); }
+Result result_of(const PyClosing& c) { return softland::result_of(*c.prepared, c.closing, c.command); }
 
 // quantity -> (value, error, unit), in the order of the table; yes or no without error and unit.
 py::dict figures_of(const Closing& closing) {

@@ -302,7 +302,7 @@ std::pair<std::string, std::string> headline(const AccuracyRecord& record) {
 
 Document document_of(const AccuracyRecord& record) {
   const AccuracyStudy& study = record.found;
-  Document document{.title = title_of(record.origin), .origin = "accuracy", .made = internal::made_of(record.origin)};
+  Document document{.title = title_of(record.origin), .origin = "accuracy", .made = {.origin = record.origin}};
   if (study.rows.empty()) {
     document.headline = study.status == Status::no_contact
                             ? "The switch does not touch within its window: there are no figures to be accurate in."

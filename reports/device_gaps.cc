@@ -20,7 +20,7 @@ namespace {
 using namespace internal;
 
 // Whether every device has a gap at every instant, as a file that was changed may not say.
-bool is_drawable(const ResultDevices::Courses& courses) {
+bool is_drawable(const DevicesFindings::Courses& courses) {
   if (!(courses.end > 0 && courses.unit > 0) || courses.step.empty() || courses.own.empty()) return false;
   const std::size_t instants = courses.step.front().size();
   const auto has_all = [instants](const std::vector<int>& gap) { return gap.size() == instants; };
@@ -28,7 +28,7 @@ bool is_drawable(const ResultDevices::Courses& courses) {
 }
 
 // The gaps in a table of columns "time", "low", "high", "median" and one for each device.
-CurveTable courses_table(const ResultDevices::Courses& courses, const std::vector<std::vector<int>>& gaps) {
+CurveTable courses_table(const DevicesFindings::Courses& courses, const std::vector<std::vector<int>>& gaps) {
   CurveTable table;
   const std::size_t instants = gaps.front().size();
   for (std::size_t i = 0; i < instants; ++i) {
@@ -47,10 +47,10 @@ CurveTable courses_table(const ResultDevices::Courses& courses, const std::vecto
 
 }  // namespace
 
-Picture internal::gaps_picture(const ResultDevices& d) {
+Picture internal::gaps_picture(const DevicesFindings& d) {
   Picture drawn;
   if (!d.courses || !is_drawable(*d.courses)) return drawn;
-  const ResultDevices::Courses& courses = *d.courses;
+  const DevicesFindings::Courses& courses = *d.courses;
   const auto add = [&](const char* id, const char* title, const std::vector<std::vector<int>>& gaps, Role thin, Role band) {
     drawn.tables[id] = courses_table(courses, gaps);
     Chart chart{.id = id,
@@ -87,7 +87,7 @@ Picture internal::gaps_picture(const ResultDevices& d) {
   return drawn;
 }
 
-std::string internal::gaps_html(const ResultDevices& d) {
+std::string internal::gaps_html(const DevicesFindings& d) {
   const Picture drawn = gaps_picture(d);
   if (drawn.charts.empty()) return {};
   std::string pictures;

@@ -14,9 +14,9 @@ namespace softland {
 namespace internal {
 
 /// Two charts, with a curve for each device, the median and the band of 5 to 95 %; none where no gaps were kept.
-[[nodiscard]] Picture gaps_picture(const ResultDevices& devices);
+[[nodiscard]] Picture gaps_picture(const DevicesFindings& devices);
 /// The same for a page.
-[[nodiscard]] std::string gaps_html(const ResultDevices& devices);
+[[nodiscard]] std::string gaps_html(const DevicesFindings& devices);
 
 }  // namespace internal
 }  // namespace softland

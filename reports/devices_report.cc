@@ -21,11 +21,6 @@
 
 namespace softland {
 
-const ResultDevices::Row* ResultDevices::row(std::string_view name) const {
-  const auto found = std::ranges::find(rows, name, &Row::name);
-  return found == rows.end() ? nullptr : &*found;
-}
-
 namespace {
 
 using namespace internal;
@@ -45,45 +40,14 @@ constexpr std::array columns{Column{key_of(&Metrics::largest_impact_velocity), "
                              Column{key_of(&Metrics::permanent_contact_time), "permanent contact", "", false, ShownIn::page},
                              Column{key_of(&Metrics::initial_contact_time), "first contact", "first contact"}};
 
-constexpr std::string_view steady_key = key_of(&Metrics::steady_force_time),
-                           permanent_key = key_of(&Metrics::permanent_contact_time);
-
-ResultDevices::Row row_of(const DevicesRow& row) {
-  const DriveRobustness& drive = row.judged;
-  ResultDevices::Row r{.name = row.name,
-                       .pull_in_error = row.knowledge.pull_in_error.value_or(Metrics::unset),
-                       .frequency_error = row.knowledge.frequency_error.value_or(Metrics::unset),
-                       .piezo_error = row.knowledge.piezo_error.value_or(Metrics::unset),
-                       .time_error = row.knowledge.time_error.value_or(Metrics::unset),
-                       .searched_for_it = row.searched_for_it,
-                       .bounce_free = drive.bounce_free.value,
-                       .open = std::max(0.0, 1 - drive.closing.value - drive.collapsed.value),
-                       .collapsed = drive.collapsed.value};
-  for (const Figure& f : device_figures) {
-    // What a run tells that goes to the end of the window.
-    if ((f.key == steady_key || f.key == permanent_key) && !row.judged_whole) continue;
-    const std::string key(f.key);
-    r.at_50[key] = drive.figures[f].quantiles[1].value;
-    r.at_95[key] = drive.figures[f].quantiles[2].value;
-    r.at_99[key] = drive.figures[f].quantiles[3].value;
-  }
-  for (const auto& [height, key] : ResultDevices::yield_heights) {
-    const auto rebounds_less = [most = height](const DeviceOutcome& o) {
-      return o.closed() && o.is_held && o.metrics.major_bounce_height <= most;
-    };
-    if (drive.outcomes.empty()) continue;
-    r.yield[key] =
-        static_cast<double>(std::ranges::count_if(drive.outcomes, rebounds_less)) / static_cast<double>(drive.outcomes.size());
-  }
-  return r;
-}
+constexpr std::string_view steady_key = key_of(&Metrics::steady_force_time);
 
 double value_in(const std::map<std::string, double>& values, std::string_view key) {
   const auto found = values.find(std::string(key));
   return found == values.end() ? Metrics::unset : found->second;
 }
 
-std::string speed_of(const ResultDevices::Row& row) {
+std::string speed_of(const DevicesFindings::Row& row) {
   const auto found = row.at_95.find(std::string(columns[0].key));
   return found == row.at_95.end() || !std::isfinite(found->second) ? std::string("∞") : quantity(found->second, "m/s");
 }
@@ -112,10 +76,10 @@ std::string with_bracket(const std::string& value, const std::string& other) {
 }
 
 // "2.0 / 98 / 100 %": the shares of devices that rebound by no more than each height. They are cut, so that 100 % are all.
-std::string yields_cell(const ResultDevices::Row& row) {
+std::string yields_cell(const DevicesFindings::Row& row) {
   if (row.yield.empty()) return "—";
   std::string cell;
-  for (const auto& [height, key] : ResultDevices::yield_heights) {
+  for (const auto& [height, key] : DevicesFindings::yield_heights) {
     constexpr double few = 10;
     const double share = 100 * value_in(row.yield, key) + 1e-9;
     cell += (cell.empty() ? "" : " / ") + (share < few ? fmt::format("{:.1f}", share) : fmt::format("{:.0f}", std::floor(share)));
@@ -124,19 +88,19 @@ std::string yields_cell(const ResultDevices::Row& row) {
 }
 
 // A table calls a row by its choice and the file that holds it.
-std::string shown_name(const ResultDevices& d, const ResultDevices::Row& row) {
-  if (row.name == "for the drawing") return "nominal design: drawing.toml";
-  for (const ResultDevices::Choice& one : d.choices) {
+std::string shown_name(const DevicesFindings& d, const DevicesFindings::Row& row) {
+  if (row.name == for_the_drawing) return "nominal design: drawing.toml";
+  for (const DevicesFindings::Choice& one : d.choices) {
     if (one.row() == row.name) return fmt::format("{}: {}", one.name, one.file);
   }
-  return row.name == "for the devices" ? "best.toml" : row.name;
+  return row.name == for_the_devices ? "best.toml" : row.name;
 }
 
 constexpr double least_share = 0.0005;  // smaller shares of devices are left out
 
 // Whether the table of these rows says how many devices stay open, and how many are pulled in.
-bool any_of(const std::vector<ResultDevices::Row>& rows, double ResultDevices::Row::*share) {
-  return std::ranges::any_of(rows, [&](const ResultDevices::Row& row) { return row.*share > least_share; });
+bool any_of(const std::vector<DevicesFindings::Row>& rows, double DevicesFindings::Row::*share) {
+  return std::ranges::any_of(rows, [&](const DevicesFindings::Row& row) { return row.*share > least_share; });
 }
 
 // On a page there is room for more words.
@@ -147,7 +111,7 @@ TableCell headed(std::string_view on_terminal, std::string_view on_page) {
 }
 
 // The choices beside the plain step: impact velocity over the time from which the force is steady.
-std::string choices_picture(const ResultDevices& d) {
+std::string choices_picture(const DevicesFindings& d) {
   if (d.choices.size() < 2) return {};
   CurveTables tables;
   CurveTable& table = tables["choices"];
@@ -165,7 +129,7 @@ std::string choices_picture(const ResultDevices& d) {
       .series = {{.table = "choices", .column = "speed", .label = "", .role = Role::best}}};
   double last = 0, softest = std::numeric_limits<double>::infinity(), hardest = 0;
   const auto point = [&](const std::string& name, Role role, bool is_choice) {
-    const ResultDevices::Row* row = d.row(name);
+    const DevicesFindings::Row* row = d.row(name);
     if (row == nullptr) return;
     const double time = value_in(row->at_95, steady_key), speed = value_in(row->at_95, columns[0].key);
     if (!std::isfinite(time) || !(speed > 0) || !std::isfinite(speed)) return;
@@ -175,10 +139,10 @@ std::string choices_picture(const ResultDevices& d) {
     last = std::max(last, time);
     softest = std::min(softest, speed), hardest = std::max(hardest, speed);
   };
-  for (const ResultDevices::Choice& one : d.choices) point(one.row(), Role::best, true);
+  for (const DevicesFindings::Choice& one : d.choices) point(one.row(), Role::best, true);
   if (table["steady"].size() < 2) return {};
   if (d.stable_path && d.stable_path->touch_places > 0) {
-    const ResultDevices::StablePath& path = *d.stable_path;
+    const DevicesFindings::StablePath& path = *d.stable_path;
     CurveTable& bound = tables["bound"];
     constexpr int points = 60;
     for (int i = 0; i <= points; ++i) {
@@ -189,8 +153,8 @@ std::string choices_picture(const ResultDevices& d) {
         {.table = "bound", .column = "speed", .label = "touch places over the time left", .role = Role::limit});
     softest = std::min(softest, bound["speed"].back());
   }
-  point("plain step", Role::baseline, false);
-  point("electrode at t = 0", Role::baseline, false);
+  point(plain_step_row, Role::baseline, false);
+  point(undelayed_row, Role::baseline, false);
   chart.x_home = chart.x_whole = {0.0, 1.15 * last};
   chart.y_home = {softest / 2, 2 * hardest};
   return "<div class=\"multiples\" style=\"max-width: 560px; grid-template-columns: 1fr\">\n" + small_picture(tables, chart) +
@@ -198,11 +162,11 @@ std::string choices_picture(const ResultDevices& d) {
 }
 
 // Share without a rebound and impact speed over the error of Vdp.
-std::string error_curve(const ResultDevices& d) {
+std::string error_curve(const DevicesFindings& d) {
   if (d.by_error.size() < 2) return {};
   CurveTables tables;
   CurveTable& table = tables["by-error"];
-  for (const ResultDevices::ByError& known : d.by_error) {
+  for (const KnownVdp& known : d.by_error) {
     table["error"].push_back(100 * known.error);
     table["share"].push_back(100 * known.bounce_free);
     table["speed"].push_back(known.impact_speed);
@@ -238,89 +202,10 @@ std::string error_curve(const ResultDevices& d) {
 
 }  // namespace
 
-ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command) {
-  ResultDevices d{.spread_assumed = found.spread_assumed,
-                  .spread = {},
-                  .count = static_cast<double>(found.verdict.devices),
-                  .seed = static_cast<double>(options.seed),
-                  .closings = static_cast<double>(found.closings),
-                  .measure = found.chosen ? found.chosen->measure : "",
-                  .waveform = found.chosen ? found.chosen->family : "",
-                  .better_than_plain_step = !found.best.plain_step_wins,
-                  .worse_in = {},
-                  .drawing = found.drawing.best ? FigureValues(found.drawing.best->metrics) : FigureValues(),
-                  .drawing_status = found.drawing.best ? std::string(to_string(found.drawing.best->metrics.status)) : "",
-                  .drawing_goal_met = found.drawing.goal_met,
-                  .measured = found.calibrated_row,
-                  .next_command = std::move(next_command)};
-  d.spread = spread_words(found.varied.scene.spread);
-  d.windows = found.windows;
-  for (const std::string_view key : found.worse_in) d.worse_in.emplace_back(key);
-  for (const DevicesRow& row : found.rows) d.rows.push_back(row_of(row));
-  for (const DeviceChoice& one : found.choices)
-    d.choices.push_back({.name = one.name,
-                         .file = one.name == default_choice ? "best.toml" : one.name + ".toml",
-                         .waveform = one.candidate.family,
-                         .tau = one.tau});
-  for (ResultDevices::Choice& one : d.choices) {
-    if (const ResultDevices::Row* row = d.row(one.row())) one.at_95 = row->at_95, one.at_99 = row->at_99;
-  }
-  if (found.approach) {
-    std::vector<std::string> drives{found.approach->drive};
-    if (!found.approach->holder.empty()) drives.push_back(found.approach->holder);
-    d.stable_path = {.drives = drives,
-                     .share = found.share_with_path,
-                     .reaches = found.approach->reaches,
-                     .limit = found.approach->limit,
-                     .touch_places = found.approach->touch_places(),
-                     .rise = shortest_rise(found.varied)};
-  }
-  if (const ResultDevices::Row* own = d.row("for the devices")) {
-    const double height = value_in(own->at_95, key_of(&Metrics::major_bounce_height));
-    const double significant = found.varied.scene.metrics.significant_rebound;
-    d.goal_met = height <= significant;
-    d.missed_by = std::max(0.0, height - significant);
-  }
-  d.step_delay = found.step_delay;
-  if (!found.courses.gaps.empty()) {
-    constexpr double units = 5000;  // in the gap of the contact
-    const double unit = found.varied.model.contact_gap() / units;
-    const auto whole = [unit](const GapCourses& courses) {
-      std::vector<std::vector<int>> all;
-      for (const std::vector<double>& gap : courses.gaps) {
-        std::vector<int>& own = all.emplace_back();
-        for (const double g : gap) own.push_back(static_cast<int>(std::lround(g / unit)));
-      }
-      return all;
-    };
-    d.courses = {.end = found.courses.end, .unit = unit, .step = whole(found.courses_of_step), .own = whole(found.courses)};
-  }
-  for (const FrontPoint& p : found.front)
-    d.front.push_back({.first_touch = p.first_touch,
-                       .impact_speed = p.impact_speed,
-                       .bounce_free = p.bounce_free,
-                       .candidate = fmt::format("{} by {}", p.waveform, p.measure)});
-  for (const KnownVdp& known : found.by_error)
-    d.by_error.push_back({.error = known.error, .bounce_free = known.bounce_free, .impact_speed = known.impact_speed});
-  for (const ChosenFrom& one : found.candidates)
-    d.race.push_back({.measure = one.measure,
-                      .waveform = one.family,
-                      .closings = static_cast<double>(one.closings),
-                      .cost = one.tail,
-                      .bounce_free = one.bounce_free});
-  for (const FulfilledCondition& c : found.conditions)
-    d.conditions.push_back({.text = c.condition.text,
-                            .share = c.share.value,
-                            .low = c.share.interval.low,
-                            .high = c.share.interval.high,
-                            .holds = c.holds});
-  return d;
-}
-
-std::string internal::drawing_words(const ResultDevices& d) {
+std::string internal::drawing_words(const DevicesFindings& d) {
   const double closed = d.drawing[&Metrics::permanent_contact_time], height = d.drawing[&Metrics::major_bounce_height];
   if (d.drawing_goal_met && std::isfinite(closed)) {
-    const ResultDevices::Row* row = d.row("for the drawing");
+    const DevicesFindings::Row* row = d.row(for_the_drawing);
     const std::string on_devices = row == nullptr ? "" : fmt::format(" (95 % of the devices: {})", speed_of(*row));
     return fmt::format("drawing.toml closes the nominal design alone without a rebound, at {}{}.", quantity(closed, "s"),
                        on_devices);
@@ -330,8 +215,8 @@ std::string internal::drawing_words(const ResultDevices& d) {
 }
 
 std::string internal::devices_headline(const Result& result) {
-  const ResultDevices& d = *result.devices;
-  const ResultDevices::Row *step = d.row("plain step"), *own = d.row("for the devices");
+  const DevicesFindings& d = *result.devices;
+  const DevicesFindings::Row *step = d.row(plain_step_row), *own = d.row(for_the_devices);
   if (step == nullptr || own == nullptr) return {};
   const std::string assumed = d.spread_assumed ? " (assumed, the scene has no [spread]: " + d.spread + ")" : "";
   if (!d.better_than_plain_step) {
@@ -353,8 +238,8 @@ std::string internal::devices_headline(const Result& result) {
   return words + ": best.toml.";
 }
 
-std::vector<KeyNumber> internal::devices_keys(const ResultDevices& d) {
-  const ResultDevices::Row *step = d.row("plain step"), *own = d.row("for the devices");
+std::vector<KeyNumber> internal::devices_keys(const DevicesFindings& d) {
+  const DevicesFindings::Row *step = d.row(plain_step_row), *own = d.row(for_the_devices);
   if (step == nullptr || own == nullptr) return {};
   std::vector<KeyNumber> keys;
   for (std::size_t i = 0; i < 4; ++i) {  // up to the steady force
@@ -369,7 +254,7 @@ std::vector<KeyNumber> internal::devices_keys(const ResultDevices& d) {
 namespace {
 
 // These rows, by their names in the first column.
-ReportTable devices_table(const ResultDevices& d, const std::vector<std::pair<std::string, const ResultDevices::Row*>>& rows,
+ReportTable devices_table(const DevicesFindings& d, const std::vector<std::pair<std::string, const DevicesFindings::Row*>>& rows,
                           ShownIn where) {
   ReportTable table{.head = {"95th percentile (99th)"}, .rows = {}};
   std::vector<Column> shown;
@@ -377,13 +262,14 @@ ReportTable devices_table(const ResultDevices& d, const std::vector<std::pair<st
                        [&](const Column& c) { return c.shown == ShownIn::everywhere || c.shown == where; });
   for (const Column& c : shown) table.head.push_back(headed(c.short_heading, c.heading));
   table.head.push_back(headed("≤ 1 / 10 / 100 nm", "devices ≤ 1 / 10 / 100 nm"));
-  const bool stay_open = any_of(d.rows, &ResultDevices::Row::open), pulled_in = any_of(d.rows, &ResultDevices::Row::collapsed);
+  const bool stay_open = any_of(d.rows, &DevicesFindings::Row::open),
+             pulled_in = any_of(d.rows, &DevicesFindings::Row::collapsed);
   if (stay_open && pulled_in) table.head.push_back(headed("open / pulled in", "stay open / collapse onto the electrode"));
   if (stay_open && !pulled_in) table.head.emplace_back("stay open");
   if (pulled_in && !stay_open) table.head.push_back(headed("pulled in", "collapse onto the electrode"));
   for (const auto& [name, row] : rows) {
     TableRow& line = table.rows.emplace_back(TableRow{name});
-    const char* const style = row->name == "for the devices" ? "own" : "";
+    const char* const style = row->name == for_the_devices ? "own" : "";
     for (const Column& c : shown) {
       std::string cell = cell_of(c.key, value_in(row->at_95, c.key));
       if (c.with_99 && !row->at_99.empty()) cell = with_bracket(cell, cell_of(c.key, value_in(row->at_99, c.key)));
@@ -398,36 +284,36 @@ ReportTable devices_table(const ResultDevices& d, const std::vector<std::pair<st
 }
 
 // The choices beside the plain step, and what the best measurement reaches.
-ReportTable choices_table(const ResultDevices& d) {
-  std::vector<std::pair<std::string, const ResultDevices::Row*>> rows;
+ReportTable choices_table(const DevicesFindings& d) {
+  std::vector<std::pair<std::string, const DevicesFindings::Row*>> rows;
   const auto add = [&](const std::string& row) {
-    if (const ResultDevices::Row* found = d.row(row)) rows.emplace_back(shown_name(d, *found), found);
+    if (const DevicesFindings::Row* found = d.row(row)) rows.emplace_back(shown_name(d, *found), found);
   };
-  add("plain step");
-  for (const ResultDevices::Choice& one : d.choices) add(one.row());
-  if (d.choices.empty() && d.better_than_plain_step) add("for the devices");
-  add("electrode at t = 0");
+  add(plain_step_row);
+  for (const DevicesFindings::Choice& one : d.choices) add(one.row());
+  if (d.choices.empty() && d.better_than_plain_step) add(for_the_devices);
+  add(undelayed_row);
   if (!d.measured.empty()) add(d.measured);
   return devices_table(d, rows, ShownIn::terminal);
 }
 
 // The choices come first, in their order, and the others after them.
-ReportTable all_rows(const ResultDevices& d) {
-  std::vector<std::pair<std::string, const ResultDevices::Row*>> rows;
-  const auto add = [&](const ResultDevices::Row* row) {
+ReportTable all_rows(const DevicesFindings& d) {
+  std::vector<std::pair<std::string, const DevicesFindings::Row*>> rows;
+  const auto add = [&](const DevicesFindings::Row* row) {
     if (row != nullptr && std::ranges::none_of(rows, [&](const auto& there) { return there.second == row; }))
       rows.emplace_back(shown_name(d, *row), row);
   };
-  add(d.row("plain step"));
-  for (const ResultDevices::Choice& one : d.choices) add(d.row(one.row()));
-  for (const ResultDevices::Row& row : d.rows) add(&row);
+  add(d.row(plain_step_row));
+  for (const DevicesFindings::Choice& one : d.choices) add(d.row(one.row()));
+  for (const DevicesFindings::Row& row : d.rows) add(&row);
   return devices_table(d, rows, ShownIn::page);
 }
 
 // Says which drive carries the switch to its contact: "The piezo carries 96.3 % of the devices to their contact ..."
-std::string path_words(const ResultDevices& d) {
+std::string path_words(const DevicesFindings& d) {
   if (!d.stable_path) return {};
-  const ResultDevices::StablePath& path = *d.stable_path;
+  const DevicesFindings::StablePath& path = *d.stable_path;
   const std::string drive = path.drives.front() == piezo_drive ? "piezo" : "electrode " + path.drives.front();
   std::string words = fmt::format(
       "The {} carries {} of the devices to their contact through stable equilibria within {} (the nominal design "
@@ -438,7 +324,7 @@ std::string path_words(const ResultDevices& d) {
   return words;
 }
 
-std::string delay_words(const ResultDevices& d) {
+std::string delay_words(const DevicesFindings& d) {
   if (!std::isfinite(d.step_delay)) return {};
   return fmt::format(
       "The plain step of the electrode comes at {}, when the piezo has made the contact; --hold-step fixed leaves "
@@ -447,10 +333,10 @@ std::string delay_words(const ResultDevices& d) {
 }
 
 // Says how much measuring every device would win.
-std::string measuring_words(const ResultDevices& d) {
-  const ResultDevices::Row *own = d.row("for the devices"), *measured = d.row(d.measured);
+std::string measuring_words(const DevicesFindings& d) {
+  const DevicesFindings::Row *own = d.row(for_the_devices), *measured = d.row(d.measured);
   const bool were_judged =
-      std::ranges::any_of(d.rows, [](const ResultDevices::Row& row) { return std::isfinite(row.pull_in_error); });
+      std::ranges::any_of(d.rows, [](const DevicesFindings::Row& row) { return std::isfinite(row.pull_in_error); });
   if (measured == nullptr && were_judged) return "Measuring Vdp or a closing time on each device wins nothing.";
   if (own == nullptr || measured == nullptr || d.next_command.empty()) return {};
   const char* const what = std::isfinite(measured->time_error) ? "one closing time measured to 50 ns" : "Vdp measured to 1 %";
@@ -462,7 +348,7 @@ std::string measuring_words(const ResultDevices& d) {
 
 }  // namespace
 
-ReportSection internal::choices_section(const ResultDevices& d) {
+ReportSection internal::choices_section(const DevicesFindings& d) {
   ReportSection section{.id = "choices", .heading = "Choices", .parts = {}, .shown = ShownIn::terminal};
   if (d.rows.empty()) return section;
   section.parts.emplace_back(choices_table(d));
@@ -474,7 +360,7 @@ ReportSection internal::choices_section(const ResultDevices& d) {
   return section;
 }
 
-ReportSection internal::devices_section(const ResultDevices& d) {
+ReportSection internal::devices_section(const DevicesFindings& d) {
   ReportSection section{.id = "devices", .heading = "Process variation", .parts = {}, .shown = ShownIn::page};
   if (d.rows.empty()) return section;
   const auto note = [&](std::string text) { section.parts.emplace_back(Paragraph{.text = std::move(text), .is_note = true}); };
@@ -490,13 +376,13 @@ ReportSection internal::devices_section(const ResultDevices& d) {
                      d.spread_assumed ? " The scene has no [spread]: this one is assumed." : ""));
   if (d.missed_by > 0)
     note(fmt::format("95 % of the devices rebound by up to {}, {} more than counts as a rebound.",
-                     cell_of(columns[1].key, value_in(d.row("for the devices")->at_95, columns[1].key)),
+                     cell_of(columns[1].key, value_in(d.row(for_the_devices)->at_95, columns[1].key)),
                      quantity(d.missed_by, "m")));
   section.parts.emplace_back(Drawing{[&d](const Picture&) { return error_curve(d); }});
   note(window_words(d.windows));
-  for (const ResultRobust::Condition& c : d.conditions)
+  for (const FulfilledCondition& c : d.conditions)
     note(fmt::format("The condition {} {}: {} of the devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
-                     percent(c.share)));
+                     percent(c.share.value)));
   if (!d.next_command.empty()) {
     section.parts.emplace_back(SubHeading{d.measured.empty() ? "For a source" : "For a device that was measured"});
     section.parts.emplace_back(ReportList{{d.next_command}});

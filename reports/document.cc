@@ -152,31 +152,32 @@ std::string key_html(const KeyNumber& key) {
   return fmt::format("<div class=\"key\"><dt>{}</dt><dd>{}</dd></div>\n", words_html(key.name), shown);
 }
 
-std::string reproduce(const Result& result) {
+std::string reproduce(const MadeAgain& made) {
   std::string commands;
-  for (const std::string& line : result.reproduce) commands += line + "\n";
-  if (commands.empty()) commands = result.command;
+  for (const std::string& line : made.reproduce) commands += line + "\n";
+  if (commands.empty()) commands = made.origin.command;
   std::string with;
   const auto add = [&](const char* name, const std::string& value) {
     if (!value.empty()) with += (with.empty() ? "With " : ", ") + (name + value);
   };
-  add("softland ", result.version);
-  add("seed ", result.seed ? fmt::format("{}", *result.seed) : "");
-  add("integrator tolerance ", std::isfinite(result.tolerance) ? plain_number(result.tolerance, 6) : "");
+  add("softland ", made.origin.version);
+  add("seed ", made.seed ? fmt::format("{}", *made.seed) : "");
+  add("integrator tolerance ", std::isfinite(made.tolerance) ? plain_number(made.tolerance, 6) : "");
   if (commands.empty() && with.empty()) return {};
-  const std::string made = made_with_text(result.made_with);
+  const std::string with_what = made_with_text(made.origin.made_with);
   return fmt::format("<section id=\"reproduce\"><h2>Reproduce it</h2>\n<p>{}</p>\n<pre><code>{}</code></pre>\n{}</section>\n",
                      with.empty() ? "" : escaped(with) + ":", escaped(shortened(commands)),
-                     made.empty() ? ""
-                                  : "<p>Made with " + escaped(made) +
-                                        ". The same bits are to be expected of the same program on the same kind of processor; "
-                                        "elsewhere rounding differs, and a search may end elsewhere.</p>\n");
+                     with_what.empty()
+                         ? ""
+                         : "<p>Made with " + escaped(with_what) +
+                               ". The same bits are to be expected of the same program on the same kind of processor; "
+                               "elsewhere rounding differs, and a search may end elsewhere.</p>\n");
 }
 
-std::string scene_of(const Result& result) {
-  if (result.scene.text.empty()) return {};
+std::string scene_of(const Origin& origin) {
+  if (origin.scene_toml.empty()) return {};
   return "<section id=\"scene\"><h2>The switch</h2>\n<details><summary>Resolved scene</summary>\n<pre><code>" +
-         escaped(shortened(result.scene.text)) + "</code></pre></details></section>\n";
+         escaped(shortened(origin.scene_toml)) + "</code></pre></details></section>\n";
 }
 
 std::string warnings_section(const std::vector<std::string>& warnings) {
@@ -279,7 +280,7 @@ std::string page_html(const Document& document) {
   }
   std::vector<std::string> warnings = document.warnings;
   warnings.insert(warnings.end(), document.page_warnings.begin(), document.page_warnings.end());
-  body += warnings_section(warnings) + reproduce(document.made) + scene_of(document.made);
+  body += warnings_section(warnings) + reproduce(document.made) + scene_of(document.made.origin);
   const std::string title = escaped(printable_line(document.title));
   return filled(page_file("page/page.html"), {{"page_title", title.empty() ? "softland report" : title + " – softland"},
                                               {"style", document.style.empty() ? chart_style() : document.style},

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "reports/chart.h"
-#include "reports/result.h"
+#include "reports/origin.h"
 
 namespace softland {
 
@@ -73,6 +73,14 @@ struct KeyNumber {
   bool is_words = false;    ///< a value without a number
 };
 
+/// How the contents of a page are made again.
+struct MadeAgain {
+  Origin origin;
+  std::optional<std::uint64_t> seed = {};
+  double tolerance = Metrics::unset;        ///< of the integrator
+  std::vector<std::string> reproduce = {};  ///< command lines; empty: that of the origin
+};
+
 /// Refers to what it was made of, which is to outlive it.
 struct Document {
   std::string title;  ///< of the scene; may be empty
@@ -84,7 +92,7 @@ struct Document {
   std::vector<std::string> warnings;
   std::vector<std::string> page_warnings = {};  ///< these stand beside those on the page alone
   std::function<internal::Picture()> draw;      ///< what the page's script draws; may be empty
-  Result made;                                  ///< how to make it again
+  MadeAgain made = {};                          ///< how to make it again
   /// CSS and HTML of pictures that `draw` does not make.
   std::string style = {}, scripts = {};
 };

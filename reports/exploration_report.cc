@@ -274,7 +274,7 @@ Document exploration_document(const ExplorationReport& report) {
   Document document{.title = report.title,
                     .origin = "exploration: " + report.study,
                     .keys = keys_of(report, front),
-                    .made = {.command = report.command, .version = std::string(version)},
+                    .made = {.origin = {.kind = {}, .version = std::string(version), .command = report.command, .made_with = {}}},
                     .style = std::string(internal::page_file("page/exploration.css")),
                     .scripts = script_of(data)};
   std::tie(document.headline, document.headline_rest) = headline_of(report);

@@ -475,9 +475,7 @@ Document document_of(const FitRecord& fit) {
                     .origin = "fit",
                     .headline = fit_headline(fit),
                     .sections = {values_section(fit)},
-                    .made = internal::made_of(fit.origin)};
-  document.made.seed = fit.seed;
-  document.made.tolerance = fit.tolerance;
+                    .made = {.origin = fit.origin, .seed = fit.seed, .tolerance = fit.tolerance}};
   constexpr std::size_t most = 12;  // unknowns whose correlations can be read
   if (fit.unknowns.size() >= 2 && fit.correlation.size() == fit.unknowns.size() && fit.unknowns.size() <= most)
     document.sections.push_back({.id = "correlation",

@@ -6,9 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "reports/result.h"
-
 namespace softland {
+
+struct MadeWith {
+  std::string program, compiler, options, instruction_set, vectors, c_library, processor;
+};
 
 /// Of this program on this machine, and the vector instructions that ensembles are closed with (model/ensemble/fleet.h); empty
 /// for what the machine does not tell.

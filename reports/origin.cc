@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "reports/made_with.h"
 #include "version.h"
 
 namespace softland {
@@ -32,12 +31,6 @@ std::string title_of(const Origin& origin) {
   return title != origin.scene.end() && title->is_string() ? title->get<std::string>() : std::string();
 }
 
-Result internal::made_of(const Origin& origin) {
-  Result result{.command = origin.command, .version = origin.version, .made_with = origin.made_with};
-  result.scene.text = origin.scene_toml;
-  return result;
-}
-
 json with_origin(json record, const std::string& command) {
   record.update({{"version", version}, {"made_with", made_with_json()}, {"command", command}});
   return record;
@@ -53,12 +46,6 @@ StoredOrigin stored_origin(const std::string& command) {
   return {.program = m.program,
           .processor = fmt::format("{}, {}, {}, {}", m.processor, m.instruction_set, m.vectors, m.c_library),
           .command = command};
-}
-
-Result internal::origin(const PreparedScene& scene, const std::string& command) {
-  Result result{.command = command, .version = std::string(version), .made_with = made_with()};
-  result.scene.text = scene.resolved().text();
-  return result;
 }
 
 }  // namespace softland

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "reports/result.h"
+#include "reports/made_with.h"
 #include "store/study_store.h"
 #include "studies/closing/prepared.h"
 
@@ -33,11 +33,4 @@ struct Origin {
 /// Who writes into a store: this program on this machine, for this command.
 [[nodiscard]] StoredOrigin stored_origin(const std::string& command);
 
-namespace internal {
-
-/// What the foot of a page says of it.
-[[nodiscard]] Result made_of(const Origin& origin);
-[[nodiscard]] Result origin(const PreparedScene& scene, const std::string& command);
-
-}  // namespace internal
 }  // namespace softland

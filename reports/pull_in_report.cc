@@ -245,7 +245,7 @@ PullInsRecord read_pull_ins(const json& from) {
 
 std::string text_of(const PullInsRecord& record) {
   const bool has_contact = record.origin.scene.contains("contact");
-  const std::vector<ResultScene::Electrode> all = read_result_scene(record.origin.scene, {}).electrodes;
+  const std::vector<ResultScene::Electrode> all = read_result_scene(record.origin.scene).electrodes;
   std::string text;
   for (const auto& [name, electrode] : record.electrodes) {
     const bool is_far = std::ranges::any_of(all, [&](const auto& one) { return one.name == name && one.far_side; });

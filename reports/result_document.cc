@@ -57,7 +57,7 @@ KeyNumber key_number(const Result& result, const Figure& shown) {
   return {.name = capitalised(std::string(shown.also.empty() ? shown.name : shown.also)),
           .value = words(own, step),
           .change = changed.words,
-          .before = result.is_search && step.figures ? words(step, own) : "",
+          .before = result.is_search() && step.figures ? words(step, own) : "",
           .style = verdict_class(changed.verdict),
           .is_words = !missing_reason(own, shown).empty()};
 }
@@ -115,7 +115,7 @@ TableRow figure_row(const Result& result, const Figure& one, bool pair, bool est
 }
 
 ReportTable figures_table(const Result& result) {
-  const bool pair = result.is_search && result.baseline.figures;
+  const bool pair = result.is_search() && result.baseline.figures;
   const bool estimated = std::any_of(all_figures.begin(), all_figures.end(),
                                      [&](const Figure& one) { return std::isfinite(result.best.errors[one]); });
   ReportTable table{.head = {"Figure"}, .rows = {}};
@@ -131,11 +131,27 @@ ReportTable figures_table(const Result& result) {
   return table;
 }
 
+// Each of several contacts; the figures above are those of the connection that they make.
+ReportTable contacts_table(const Result& result) {
+  constexpr std::array shown{&Metrics::initial_contact_time, &Metrics::impact_velocity, &Metrics::major_bounce_height,
+                             &Metrics::peak_contact_force, &Metrics::hold_force};
+  ReportTable table{.head = {"Contact"}, .rows = {}};
+  for (const auto member : shown) table.head.emplace_back(std::string(figure_of(member).name));
+  for (const auto& [name, contact] : result.contacts) {
+    TableRow& row = table.rows.emplace_back(TableRow{name});
+    for (const auto member : shown) {
+      const double value = contact.figures[member];
+      row.emplace_back(std::isfinite(value) ? quantity(value, figure_of(member).unit) : "—");
+    }
+  }
+  return table;
+}
+
 // A scene with a piezo layer whose charging is no part of the drive energy.
 std::string uncounted_layer_caption(const Result& result) {
   const bool told = std::isfinite(figure_of_run(result.best, &Metrics::drive_energy)) ||
                     std::isfinite(figure_of_run(result.baseline, &Metrics::drive_energy));
-  const JsonReader piezo(JsonReader(result.scene.tree).at("piezo"));
+  const JsonReader piezo(JsonReader(result.origin.scene).at("piezo"));
   if (!told || piezo.at("thickness").is_null() || !piezo.at("relative_permittivity").is_null()) return {};
   return "The drive energy does not count the charging of the piezo layer: the scene has no piezo.relative_permittivity.";
 }
@@ -146,6 +162,7 @@ ReportSection figures_section(const Result& result) {
     section.parts.emplace_back(SubHeading{result.devices->better_than_plain_step ? "best.toml on the nominal design"
                                                                                  : "The plain step on the nominal design"});
   if (result.best.figures || result.baseline.figures) section.parts.emplace_back(figures_table(result));
+  if (!result.contacts.empty()) section.parts.emplace_back(contacts_table(result));
   if (result.goal_met && !result.devices)
     section.parts.emplace_back(Paragraph{fmt::format("The goal is {}.", *result.goal_met ? "met" : "not met")});
   for (const std::string& words :
@@ -334,26 +351,22 @@ ReportSection facts(const Result& result) {
 
 Document result_document(const Result& result) {
   const Headline line = headline(result);
-  Document document{.title = result.title,
-                    .origin = result.is_search ? "optimize" : "simulate",
-                    .headline = line.main,
-                    .headline_rest = line.rest,
-                    .doubt = checks_agree(result) ? "" : checks_caption(result),
-                    .keys = key_numbers(result),
-                    .warnings = result.warnings,
-                    .draw = [&result] { return picture(result); },
-                    .made = {.command = result.command, .version = result.version}};
-  if (result.is_search) {  // whose terminal has room for what was found alone
+  Document document{
+      .title = result.title,
+      .origin = result.origin.kind,
+      .headline = line.main,
+      .headline_rest = line.rest,
+      .doubt = checks_agree(result) ? "" : checks_caption(result),
+      .keys = key_numbers(result),
+      .warnings = result.warnings,
+      .draw = [&result] { return picture(result); },
+      .made = {.origin = result.origin, .seed = result.seed, .tolerance = result.tolerance, .reproduce = result.reproduce}};
+  if (result.is_search()) {  // whose terminal has room for what was found alone
     const auto few = std::stable_partition(document.warnings.begin(), document.warnings.end(),
                                            [](const std::string& one) { return !is_few_summits_warning(one); });
     document.page_warnings.assign(few, document.warnings.end());
     document.warnings.erase(few, document.warnings.end());
   }
-  document.made.seed = result.seed;
-  document.made.tolerance = result.tolerance;
-  document.made.reproduce = result.reproduce;
-  document.made.made_with = result.made_with;
-  document.made.scene.text = result.scene.text;
   for (const std::string& word : {result.target, result.actuator}) {
     if (!word.empty()) document.origin += " · " + word;
   }

@@ -60,6 +60,17 @@ json internal::voltages_json(const std::map<std::string, ByModes>& of_electrodes
   return all;
 }
 
+json internal::choices_json(const DevicesFindings& devices) {
+  json all = json::array();
+  for (const DevicesFindings::Choice& one : devices.choices) {
+    json& choice = all.emplace_back(record_json(one));
+    const DevicesFindings::Row* const row = devices.row(one.row());
+    const json figures = row == nullptr ? json::object() : record_json(*row);
+    for (const char* key : {"quantile_95", "quantile_99"}) choice[key] = figures.value(key, json::object());
+  }
+  return all;
+}
+
 json metrics_json(const Metrics& m) { return internal::record_json(m); }
 
 namespace {
@@ -82,10 +93,7 @@ std::string json_text(const json& data, int indent) {
 
 json result_json(const Result& r) {
   json j = internal::record_json(r);
-  j["kind"] = r.is_search ? "optimize" : "simulate";
-  j["scene"] = r.scene.tree;
-  j["scene_toml"] = r.scene.text;
-  if (r.is_search) {
+  if (r.is_search()) {
     add_verdict(j, r);
     return j;
   }

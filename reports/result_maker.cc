@@ -10,12 +10,10 @@
 
 #include "base/require.h"
 #include "integrators/quintic.h"
-#include "reports/devices_report.h"
 #include "reports/downsample.h"
-#include "reports/made_with.h"
 #include "reports/result_reader.h"
+#include "reports/robustness_words.h"
 #include "studies/closing/effect_ablation.h"
-#include "version.h"
 #include "waveforms/export.h"
 
 namespace softland {
@@ -65,6 +63,15 @@ ResultRun run(const PreparedScene& p, const Closing& closing, const MetricsOptio
           .collapse_time = closing.trajectory.collapse_time};
 }
 
+std::map<std::string, ResultContact> contacts(const Closing& closing) {
+  std::map<std::string, ResultContact> all;
+  for (std::size_t c = 0; c < closing.contacts.size(); ++c) {
+    const ContactOutcome& own = closing.trajectory.contacts[c];
+    all[own.name] = {.gap = own.gap, .figures = finite(FigureValues(closing.contacts[c].metrics))};
+  }
+  return all;
+}
+
 std::map<std::string, ResultPullIn> pull_in(const PreparedScene& p) {
   std::map<std::string, ResultPullIn> all;
   const ModeLadder ladder(p);
@@ -79,18 +86,13 @@ std::map<std::string, ResultPullIn> pull_in(const PreparedScene& p) {
 }
 
 // What is the same for every study: of its scene, and of this program.
-Result started(const PreparedScene& p, const Provenance& provenance) {
+Result started(const char* kind, const PreparedScene& p, const std::string& command) {
   for (const auto& [drive, waveform] : p.drives.waveforms()) {
     if (const Own* own = std::get_if<Own>(&waveform))
       throw InvalidInput(fmt::format("waveform.{}: {} cannot be written into a result", drive, described(*own)));
   }
-  const SceneFile file = p.resolved();
-  Result r{.title = p.scene.title,
-           .scene = read_result_scene(file.json(), file.text()),
-           .tolerance = p.tolerance,
-           .command = provenance.command,
-           .version = std::string(version),
-           .made_with = made_with()};
+  Result r{.origin = whole_origin_of(kind, p, command), .title = p.scene.title, .tolerance = p.tolerance};
+  r.scene = read_result_scene(r.origin.scene);
   const Eigen::VectorXd& frequencies = p.model.basis().angular_frequencies();
   r.natural_frequencies.assign(frequencies.begin(), frequencies.end());
   if (p.model.has_contact()) r.closed_state = closed_state(p, p.signals());
@@ -165,11 +167,12 @@ Points drawn_evaluations(Points all) {
   return kept;
 }
 
-Result result_of(const PreparedScene& prepared, const Closing& closing, const Provenance& provenance) {
-  Result r = started(prepared, provenance);
+Result result_of(const PreparedScene& prepared, const Closing& closing, const std::string& command) {
+  Result r = started("simulate", prepared, command);
   r.status = to_string(closing.metrics.status);
   r.message = closing.trajectory.message;
   r.best = run(prepared, closing, prepared.scene.metrics);
+  r.contacts = contacts(closing);
   if (closing.certificate) r.certificate = *closing.certificate;
   r.pull_in = pull_in(prepared);
   r.work = closing.trajectory.work;
@@ -178,21 +181,17 @@ Result result_of(const PreparedScene& prepared, const Closing& closing, const Pr
   return r;
 }
 
-Result result_of(const OptimizeResult& found, const OptimizeOptions& options, const Provenance& provenance) {
-  Result r = started(found.best ? *found.best_scene : found.scene, provenance);
+Result result_of(const OptimizeResult& found, const OptimizeOptions& options, const std::string& command) {
+  Result r = started("optimize", found.best ? *found.best_scene : found.scene, command);
   const MetricsOptions& metrics_options = found.scene.scene.metrics;
   const bool interrupted = found.search.termination == Termination::interrupted;
-  r.is_search = true;
   r.status = interrupted  ? std::string_view("interrupted")
              : found.best ? to_string(found.best->metrics.status)
                           : to_string(Status::no_contact);
   r.target = options.target.text();
   r.actuator = name_of(actuators, options.actuator);
   r.waveform = found.plain_step_wins ? "step" : found.family;
-  if (found.families.size() > 1) {
-    for (const SearchedFamilyResult& one : found.families)
-      r.families.push_back({.family = one.family, .evaluations = static_cast<double>(one.evaluations), .cost = one.cost});
-  }
+  if (found.families.size() > 1) r.families = found.families;
   r.seed = options.seed;
   r.optimizer = options.optimizer;
   r.evaluations = static_cast<double>(found.search.evaluations);
@@ -211,6 +210,7 @@ Result result_of(const OptimizeResult& found, const OptimizeOptions& options, co
   r.warnings = found.best ? found.best->warnings : found.baseline.warnings;
   if (!found.best) return r;
   r.best = run(*found.best_scene, *found.best, metrics_options);
+  r.contacts = contacts(*found.best);
   r.best.cost = found.best_cost;
   r.work = found.best->trajectory.work;
   r.parameters = found.parameters;
@@ -223,34 +223,22 @@ Result result_of(const OptimizeResult& found, const OptimizeOptions& options, co
   return r;
 }
 
-Result result_of(const RobustResult& found, const OptimizeOptions& options, const RobustOptions& robust,
-                 const Provenance& provenance) {
-  Result r = result_of(found.found, options, provenance);
+Result result_of(const RobustResult& found, const OptimizeOptions& options, const std::string& command) {
+  Result r = result_of(found.found, options, command);
   r.optimizer = "race of CMA-ES";
   r.search.value_name = "cost over devices";
-  const auto condition = [](const std::string& text, const Yield& share, bool holds) {
-    return ResultRobust::Condition{
-        .text = text, .share = share.value, .low = share.interval.low, .high = share.interval.high, .holds = holds};
-  };
-  r.robust = ResultRobust{.measure = robust.aim.measure.text,
-                          .devices = static_cast<double>(robust.samples),
-                          .fresh_devices = found.verdict ? static_cast<double>(found.verdict->devices) : Metrics::unset,
-                          .closings = static_cast<double>(found.closings),
-                          .cost_on_searched = found.cost_on_searched,
-                          .failing = found.failing,
-                          .is_told = found.is_told,
-                          .yield = {},
-                          .conditions = {}};
-  if (found.yield) r.robust->yield = condition(robust.aim.measure.yield->text, *found.yield, true);
-  for (const FulfilledCondition& c : found.conditions)
-    r.robust->conditions.push_back(condition(c.condition.text, c.share, c.holds));
+  r.robust = found.findings;
   return r;
 }
 
 Result result_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command,
-                 const Provenance& provenance) {
-  Result r = result_of(found.best, options, provenance);
-  if (!found.rows.empty()) r.devices = devices_of(found, options, std::move(next_command));
+                 const std::string& command) {
+  Result r = result_of(found.best, options, command);
+  if (!found.rows.empty()) {
+    r.devices = found.findings;
+    r.devices->spread = spread_words(found.varied.scene.spread);
+    r.devices->next_command = std::move(next_command);
+  }
   if (found.interrupted) r.status = "interrupted";
   r.search.value_name = "cost, on the nominal device";
   return r;

@@ -11,11 +11,6 @@
 
 namespace softland {
 
-/// Where a result comes from: goes into every output.
-struct Provenance {
-  std::string command;  ///< the command line
-};
-
 /// The motion of a run: knots, and points of the interpolant where knots are far apart; of a long run the most_curve_rows of them
 /// that draw the same picture, with all extremes, and the most_rebounds highest rebounds.
 [[nodiscard]] ResultCurve curve_of(const Trajectory& trajectory, const MetricsOptions& options);
@@ -26,19 +21,18 @@ struct Provenance {
 /// The evaluations of a long search of which most_evaluations draw the same picture.
 [[nodiscard]] Points drawn_evaluations(Points all);
 
-/// The result of simulate. Curves have the resolution of the integration, up to most_curve_rows.
-[[nodiscard]] Result result_of(const PreparedScene& prepared, const Closing& closing, const Provenance& provenance);
+/// The result of simulate; `command` is the command line. Curves have the resolution of the integration, up to most_curve_rows.
+[[nodiscard]] Result result_of(const PreparedScene& prepared, const Closing& closing, const std::string& command);
 
 /// The result of optimize. Equal for equal seeds but for the time that it took and the command line. Of the evaluations it holds
 /// those that improved.
-[[nodiscard]] Result result_of(const OptimizeResult& found, const OptimizeOptions& options, const Provenance& provenance);
+[[nodiscard]] Result result_of(const OptimizeResult& found, const OptimizeOptions& options, const std::string& command);
 
 /// The result of a robust search.
-[[nodiscard]] Result result_of(const RobustResult& found, const OptimizeOptions& options, const RobustOptions& robust,
-                               const Provenance& provenance);
+[[nodiscard]] Result result_of(const RobustResult& found, const OptimizeOptions& options, const std::string& command);
 
 /// The result of a search for devices: of the waveform that wins.
 [[nodiscard]] Result result_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command,
-                               const Provenance& provenance);
+                               const std::string& command);
 
 }  // namespace softland

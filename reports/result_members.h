@@ -16,6 +16,12 @@ namespace internal {
 
 inline bool every_figure(const Figure&) { return true; }
 inline bool figure_of_no_drive(const Figure& figure) { return figure.conditioning != Conditioning::drives; }
+/// A figure that each of several contacts has of its own.
+inline bool figure_of_contact(const Figure& figure) {
+  if (figure.key == key_of(&Metrics::drive_energy)) return false;
+  const bool is_at_rest = figure.conditioning == Conditioning::rest || figure.conditioning == Conditioning::open;
+  return figure_of_no_drive(figure) && (!is_at_rest || figure.key == key_of(&Metrics::hold_force));
+}
 inline bool figure_of_number(const Figure& figure) { return !figure.is_yes_or_no(); }
 
 // The status stands among the figures.
@@ -56,6 +62,8 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] nlohmann::json voltages_json(const std::map<std::string, ByModes>& of_electrodes);
 [[nodiscard]] std::map<std::string, ByModes> read_voltages(const nlohmann::json& of_electrodes);
 [[nodiscard]] HoldWindows read_windows(const nlohmann::json& windows);
+/// Each with the quantiles of its row.
+[[nodiscard]] nlohmann::json choices_json(const DevicesFindings& devices);
 /// The outcome of all searches together.
 [[nodiscard]] nlohmann::json seeds_summary(const ResultSeeds& seeds);
 
@@ -73,6 +81,17 @@ void members(A& a, MadeWith& made) {
   a("processor", OrNull{made.processor});
 }
 
+/// What every record of a study begins with.
+template <class A>
+void members(A& a, Origin& origin) {
+  a("kind", origin.kind);
+  a("version", origin.version);
+  a("made_with", origin.made_with);
+  a("command", origin.command);
+  if (a.has(!origin.scene.is_null())) a("scene", origin.scene);
+  if (a.has(!origin.scene_toml.empty())) a("scene_toml", origin.scene_toml);
+}
+
 template <class A>
 void members(A& a, ResultCurve& curve) {
   a("time_s", curve.time);
@@ -87,6 +106,12 @@ void members(A& a, ResultRun& run) {
   internal::figures_and_status(a, run.figures, run.status, internal::every_figure);
   a("collapse_time_s", run.collapse_time);
   a("waveforms", run.waveforms);
+}
+
+template <class A>
+void members(A& a, ResultContact& contact) {
+  a("gap_m", contact.gap);
+  a.figures(contact.figures, internal::figure_of_contact);
 }
 
 template <class A>
@@ -155,22 +180,22 @@ void members(A& a, ResultLimit& limit) {
 }
 
 template <class A>
-void members(A& a, ResultFamily& one) {
+void members(A& a, SearchedFamilyResult& one) {
   a("family", one.family);
-  a("evaluations", internal::Count{one.evaluations});
+  a("evaluations", one.evaluations);
   a("cost", one.cost);
 }
 
 template <class A>
-void members(A& a, ResultRobust::Condition& condition) {
+void members(A& a, FulfilledCondition& condition) {
   a("condition", condition.text);
-  a("share", condition.share);
-  a.pair("interval", condition.low, condition.high);
+  a("share", condition.share.value);
+  a.pair("interval", condition.share.interval.low, condition.share.interval.high);
   a("holds", condition.holds);
 }
 
 template <class A>
-void members(A& a, ResultRobust& robust) {
+void members(A& a, RobustFindings& robust) {
   a("measure", robust.measure);
   a("devices", robust.devices);
   a("fresh_devices", robust.fresh_devices);
@@ -183,7 +208,7 @@ void members(A& a, ResultRobust& robust) {
 }
 
 template <class A>
-void members(A& a, ResultDevices::Row& row) {
+void members(A& a, DevicesFindings::Row& row) {
   a("name", row.name);
   a.object("knowledge", [&](auto& knowledge) {
     knowledge("Vdp", row.pull_in_error);
@@ -202,17 +227,15 @@ void members(A& a, ResultDevices::Row& row) {
 }
 
 template <class A>
-void members(A& a, ResultDevices::Choice& choice) {
+void members(A& a, DevicesFindings::Choice& choice) {
   a("name", choice.name);
   a("file", choice.file);
   a("waveform", choice.waveform);
   a("tau", choice.tau);
-  a("quantile_95", internal::OrInfinite{choice.at_95});
-  a("quantile_99", internal::OrInfinite{choice.at_99});
 }
 
 template <class A>
-void members(A& a, ResultDevices::StablePath& path) {
+void members(A& a, DevicesFindings::StablePath& path) {
   a("drives", path.drives);
   a("share_of_devices", path.share);
   a("reaches_V", path.reaches);
@@ -222,7 +245,7 @@ void members(A& a, ResultDevices::StablePath& path) {
 }
 
 template <class A>
-void members(A& a, ResultDevices::Courses& courses) {
+void members(A& a, DevicesFindings::Courses& courses) {
   a("end_s", courses.end);
   a("unit_m", courses.unit);
   a("plain_step", courses.step);
@@ -230,7 +253,7 @@ void members(A& a, ResultDevices::Courses& courses) {
 }
 
 template <class A>
-void members(A& a, ResultDevices::FrontPoint& point) {
+void members(A& a, FrontPoint& point) {
   a(key_of(&Metrics::initial_contact_time), point.first_touch);
   a(key_of(&Metrics::largest_impact_velocity), point.impact_speed);
   a("bounce_free", point.bounce_free);
@@ -238,14 +261,14 @@ void members(A& a, ResultDevices::FrontPoint& point) {
 }
 
 template <class A>
-void members(A& a, ResultDevices::ByError& known) {
+void members(A& a, KnownVdp& known) {
   a("error", known.error);
   a("bounce_free", known.bounce_free);
   a(key_of(&Metrics::largest_impact_velocity), internal::OrInfinite{known.impact_speed});
 }
 
 template <class A>
-void members(A& a, ResultDevices::Racer& racer) {
+void members(A& a, RaceEntry& racer) {
   a("measure", racer.measure);
   a("waveform", racer.waveform);
   a("closings", racer.closings);
@@ -254,7 +277,7 @@ void members(A& a, ResultDevices::Racer& racer) {
 }
 
 template <class A>
-void members(A& a, ResultDevices& devices) {
+void members(A& a, DevicesFindings& devices) {
   a("spread_assumed", devices.spread_assumed);
   a("spread", devices.spread);
   a("count", devices.count);
@@ -267,7 +290,9 @@ void members(A& a, ResultDevices& devices) {
   a("better_than_plain_step", devices.better_than_plain_step);
   a("worse_in", devices.worse_in);
   a("rows", devices.rows);
-  a("choices", devices.choices);
+  a.custom(
+      "choices", devices.choices, [&](const auto&) { return internal::choices_json(devices); },
+      internal::JsonReader::read<std::vector<DevicesFindings::Choice>>);
   a("stable_path", internal::OrNull{devices.stable_path});
   a("goal_met", devices.goal_met);
   a("missed_by_m", devices.missed_by);
@@ -363,12 +388,10 @@ void members_of_search(A& a, Result& result) {
   if (a.has(!result.checks.empty())) a("evaluations_with_more_modes", internal::Count{result.evaluations_of_modes});
 }
 
-/// But for what is worked out from others, kind and scene.
+/// But for what is worked out from others.
 template <class A>
 void members(A& a, Result& result) {
-  a("version", result.version);
-  a("command", result.command);
-  a("made_with", result.made_with);
+  members(a, result.origin);
   a("status", result.status);
   a.custom("pull_in", result.pull_in, internal::pull_in_json, internal::read_pull_in);
   a("warnings", result.warnings);
@@ -379,7 +402,7 @@ void members(A& a, Result& result) {
   a("effects", result.effects);
   a.object("curves", [&](auto& curves) {
     if (curves.has(result.best.figures.has_value())) curves("best", result.best.curve);
-    if (curves.has(result.is_search)) curves("baseline", result.baseline.curve);
+    if (curves.has(result.is_search())) curves("baseline", result.baseline.curve);
   });
   if (a.has(result.best.figures.has_value())) {
     a.object("metrics", [&](auto& metrics) {
@@ -389,9 +412,10 @@ void members(A& a, Result& result) {
     a.object("best", [&](auto& best) { members(best, result.best); });
     internal::figure_errors(a, result.best.errors);
   }
+  if (a.has(!result.contacts.empty())) a("contacts", result.contacts);
   a("closed_state", result.closed_state);
   a("work", result.work);
-  if (a.has(result.is_search)) members_of_search(a, result);
+  if (a.has(result.is_search())) members_of_search(a, result);
   if (a.reads) a.object("certified", [&](auto&) { result.certificate.emplace(); });
   if (!result.certificate) return;
   a.custom("certified", result.certificate->ill_conditioned, internal::certified_json, internal::read_certified);

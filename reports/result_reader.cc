@@ -177,34 +177,33 @@ HoldWindows internal::read_windows(const json& ends) {
 Result read_result(const json& result) {
   require(result.is_object(), "the result is not a JSON object");
   Result r = internal::JsonReader::read<Result>(result);
-  r.is_search = is_search(result);
+  r.origin.kind = is_search(result) ? "optimize" : "simulate";
+  if (r.origin.scene_toml.empty() && r.origin.scene.is_object())
+    r.origin.scene_toml = r.origin.scene.dump(2, ' ', false, json::error_handler_t::replace);
   if (r.best.status.empty()) r.best.status = r.status;
-  r.scene = read_result_scene(at(result, {"scene"}), text(result, {"scene_toml"}));
+  r.scene = read_result_scene(r.origin.scene);
   return r;
 }
 
-// Lengths, percentages of a beam's length, or its tip.
+// A length, a percentage of a beam's length, or its tip.
+double place_on(double length, const json& place) {
+  const std::string written = text(place);
+  if (written == "tip") return length;
+  return written.ends_with('%') ? quantity(place) * length : quantity(place);
+}
+
 std::optional<std::array<double, 2>> span_on(double length, const json& span) {
   if (!span.is_array() || span.size() != 2) return std::nullopt;
-  const auto place = [&](const json& one) {
-    const std::string written = one.is_string() ? one.get<std::string>() : std::string();
-    if (written == "tip") return length;
-    const double value = quantity(one);
-    return written.ends_with('%') ? value * length : value;
-  };
-  const std::array<double, 2> ends{place(span[0]), place(span[1])};
+  const std::array<double, 2> ends{place_on(length, span[0]), place_on(length, span[1])};
   return std::isfinite(ends[0]) && std::isfinite(ends[1]) ? std::optional(ends) : std::nullopt;
 }
 
-ResultScene read_result_scene(const json& scene, std::string file) {
+ResultScene read_result_scene(const json& scene) {
   ResultScene s{.structure = text(scene, {"structure", "kind"}),
                 .length = quantity(at(scene, {"structure", "length"})),
                 .electrode_gap = quantity(at(scene, {"gap", "electrode"})),
                 .contact_gap = quantity(at(scene, {"gap", "contact"})),
-                .pad_length = quantity(at(scene, {"contact", "pad_length"})),
-                .text = std::move(file),
-                .tree = scene};
-  if (s.text.empty() && scene.is_object()) s.text = scene.dump(2, ' ', false, json::error_handler_t::replace);
+                .pad_length = quantity(at(scene, {"contact", "pad_length"}))};
   if (at(scene, {"piezo"}).is_object()) s.piezo = ResultScene::Piezo{span_on(s.length, at(scene, {"piezo", "span"}))};
   for (const auto& [name, electrode] : members_of(at(scene, {"electrode"}), [](const json& one) { return &one; })) {
     const json& spans = at(*electrode, {"span"});
@@ -214,6 +213,13 @@ ResultScene read_result_scene(const json& scene, std::string file) {
                               .span = span_on(s.length, span),
                               .far_side = text(*electrode, {"side"}) == "far",
                               .gap = quantity(at(*electrode, {"gap"}))});
+  }
+  for (const auto& [name, contact] : members_of(at(scene, {"contact"}), [](const json& one) { return &one; })) {
+    if (!contact->is_object()) continue;
+    s.contacts.push_back({.name = name,
+                          .at = place_on(s.length, at(*contact, {"at"})),
+                          .gap = quantity(at(*contact, {"gap"})),
+                          .far_side = text(*contact, {"side"}) == "far"});
   }
   s.waveforms = members_of(at(scene, {"waveform"}), [](const json& one) {
     return ResultScene::Waveform{.family = text(one, {"family"}),

@@ -26,7 +26,7 @@ void require_reportable(const nlohmann::json& result);
 /// Throws InvalidInput when `result` is not an object.
 [[nodiscard]] Result read_result(const nlohmann::json& result);
 
-/// What a report shows of a resolved scene; `file` is its text.
-[[nodiscard]] ResultScene read_result_scene(const nlohmann::json& scene, std::string file);
+/// What a report shows of a resolved scene.
+[[nodiscard]] ResultScene read_result_scene(const nlohmann::json& scene);
 
 }  // namespace softland

@@ -122,7 +122,7 @@ std::string_view worst_figure(const ResultCheck& check) {
 
 bool all_checks_land(const Result& result) { return std::ranges::all_of(result.checks, is_clean_run); }
 
-std::string best_label(const Result& result) { return result.is_search ? own_subject : "closing"; }
+std::string best_label(const Result& result) { return result.is_search() ? own_subject : "closing"; }
 
 std::string baseline_label() { return "plain step"; }
 
@@ -137,7 +137,7 @@ Headline headline(const Result& result) {
           ? " Whether it stays closed depends on the number of modes: with more of them than the scene keeps it "
             "is pulled through the contact."
           : " It does not stay closed: the hold levels pull it through the contact in the end.";
-  if (!result.is_search) {
+  if (!result.is_search()) {
     if (result.status == "interrupted") return {"The simulation was interrupted.", ""};
     return {capitalised(closing_clause({.subject = "the switch"}, result.best, window)) + "." + rest, ""};
   }
@@ -170,8 +170,8 @@ std::string gap_caption(const Result& result) {
   if (bounces(result.best) || bounces(result.baseline))
     what += fmt::format("; dots mark rebounds above {}", quantity(result.scene.significant_rebound, "m", 1));
   what += ".";
-  const std::string own = landing_clause(result.is_search ? own_subject : "the switch", result.best);
-  const std::string found = joined(result.is_search ? landing_clause(step_subject, result.baseline) : "", own);
+  const std::string own = landing_clause(result.is_search() ? own_subject : "the switch", result.best);
+  const std::string found = joined(result.is_search() ? landing_clause(step_subject, result.baseline) : "", own);
   return found.empty() ? what : what + " " + found;
 }
 
@@ -184,8 +184,8 @@ std::string landing_caption(const Result& result) {
     const std::string after = height > 0 ? "rises " + quantity(height, "m") + " above it again" : "does not rise above it again";
     return fmt::format("{} reaches the plane with {} and {}", subject, speed, after);
   };
-  const std::string found = result.is_search ? joined(reach(step_subject, result.baseline), reach(own_subject, result.best))
-                                             : joined(reach("the switch", result.best), "");
+  const std::string found = result.is_search() ? joined(reach(step_subject, result.baseline), reach(own_subject, result.best))
+                                               : joined(reach("the switch", result.best), "");
   return "The same gap in a narrow band around the contact plane; below it the contact is pressed." +
          (found.empty() ? "" : " " + found);
 }
@@ -194,7 +194,7 @@ std::string velocity_caption(const Result& result) {
   const double own = figure_of_run(result.best, &Metrics::impact_velocity);
   const double step = figure_of_run(result.baseline, &Metrics::impact_velocity);
   const std::string what = "Velocity of the contact point, positive towards the contact.";
-  if (!result.is_search || !std::isfinite(step)) {
+  if (!result.is_search() || !std::isfinite(step)) {
     return std::isfinite(own) ? fmt::format("{} It lands at {}.", what, quantity(own, "m/s")) : what;
   }
   if (!std::isfinite(own)) return fmt::format("{} The plain step lands at {}.", what, quantity(step, "m/s"));
@@ -207,7 +207,7 @@ std::string force_caption(const Result& result) {
   const double step = figure_of_run(result.baseline, &Metrics::peak_contact_force);
   const double hold = figure_of_run(result.best, &Metrics::hold_force);
   std::string words = "Force of the contact on the beam.";
-  if (result.is_search && std::isfinite(step) && std::isfinite(own)) {
+  if (result.is_search() && std::isfinite(step) && std::isfinite(own)) {
     words += fmt::format(" The plain step peaks at {}, softland's waveform at {}{}.", quantity(step, "N"), quantity(own, "N"),
                          in_brackets(change(step, own, true)));
   } else if (std::isfinite(own)) {
@@ -219,7 +219,7 @@ std::string force_caption(const Result& result) {
 
 std::string waveform_caption(const Result& result, const std::string& drive) {
   const Points& shape = waveform(result.best, drive);
-  const bool equal = result.is_search && !shape.empty() && shape == waveform(result.baseline, drive);
+  const bool equal = result.is_search() && !shape.empty() && shape == waveform(result.baseline, drive);
   const DriveScale scale = drive_scale(drive);
   const DriveLimits limits = drive_limits(result, drive);
   const std::string driver =
@@ -231,7 +231,7 @@ std::string waveform_caption(const Result& result, const std::string& drive) {
   const std::string own = range_words(shape, scale, equal);
   if (equal && !own.empty()) return fmt::format("{} of the drive “{}”. Both waveforms {}.{}", scale.name, drive, own, driver);
   const std::string step = range_words(waveform(result.baseline, drive), scale, equal);
-  const std::string name = result.is_search ? own_subject : "the waveform";
+  const std::string name = result.is_search() ? own_subject : "the waveform";
   const std::string found =
       joined(own.empty() ? "" : name + " " + own, step.empty() ? "" : std::string(step_subject) + " " + step);
   return fmt::format("{} of the drive “{}”.{}{}", scale.name, drive, found.empty() ? "" : " " + found, driver);
@@ -288,7 +288,7 @@ std::string checks_caption(const Result& result) {
 
 std::string families_caption(const Result& result) {
   std::string words;
-  for (const ResultFamily& one : result.families)
+  for (const SearchedFamilyResult& one : result.families)
     words += fmt::format("{}{} {}", words.empty() ? "" : ", ", one.family,
                          std::isfinite(one.cost) ? plain_number(one.cost) : std::string("no landing"));
   return words;
@@ -296,7 +296,7 @@ std::string families_caption(const Result& result) {
 
 std::string robust_caption(const Result& result) {
   if (!result.robust) return {};
-  const ResultRobust& r = *result.robust;
+  const RobustFindings& r = *result.robust;
   const auto whole = [](double value) { return std::isfinite(value) ? fmt::format("{:.0f}", value) : std::string("?"); };
   std::string words =
       fmt::format("Searched over {} devices of the spread, {} closings, by {}.", whole(r.devices), whole(r.closings), r.measure);
@@ -311,11 +311,12 @@ std::string robust_caption(const Result& result) {
     }
     words += ".";
   }
-  const auto share = [&](const ResultRobust::Condition& c) {
-    return fmt::format("{} ({} to {})", percent(c.share), plain_number(100 * c.low), plain_number(100 * c.high));
+  const auto share = [&](const FulfilledCondition& c) {
+    const auto& [low, high] = c.share.interval;
+    return fmt::format("{} ({} to {})", percent(c.share.value), plain_number(100 * low), plain_number(100 * high));
   };
   if (r.yield) words += fmt::format(" {} of the fresh devices have {}.", share(*r.yield), r.yield->text);
-  for (const ResultRobust::Condition& c : r.conditions) {
+  for (const FulfilledCondition& c : r.conditions) {
     words += fmt::format(" The condition {} {}: {} of the fresh devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
                          share(c));
   }

@@ -366,10 +366,8 @@ Document document_of(const RobustnessRecord& found) {
                     .origin = "robustness",
                     .sections = {{.id = "charts", .heading = "How the devices differ", .parts = {}}},
                     .warnings = found.warnings,
-                    .made = internal::made_of(found.origin)};
+                    .made = {.origin = found.origin, .seed = found.seed, .tolerance = found.tolerance}};
   for (const std::string& words : found.about) document.sections.front().parts.emplace_back(Paragraph{words});
-  document.made.seed = found.seed;
-  document.made.tolerance = found.tolerance;
   if (found.devices == 0) return document;
   std::tie(document.headline, document.headline_rest) = headline_of(found);
   document.keys = keys_of(found);

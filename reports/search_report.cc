@@ -33,7 +33,7 @@ void add_devices(SearchReport& report, const PlannedSearch& search, const std::s
                                             .found = raced->verdict,
                                             .options = options_of(search, search.for_devices->verdict),
                                             .command = command,
-                                            .windows = raced->windows});
+                                            .windows = raced->findings.windows});
   }
   const auto* robust = std::get_if<RobustResult>(&report.found.result);
   if (robust == nullptr || !robust->verdict) return;
@@ -46,15 +46,15 @@ void add_devices(SearchReport& report, const PlannedSearch& search, const std::s
 }
 
 void add_result(SearchReport& report, const PlannedSearch& search, const std::filesystem::path& folder,
-                const Provenance& provenance) {
+                const std::string& command) {
   const auto& found = report.found.result;
   if (const auto* nominal = std::get_if<OptimizeResult>(&found)) {
-    report.result = result_of(*nominal, search.options, provenance);
+    report.result = result_of(*nominal, search.options, command);
   } else if (const auto* robust = std::get_if<RobustResult>(&found)) {
-    report.result = result_of(*robust, search.options, *search.robust, provenance);
+    report.result = result_of(*robust, search.options, command);
   } else {
     const auto& raced = std::get<ForDevicesResult>(found);
-    report.result = result_of(raced, search.options, next_command(raced, folder), provenance);
+    report.result = result_of(raced, search.options, next_command(raced, folder), command);
   }
 }
 

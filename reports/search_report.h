@@ -31,6 +31,6 @@ void add_devices(SearchReport& report, const PlannedSearch& search, const std::s
 
 /// The result. `folder`: where the files of the search will be, for the command that says how a device is measured.
 void add_result(SearchReport& report, const PlannedSearch& search, const std::filesystem::path& folder,
-                const Provenance& provenance);
+                const std::string& command);
 
 }  // namespace softland

@@ -141,35 +141,69 @@ std::string drawn_electrodes(const ResultScene& scene, const SideView& view) {
   return out;
 }
 
+double plane_of(const SideView& view, const ResultScene& scene, double gap) {
+  return view.bottom + SideView::gap * std::min(1.0, gap / scene.electrode_gap);
+}
+
+/// Contacts that have names stand at their places, those of the far side hang above the beam; gaps beside them.
+std::string drawn_contacts(const ResultScene& scene, const SideView& view) {
+  constexpr double wide = 12, foot = SideView::electrode;
+  const double usual = view.plate || view.both_ends ? 0.5 : 1;
+  std::string out;
+  double below = view.floor + foot + 14, above = view.top - SideView::gap * 0.75 - foot - 5;
+  for (const ResultScene::Contact& one : scene.contacts) {
+    if (!(one.gap > 0)) continue;
+    const double share = std::isfinite(one.at) ? std::clamp(one.at / view.length, 0.0, 1.0) : usual;
+    const double x = std::min(view.x_at(share) - wide / 2, SideView::right - wide);
+    const std::string text = one.name + ", gap " + given_quantity(one.gap, "m");
+    if (one.far_side) {
+      const double plane = view.top - std::min(0.75, one.gap / scene.electrode_gap) * SideView::gap;
+      const double ceiling = view.top - SideView::gap * 0.75 - foot;
+      out += rectangle(x, ceiling, wide, plane - ceiling, "contact") + words(x + wide / 2, above, "middle", text);
+      above -= 14;
+    } else {
+      const double plane = plane_of(view, scene, one.gap);
+      out += rectangle(x, plane, wide, view.floor + foot - plane, "contact") +
+             drawn_line(x + wide / 2, view.floor + foot, x + wide / 2, below + 4, "guide") +
+             words(x + wide / 2, below + 16, "middle", text);
+      below += 14;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string sketch(const ResultScene& scene) {
   const bool plate = scene.structure == "plate", both_ends = scene.structure == "clamped-clamped";
-  if (!(scene.electrode_gap > 0) || !(scene.contact_gap > 0) || !(plate || both_ends || scene.structure == "cantilever"))
-    return {};
+  const bool is_known = plate || both_ends || scene.structure == "cantilever";
+  if (!is_known || !(scene.electrode_gap > 0) || !(scene.contact_gap > 0 || !scene.contacts.empty())) return {};
   const double length = scene.length > 0 ? scene.length : 1;
 
-  constexpr double right = SideView::right, gap = SideView::gap, electrode = SideView::electrode;
-  const bool far_side = std::any_of(scene.electrodes.begin(), scene.electrodes.end(),
-                                    [](const ResultScene::Electrode& one) { return one.far_side; });
+  constexpr double right = SideView::right, electrode = SideView::electrode;
+  const auto is_far = [](const auto& one) { return one.far_side; };
+  const bool far_side = std::ranges::any_of(scene.electrodes, is_far) || std::ranges::any_of(scene.contacts, is_far);
   const SideView view{.plate = plate, .both_ends = both_ends, .length = length, .top = far_side ? 86.0 : 46.0};
   const double bottom = view.bottom, floor = view.floor;
 
-  std::string out = drawn_beam(scene, view) + drawn_electrodes(scene, view);
-  // The contact stands at the centre of the pad, of a beam between two clamps and of a plate in the middle.
-  const double pad = scene.pad_length;
-  const double contact_at = plate || both_ends ? 0.5 : 1 - (pad > 0 ? std::min(1.0, pad / length) / 2 : 0);
-  const double plane = bottom + gap * std::min(1.0, scene.contact_gap / scene.electrode_gap);
-  constexpr double contact_wide = 16;
-  const double contact_left =
-      std::min(view.x_at(contact_at) - contact_wide / 2, plate || both_ends ? right : right - contact_wide);
-  out += rectangle(contact_left, plane, contact_wide, floor + electrode - plane, "contact");
+  std::string out = drawn_beam(scene, view) + drawn_electrodes(scene, view) + drawn_contacts(scene, view);
   const double measure = both_ends || plate ? right + 64 : right + 16;
-  out += drawn_line(contact_left + contact_wide, plane, measure + 6, plane, "guide") +
-         drawn_line(right, bottom, measure + 6, bottom, "guide");
-  out += height_measure(measure, bottom, plane, "to the contact " + given_quantity(scene.contact_gap, "m"));
+  if (scene.contacts.empty()) {
+    // The contact stands at the centre of the pad, of a beam between two clamps and of a plate in the middle.
+    const double pad = scene.pad_length;
+    const double contact_at = plate || both_ends ? 0.5 : 1 - (pad > 0 ? std::min(1.0, pad / length) / 2 : 0);
+    const double plane = plane_of(view, scene, scene.contact_gap);
+    constexpr double contact_wide = 16;
+    const double contact_left =
+        std::min(view.x_at(contact_at) - contact_wide / 2, plate || both_ends ? right : right - contact_wide);
+    out += rectangle(contact_left, plane, contact_wide, floor + electrode - plane, "contact");
+    out += drawn_line(contact_left + contact_wide, plane, measure + 6, plane, "guide") +
+           drawn_line(right, bottom, measure + 6, bottom, "guide");
+    out += height_measure(measure, bottom, plane, "to the contact " + given_quantity(scene.contact_gap, "m"));
+  }
   out += words(measure + 8, floor + electrode, "start", "to the electrode " + given_quantity(scene.electrode_gap, "m"));
-  const double height = floor + electrode + 26;
+  const auto near_contacts = std::ranges::count_if(scene.contacts, [](const auto& one) { return !one.far_side; });
+  const double height = floor + electrode + 26 + 14 * static_cast<double>(near_contacts);
   return fmt::format(
       "<svg class=\"sketch\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"The switch from the side\">\n{}</svg>\n",
       width, height, out);

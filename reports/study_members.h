@@ -13,17 +13,6 @@
 
 namespace softland {
 
-/// What every record of a study begins with.
-template <class A>
-void members(A& a, Origin& origin) {
-  a("kind", origin.kind);
-  a("version", origin.version);
-  a("made_with", origin.made_with);
-  a("command", origin.command);
-  if (a.has(!origin.scene.is_null())) a("scene", origin.scene);
-  if (a.has(!origin.scene_toml.empty())) a("scene_toml", origin.scene_toml);
-}
-
 /// Status and figures of a run, but for those of the drives.
 template <class A>
 void members(A& a, Metrics& metrics) {

@@ -511,14 +511,12 @@ Document tuning_document(const TuningReport& report) {
                     .keys = keys_of(report),
                     .sections = {records_section(report), belief_section(report.belief)},
                     .draw = [&report] { return picture_of(report); },
-                    .made = internal::made_of(report.origin)};
+                    .made = {.origin = report.origin, .seed = report.seed, .tolerance = report.tolerance}};
   std::tie(document.headline, document.headline_rest) = headline_of(report);
   if (report.end == TuningEnd::interrupted)
     document.headline = "Interrupted: what follows is what there is. " + document.headline;
   document.sections.push_back(
       {.id = "waveforms", .heading = "What the source is told", .parts = {internal::all_charts()}, .shown = ShownIn::page});
-  document.made.seed = report.seed;
-  document.made.tolerance = report.tolerance;
   return document;
 }
 

@@ -54,7 +54,7 @@ std::string time_saved(const PreparedScene& chosen) {
 
 Outcome run(const Setting& setting, const SimulateVerb& request) {
   const auto [prepared, closing] = simulated(setting.prepared(false), request, setting.watch);
-  const auto result = std::make_shared<const Result>(result_of(*prepared, closing, {.command = setting.command}));
+  const auto result = std::make_shared<const Result>(result_of(*prepared, closing, setting.command));
   const Status status = closing.metrics.status;
   Outcome outcome = result_shown(result);
   outcome.fault =

@@ -23,6 +23,7 @@ int new_verb(const std::string& kind) {
                                                   {"plate", "new/plate.toml"},
                                                   {"nem-cantilever", "nem-tin.toml"},
                                                   {"nem-casimir", "new/nem-casimir.toml"},
+                                                  {"two-contacts", "new/two-contacts.toml"},
                                                   {"two-electrodes", "two-electrodes.toml"}};
   const auto found = scenes.find(kind);
   std::vector<std::string> kinds;
@@ -36,9 +37,10 @@ int new_verb(const std::string& kind) {
 
 void add_new(Verb& verb) {
   const auto kind = std::make_shared<std::string>("cantilever");
-  verb.positional("KIND", *kind,
-                  "cantilever (default), cantilever-pzt, clamped-clamped, plate, two-electrodes, nem-cantilever or nem-casimir",
-                  false);
+  verb.positional(
+      "KIND", *kind,
+      "cantilever (default), cantilever-pzt, clamped-clamped, plate, two-contacts, two-electrodes, nem-cantilever or nem-casimir",
+      false);
   verb.footer("Example:\n  softland new cantilever > my-switch.toml");
   verb.runs([kind](const Common&) { return new_verb(*kind); });
 }

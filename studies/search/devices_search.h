@@ -55,16 +55,9 @@ struct DevicesRow {
 /// More devices that land, where half of them do in either; else the softer impacts.
 [[nodiscard]] bool lands_better(const DevicesRow& a, const DevicesRow& b);
 
-/// What is reached in units of a Vdp that is measured with an error, on the first of the fresh devices, each figure by the best
-/// of the waveforms that were searched in measured units, and of the winner in volts.
-struct KnownVdp {
-  double error = 0;                                                    ///< of Vdp, standard deviation, relative
-  double bounce_free = Metrics::unset, impact_speed = Metrics::unset;  ///< share of the devices; 95 % quantile [m/s]
-};
-
-/// A candidate of the choice.
+/// A candidate of the choice, with its waveforms.
 struct ChosenFrom {
-  std::string measure, family;  ///< "cvar:0.9", "knots:6"; measure "drawing" for what the nominal search tried
+  std::string measure, family;  ///< see RaceEntry
   DriveWaveforms waveforms;
   std::map<std::string, double> parameters;  ///< by drive.name; empty for what the nominal search tried
   std::vector<Variable> variables;

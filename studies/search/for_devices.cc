@@ -23,8 +23,7 @@ constexpr std::size_t most_judged = 3;                  // winners, until one is
 constexpr std::size_t most_of_front = 6;
 constexpr double end_of_drawing = 0.3;  // of a budget of time
 
-constexpr const char *plain_step_row = "plain step", *for_the_drawing = "for the drawing", *for_the_devices = "for the devices";
-constexpr const char *fast_row = "fast", *soft_row = "soft", *undelayed_row = "electrode at t = 0";
+constexpr const char *fast_row = "fast", *soft_row = "soft";
 // What devices of a choice may wait for a steady contact, over what they wait under the plain step.
 constexpr double fast_within = 0.5, usual_within = 1, soft_within = 2;
 constexpr double by_chance = 1.02;  // devices of another sample wait so much longer at the most
@@ -32,7 +31,37 @@ constexpr double worth_choosing =
     0.9;  // of the impact velocity of the default, or of its time: what is nearer is no other choice
 constexpr double fewer_bounce_free = 0.05;
 constexpr std::size_t drawn_devices = 50, instants_of_course = 240;
-constexpr double after_steady = 1.1;  // times that until which courses are drawn
+constexpr double units_of_gap = 5000;  // in the gap of the contact
+constexpr double after_steady = 1.1;   // times that until which courses are drawn
+
+DevicesFindings::Row told(const DevicesRow& row) {
+  const DriveRobustness& drive = row.judged;
+  DevicesFindings::Row r{.name = row.name,
+                         .pull_in_error = row.knowledge.pull_in_error.value_or(Metrics::unset),
+                         .frequency_error = row.knowledge.frequency_error.value_or(Metrics::unset),
+                         .piezo_error = row.knowledge.piezo_error.value_or(Metrics::unset),
+                         .time_error = row.knowledge.time_error.value_or(Metrics::unset),
+                         .searched_for_it = row.searched_for_it,
+                         .bounce_free = drive.bounce_free.value,
+                         .open = std::max(0.0, 1 - drive.closing.value - drive.collapsed.value),
+                         .collapsed = drive.collapsed.value};
+  for (const Figure& f : device_figures) {
+    const bool needs_the_end = f.key == key_of(&Metrics::steady_force_time) || f.key == key_of(&Metrics::permanent_contact_time);
+    if (needs_the_end && !row.judged_whole) continue;
+    const auto& quantiles = drive.figures[f].quantiles;
+    const std::string key(f.key);
+    r.at_50[key] = quantiles[1].value, r.at_95[key] = quantiles[2].value, r.at_99[key] = quantiles[3].value;
+  }
+  for (const auto& [height, key] : DevicesFindings::yield_heights) {
+    const auto rebounds_less = [most = height](const DeviceOutcome& o) {
+      return o.closed() && o.is_held && o.metrics.major_bounce_height <= most;
+    };
+    if (drive.outcomes.empty()) continue;
+    r.yield[key] =
+        static_cast<double>(std::ranges::count_if(drive.outcomes, rebounds_less)) / static_cast<double>(drive.outcomes.size());
+  }
+  return r;
+}
 
 class DevicesStudy {
  public:
@@ -45,8 +74,7 @@ class DevicesStudy {
 
   ForDevicesResult run() {
     OptimizeResult drawing = searched_for_drawing();
-    result_.emplace(ForDevicesResult{
-        .varied = first().given, .drawing = drawing, .best = std::move(drawing), .spread_assumed = searched_.spread_assumed()});
+    result_.emplace(ForDevicesResult{.varied = first().given, .drawing = drawing, .best = std::move(drawing)});
     try {
       if (result_->drawing.best_scene && !stopped()) {
         choose_of_all();
@@ -57,8 +85,8 @@ class DevicesStudy {
     searched_.give_up();
     if (beside_.valid()) beside_.wait();  // what it has found is read from here on
     if (stopped() && result_->rows.empty()) take_leader();
-    result_->closings += searched_.closings();
     result_->interrupted = stopped();
+    if (!result_->rows.empty()) tell_findings();
     return *std::move(result_);
   }
 
@@ -188,7 +216,7 @@ class DevicesStudy {
         },
         options_.stop);
     watch_.throw_if_stopped();
-    result_->closings += static_cast<long>(all.size() * devices);
+    closings_ += static_cast<long>(all.size() * devices);
     std::vector<ChosenFrom> best;
     std::vector<bool> taken(all.size(), false);
     for (const bool by_share : {false, true}) {
@@ -207,7 +235,6 @@ class DevicesStudy {
     tell("verdict on fresh devices", 0);
     result_->free = searched_.free();
     result_->approach = searched_.approach();
-    result_->share_with_path = searched_.share_with_path();
     make_choices();
     result_->varied = over_whole_window(first().given);
     std::vector<NamedDrive> drives{{.name = for_the_drawing, .waveforms = searched_.all_drives(drawing_waveforms())}};
@@ -227,7 +254,7 @@ class DevicesStudy {
     add(measured);
     front();
     draw_courses();
-    result_->windows = hold_windows(first().given, verdict_options(), watch_);
+    result_->findings.windows = hold_windows(first().given, verdict_options(), watch_);
   }
 
   // The softest of them whose devices wait at most so long, over the plain step; null where there is none.
@@ -320,7 +347,7 @@ class DevicesStudy {
   void add(const InMeasuredUnits& measured) {
     result_->pull_in = measured.pull_in;
     result_->closing_time = measured.closing_time;
-    result_->by_error = measured.by_error;
+    findings().by_error = measured.by_error;
     if (measured.rows.empty()) return;
     const DevicesRow own = row_of_devices();
     std::vector<DevicesRow> rows;
@@ -332,7 +359,7 @@ class DevicesStudy {
     std::ranges::copy(rows, std::back_inserter(result_->rows));
     const DevicesRow& best = rows[measured.best];
     if (!is_worth_measuring(best, own)) return;
-    result_->calibrated_row = best.name;
+    findings().measured = best.name;
     result_->calibrated = with_waveforms(result_->drawing.baseline_scene, measured.best_waveforms);
     result_->calibrated->set(best.knowledge.time_error ? fmt::format("calibration.{}.error=\"50 ns\"", measured_time)
                                                        : fmt::format("calibration.{}.error=\"1 %\"", measured_pull_in));
@@ -369,20 +396,21 @@ class DevicesStudy {
     const double significant = first().given.scene.metrics.significant_rebound;
     std::vector<DriveRobustness>& drives = result_->verdict.drives;
     const DriveRobustness step = drives.front();
-    const auto worse = [&] {
-      return softland::worse_in(row_of_devices().judged.outcomes, step.outcomes, significant, options_.seed);
+    std::vector<std::string>& worse_in = findings().worse_in;
+    const auto compare = [&] {
+      const std::vector<std::string_view> keys =
+          softland::worse_in(row_of_devices().judged.outcomes, step.outcomes, significant, options_.seed);
+      worse_in.assign(keys.begin(), keys.end());
     };
     std::size_t n = 0;
-    for (result_->worse_in = worse();
-         !result_->worse_in.empty() && n + 1 < std::min(searched_.good_enough(), most_judged) && !stopped();
-         result_->worse_in = worse()) {
+    for (compare(); !worse_in.empty() && n + 1 < std::min(searched_.good_enough(), most_judged) && !stopped(); compare()) {
       Robustness next = robustness(result_->varied, {of_candidate(++n)}, verdict_options(), watch_);
       result_->interrupted = next.interrupted;
       row_of_devices().judged = next.drives.back();
       std::erase_if(drives, [](const DriveRobustness& one) { return one.name == for_the_devices; });
       drives.push_back(std::move(next.drives.back()));
     }
-    result_->best.plain_step_wins = !result_->worse_in.empty();
+    result_->best.plain_step_wins = !worse_in.empty();
     if (result_->best.plain_step_wins) {
       row_of_devices().judged = step;
       win({});
@@ -397,10 +425,8 @@ class DevicesStudy {
       result_->best.variables = winner.variables;
       note_delay(winner);
     }
-    for (const Criterion& condition : searched_.conditions()) {
-      const Yield share = share_that_fulfils(row_of_devices().judged.outcomes, condition);
-      result_->conditions.push_back({.condition = condition, .share = share, .holds = share.value >= constrained_share});
-    }
+    for (const Criterion& condition : searched_.conditions())
+      findings().conditions.push_back(fulfilled(row_of_devices().judged.outcomes, condition));
   }
 
   // A sooner choice that is no worse than the winner, and than the plain step, takes its place.
@@ -418,7 +444,7 @@ class DevicesStudy {
     result_->choices.erase(fast);
     judged->name = for_the_devices;
     row_of_devices().judged = *judged;
-    result_->worse_in.clear();
+    findings().worse_in.clear();
     DriveRobustness winner = std::move(*judged);
     drives.erase(judged);
     std::erase_if(drives, [](const DriveRobustness& one) { return one.name == for_the_devices; });
@@ -430,7 +456,7 @@ class DevicesStudy {
     if (options_.actuator != Actuator::pzt || !is_quasi_static(winner.family) || approach->holder.empty()) return;
     const Signal step = signal(winner.waveforms.at(approach->holder));
     for (const double time : step.breakpoints()) {
-      if (std::isnan(result_->step_delay) && time > 0) result_->step_delay = time;
+      if (std::isnan(findings().step_delay) && time > 0) findings().step_delay = time;
     }
   }
 
@@ -499,11 +525,17 @@ class DevicesStudy {
     for (const DriveRobustness* one : {&step, &own})
       end = std::fmax(end, after_steady * waited(one->outcomes, &Metrics::steady_force_time));
     end = std::fmin(end, result_->varied.duration);
+    const double unit = result_->varied.model.contact_gap() / units_of_gap;
     const auto courses = [&](const DriveRobustness& drive) {
-      return gap_courses(result_->varied, drive, drawn_devices, instants_of_course, end, verdict_options(), watch_);
+      std::vector<std::vector<int>> all;
+      for (const std::vector<double>& gap :
+           gap_courses(result_->varied, drive, drawn_devices, instants_of_course, end, verdict_options(), watch_).gaps) {
+        std::vector<int>& course = all.emplace_back();
+        for (const double g : gap) course.push_back(static_cast<int>(std::lround(g / unit)));
+      }
+      return all;
     };
-    result_->courses_of_step = courses(step);
-    result_->courses = courses(own);
+    findings().courses = {.end = end, .unit = unit, .step = courses(step), .own = courses(own)};
   }
 
   // The candidates of which none closes sooner and more softly, on the devices of the verdict.
@@ -520,14 +552,57 @@ class DevicesStudy {
     for (const ChosenFrom* one : kept) {
       watch_.throw_if_stopped();
       const std::vector<DeviceOutcome> outcomes = searched_.closed(fresh, one->waveforms);
-      result_->front.push_back({.first_touch = quantile_95(outcomes, key_of(&Metrics::initial_contact_time)),
-                                .impact_speed = quantile_95(outcomes, key_of(&Metrics::largest_impact_velocity)),
-                                .bounce_free = share_of(outcomes, is_bounce_free),
-                                .measure = one->measure,
-                                .waveform = one->family});
+      findings().front.push_back({.first_touch = quantile_95(outcomes, key_of(&Metrics::initial_contact_time)),
+                                  .impact_speed = quantile_95(outcomes, key_of(&Metrics::largest_impact_velocity)),
+                                  .bounce_free = share_of(outcomes, is_bounce_free),
+                                  .candidate = fmt::format("{} by {}", one->family, one->measure)});
     }
-    std::ranges::stable_sort(result_->front, {}, &FrontPoint::first_touch);
+    std::ranges::stable_sort(findings().front, {}, &FrontPoint::first_touch);
   }
+
+  // What the reports tell, beside what was noted on the way.
+  void tell_findings() {
+    DevicesFindings& d = findings();
+    const std::optional<Closing>& drawn = result_->drawing.best;
+    d.spread_assumed = searched_.spread_assumed();
+    d.count = static_cast<double>(result_->verdict.devices);
+    d.seed = static_cast<double>(options_.seed);
+    d.closings = static_cast<double>(closings_ + searched_.closings());
+    if (result_->chosen) d.measure = result_->chosen->measure, d.waveform = result_->chosen->family;
+    d.better_than_plain_step = !result_->best.plain_step_wins;
+    if (drawn) d.drawing = FigureValues(drawn->metrics), d.drawing_status = to_string(drawn->metrics.status);
+    d.drawing_goal_met = result_->drawing.goal_met;
+    for (const DevicesRow& row : result_->rows) d.rows.push_back(told(row));
+    for (const DeviceChoice& one : result_->choices)
+      d.choices.push_back({.name = one.name,
+                           .file = one.name == default_choice ? "best.toml" : one.name + ".toml",
+                           .waveform = one.candidate.family,
+                           .tau = one.tau});
+    if (const std::optional<StableApproach>& approach = result_->approach) {
+      std::vector<std::string> drives{approach->drive};
+      if (!approach->holder.empty()) drives.push_back(approach->holder);
+      d.stable_path = {.drives = drives,
+                       .share = searched_.share_with_path(),
+                       .reaches = approach->reaches,
+                       .limit = approach->limit,
+                       .touch_places = approach->touch_places(),
+                       .rise = shortest_rise(result_->varied)};
+    }
+    if (const DevicesFindings::Row* own = d.row(for_the_devices)) {
+      const double height = own->at_95.at(std::string(key_of(&Metrics::major_bounce_height)));
+      const double significant = result_->varied.scene.metrics.significant_rebound;
+      d.goal_met = height <= significant;
+      d.missed_by = std::max(0.0, height - significant);
+    }
+    for (const ChosenFrom& one : result_->candidates)
+      d.race.push_back({.measure = one.measure,
+                        .waveform = one.family,
+                        .closings = one.closings,
+                        .bounce_free = one.bounce_free,
+                        .cost = one.tail});
+  }
+
+  [[nodiscard]] DevicesFindings& findings() { return result_->findings; }
 
   const SceneFile& file_;
   const OptimizeOptions& options_;
@@ -538,6 +613,7 @@ class DevicesStudy {
   OptimizeOptions drawing_options_;
   std::optional<ForDevicesResult> result_;  // once there is a drawing
   std::optional<ChosenFrom> undelayed_;     // the best whose electrode steps at t = 0, where others may step later
+  long closings_ = 0;                       // of devices, beside those that searched_ counts
   std::future<void> beside_;                // the last: what it uses outlives it
 };
 

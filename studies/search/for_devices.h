@@ -34,7 +34,7 @@
 #include <string_view>
 #include <vector>
 
-#include "studies/devices/hold_window.h"
+#include "studies/search/devices_findings.h"
 #include "studies/search/devices_search.h"
 
 namespace softland {
@@ -42,15 +42,6 @@ namespace softland {
 /// Shares a budget of closings, which is that of everything together: a fifth of options.max_evaluations is for the drawing, the
 /// rest for the race.
 void share_budget(OptimizeOptions& options, ForDevicesOptions& devices);
-
-/// A candidate on the fresh devices.
-struct FrontPoint {
-  double first_touch = Metrics::unset, impact_speed = Metrics::unset;  ///< 95 % quantiles [s], [m/s]
-  double bounce_free = Metrics::unset;                                 ///< share of the devices
-  std::string measure, waveform;                                       ///< how it was searched
-};
-
-inline constexpr const char* default_choice = "default";  ///< what best.toml holds
 
 /// A waveform that may be chosen: the default, one whose devices carry a steady force sooner, one that is softer and later.
 struct DeviceChoice {
@@ -67,29 +58,17 @@ struct ForDevicesResult {
   /// On the nominal device: the waveform that wins; best_scene is none where the search was interrupted before the choice.
   /// The plain step wins where all that was found is worse over the devices.
   OptimizeResult best;
-  bool spread_assumed = false;                  ///< the scene says nothing of how devices differ
-  std::optional<ChosenFrom> chosen;             ///< none where the plain step wins
+  std::optional<ChosenFrom> chosen = {};        ///< none where the plain step wins
   std::vector<ChosenFrom> candidates = {};      ///< the best first
   std::vector<DeviceChoice> choices = {};       ///< by time: the soonest first; none where the plain step wins
   FreeTime free = {};                           ///< until when waiting was not priced
   std::optional<StableApproach> approach = {};  ///< how the switch can be carried to its contact; none where it cannot be
-  double share_with_path = Metrics::unset;      ///< of the devices that can be
-  /// When the electrode's plain step comes under the winner, where its instant was searched [s].
-  double step_delay = Metrics::unset;
-  Robustness verdict;  ///< of plain step, drawing and winner
-  /// How the first devices close under the plain step and under the winner; none where the plain step wins.
-  GapCourses courses_of_step = {}, courses = {};
+  Robustness verdict = {};                      ///< of plain step, drawing and winner
   std::vector<DevicesRow> rows = {};
-  std::vector<std::string_view> worse_in = {};   ///< of the winner: see worse_in()
-  std::vector<FrontPoint> front = {};            ///< by first touch
-  std::vector<KnownVdp> by_error = {};           ///< the least error first; none where Vdp is not measured
-  HoldWindows windows = {};                      ///< of hold levels
-  std::optional<SceneFile> calibrated = {};      ///< in units that are measured on every device, with its [calibration]
-  std::string calibrated_row = {};               ///< the row that it is of
-  double pull_in = Metrics::unset;               ///< Vdp of the nominal device, where there is a calibrated waveform [V]
-  double closing_time = Metrics::unset;          ///< of the nominal device, under the step that is measured [s]
-  std::vector<FulfilledCondition> conditions{};  ///< of the winner
-  long closings = 0;                             ///< of devices, in all searches
+  std::optional<SceneFile> calibrated = {};  ///< in units that are measured on every device, with its [calibration]
+  double pull_in = Metrics::unset;           ///< Vdp of the nominal device, where there is a calibrated waveform [V]
+  double closing_time = Metrics::unset;      ///< of the nominal device, under the step that is measured [s]
+  DevicesFindings findings = {};             ///< without rows where the search was interrupted before the verdict
   bool interrupted = false;
 
   /// Whether 95 % of the devices rebound by no more than what counts under the plain step.

@@ -307,21 +307,22 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
                   .measures_drive_energy = options.target.measures_drive_energy(),
                   .worth_of_measuring = true},
                  watch);
+  result.findings.fresh_devices = static_cast<double>(result.verdict->devices);
   if (result.verdict->interrupted) out.search.termination = Termination::interrupted;
   const std::vector<DeviceOutcome>& outcomes = result.verdict->drives.back().outcomes;
   out.best_cost = cost.value(outcomes);
   out.baseline_cost = cost.value(result.verdict->drives.front().outcomes);
   const auto failing = std::ranges::count_if(outcomes, fails);
-  result.failing = static_cast<double>(failing) / static_cast<double>(outcomes.size());
-  result.is_told = cost.is_told(outcomes);
-  out.better_than_baseline = result.is_told && out.best_cost < out.baseline_cost;
+  result.findings.failing = static_cast<double>(failing) / static_cast<double>(outcomes.size());
+  result.findings.is_told = cost.is_told(outcomes);
+  out.better_than_baseline = result.findings.is_told && out.best_cost < out.baseline_cost;
   const Metrics& drawn = out.best->metrics;
   out.goal_met = out.better_than_baseline && drawn.lands();
-  if (robust.aim.measure.yield) result.yield = share_that_fulfils(outcomes, *robust.aim.measure.yield);
+  const std::optional<Criterion>& yield = robust.aim.measure.yield;
+  if (yield) result.findings.yield = {.text = yield->text, .share = share_that_fulfils(outcomes, *yield), .holds = true};
   for (const Criterion& condition : robust.aim.conditions) {
-    const Yield share = share_that_fulfils(outcomes, condition);
-    result.conditions.push_back({.condition = condition, .share = share, .holds = share.value >= constrained_share});
-    out.goal_met = out.goal_met && result.conditions.back().holds;
+    result.findings.conditions.push_back(fulfilled(outcomes, condition));
+    out.goal_met = out.goal_met && result.findings.conditions.back().holds;
   }
 }
 
@@ -351,6 +352,11 @@ void require_one_family(const OptimizeOptions& options) {
 
 }  // namespace
 
+FulfilledCondition fulfilled(const std::vector<DeviceOutcome>& outcomes, const Criterion& condition) {
+  const Yield share = share_that_fulfils(outcomes, condition);
+  return {.text = condition.text, .share = share, .holds = share.value >= constrained_share};
+}
+
 RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given, const RobustOptions& asked) {
   OptimizeOptions options = given;
   require_one_family(options);
@@ -362,7 +368,8 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given
   const KnownUnits known = known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch).front();
   RobustOptions robust = asked;
   const RobustCost cost(setting, robust.aim, own_devices(setting, known, robust.samples, options.seed, 0, options.jobs, watch));
-  RobustResult result{.found = {.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline}};
+  RobustResult result{.found = {.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline},
+                      .findings = {.measure = robust.aim.measure.text, .devices = static_cast<double>(robust.samples)}};
   OptimizeResult& out = result.found;
   out.family = options.family;
   out.variables = setting.space.variables();
@@ -376,7 +383,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given
 
   RobustSearch search(setting, cost, robust.aim, options, robust.clock, out.baseline_cost);
   std::vector<Candidate> candidates = search.run();
-  result.closings = search.closings();
+  result.findings.closings = static_cast<double>(search.closings());
   out.search.evaluations = search.evaluations();
   out.search.improvements = search.improvements();
   out.search.termination = search.termination();
@@ -393,7 +400,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given
   } catch (const Interrupted&) {
     out.search.termination = Termination::interrupted;
   }
-  result.cost_on_searched = out.best_cost = winner.value;
+  result.findings.cost_on_searched = out.best_cost = winner.value;
   out.better_than_baseline = out.best_cost < out.baseline_cost;
   out.best_scene = setting.prepared(setting.space.waveforms(winner.x));
   out.best = simulate(*out.best_scene, true, {.progress = options.on_preparation});

@@ -37,21 +37,27 @@ struct RobustOptions {
 };
 
 struct FulfilledCondition {
-  Criterion condition;
+  std::string text;    ///< of the condition
   Yield share;         ///< of fresh devices that fulfil it
   bool holds = false;  ///< by constrained_share of them
 };
+[[nodiscard]] FulfilledCondition fulfilled(const std::vector<DeviceOutcome>& outcomes, const Criterion& condition);
+
+/// What a search over devices by one measure came to, as its JSON holds it.
+struct RobustFindings {
+  std::string measure;
+  double devices = Metrics::unset, fresh_devices = Metrics::unset, closings = Metrics::unset;  ///< closings: in the search
+  double cost_on_searched = Metrics::unset;  ///< of the winner, on the devices that were searched
+  double failing = Metrics::unset;  ///< share of the fresh devices that end open, are not kept closed, or are outside the model
+  bool is_told = true;              ///< the measure looks further than at those
+  std::optional<FulfilledCondition> yield;  ///< what was to be fulfilled by as many devices as possible
+  std::vector<FulfilledCondition> conditions;
+};
 
 struct RobustResult {
-  OptimizeResult found;  ///< costs are those on fresh devices
-  double cost_on_searched = Metrics::unset;
+  OptimizeResult found;               ///< costs are those on fresh devices
   std::optional<Robustness> verdict;  ///< plain step and winner on the same fresh devices; none where it was interrupted
-  /// Of the fresh devices: the share that fails (robust_cost.h), and whether the measure looks further than at those.
-  double failing = Metrics::unset;
-  bool is_told = true;
-  std::optional<Yield> yield;  ///< of the condition that was to be fulfilled by as many as possible
-  std::vector<FulfilledCondition> conditions;
-  long closings = 0;  ///< of devices, in the search
+  RobustFindings findings;
 };
 
 /// `options.max_evaluations` counts closings of devices; its optimizer is not used. Throws InvalidInput as optimize() does, and

@@ -135,7 +135,7 @@ void SeedStudy::search(std::uint64_t k, int jobs, const Listener& listener) {
     std::optional<OptimizeResult> found;
     if (search_.robust) {
       RobustResult result = robust_optimize(search_.scene, options, *search_.robust);
-      closings = static_cast<double>(result.closings);
+      closings = result.findings.closings;
       found.emplace(std::move(result.found));
     } else {
       found.emplace(optimize(search_.scene, options));

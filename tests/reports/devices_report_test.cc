@@ -24,7 +24,7 @@ using testing::Not;
 
 Result search_alone() { return read_result(test::sample_optimize_result(100)); }
 
-ResultDevices::Row row(const std::string& name, double bounce_free, double speed, double height) {
+DevicesFindings::Row row(const std::string& name, double bounce_free, double speed, double height) {
   return {.name = name,
           .bounce_free = bounce_free,
           .open = 0.001,
@@ -40,16 +40,16 @@ ResultDevices::Row row(const std::string& name, double bounce_free, double speed
 
 Result devices_result() {
   Result r = search_alone();
-  ResultDevices d{.spread = "gaps ± 2 %",
-                  .count = 2000,
-                  .seed = 7,
-                  .closings = 150'000,
-                  .measure = "cvar:0.9",
-                  .waveform = "catch",
-                  .better_than_plain_step = true};
+  DevicesFindings d{.spread = "gaps ± 2 %",
+                    .count = 2000,
+                    .seed = 7,
+                    .closings = 150'000,
+                    .measure = "cvar:0.9",
+                    .waveform = "catch",
+                    .better_than_plain_step = true};
   d.rows = {row("plain step", 0, 0.107, 732e-9), row("for the drawing", 0.02, 0.08, 150e-9),
             row("for the devices", 0.01, 0.033, 90e-9)};
-  ResultDevices::Row measured = row("Vdp to 1 %", 0.1, 0.0166, 50e-9);
+  DevicesFindings::Row measured = row("Vdp to 1 %", 0.1, 0.0166, 50e-9);
   measured.pull_in_error = 0.01;
   d.rows.push_back(measured);
   measured.name = "Vdp and piezo to 1 %", measured.piezo_error = 0.01;
@@ -59,8 +59,8 @@ Result devices_result() {
   d.windows = {.of_electrodes = {{"main", {.lower = 16.36, .upper = 36.31}}}, .devices = 200};
   d.front = {{.first_touch = 50e-6, .impact_speed = 0.05, .bounce_free = 0, .candidate = "knots:6 by yield"},
              {.first_touch = 90e-6, .impact_speed = 0.033, .bounce_free = 0.01, .candidate = "catch by cvar:0.9"}};
-  d.race = {{.measure = "cvar:0.9", .waveform = "catch", .closings = 18'000, .cost = 0.3, .bounce_free = 0.01}};
-  d.conditions = {{.text = "t_i < 3 step", .share = 0.97, .low = 0.96, .high = 0.98, .holds = true}};
+  d.race = {{.measure = "cvar:0.9", .waveform = "catch", .closings = 18'000, .bounce_free = 0.01, .cost = 0.3}};
+  d.conditions = {{.text = "t_i < 3 step", .share = {.devices = 2000, .value = 0.97, .interval = {0.96, 0.98}}, .holds = true}};
   d.drawing[&Metrics::permanent_contact_time] = 33.4e-6;
   d.drawing[&Metrics::major_bounce_height] = 0;
   d.drawing_status = "done";
@@ -128,7 +128,7 @@ TEST(DevicesReport, DrawsDevicesUnderTheStepAndTheWaveformSideBySide) {
     EXPECT_THAT(text, HasSubstr("band of 5 to 95 %"));
     EXPECT_THAT(text, HasSubstr("clip-devices-best"));
   }
-  ResultDevices changed = *r.devices;  // a file that somebody has edited
+  DevicesFindings changed = *r.devices;  // a file that somebody has edited
   changed.courses->own.front().pop_back();
   EXPECT_TRUE(internal::gaps_picture(changed).charts.empty());
   changed.courses->step = changed.courses->own = {{1}};

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-const Provenance provenance{.command = "softland test"};
+const std::string command = "softland test";
 
 SceneFile shipped(const char* name, std::initializer_list<const char*> settings) {
   SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/" + name);
@@ -40,13 +40,33 @@ TEST(ResultOf, AClosingIsReportedLikeItsJson) {
   for (const char* name : {"mem-gold.toml", "mem-gold-pzt.toml", "two-electrodes.toml", "purdue-nickel.toml"}) {
     SCOPED_TRACE(name);
     const PreparedScene prepared = prepare(shipped(name, {}));
-    expect_the_same_reports(result_of(prepared, simulate(prepared, true), provenance));
+    expect_the_same_reports(result_of(prepared, simulate(prepared, true), command));
   }
+}
+
+TEST(ResultOf, EachOfSeveralContactsHasItsFigures) {
+  const PreparedScene prepared = prepare(shipped("new/two-contacts.toml", {}));
+  const Closing closing = simulate(prepared, true);
+  const Result made = result_of(prepared, closing, command);
+  expect_the_same_reports(made);
+  const json contacts = result_json(made)["contacts"];
+  ASSERT_EQ(contacts.size(), 3U);
+  const json &left = contacts["left"], &right = contacts["right"], &stop = contacts["stop"];
+  EXPECT_LT(left["initial_contact_time_s"], right["initial_contact_time_s"]) << "the right dimple stands lower";
+  EXPECT_EQ(left["initial_contact_time_s"], closing.metrics.initial_contact_time) << "the connection touches with its first";
+  EXPECT_GT(left["hold_force_N"], right["hold_force_N"]);
+  EXPECT_EQ(right["hold_force_N"], closing.metrics.hold_force) << "the connection carries the least of its forces";
+  EXPECT_TRUE(stop["initial_contact_time_s"].is_null());
+  EXPECT_EQ(stop["gap_m"], 1e-6);
+  const std::string page = page_html(result_document(made));
+  for (const char* words :
+       {"left, gap 1\u00a0µm", "right, gap 1.002\u00a0µm", "stop, gap 1\u00a0µm", "<th scope=\"col\">Contact</th>"})
+    EXPECT_THAT(page, testing::HasSubstr(words));
 }
 
 TEST(ResultOf, ACertifiedClosingIsReportedLikeItsJson) {
   const PreparedScene prepared = prepare(shipped("mem-gold.toml", {}));
-  const Result made = result_of(prepared, certify(prepared), provenance);
+  const Result made = result_of(prepared, certify(prepared), command);
   ASSERT_TRUE(made.certificate);
   EXPECT_FALSE(made.certificate->ill_conditioned.empty());
   expect_the_same_reports(made);
@@ -64,7 +84,7 @@ TEST(ResultOf, AClosingUnderAWaveformThatNoSceneHoldsIsRefusedByItsName) {
   const Closing closing = simulate(prepared, false);
   EXPECT_TRUE(closing.metrics.touched());
   try {
-    (void)result_of(prepared, closing, provenance);
+    (void)result_of(prepared, closing, command);
     ADD_FAILURE() << "accepted";
   } catch (const InvalidInput& error) {
     EXPECT_STREQ(error.what(), "waveform.main: the own waveform 'mine' cannot be written into a result");
@@ -74,7 +94,7 @@ TEST(ResultOf, AClosingUnderAWaveformThatNoSceneHoldsIsRefusedByItsName) {
 TEST(ResultOf, ARunWithoutContactIsReportedLikeItsJson) {
   const auto made = [](const char* change) {
     const PreparedScene prepared = prepare(shipped("mem-gold.toml", {change}));
-    return result_of(prepared, simulate(prepared, true), provenance);
+    return result_of(prepared, simulate(prepared, true), command);
   };
   const Result open = made("waveform.main.level=3 V"), late = made("simulate.duration=5 us");
   EXPECT_EQ(open.status, "open");
@@ -85,7 +105,7 @@ TEST(ResultOf, ARunWithoutContactIsReportedLikeItsJson) {
 
 TEST(ResultOf, ASearchIsReportedLikeItsJson) {
   const OptimizeOptions options{.target = Target::impact, .max_evaluations = 60};
-  Result made = result_of(optimize(shipped("mem-gold.toml", {}), options), options, provenance);
+  Result made = result_of(optimize(shipped("mem-gold.toml", {}), options), options, command);
   made.search.evaluations = {{0, 2.0}, {1, Metrics::unset}, {2, 1.5}};
   made.reproduce = {"softland test", "softland again"};
   EXPECT_TRUE(made.best.figures);
@@ -95,7 +115,7 @@ TEST(ResultOf, ASearchIsReportedLikeItsJson) {
 
 TEST(ResultJson, HasEveryFigureOfTheTableAndNoOther) {
   const PreparedScene prepared = prepare(shipped("mem-gold.toml", {"simulate.duration=60 us"}));
-  const json written = result_json(result_of(prepared, simulate(prepared, true), provenance));
+  const json written = result_json(result_of(prepared, simulate(prepared, true), command));
   std::set<std::string> keys, errors;
   for (const Figure& figure : all_figures) {
     keys.emplace(figure.key);

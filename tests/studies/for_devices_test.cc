@@ -72,12 +72,13 @@ TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
   const Closing again =
       simulate(prepare_and_choose(SceneFile::parse(found.best.best_scene->scene.file.text(), "best.toml")), true);
   EXPECT_EQ(again.metrics.initial_contact_time, found.best.best->metrics.initial_contact_time);
-  EXPECT_FALSE(found.spread_assumed);
+  EXPECT_FALSE(found.findings.spread_assumed);
   EXPECT_TRUE(found.best.best_scene->scene.file.written("spread"));
   // The front is one.
-  for (std::size_t i = 1; i < found.front.size(); ++i) EXPECT_GE(found.front[i].first_touch, found.front[i - 1].first_touch);
+  for (std::size_t i = 1; i < found.findings.front.size(); ++i)
+    EXPECT_GE(found.findings.front[i].first_touch, found.findings.front[i - 1].first_touch);
   ASSERT_TRUE(found.calibrated);
-  const bool by_time = found.calibrated_row == "closing time to 50 ns";
+  const bool by_time = found.findings.measured == "closing time to 50 ns";
   EXPECT_EQ(found.calibrated->written(by_time ? "calibration.time.error" : "calibration.Vdp.error"), by_time ? "50 ns" : "1 %");
   EXPECT_LT(cost_of(found, "closing time to 50 ns"), cost_of(found, "for the devices"));
   // Who knows more of the devices drives them no worse.
@@ -86,7 +87,7 @@ TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
     EXPECT_LE(speed(measured), speed("for the devices")) << measured;
   EXPECT_LE(speed("Vdp and period to 1 %"), speed("Vdp to 1 %"));
   EXPECT_LE(speed("Vdp and period to 0.2 %"), speed("Vdp and period to 1 %"));
-  for (const KnownVdp& known : found.by_error) EXPECT_LE(known.impact_speed, 1.15 * speed("for the devices"));
+  for (const KnownVdp& known : found.findings.by_error) EXPECT_LE(known.impact_speed, 1.15 * speed("for the devices"));
   // In stores the families of the race stand behind that of the drawing.
   // Those of the race within the usual limit stand last: such a short one is all there is.
   ASSERT_EQ(memory.columns.families.size(), 5U);
@@ -107,9 +108,9 @@ TEST(ForDevices, AreNotToBeMeasuredWhereThatWinsNothing_optimized) {
   EXPECT_EQ(found.chosen->family, "quasi-static");
   for (const char* measured : {"Vdp to 1 %", "Vdp and period to 1 %"})
     EXPECT_LE(cost_of(found, measured), cost_of(found, "for the devices")) << measured;
-  EXPECT_EQ(found.calibrated.has_value(), !found.calibrated_row.empty());
+  EXPECT_EQ(found.calibrated.has_value(), !found.findings.measured.empty());
   if (found.calibrated) {
-    EXPECT_LT(cost_of(found, found.calibrated_row), 0.9 * cost_of(found, "for the devices"));
+    EXPECT_LT(cost_of(found, found.findings.measured), 0.9 * cost_of(found, "for the devices"));
   }
 }
 
@@ -118,7 +119,7 @@ TEST(ForDevices, HasTheSameBitsWithAnyJobs_slow) {
                          two = searched(quick_gold(), race_closings / 4, 2, 2);
   EXPECT_EQ(one.best.best_scene->scene.file.text(), two.best.best_scene->scene.file.text());
   EXPECT_EQ(one.calibrated->text(), two.calibrated->text());
-  EXPECT_EQ(one.closings, two.closings);
+  EXPECT_EQ(one.findings.closings, two.findings.closings);
 }
 
 TEST(ForDevices, RanksTheDrawingsCandidatesAgainWhereThereIsNoRace_optimized) {
@@ -163,7 +164,7 @@ TEST(ForDevices, AssumesASpreadWhereTheSceneHasNone_optimized) {
   SceneFile file = quick_gold();
   file.erase("spread");
   const ForDevicesResult found = searched(file, 100);
-  EXPECT_TRUE(found.spread_assumed);
+  EXPECT_TRUE(found.findings.spread_assumed);
   EXPECT_EQ(found.varied.scene.spread.variables.size(), 3U);
   EXPECT_FALSE(found.best.best_scene->scene.file.written("spread")) << "the scene stays what it was";
 }
@@ -174,7 +175,7 @@ TEST(ForDevices, AreNeverGivenWhatIsWorseThanThePlainStep_optimized) {
                                                       {.verdict = 200, .families = "step", .closings = 100});
   ASSERT_TRUE(found.best.best_scene);
   EXPECT_LE(cost_of(found, "for the devices"), 1.01 * cost_of(found, "plain step"));
-  EXPECT_EQ(found.best.plain_step_wins, !found.worse_in.empty());
+  EXPECT_EQ(found.best.plain_step_wins, !found.findings.worse_in.empty());
 }
 
 TEST(ForDevices, LooksAtDevicesBeforeTheDrawingIsSearchedFor_optimized) {

@@ -248,7 +248,7 @@ TEST(OwnObjective, ForDevicesIsRacedAsTheTargetOfItsFigure_slow) {
   ASSERT_EQ(own.rows.size(), built_in.rows.size());
   ASSERT_GE(own.rows.size(), 3U);
   for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(own.rows[k].judged.bounce_free.value, built_in.rows[k].judged.bounce_free.value);
-  EXPECT_GT(own.closings, 0);
+  EXPECT_GT(own.findings.closings, 0);
 }
 
 TEST(OwnWaveform, ClosesASwitchAsTheFamilyOfItsVoltages) {

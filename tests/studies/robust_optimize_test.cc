@@ -66,17 +66,17 @@ TEST(RobustOptimize, GivesTheSameBitsWhateverTheNumberOfJobs_optimized) {
   }
   EXPECT_EQ(one.result.found.parameters, reference().result.found.parameters);
   EXPECT_EQ(one.result.found.best_cost, reference().result.found.best_cost);
-  EXPECT_EQ(one.result.closings, reference().result.closings);
+  EXPECT_EQ(one.result.findings.closings, reference().result.findings.closings);
 }
 
 TEST(RobustOptimize, KeepsToItsBudgetOfClosings_optimized) {
-  EXPECT_LE(reference().result.closings, 3500 + 7 * 40) << "a search ends with the candidate that it is at";
-  EXPECT_GT(reference().result.closings, 2500);
+  EXPECT_LE(reference().result.findings.closings, 3500 + 7 * 40) << "a search ends with the candidate that it is at";
+  EXPECT_GT(reference().result.findings.closings, 2500);
 }
 
 TEST(RobustOptimize, SaysWhichConditionsHold_optimized) {
   const Log log = search(quick(), aim("mean+2sigma", {"initial_contact_time < 1 ms", "v_max < 1 um/s"}));
-  const std::vector<FulfilledCondition>& conditions = log.result.conditions;
+  const std::vector<FulfilledCondition>& conditions = log.result.findings.conditions;
   ASSERT_EQ(conditions.size(), 2U);
   EXPECT_TRUE(conditions[0].holds);
   EXPECT_EQ(conditions[0].share.value, 1);
@@ -98,12 +98,13 @@ TEST(RobustOptimize, KeepsAConditionThatItCanKeep_optimized) {
 
 TEST(RobustOptimize, OfAYieldSaysHowManyDevicesHaveIt_optimized) {
   const Log log = search(quick(), aim("yield:v_max < 50 mm/s"));
-  ASSERT_TRUE(log.result.yield && log.result.verdict);
+  const std::optional<FulfilledCondition>& yield = log.result.findings.yield;
+  ASSERT_TRUE(yield && log.result.verdict);
   const auto& outcomes = log.result.verdict->drives[1].outcomes;
   const auto good = std::count_if(outcomes.begin(), outcomes.end(),
                                   [](const DeviceOutcome& o) { return o.metrics.largest_impact_velocity < 0.05; });
-  EXPECT_EQ(log.result.yield->devices, static_cast<std::size_t>(good));
-  EXPECT_GT(log.result.yield->value, 0.5);
+  EXPECT_EQ(yield->share.devices, static_cast<std::size_t>(good));
+  EXPECT_GT(yield->share.value, 0.5);
 }
 
 TEST(RobustOptimize, OfACalibratedSwitchLandsWhatFixedVoltsCannot_slow) {
