@@ -60,6 +60,7 @@ ResultDevices::Row row_of(const DevicesRow& row) {
                        .open = std::max(0.0, 1 - drive.closing.value - drive.collapsed.value),
                        .collapsed = drive.collapsed.value};
   for (const Figure& f : device_figures) {
+    if (f.asked != nullptr && drive.figures[f].devices == 0) continue;
     // What a run tells that goes to the end of the window.
     if ((f.key == steady_key || f.key == permanent_key) && !row.judged_whole) continue;
     const std::string key(f.key);

@@ -15,6 +15,7 @@
 #include "reports/made_with.h"
 #include "reports/result_reader.h"
 #include "studies/closing/effect_ablation.h"
+#include "studies/closing/resistance_course.h"
 #include "version.h"
 #include "waveforms/export.h"
 
@@ -57,10 +58,14 @@ std::map<std::string, Points> waveforms(const PreparedScene& p) {
 }
 
 ResultRun run(const PreparedScene& p, const Closing& closing, const MetricsOptions& options) {
+  FigureValues figures(closing.metrics), errors = closing.errors;
+  figures.asked = errors.asked = options.asked;
+  ResultCurve curve = curve_of(closing.trajectory, closing.rebounds, closing.is_thinned, options);
+  curve.resistance = resistance_course(p.scene.device, closing.trajectory, curve.time);
   return {.status = std::string(to_string(closing.metrics.status)),
-          .figures = finite(FigureValues(closing.metrics)),
-          .errors = finite(closing.errors),
-          .curve = curve_of(closing.trajectory, closing.rebounds, closing.is_thinned, options),
+          .figures = finite(figures),
+          .errors = finite(errors),
+          .curve = std::move(curve),
           .waveforms = waveforms(p),
           .collapse_time = closing.trajectory.collapse_time};
 }
