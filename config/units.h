@@ -55,6 +55,7 @@ inline constexpr Dimension charge{{0, 0, 1, 1}};
 inline constexpr Dimension capacitance{{-2, -1, 4, 2}};
 inline constexpr Dimension resistance{{2, 1, -3, -2}};
 inline constexpr Dimension conductance{{-2, -1, 3, 2}};
+inline constexpr Dimension resistivity{{3, 1, -3, -2}};
 inline constexpr Dimension piezo_coefficient{{-1, -1, 3, 1}};
 inline constexpr Dimension charge_density{{-2, 0, 1, 1}};
 inline constexpr Dimension damping{{0, 1, -1}};

@@ -31,7 +31,7 @@ int main(int argc, char** argv) try {
   std::printf("status: %s\n", std::string(to_string(closing.metrics.status)).c_str());
 
   // 4. Every figure stands in one table with its name and its unit; what is not known is NaN.
-  for (const Figure& figure : all_figures) {
+  for (const Figure& figure : asked_among(all_figures, closing.metrics.asked)) {
     const double value = figure.value(closing.metrics), error = closing.errors[figure];
     std::printf("%-28.*s %12.5g %-4.*s +- %.1g\n", static_cast<int>(figure.name.size()), figure.name.data(), value,
                 static_cast<int>(figure.unit.size()), figure.unit.data(), error);

@@ -160,7 +160,10 @@ class Run {
     here().time = stay.until;
     const FieldFigures field = parts_.equations.field(here().state.data());
     const TrajectoryPoint before = parts_.first().course.last(), now = parts_.point(parts_.first(), here());
-    if (now.time > before.time) parts_.first().force.take_line(before, now);
+    if (now.time > before.time) {
+      parts_.first().force.take_line(before, now);
+      if (parts_.electrical) parts_.electrical->take_line(before, now);
+    }
     parts_.first().course.push(now);
     if (stay.leaves) pass({.time = stay.until, .edge = Edge{.level = plane_, .side = 1, .next = Phase::flight}});
     parts_.hand_over();
@@ -245,6 +248,10 @@ class Run {
   // Takes over what the contacts did. Where there are several, it tells of their connection too.
   void gather_contacts() {
     const bool needs_all = model_.device().connection == Connection::all;
+    if (parts_.electrical) {
+      parts_.electrical->finish(here().time);
+      out_.electrical = parts_.electrical->connection();
+    }
     bool is_first = true;
     for (const FollowedContact& c : parts_.contacts) {
       const bool touched = c.touches.count() > 0;
@@ -255,6 +262,7 @@ class Run {
         own.steady_force_time = c.force.steady_from();
         own.least_force_after_touch = c.force.least();
       }
+      if (parts_.electrical) own.electrical = parts_.electrical->contact(c.number);
       out_.deepest_penetration = std::max(out_.deepest_penetration, own.deepest_penetration);
       if (!parts_.connection || model_.device().contacts[c.number].connects) {
         double &steady = out_.steady_force_time, &least = out_.least_force_after_touch;

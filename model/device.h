@@ -2,6 +2,7 @@
 // Coordinates: x along the beam from the clamped end; deflection y and every force positive towards the electrode.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -89,6 +90,16 @@ struct Surface {
   ResidualLoad cantilever_load = ResidualLoad::none;  ///< what tau_0 does to a cantilever
 };
 
+/// From when on the connection of a switch counts as electrically closed. Where nothing is given nobody looks at it.
+struct ElectricalClosing {
+  double force = std::numeric_limits<double>::quiet_NaN();       ///< its contact force is above this [N]; NaN: any force will do
+  double resistance = std::numeric_limits<double>::quiet_NaN();  ///< its resistance is below this [Ohm]; NaN: any will do
+  double after = std::numeric_limits<double>::quiet_NaN();       ///< openings that are no longer than this do not count [s]
+
+  [[nodiscard]] bool is_asked() const { return force >= 0 || resistance > 0 || after >= 0; }
+  [[nodiscard]] double shortest_opening() const { return after >= 0 ? after : 0; }
+};
+
 struct Device {
   Structure structure = {};
   Gap gap = {};
@@ -96,11 +107,17 @@ struct Device {
   std::optional<Gas> gas = {};
   std::vector<Contact> contacts = {};  ///< those of the near side first: the first one closes the switch
   Connection connection = Connection::all;
+  ElectricalClosing electrical = {};
   std::optional<Piezo> piezo = {};
   std::optional<Dispersion> dispersion = {};
   std::optional<Surface> surface = {};
 
   [[nodiscard]] bool has_contact() const { return !contacts.empty(); }
+  /// Whether the resistance of the connection is known: every contact that makes it conducts.
+  [[nodiscard]] bool conducts() const {
+    return has_contact() &&
+           std::ranges::all_of(contacts, [](const Contact& c) { return !c.connects || c.conduction.is_given(); });
+  }
   /// x_c, the centre of a contact's pad [m]: its force acts there, and figures of merit are taken at that of the first one. A pad
   /// whose place is not said ends at the free end, or lies about the middle of a beam between two clamps. Without contact: the
   /// free end, or the middle. A contact along the pad has the free end, which touches first.

@@ -45,6 +45,14 @@ struct EnergyBalance {
   [[nodiscard]] double residual() const { return source_work - stored - dissipated; }
 };
 
+/// When a connection was electrically closed in a run: see model/closing/electrical_record.h.
+struct ElectricalOutcome {
+  double first_closed = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN where it never is
+  double closed_from =
+      std::numeric_limits<double>::quiet_NaN();  ///< from when on it stays so [s]; NaN where it is open at the end
+  int openings = 0;                              ///< after first_closed, those that count
+};
+
 /// One contact of several, at the end of a run.
 struct ContactOutcome {
   std::string name;
@@ -55,6 +63,8 @@ struct ContactOutcome {
   double hold_force = std::numeric_limits<double>::quiet_NaN();               ///< as Trajectory::hold_force [N]
   double steady_force_time = std::numeric_limits<double>::quiet_NaN();        ///< [s]
   double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();  ///< [N]
+  double hold_resistance = std::numeric_limits<double>::quiet_NaN();          ///< as Trajectory::hold_resistance [Ohm]
+  ElectricalOutcome electrical = {};
 };
 
 /// Of a switch with several contacts the members are those of the connection that they make (model/closing/connection.h).
@@ -73,6 +83,8 @@ struct Trajectory {
       std::numeric_limits<double>::quiet_NaN();  ///< 2 pi over the first frequency of the beam pinned at x_c [s]
   double hold_force =
       std::numeric_limits<double>::quiet_NaN();  ///< of the closed equilibrium under the hold levels, if computed [N]
+  /// Of the connection, where the switch rests closed under the hold levels [Ohm]; NaN where that is open, or not known.
+  double hold_resistance = std::numeric_limits<double>::quiet_NaN();
   /// Between the electrode that closes the switch and the beam, where the hold levels leave it [F]: closed, or where nothing
   /// touched, open.
   double hold_capacitance = std::numeric_limits<double>::quiet_NaN();
@@ -96,6 +108,8 @@ struct Trajectory {
   /// one, or nothing touched.
   double first_touch = std::numeric_limits<double>::quiet_NaN();
   double first_touch_velocity = std::numeric_limits<double>::quiet_NaN();
+  /// Where Device::electrical asks for it.
+  ElectricalOutcome electrical = {};
   EnergyBalance energy;     ///< at the end
   double layer_energy = 0;  ///< layer_charging_energy() of the piezo, which no balance holds [J]
   /// Largest residual of the energy balance at any make or break of contact and at the end [J].

@@ -61,6 +61,8 @@ Metrics CourseRecorder::metrics_of(std::size_t contact, const Trajectory& end) {
   alone.is_held = own.hold_force > 0;
   alone.steady_force_time = own.steady_force_time;
   alone.least_force_after_touch = own.least_force_after_touch;
+  alone.hold_resistance = own.hold_resistance;
+  alone.electrical = own.electrical;
   alone.landing_excess = Metrics::unset;
   return contacts_[contact]->metrics(alone);
 }

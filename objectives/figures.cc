@@ -11,7 +11,8 @@ std::string Figure::label() const {
 double Figure::value(const Metrics& metrics) const {
   if (const auto* const number = std::get_if<double Metrics::*>(&member)) return metrics.**number;
   // Counts and yes or no have no value that says "not known": what followed the first touch is known with the highest rebound.
-  const bool followed = std::isfinite(metrics.major_bounce_height);
+  const bool followed = std::isfinite(metrics.major_bounce_height) &&
+                        (asked != &AskedFigures::electrical || std::isfinite(metrics.electrical_contact));
   if (const auto* const count = std::get_if<int Metrics::*>(&member)) return followed ? metrics.**count : Metrics::unset;
   const bool touched = std::isfinite(metrics.initial_contact_time);
   const bool yes = metrics.*std::get<bool Metrics::*>(member);
@@ -26,7 +27,14 @@ double Figure::counted(const Metrics& metrics, const MetricsOptions& options) co
   return member == Member(&Metrics::major_bounce_height) && own < options.significant_rebound ? options.significant_rebound : own;
 }
 
+std::vector<Figure> asked_among(std::span<const Figure> figures, const AskedFigures& asked) {
+  std::vector<Figure> all(figures.begin(), figures.end());
+  std::erase_if(all, [&](const Figure& figure) { return !figure.is_asked(asked); });
+  return all;
+}
+
 FigureValues::FigureValues(const Metrics& metrics) {
+  asked = metrics.asked;
   for (const Figure& figure : figure_table) (*this)[figure] = figure.value(metrics);
 }
 

@@ -6,9 +6,11 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "objectives/metrics.h"
 
@@ -42,6 +44,7 @@ struct Figure {
   /// Whose derivative is its own: that of the permanent contact is that of the last rebound's end. Null: it has none.
   double Metrics::*slope = nullptr;
   bool of_results = true, of_devices = false;              ///< whether results tell it of a closing; of devices that differ
+  bool AskedFigures::*asked = nullptr;                     ///< of scenes that ask for it; null: of every scene
   double worst = std::numeric_limits<double>::infinity();  ///< what a device counts with that does not close
 
   [[nodiscard]] constexpr bool is_count() const { return std::holds_alternative<int Metrics::*>(member); }
@@ -51,6 +54,8 @@ struct Figure {
     return conditioning == Conditioning::first_touch || conditioning == Conditioning::high_rebound ||
            conditioning == Conditioning::every_touch || conditioning == Conditioning::open;
   }
+  /// Whether results of a scene that asks for these tell it.
+  [[nodiscard]] constexpr bool is_asked(const AskedFigures& of_scene) const { return asked == nullptr || of_scene.*asked; }
   /// Whether certify() gives it an error.
   [[nodiscard]] constexpr bool has_error() const { return !is_yes_or_no() && conditioning != Conditioning::drives; }
 
@@ -175,6 +180,39 @@ inline constexpr auto figure_table = std::to_array<Figure>({
      .member = &Metrics::least_force_after_touch,
      .of_devices = true,
      .worst = 0},
+    {.key = "resistance_ohm",
+     .name = "Contact resistance at the hold level",
+     .symbol = "contact resistance",
+     .unit = "ohm",
+     .conditioning = Conditioning::rest,
+     .member = &Metrics::resistance,
+     .of_devices = true,
+     .asked = &AskedFigures::resistance},
+    {.key = "electrical_contact_time_s",
+     .name = "First electrical contact",
+     .symbol = "t_e",
+     .unit = "s",
+     .conditioning = Conditioning::every_touch,
+     .member = &Metrics::electrical_contact,
+     .of_devices = true,
+     .asked = &AskedFigures::electrical},
+    {.key = "electrical_settling_time_s",
+     .name = "Electrically closed from",
+     .symbol = "t_c",
+     .unit = "s",
+     .better = Better::lower,
+     .conditioning = Conditioning::last_rebound,
+     .member = &Metrics::electrical_settling,
+     .of_devices = true,
+     .asked = &AskedFigures::electrical},
+    {.key = "electrical_bounce_count",
+     .name = "Electrical bounces",
+     .symbol = "N_e",
+     .better = Better::lower,
+     .conditioning = Conditioning::last_rebound,
+     .member = &Metrics::electrical_bounces,
+     .of_devices = true,
+     .asked = &AskedFigures::electrical},
     {.key = "capacitance_F",
      .name = "Capacitance at the hold level",
      .symbol = "capacitance",
@@ -275,6 +313,9 @@ inline constexpr auto device_figures = figures_that_are<internal::is_of_devices>
 inline constexpr auto conditioned_figures = figures_that_are<internal::is_number_of_results>();
 inline constexpr auto derived_figures = figures_that_are<internal::is_derived>();
 
+/// Those of a selection that a scene asks for.
+[[nodiscard]] std::vector<Figure> asked_among(std::span<const Figure> figures, const AskedFigures& asked);
+
 /// The row of a member of Metrics.
 [[nodiscard]] constexpr const Figure& figure_of(Figure::Member member) {
   return *std::find_if(figure_table.begin(), figure_table.end(), [&](const Figure& one) { return one.member == member; });
@@ -315,6 +356,8 @@ class FigureValues : public PerFigure<double> {
  public:
   constexpr FigureValues() { values_.fill(Metrics::unset); }
   explicit FigureValues(const Metrics& metrics);
+
+  AskedFigures asked = {};  ///< by the scene: see Figure::is_asked()
 };
 
 /// (value - reference) / max(|reference|, least): by which part of itself a figure changes. NaN where either is not known.

@@ -52,6 +52,7 @@ Metrics MetricsObserver::metrics(const Trajectory& end) {
 Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) const {
   Metrics result;
   result.status = end.status;
+  result.asked = options_.asked;
   const bool ran_to_the_end = end.status == Status::done || end.status == Status::no_contact || end.status == Status::not_settled;
   const bool sound = course.sound;
   if (ran_to_the_end && !sound) result.status = Status::numerical_failure;
@@ -78,6 +79,10 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   }
   if (end.ends_at_touch) return result;  // what follows depends on a contact that is not described
   result.hold_force = end.hold_force;
+  result.resistance = end.hold_resistance;
+  result.electrical_contact = end.electrical.first_closed;
+  result.electrical_settling = end.electrical.closed_from;
+  result.electrical_bounces = end.electrical.openings;
   if (touched_) {
     result.peak_contact_force = peak_force_;
     result.impact_energy = impact_energy_;

@@ -7,14 +7,27 @@
 #include <vector>
 
 #include "model/closing/observer.h"
+#include "model/device.h"
 #include "model/trajectory.h"
 #include "objectives/rebounds.h"
 
 namespace softland {
 
+/// Figures that only some scenes ask for.
+struct AskedFigures {
+  bool resistance = false;  ///< of a connection whose contacts have a resistivity
+  bool electrical = false;  ///< of a device with Device::electrical
+  bool operator==(const AskedFigures&) const = default;
+};
+/// What a device asks for.
+[[nodiscard]] inline AskedFigures asked_figures(const Device& device) {
+  return {.resistance = device.conducts(), .electrical = device.electrical.is_asked()};
+}
+
 struct MetricsOptions {
   double significant_rebound = 1e-9;  ///< a rebound counts when it is higher than this [m]
   double steady_force = 0.1;          ///< the contact force is steady from this share of the hold force on
+  AskedFigures asked = {};
 };
 
 struct Metrics {
@@ -36,6 +49,11 @@ struct Metrics {
   double capacitance = unset;              ///< Trajectory::hold_capacitance [F]
   double drive_energy = unset;             ///< [J]
   bool settled = false;
+  double resistance = unset;           ///< Trajectory::hold_resistance [Ohm]
+  double electrical_contact = unset;   ///< ElectricalOutcome::first_closed [s]
+  double electrical_settling = unset;  ///< ElectricalOutcome::closed_from [s]
+  int electrical_bounces = 0;          ///< ElectricalOutcome::openings; meaningless where it never closes
+  AskedFigures asked = {};             ///< MetricsOptions::asked
   // Set by simulate() where nothing touched: see set_open_figures().
   double static_deflection = unset;   ///< of the contact point in the open equilibrium under the hold levels [m]
   double overshoot = unset;           ///< furthest beyond it, seen from where the run started [m]

@@ -155,7 +155,7 @@ Result result_of(const PyClosing& c) { return softland::result_of(*c.prepared, c
 // quantity -> (value, error, unit), in the order of the table; yes or no without error and unit.
 py::dict figures_of(const Closing& closing) {
   py::dict all;
-  for (const Figure& figure : all_figures) {
+  for (const Figure& figure : asked_among(all_figures, closing.metrics.asked)) {
     const double value = figure.value(closing.metrics);
     all[py::str(std::string(figure.quantity()))] =
         figure.is_yes_or_no() ? py::object(py::bool_(value == 1))

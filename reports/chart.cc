@@ -49,6 +49,7 @@ CurveTable curve_table(const ResultCurve& curve) {
   add("tip_gap_m", curve.gap);
   add("tip_velocity_m_s", curve.velocity);
   add("contact_force_N", curve.force);
+  add("contact_resistance_ohm", curve.resistance);
   return table;
 }
 
@@ -240,6 +241,17 @@ class TimeCharts {
     if (largest(out_.tables, "contact_force_N") > 0) keep(std::move(force));
   }
 
+  void add_resistance() {
+    Chart resistance = over_time("resistance", "Contact resistance",
+                                 "Resistance of the contacts that make the connection. An open one has none.");
+    resistance.y_label = "Resistance";
+    resistance.y_unit = "ohm";
+    resistance.scale = Scale::logarithmic;
+    resistance.height = 230;
+    add_series(resistance, "", "contact_resistance_ohm");
+    if (!resistance.series.empty()) keep(std::move(resistance));
+  }
+
  private:
   [[nodiscard]] Chart over_time(std::string id, std::string title, std::string caption) const {
     Chart chart;
@@ -283,6 +295,7 @@ void add_time_charts(const Result& result, Picture& out) {
   for (const std::string& drive : drives) charts.add_drive(drive, index++);
   charts.add_velocity();
   charts.add_force();
+  charts.add_resistance();
 }
 
 void add_search_chart(const Result& result, Picture& out) {

@@ -82,7 +82,7 @@ json chart_json(const Picture& picture, std::size_t rows) {
     for (const auto& [key, column] : table) columns.push_back(&column);
     const std::vector<std::size_t> kept = downsampled(columns, rows);
     for (const auto& [key, column] : table)
-      tables[name][key] = packed(column, kept, logarithmic.contains(name) || key == "value");
+      tables[name][key] = packed(column, kept, logarithmic.contains(name) || key == "value" || key == "contact_resistance_ohm");
   }
   json charts = json::array();
   for (const Chart& chart : picture.charts) {

@@ -154,7 +154,8 @@ std::string trajectory_csv(const ResultCurve& curve) {
   for (const auto& [name, column] : {std::pair{"time_s", &curve.time},
                                      {"tip_gap_m", &curve.gap},
                                      {"tip_velocity_m_s", &curve.velocity},
-                                     {"contact_force_N", &curve.force}}) {
+                                     {"contact_force_N", &curve.force},
+                                     {"contact_resistance_ohm", &curve.resistance}}) {
     if (column->size() != curve.time.size()) continue;
     out += (out.empty() ? "" : ",") + std::string(name);
     columns.push_back(column);

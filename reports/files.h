@@ -28,8 +28,8 @@ void write_whole(const std::filesystem::path& path,
 /// are.
 [[nodiscard]] std::string name_to_be(const std::string& name);
 
-/// The curve of a run as CSV: header time_s,tip_gap_m,tip_velocity_m_s,contact_force_N (those that exist); one line per row,
-/// shortest text that reads back to the same number, an empty field for what is not finite.
+/// The curve of a run as CSV: header time_s,tip_gap_m,tip_velocity_m_s,contact_force_N,contact_resistance_ohm (those that exist);
+/// one line per row, shortest text that reads back to the same number, an empty field for what is not finite.
 [[nodiscard]] std::string trajectory_csv(const ResultCurve& curve);
 
 }  // namespace softland

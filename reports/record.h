@@ -100,7 +100,7 @@ class JsonWriter {
   template <class Asked>
   void figures(const FigureValues& values, const Asked& asked) {
     for (const Figure& figure : all_figures) {
-      if (asked(figure)) json_[std::string(figure.key)] = of(figure, values[figure]);
+      if (asked(figure) && figure.is_asked(values.asked)) json_[std::string(figure.key)] = of(figure, values[figure]);
     }
   }
   [[nodiscard]] json take() && { return std::move(json_); }
@@ -194,7 +194,10 @@ class JsonReader {
   }
   template <class Asked>
   void figures(FigureValues& values, const Asked&) {
-    for (const Figure& figure : all_figures) take(figure, at(figure.key), values[figure]);
+    for (const Figure& figure : all_figures) {
+      if (figure.asked != nullptr && json_->contains(figure.key)) values.asked.*figure.asked = true;
+      take(figure, at(figure.key), values[figure]);
+    }
   }
   /// The value of a type that is described, as far as the JSON has it.
   template <class T>

@@ -32,6 +32,8 @@ struct ResultCurve {
   std::vector<double> gap;       ///< distance to the contact plane [m]
   std::vector<double> velocity;  ///< towards the contact [m/s]
   std::vector<double> force;     ///< of the contact on the beam [N]
+  /// Of the connection, NaN while it is open [Ohm]; empty where the contacts have no resistivity.
+  std::vector<double> resistance = {};
   std::vector<Rebound> rebounds;
 };
 

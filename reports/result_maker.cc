@@ -14,6 +14,7 @@
 #include "reports/result_reader.h"
 #include "reports/robustness_words.h"
 #include "studies/closing/effect_ablation.h"
+#include "studies/closing/resistance_course.h"
 #include "waveforms/export.h"
 
 namespace softland {
@@ -55,10 +56,14 @@ std::map<std::string, Points> waveforms(const PreparedScene& p) {
 }
 
 ResultRun run(const PreparedScene& p, const Closing& closing, const MetricsOptions& options) {
+  FigureValues figures(closing.metrics), errors = closing.errors;
+  figures.asked = errors.asked = options.asked;
+  ResultCurve curve = curve_of(closing.trajectory, closing.rebounds, closing.is_thinned, options);
+  curve.resistance = resistance_course(p.scene.device, closing.trajectory, curve.time);
   return {.status = std::string(to_string(closing.metrics.status)),
-          .figures = finite(FigureValues(closing.metrics)),
-          .errors = finite(closing.errors),
-          .curve = curve_of(closing.trajectory, closing.rebounds, closing.is_thinned, options),
+          .figures = finite(figures),
+          .errors = finite(errors),
+          .curve = std::move(curve),
           .waveforms = waveforms(p),
           .collapse_time = closing.trajectory.collapse_time};
 }

@@ -98,6 +98,7 @@ void members(A& a, ResultCurve& curve) {
   a("tip_gap_m", curve.gap);
   a("tip_velocity_m_s", curve.velocity);
   a("contact_force_N", curve.force);
+  if (a.has(!curve.resistance.empty())) a("contact_resistance_ohm", curve.resistance);
   a.custom("rebounds", curve.rebounds, internal::rebounds_json, internal::read_rebounds);
 }
 

@@ -38,7 +38,8 @@ RobustnessRecord::Device device_of(const Ensemble& ensemble, const DriveRobustne
   const std::vector<double> values = shown_values(ensemble, k);
   const std::vector<SpreadVariable>& variables = ensemble.nominal().scene.spread.variables;
   for (std::size_t i = 0; i < variables.size(); ++i) device.values[variables[i].name] = values[i];
-  for (const Figure& f : device_figures) device.figures[std::string(f.key)] = outcome.of(f);
+  for (const Figure& f : asked_among(device_figures, ensemble.nominal().scene.metrics.asked))
+    device.figures[std::string(f.key)] = outcome.of(f);
   return device;
 }
 
@@ -224,7 +225,9 @@ void members(A& a, RobustnessRecord::Drive& d) {
   a("collapsed_onto_electrode", d.collapsed);
   a("bounce_free", d.bounce_free);
   a.object("figures", [&](auto& figures) {
-    for (const Figure& f : device_figures) figures(f.key, d.figures[f]);
+    for (const Figure& f : device_figures) {
+      if (figures.has(f.asked == nullptr || d.figures[f].devices > 0)) figures(f.key, d.figures[f]);
+    }
   });
   a("failures", d.failures);
   a("worst", d.worst);
@@ -435,10 +438,11 @@ std::string robustness_csv(const RobustnessReport& report) {
     for (const char c : name) quoted += c == '"' ? "\"\"" : std::string(1, c);
     return name.find_first_of(",\"\n") == std::string::npos ? name : quoted + "\"";
   };
+  const std::vector<Figure> figures = asked_among(device_figures, nominal.scene.metrics.asked);
   for (const SpreadVariable& v : nominal.scene.spread.variables) text += "," + cell(v.name);
   for (const DriveRobustness& d : found.drives) {
     text += "," + cell(d.name + ": status");
-    for (const Figure& f : device_figures) text += "," + cell(fmt::format("{}: {}", d.name, f.key));
+    for (const Figure& f : figures) text += "," + cell(fmt::format("{}: {}", d.name, f.key));
   }
   text += "\n";
   for (std::size_t k = 0; k < found.devices; ++k) {
@@ -447,7 +451,7 @@ std::string robustness_csv(const RobustnessReport& report) {
     for (const DriveRobustness& d : found.drives) {
       const DeviceOutcome& o = d.outcomes[k];
       text += fmt::format(",{}", o.failure.empty() ? std::string(to_string(o.metrics.status)) : cell(o.failure));
-      for (const Figure& f : device_figures) {
+      for (const Figure& f : figures) {
         const double value = o.of(f);
         text += std::isfinite(value) ? fmt::format(",{}", value) : std::string(",");
       }

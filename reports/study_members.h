@@ -20,6 +20,7 @@ void members(A& a, Metrics& metrics) {
   a.figures(values, internal::figure_of_no_drive);
   a("status", metrics.status);
   if constexpr (!A::reads) return;
+  metrics.asked = values.asked;
   for (const Figure& figure : all_figures) {
     const double value = values[figure];
     std::visit(

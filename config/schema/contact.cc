@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "config/schema/laws.h"
 #include "config/schema/sections.h"
@@ -34,6 +37,33 @@ Key gap_key() {
   return key;
 }
 
+template <auto member>
+Key conduction_key(std::string_view name, const Dimension& dimension, Range range, std::string_view about) {
+  Key key = internal::number(name, {dimension}, range, about);
+  key.bound.number = [](Scene& scene, std::size_t k) -> double& { return contact(scene, k).conduction.*member; };
+  return key;
+}
+
+// Resistance of the closed contact: see model/contact/resistance.h. The hardness of a law that has one is its own key.
+std::vector<Key> conduction_keys() {
+  Key hardness =
+      conduction_key<&Conduction::hardness>("hardness", dimension::pressure, positive,
+                                            "of the softer metal: conducting spots are plastic where their pressure is as high");
+  for_each_law<ContactModel>([&]<class Law>(std::type_identity<Law>) {
+    if constexpr (!requires(Law law) { law.hardness; }) hardness.only_for.push_back(Law::name);
+  });
+  return {conduction_key<&Conduction::resistivity>(
+              "resistivity", dimension::resistivity, positive,
+              "of both metals, from which the contact's resistance follows; absent: not computed")
+              .such_as("22 nohm m"),
+          std::move(hardness).such_as("1 GPa"),
+          conduction_key<&Conduction::film_resistance>("film_resistance", dimension::resistance, not_negative,
+                                                       "in series with each contact; default 0"),
+          conduction_key<&Conduction::mean_free_path>("mean_free_path", dimension::length, not_negative,
+                                                      "of the electrons, which spots as small resist the more; default 0")
+              .such_as("38 nm")};
+}
+
 std::vector<Key> contact_keys() {
   std::vector<Key> keys = keys_of_laws<ContactModel, contact_model>("law of the contact force");
   const auto of_every_law = {
@@ -52,6 +82,7 @@ std::vector<Key> contact_keys() {
           .such_as("2")
           .fixed("it is a number of contacts")};
   keys.insert(keys.begin() + 1, of_every_law);
+  std::ranges::move(conduction_keys(), std::back_inserter(keys));
   return keys;
 }
 
@@ -79,6 +110,25 @@ void check_named(const Device& d, std::size_t k, const SectionReader& in) {
              fmt::format("must be less than {:g} times {}", most, gap.written("electrode")));
 }
 
+void check_conduction(const Contact& c, const SectionReader& in) {
+  if (!c.conduction.is_given()) {
+    for (const std::string_view key : {"film_resistance", "mean_free_path"})
+      in.require(!in.is_given(key), key, "needs 'resistivity', without which no resistance is computed");
+    const bool is_of_law = number_of(c.model, "hardness", 0) > 0;
+    in.require(is_of_law || !in.is_given("hardness"), "hardness", "needs 'resistivity', without which no resistance is computed");
+    return;
+  }
+  in.require(c.distribution == ContactDistribution::centre, "resistivity",
+             "not with distribution = \"pad\", whose load is another at every point of the pad");
+  in.require(c.side == Side::near, "resistivity", "belongs to a contact of the near side: a back stop makes no connection");
+  in.require(!std::holds_alternative<AdhesiveRepulsiveSurfaces>(c.model), "resistivity",
+             "not with model = \"adhesive-repulsive\", which does not tell the load of the metal from the pressure of the film");
+  const bool has_summits = number_of(c.model, "effective_modulus", 0) > 0;
+  if (!has_summits && !(c.conduction.hardness > 0))
+    in.fail(
+        R"(missing key 'hardness' (a pressure such as "1 GPa"), by which the conducting spot is as large as its load asks for)");
+}
+
 void check_contact(Scene& scene, const SectionReader& in, std::size_t k) {
   Device& d = scene.device;
   Contact& c = d.contacts[k];
@@ -103,6 +153,7 @@ void check_contact(Scene& scene, const SectionReader& in, std::size_t k) {
                "not with gas.model = \"reynolds\", whose film still flows under a plate that rests");
   }
   check_bounds(c.model, in);
+  check_conduction(c, in);
   if (c.distribution == ContactDistribution::pad) {
     const std::string wrong = why_not_along_pad(d.structure, c);
     in.require(wrong.empty(), "distribution", wrong);

@@ -14,6 +14,9 @@ namespace {
 MetricsOptions& metrics_options(Scene& scene, std::size_t) { return scene.metrics; }
 using OfMetrics = Of<metrics_options>;
 
+ElectricalClosing& electrical(Scene& scene, std::size_t) { return scene.device.electrical; }
+using OfElectrical = Of<electrical>;
+
 Key connection_key() {
   Key key{.name = "closed",
           .type = KeyType::texts,
@@ -59,9 +62,23 @@ void order_contacts(Device& d) {
   d.gap.contact = d.contacts.front().gap;
 }
 
+// The electrical figures need a contact, and a resistance the resistivity of every contact that makes the connection.
+void check_electrical(const Device& d, const SectionReader& in) {
+  for (const std::string_view key : {"closed_force", "closed_resistance", "closed_after"}) {
+    in.require(!in.is_given(key) || d.has_contact(), key, "needs a [contact], which is what closes");
+  }
+  if (!in.is_given("closed_resistance")) return;
+  for (const Contact& c : d.contacts) {
+    in.require(!c.connects || c.conduction.is_given(), "closed_resistance",
+               "needs contact" + (c.name.empty() ? "" : "." + c.name) + ".resistivity");
+  }
+}
+
 void check_metrics(Scene& scene, const SectionReader& in, std::size_t) {
   set_connection(scene.device, in);
   order_contacts(scene.device);
+  check_electrical(scene.device, in);
+  scene.metrics.asked = asked_figures(scene.device);
   const double rebound = scene.metrics.significant_rebound;
   if (rebound < scene.device.gap.contact) return;
   const bool named = in.file().is_named(*find_section("contact"));
@@ -83,7 +100,18 @@ Section metrics_section() {
                        "steady_force", dimension::none, {.least = 0, .most = 1, .least_open = true, .most_open = true},
                        "of the hold force, default 10 %: from there on the contact force is steady")
                        .such_as("10 %"),
-                   connection_key()},
+                   connection_key(),
+                   OfElectrical::number<&ElectricalClosing::force>(
+                       "closed_force", dimension::force, not_negative,
+                       "the connection counts as closed while its contact force is above this; absent: at any force"),
+                   OfElectrical::number<&ElectricalClosing::resistance>(
+                       "closed_resistance", dimension::resistance, positive,
+                       "the connection counts as closed while its resistance is below this; absent: at any resistance")
+                       .such_as("1 ohm"),
+                   OfElectrical::number<&ElectricalClosing::after>(
+                       "closed_after", dimension::time, not_negative,
+                       "openings of the connection that are not longer do not count; default 0")
+                       .such_as("1 us")},
           .about = "figures of merit",
           .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
           .check = check_metrics};

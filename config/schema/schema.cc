@@ -39,6 +39,7 @@ constexpr std::array extents{
     Extent{dimension::viscosity, 1e-18, 1e6},
     Extent{dimension::stiffness, 1e-12, 1e12},
     Extent{dimension::resistance, 1e-6, 1e15},
+    Extent{dimension::resistivity, 1e-12, 1e6},
     Extent{dimension::capacitance, 1e-18, 1},
     Extent{dimension::slowness, 1e-12, 1e5},
     Extent{dimension::voltage, 1e-12, 1e9},

@@ -176,6 +176,12 @@ void Stepping::account(const FieldFigures& field, EnergyAudit& audit) {
     if (c.end.time > from.time) parts_.record(c, TipMotion(c.motion, from, c.end), from, c.end);
     c.touches.take(here_, next_, c.motion);
   }
+  if (parts_.electrical) {
+    std::vector<ContactInStep> contacts;
+    for (FollowedContact& c : parts_.contacts)
+      contacts.push_back({c.motion, c.course.last(), c.end, c.phase.law(), c.phase.in_contact()});
+    parts_.electrical->take(here_.time, next_.time, contacts);
+  }
   audit.step(here_, next_, field.dissipation, parts_.first().motion, implicit());
 }
 

@@ -10,6 +10,7 @@
 #include "integrators/stepper.h"
 #include "model/closing.h"
 #include "model/closing/connection.h"
+#include "model/closing/electrical_record.h"
 #include "model/closing/energy_audit.h"
 #include "model/closing/equations.h"
 #include "model/closing/events.h"
@@ -63,6 +64,7 @@ struct ClosingParts {
   RestingPlate plate;
   std::optional<ConnectionCourse> connection;  ///< of several contacts
   std::vector<FollowedContact> contacts;       ///< at least one: see ContactPhases
+  std::optional<ElectricalRecord> electrical;  ///< where the device asks for it
   ClosingObserver& observer;
 
   ClosingParts(const Switch& switch_model, std::span<const Signal> signals, const ClosingOptions& closing_options,
@@ -76,6 +78,7 @@ struct ClosingParts {
         plate(model, drives, equations),
         observer(closing_observer) {
     if (model.contacts() > 1) connection.emplace(model, observer);
+    if (model.has_contact() && model.device().electrical.is_asked()) electrical.emplace(model);
     contacts.reserve(phases.size());
     for (std::size_t c = 0; c < phases.size(); ++c)
       contacts.emplace_back(model, c, phases[c], options, connection ? connection->contact(c) : observer);

@@ -38,6 +38,16 @@ enum class Connection { all, any };
 inline constexpr auto connections = std::to_array<Named<Connection>>({{Connection::all, "all"}, {Connection::any, "any"}});
 static_assert(is_complete<connections>());
 
+/// What the current through a closed contact meets: see model/contact/resistance.h. Without a resistivity nothing conducts.
+struct Conduction {
+  double resistivity = std::numeric_limits<double>::quiet_NaN();  ///< rho of both metals [Ohm m]
+  double hardness = std::numeric_limits<double>::quiet_NaN();     ///< H of the softer metal; that of a law which has one [Pa]
+  double film_resistance = 0;                                     ///< Rf, in series with each contact [Ohm]
+  double mean_free_path = 0;                                      ///< l of the electrons [m]
+
+  [[nodiscard]] bool is_given() const { return resistivity > 0; }
+};
+
 struct Contact {
   ContactModel model = UniformAsperities{};
   ContactDistribution distribution = ContactDistribution::centre;
@@ -50,6 +60,7 @@ struct Contact {
   Side side = Side::near;  ///< far: a back stop
   double count = 1;        ///< how many such contacts stand side by side across the beam
   bool connects = true;    ///< whether it is one of those that make the connection
+  Conduction conduction = {};
 };
 
 /// Whether the law acts per area of the pad, so that a plate needs a width and a length of the pad.

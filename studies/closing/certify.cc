@@ -160,6 +160,7 @@ Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
     t.hold_force = c.trajectory.hold_force;  // that of the closed equilibrium, which one part in 1e7 does not move
     t.is_held = c.trajectory.is_held;
     t.hold_capacitance = c.trajectory.hold_capacitance;
+    t.hold_resistance = c.trajectory.hold_resistance;
     runs.push_back(metrics(t, prepared.scene.metrics));
     set_open_figures(runs.back(), t, fine, signals);
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/engineering.h"
+#include "model/contact/resistance.h"
 #include "objectives/course_recorder.h"
 #include "studies/closing/actuator.h"
 #include "studies/closing/closed_state.h"
@@ -451,6 +452,13 @@ Device with_first_contact(Device device, std::size_t c) {
   return device;
 }
 
+// Conductance of a contact at rest under this force [S]; NaN where it is not known.
+double conductance_at(const Switch& model, const Eigen::VectorXd& q, double force, std::size_t c = 0) {
+  const ContactResistance contact(model.device().contacts[c], model.device().structure.width);
+  if (!contact.is_known()) return Metrics::unset;
+  return contact.conductance(model.contact_deflection(q.data(), c) - model.contact_gap(c), force);
+}
+
 // What several contacts carry where the switch rests under these levels, and what the connection that they make does.
 Hold hold_of_connection(const Switch& model, const std::vector<double>& levels, Hold hold) {
   const bool needs_all = model.device().connection == Connection::all;
@@ -467,16 +475,21 @@ Hold hold_of_connection(const Switch& model, const std::vector<double>& levels, 
   hold.force = Metrics::unset;
   if (!rest) return hold;
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
+  std::vector<double> conductances;
   double force = needs_all ? std::numeric_limits<double>::infinity() : 0;
   for (std::size_t c = 0; c < model.contacts(); ++c) {
     const bool acts = model.contact_deflection(rest->data(), c) > model.contact_gap(c) - model.contact_reach(c);
     const double own = acts ? model.contact_push(rest->data(), still.data(), true, c) : 0;
     hold.forces.push_back(own);
+    conductances.push_back(conductance_at(model, *rest, own, c));
+    hold.resistances.push_back(resistance_of(conductances.back()));
     if (!model.device().contacts[c].connects) continue;
     force = needs_all ? std::min(force, own) : std::max(force, own);
   }
   hold.is_held = force > 0;
-  if (hold.is_held) hold.force = force;
+  if (!hold.is_held) return hold;
+  hold.force = force;
+  if (model.device().conducts()) hold.resistance = resistance_of(connection_conductance(model.device(), conductances));
   return hold;
 }
 
@@ -487,6 +500,7 @@ Hold hold_of(const Switch& model, const std::vector<Signal>& signals, const std:
   Hold hold{.closed = near ? closed_equilibrium_near(model, levels, *near) : closed_equilibrium(model, levels)};
   const bool stays = keeps_closed(model, hold.closed);
   if (stays) hold.force = hold.closed->contact_force;
+  if (stays && model.device().conducts()) hold.resistance = resistance_of(conductance_at(model, hold.closed->q, hold.force));
   if (model.contacts() > 1) return hold_of_connection(model, levels, std::move(hold));
   const bool sticks = model.has_contact() && may_stick(model.device().contacts.front().model);
   hold.is_held = stays || !model.has_contact() || (sticks && !hold.closed);
@@ -496,8 +510,11 @@ Hold hold_of(const Switch& model, const std::vector<Signal>& signals, const std:
 void set_hold(Trajectory& trajectory, const Hold& hold) {
   trajectory.hold_force = hold.force;
   trajectory.is_held = hold.is_held;
-  for (std::size_t c = 0; c < std::min(trajectory.contacts.size(), hold.forces.size()); ++c)
+  trajectory.hold_resistance = hold.resistance;
+  for (std::size_t c = 0; c < std::min(trajectory.contacts.size(), hold.forces.size()); ++c) {
+    trajectory.contacts[c].hold_resistance = hold.resistances[c];
     if (hold.forces[c] > 0) trajectory.contacts[c].hold_force = hold.forces[c];
+  }
 }
 
 void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold) {

@@ -83,6 +83,8 @@ struct Hold {
   std::optional<ClosedEquilibrium> closed;  ///< if there is one
   double force = Metrics::unset;            ///< of the contact, where it is stable, or of the connection of several [N]
   std::vector<double> forces = {};          ///< of each of several contacts [N]; empty where no state holds
+  double resistance = Metrics::unset;       ///< of the contact, or of the connection of several [Ohm]; NaN: open, or not known
+  std::vector<double> resistances = {};     ///< of each of several contacts [Ohm]; empty where no state holds
   /// Whether anything holds the switch: not where it has a contact and no such equilibrium, unless the contact may hold on by
   /// adhesion, nor where it is unstable.
   bool is_held = true;

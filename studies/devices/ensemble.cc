@@ -405,6 +405,7 @@ namespace {
 // A device that is quiet at the end of the window has not settled where its hold levels do not keep it closed.
 void judge_hold(DeviceOutcome& outcome, const Hold& hold) {
   Metrics& m = outcome.metrics;
+  if (outcome.closed()) m.resistance = hold.resistance;
   if (!outcome.closed() || !m.settled || hold.is_held) return;
   outcome.is_held = m.settled = false;
   m.status = Status::not_settled;

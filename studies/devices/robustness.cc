@@ -45,7 +45,10 @@ FigureStatistics statistics(const Figure& figure, const std::vector<DeviceOutcom
 void summarise(DriveRobustness& drive) {
   const std::vector<DeviceOutcome>& all = drive.outcomes;
   if (all.empty()) return;
-  for (const Figure& f : device_figures) drive.figures[f] = statistics(f, all);
+  for (const Figure& f : device_figures) {
+    if (std::ranges::any_of(all, [&](const DeviceOutcome& o) { return f.is_asked(o.metrics.asked); }))
+      drive.figures[f] = statistics(f, all);
+  }
   const auto count = [&](auto&& holds) { return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), holds)); };
   drive.closing = yield_of(count([](const DeviceOutcome& o) { return o.closed(); }), all.size());
   drive.collapsed =

@@ -136,11 +136,11 @@ std::vector<PointFigure> pull_in_figures(const Device& device) {
   return figures;
 }
 
-std::vector<PointFigure> robustness_figures() {
+std::vector<PointFigure> robustness_figures(const AskedFigures& asked) {
   std::vector<PointFigure> figures;
   figures.push_back({"closing_yield", "Share that closes", ""});
   figures.push_back({"bounce_free_yield", "Share without a rebound", ""});
-  for (const Figure& figure : device_figures) {
+  for (const Figure& figure : asked_among(device_figures, asked)) {
     for (const double p : shown_quantiles)
       figures.push_back({fmt::format("{}_q{:g}", figure.quantity(), 100 * p),
                          fmt::format("{}, {:g} % of devices below", figure.name, 100 * p), std::string(figure.unit)});
@@ -276,18 +276,19 @@ Exploration::Exploration(Plan plan, const Watch& watch, const OtherStudies& othe
 void Exploration::list_figures(const Watch& watch) {
   const auto add = [&](const PointFigure& figure) { figures_.push_back(figure); };
   const auto add_closing = [&] {
-    for (const Figure& figure : all_figures) add(figure_column(figure));
+    for (const Figure& figure : asked_among(all_figures, asked_)) add(figure_column(figure));
   };
   if (other_) {
     for (const auto& [key, value] : other_->record(plan_.base(), plan_.options(), plan_.seed(), 1, watch).numbers)
       add(figure_of_key(key));
     return;
   }
+  asked_ = read_scene(plan_.base()).metrics.asked;
   switch (*study_) {
     case PointStudy::simulate:
       add_closing();
       if (!plan_.options().contains("certify")) return;
-      for (const Figure& figure : all_figures) {
+      for (const Figure& figure : asked_among(all_figures, asked_)) {
         if (figure.has_error())
           add({.quantity = std::string(figure.quantity()) + "_error",
                .name = std::string(figure.name) + ", error",
@@ -299,7 +300,7 @@ void Exploration::list_figures(const Watch& watch) {
       return;
     case PointStudy::robustness:
       require(!read_scene(plan_.base()).spread.empty(), "study robustness needs a [spread] in the scene: how devices differ");
-      figures_ = robustness_figures();
+      figures_ = robustness_figures(asked_);
       return;
     case PointStudy::optimize: {
       add_closing();
@@ -381,9 +382,9 @@ PointRow Exploration::simulated(const SceneFile& scene, int jobs, const Watch& w
   const bool certified = plan_.options().contains("certify");
   const Closing closing = certified ? certify(p, watch, jobs) : simulate(p, true, watch);
   PointRow row{.status = std::string(to_string(closing.metrics.status)), .reason = closing.trajectory.message, .figures = {}};
-  for (const Figure& figure : all_figures) row.figures.push_back(finite(figure.value(closing.metrics)));
+  for (const Figure& figure : asked_among(all_figures, asked_)) row.figures.push_back(finite(figure.value(closing.metrics)));
   if (!certified) return row;
-  for (const Figure& figure : all_figures) {
+  for (const Figure& figure : asked_among(all_figures, asked_)) {
     if (figure.has_error()) row.figures.push_back(finite(closing.errors[figure]));
   }
   return row;
@@ -430,7 +431,7 @@ PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Watch& 
   const DriveRobustness& own = found.drives.back();
   PointRow row{
       .status = std::string(to_string(Status::done)), .reason = {}, .figures = {own.closing.value, own.bounce_free.value}};
-  for (const Figure& figure : device_figures) {
+  for (const Figure& figure : asked_among(device_figures, asked_)) {
     for (const double p : shown_quantiles) {
       const auto at = std::find(robustness_quantiles.begin(), robustness_quantiles.end(), p) - robustness_quantiles.begin();
       row.figures.push_back(finite(own.figures[figure].quantiles.at(static_cast<std::size_t>(at)).value));
@@ -451,7 +452,8 @@ PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Watch& w
   if (found.search.termination == Termination::interrupted) throw Interrupted();
   PointRow row{.status = {}, .reason = {}, .figures = {}};
   const Metrics figures = found.best ? found.best->metrics : Metrics{};
-  for (const Figure& figure : all_figures) row.figures.push_back(found.best ? finite(figure.value(figures)) : Metrics::unset);
+  for (const Figure& figure : asked_among(all_figures, asked_))
+    row.figures.push_back(found.best ? finite(figure.value(figures)) : Metrics::unset);
   row.figures.push_back(found.goal_met ? 1 : 0);
   row.figures.push_back(finite(found.best_cost));
   row.figures.push_back(finite(found.baseline_cost));

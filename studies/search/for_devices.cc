@@ -46,6 +46,7 @@ DevicesFindings::Row told(const DevicesRow& row) {
                          .open = std::max(0.0, 1 - drive.closing.value - drive.collapsed.value),
                          .collapsed = drive.collapsed.value};
   for (const Figure& f : device_figures) {
+    if (f.asked != nullptr && drive.figures[f].devices == 0) continue;
     const bool needs_the_end = f.key == key_of(&Metrics::steady_force_time) || f.key == key_of(&Metrics::permanent_contact_time);
     if (needs_the_end && !row.judged_whole) continue;
     const auto& quantiles = drive.figures[f].quantiles;

@@ -182,7 +182,9 @@ void RobustCost::find_gains() {
 // Nothing is asked of the other devices where the nominal one is not kept closed.
 RobustCost::Kept RobustCost::kept(std::size_t k, const std::vector<Signal>& signals) const {
   const Hold hold = hold_of(*ensemble_.devices[k].model, signals, nominal_closed_);
-  return {.is_held = !nominal_closed_ || hold.is_held, .steady_force = hold.steady_force(setting_.given.scene.metrics)};
+  return {.is_held = !nominal_closed_ || hold.is_held,
+          .steady_force = hold.steady_force(setting_.given.scene.metrics),
+          .resistance = hold.resistance};
 }
 
 std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
@@ -221,7 +223,9 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
     }
     std::vector<DeviceOutcome> closed = close_devices(closings, setting_.given.scene.metrics, vectors_);
     for (std::size_t i = 0; i < closed.size(); ++i) {
-      if (closed[i].closed()) closed[i].is_held = kept_here[i].is_held;
+      if (!closed[i].closed()) continue;
+      closed[i].is_held = kept_here[i].is_held;
+      closed[i].metrics.resistance = kept_here[i].resistance;
     }
     std::move(closed.begin(), closed.end(), outcomes.begin() + static_cast<std::ptrdiff_t>(begin));
   });
@@ -250,8 +254,10 @@ std::vector<DeviceOutcome> RobustCost::close_until(const std::vector<Waveform>& 
 DeviceOutcome RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const {
   const SampledDevice& device = ensemble_.devices[k];
   const std::vector<Signal> signals = drives_.signals(waveforms, units, device.values);
-  const double steady_force = device.model ? kept(k, signals).steady_force : Metrics::unset;
-  return close_device(device, signals, setting_.given.scene.metrics, run(signals, steady_force));
+  const Kept own = device.model ? kept(k, signals) : Kept();
+  DeviceOutcome outcome = close_device(device, signals, setting_.given.scene.metrics, run(signals, own.steady_force));
+  if (outcome.closed()) outcome.metrics.resistance = own.resistance;
+  return outcome;
 }
 
 ClosingOptions RobustCost::run(const std::vector<Signal>& signals, double steady_force) const {

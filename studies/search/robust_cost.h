@@ -126,6 +126,7 @@ class RobustCost {
   struct Kept {
     bool is_held = true;
     double steady_force = Metrics::unset;  // [N]
+    double resistance = Metrics::unset;    // [Ohm]
   };
   void find_gains();
   [[nodiscard]] Kept kept(std::size_t k, const std::vector<Signal>& signals) const;

@@ -175,6 +175,7 @@ SearchCosts SearchSetting::worst_price(const RecordedClosing& closing) const {
 Metrics SearchSetting::with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const {
   metrics.hold_force = baseline.metrics.hold_force;  // of the hold levels, which a search never changes
   metrics.capacitance = baseline.metrics.capacitance;
+  metrics.resistance = baseline.metrics.resistance;
   set_drive_figures(metrics, given, signals);
   return metrics;
 }
@@ -340,6 +341,7 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
   Metrics step = metrics(simulate_closing(given.model, plain, run), given.scene.metrics);
   if (target.has_own_objective()) {
     step.hold_force = baseline.metrics.hold_force, step.capacitance = baseline.metrics.capacitance;
+    step.resistance = baseline.metrics.resistance;
     set_drive_figures(step, given, plain);
   }
   scale.step = step.touched() && step.is_complete() ? step : imagined_step(given, period);

@@ -33,12 +33,16 @@ StoredColumn column_of(const PointFigure& figure) {
   return {.key = column_key(figure.quantity, figure.unit), .name = figure.name, .unit = figure.unit, .kind = ColumnKind::figure};
 }
 
+std::vector<Figure> figures_of(const StoredSearch& search) {
+  return asked_among(all_figures, read_scene(search.scene).metrics.asked);
+}
+
 StoredPlan seed_plan(const StoredSearch& search, const std::vector<std::string>& variables) {
   StoredPlan plan{.text = search.plan.dump(1),
                   .points = static_cast<std::int64_t>(search.seeds),
                   .columns = {{.key = "seed", .name = "seed", .unit = {}, .kind = ColumnKind::variable}},
                   .seed = search.options.seed};
-  for (const Figure& figure : all_figures) plan.columns.push_back(column_of(figure_column(figure)));
+  for (const Figure& figure : figures_of(search)) plan.columns.push_back(column_of(figure_column(figure)));
   for (const auto& [key, name] : verdict_columns)
     plan.columns.push_back({.key = key, .name = name, .unit = {}, .kind = ColumnKind::figure});
   for (const std::string& variable : variables) plan.columns.push_back(column_of(parameter_figure(variable)));
@@ -47,10 +51,11 @@ StoredPlan seed_plan(const StoredSearch& search, const std::vector<std::string>&
 
 double finite(double value) { return std::isfinite(value) ? value : Metrics::unset; }
 
-SearchOfSeed search_of(const StoredRow& row, std::uint64_t seed) {
+SearchOfSeed search_of(const StoredRow& row, std::uint64_t seed, const AskedFigures& asked) {
   SearchOfSeed one{.seed = seed, .status = row.status, .termination = {}};
   std::size_t at = 1;
-  for (const Figure& figure : all_figures) one.figures[figure] = row.values.at(at++);
+  one.figures.asked = asked;
+  for (const Figure& figure : asked_among(all_figures, asked)) one.figures[figure] = row.values.at(at++);
   one.goal_met = row.values.at(at) == 1;
   one.confirmed = row.values.at(at + 1) == 1;
   one.better_than_baseline = row.values.at(at + 2) == 1;
@@ -164,7 +169,8 @@ StoredRow SeedStudy::row(std::uint64_t k, const OptimizeResult& result, double c
                                        : "",
       .values = {static_cast<double>(search_.seed(k))}};
   const Metrics figures = has_best ? result.best->metrics : Metrics{};
-  for (const Figure& figure : all_figures) row.values.push_back(has_best ? finite(figure.value(figures)) : Metrics::unset);
+  for (const Figure& figure : figures_of(search_))
+    row.values.push_back(has_best ? finite(figure.value(figures)) : Metrics::unset);
   const auto truth = [](bool is) { return is ? 1.0 : 0.0; };
   row.values.insert(row.values.end(), {truth(result.goal_met), truth(result.confirmed), truth(result.better_than_baseline),
                                        has_best ? finite(result.best_cost) : Metrics::unset, finite(result.baseline_cost),
@@ -190,8 +196,9 @@ SeedStudy::State SeedStudy::state() const {
 
 std::vector<SearchOfSeed> SeedStudy::searches() const {
   std::vector<SearchOfSeed> all;
+  const AskedFigures asked = read_scene(search_.scene).metrics.asked;
   StudyReader(file_).read(
-      [&](const StoredRow& row) { all.push_back(search_of(row, search_.seed(static_cast<std::uint64_t>(row.point)))); });
+      [&](const StoredRow& row) { all.push_back(search_of(row, search_.seed(static_cast<std::uint64_t>(row.point)), asked)); });
   return all;
 }
 

@@ -1,0 +1,82 @@
+// When the connection that a switch makes is electrically closed: while its contact force is above a value, or its resistance
+// below one, or both (Device::electrical); while it is in touch where neither is given.
+//
+// The force of the connection is the least of the contacts that make it, or with Connection::any the largest; its resistance is
+// that of those contacts in series, or side by side (model/contact/resistance.h). What decides is a continuous function of the
+// motion within a step: where it changes sign is located on that motion, as the events of the contacts are. It is looked at after
+// every piece of the step, where a contact turns back, and at an extremum in between that the slopes at both ends show. Along a
+// pad, and of a plate at rest on a rigid contact, the force goes in a straight line.
+//
+// An opening counts when it is longer than ElectricalClosing::after; one that is shorter is as if it had not been.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "model/closing/step_motion.h"
+#include "model/contact/memory.h"
+#include "model/contact/resistance.h"
+#include "model/switch.h"
+#include "model/trajectory.h"
+
+namespace softland {
+
+/// A contact in a step: its motion, its place at the begin of the step's last piece and at the end, the state of its law, and
+/// whether it is at or below the plane of first touch.
+struct ContactInStep {
+  StepMotion& motion;
+  const TrajectoryPoint& from;
+  const TrajectoryPoint& to;
+  ContactState law;
+  bool is_in_contact = false;
+};
+
+class ElectricalRecord {
+ public:
+  /// Keeps a reference. Of a device that asks for it.
+  explicit ElectricalRecord(const Switch& model);
+
+  /// Takes a step between two times [s] in which every contact stays in the state of its law.
+  void take(double begin, double end, std::span<const ContactInStep> contacts);
+  /// Takes a time over which the force of the only contact goes from one value to the other in a straight line.
+  void take_line(const TrajectoryPoint& from, const TrajectoryPoint& to);
+  /// The run has ended at this time [s].
+  void finish(double time);
+
+  [[nodiscard]] const ElectricalOutcome& connection() const { return followed_.front().outcome; }
+  /// One of several contacts, or the only one.
+  [[nodiscard]] const ElectricalOutcome& contact(std::size_t c) const {
+    return followed_[followed_.size() > 1 ? c + 1 : 0].outcome;
+  }
+
+ private:
+  struct Followed {
+    bool is_closed = false;
+    double opened_at = std::numeric_limits<double>::quiet_NaN();  // [s]
+    ElectricalOutcome outcome = {};
+  };
+  // What a contact does at one time.
+  struct Instant {
+    double interference = 0, force = 0;  // [m], [N]
+    double conductance = 0;              // [S]
+  };
+
+  [[nodiscard]] Instant instant(std::size_t c, const ContactInStep& contact, double time) const;
+  [[nodiscard]] Instant connected(std::span<const Instant> contacts) const;
+  [[nodiscard]] double margin(const Instant& instant) const;
+  template <class Margin>
+  void follow(Followed& followed, const Margin& at, double begin, double end) const;
+  template <class Margin>
+  void follow_way(Followed& followed, const Margin& at, double begin, double from, double end, double to) const;
+  void set(Followed& followed, bool is_closed, double time) const;
+  [[nodiscard]] bool counts(const Followed& followed, double until) const;
+
+  const Switch& model_;
+  ElectricalClosing closing_;
+  std::vector<ContactResistance> resistances_;
+  std::vector<Followed> followed_;  // the connection, and of several contacts each
+};
+
+}  // namespace softland
