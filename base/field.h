@@ -42,6 +42,7 @@ struct Field {
   Range range = positive;            ///< ends that it leaves open are closed in a scene by the extent of the unit
   std::string_view fallback = {};    ///< the value of an Owner{} as a scene writes it; empty where that means "none"
   std::string_view instead_of = {};  ///< the key of another field of the law that this one excludes
+  std::string_view unless = {};      ///< the key in whose presence it is not required
   std::string_view not_below = {};   ///< the key of another field of the law, whose value is the least one
   std::string_view such_as = {};     ///< a value for messages, where what is usual of the unit would not do
   std::string_view beyond = {};      ///< advice for a value outside the range, which then binds scenes alone

@@ -59,7 +59,7 @@ const toml::node* node_at(const toml::table& root, const std::vector<std::string
   const toml::node* node = &root;
   for (const std::string& key : path) {
     const toml::table* table = node == nullptr ? nullptr : node->as_table();
-    node = table == nullptr ? nullptr : table->get(key);
+    node = table == nullptr ? nullptr : internal::child_of(*table, key);
   }
   return node;
 }

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "base/csv.h"
@@ -94,7 +95,7 @@ class KeyFinder {
   /// Throws InvalidInput with the rule only.
   [[nodiscard]] Found find(const std::string& name) const {
     Found found{.key = {.path = name}};
-    if (const std::size_t bracket = name.find('['); bracket != std::string::npos && name.ends_with(']')) {
+    if (const std::size_t bracket = name.rfind('['); bracket != std::string::npos && name.ends_with(']')) {
       const auto element = whole_number(std::string_view(name).substr(bracket + 1, name.size() - bracket - 2));
       require(element && *element >= 1, [&] { return fmt::format("'{}' is no element of a list such as span[2]", name); });
       found.key = {.path = name.substr(0, bracket), .element = *element};
@@ -108,19 +109,24 @@ class KeyFinder {
       return fmt::format("'{}': unknown section{}", shortened(name), internal::hint(parts.front(), known));
     });
     const bool named = file_.is_named(*section);
-    require(parts.size() == (named ? 3U : 2U), [&] {
+    const std::size_t depth = named ? 3 : 2;
+    const auto is_no_key = [&] {
       return fmt::format("'{}' is no key; one of this section is {}.{}KEY", shortened(name), parts.front(), named ? "NAME." : "");
-    });
+    };
+    require(parts.size() == depth || (parts.size() > depth && internal::find_key(parts) != nullptr), is_no_key);
     require(section->always_in_force || file_.find({parts.begin(), parts.end() - 1}) != nullptr,
             [&] { return fmt::format("'{}': the scene has no such section (--set puts one in)", shortened(name)); });
-    const SectionReader in(file_, parts.front(), named ? std::string_view(entry) : std::string_view());
+    const SectionReader whole(file_, parts.front(), named ? std::string_view(entry) : std::string_view());
+    const auto holder = whole.holder(std::span(parts).subspan(depth - 1));
+    require(holder.has_value(), is_no_key);
+    const SectionReader& in = holder->first;
     found.schema = in.find(parts.back());
     require(found.schema != nullptr, [&] {
       std::vector<std::string_view> known;
-      for (const Key& one : section->keys) known.push_back(one.name);
+      for (const Key& one : in.keys()) known.push_back(one.name);
       return fmt::format("'{}': unknown key{}", shortened(name), internal::hint(parts.back(), known));
     });
-    const bool is_choice = !section->selector.empty() && parts.back() != section->selector;
+    const bool is_choice = parts.size() == depth && !section->selector.empty() && parts.back() != section->selector;
     require(!is_choice || found.schema->belongs_to(in.text(section->selector)),
             [&] { return fmt::format("{} does not belong to {}", found.key.path, in.written(section->selector)); });
     look_at(in, found);
@@ -130,9 +136,10 @@ class KeyFinder {
  private:
   static void look_at(const SectionReader& in, Found& found) {
     const Key& key = *found.schema;
-    const bool is_list = key.type == KeyType::quantities;
+    const bool is_list = key.type == KeyType::quantities && (!key.may_be_one || in.is_list(key.name));
     require(key.type != KeyType::text && key.type != KeyType::texts,
             [&] { return fmt::format("{} is a text, which cannot vary", found.key.path); });
+    require(key.part == nullptr, [&] { return fmt::format("{} has keys of its own: name one of them", found.key.path); });
     require(is_list || found.key.element == 0, [&] { return fmt::format("{} is no list", found.key.path); });
     if (is_list) {
       const std::size_t size = in.has_value(key.name) ? in.quantities(key.name).size() : 0;
@@ -142,7 +149,7 @@ class KeyFinder {
       require(!in.is_nested(key.name),
               [&] { return fmt::format("{} holds several pads, of which none can vary alone", found.key.path); });
       found.base = in.quantities(key.name)[found.key.element - 1];
-    } else if (key.type == KeyType::quantity && in.has_value(key.name) && !in.is_word(key.name)) {
+    } else if ((key.type == KeyType::quantity || key.may_be_one) && in.has_value(key.name) && !in.is_word(key.name)) {
       found.base = in.quantities(key.name).front();
     }
   }

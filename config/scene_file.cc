@@ -235,10 +235,37 @@ std::string inline_text(const toml::node& node) {
 }
 
 std::string join_path(const std::string& path, std::string_view key) {
-  return path.empty() ? key_text(key) : path + "." + key_text(key);
+  const auto [name, element] = without_element(key);
+  const std::string text = element && is_bare_key(name) ? std::string(key) : key_text(key);
+  return path.empty() ? text : path + "." + text;
 }
 
-std::vector<std::string> split_path(std::string_view path) {
+const toml::node* child_of(const toml::table& table, const std::string& key) {
+  if (const toml::node* const node = table.get(key)) return node;
+  const auto [name, element] = without_element(key);
+  const toml::node* const list = element ? table.get(name) : nullptr;
+  const toml::array* const array = list != nullptr ? list->as_array() : nullptr;
+  return array != nullptr && *element >= 1 ? array->get(*element - 1) : nullptr;
+}
+
+std::vector<std::string> split_path(std::string_view given) {
+  // A part that is an element of a list is one key here: structure."sections[2]".width.
+  std::string path;
+  for (std::size_t begin = 0; begin <= given.size();) {
+    std::size_t end = begin;
+    for (char quote = 0; end < given.size() && (quote != 0 || given[end] != '.'); ++end) {
+      if (quote == 0 && (given[end] == '"' || given[end] == '\'')) {
+        quote = given[end];
+      } else if (given[end] == quote && !(quote == '"' && given[end - 1] == '\\')) {
+        quote = 0;
+      }
+    }
+    const std::string_view part = given.substr(begin, end - begin);
+    const auto [name, element] = without_element(part);
+    path += element && is_bare_key(name) ? toml_string(part) : std::string(part);
+    if (end < given.size()) path += '.';
+    begin = end + 1;
+  }
   // TOML itself reads the keys, so that quoting means the same here and in a file.
   const std::string rule = "not a key path such as structure.length";
   std::vector<std::string> parts;
@@ -257,7 +284,7 @@ std::vector<std::string> split_path(std::string_view path) {
 }
 
 std::pair<std::string, std::optional<std::size_t>> without_element(std::string_view name) {
-  const std::size_t bracket = name.find('[');
+  const std::size_t bracket = name.rfind('[');
   if (bracket == std::string_view::npos || !name.ends_with(']')) return {std::string(name), std::nullopt};
   std::size_t element = 0;
   const char* const end = name.data() + name.size() - 1;
@@ -290,6 +317,15 @@ void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::
     const std::string key_path = join_path(path, key.str());
     const std::string place = fmt::format("{}:{}", impl.name, node.source().begin.line);
     impl.origins[key_path] = {place};
+    if (const auto* list = node.as_array()) {
+      for (std::size_t k = 0; k < list->size(); ++k) {
+        const std::string element = fmt::format("{}[{}]", key_path, k + 1);
+        const auto* const one = list->get(k)->as_table();
+        if (one == nullptr || parts >= internal::deepest_path) continue;
+        impl.origins[element] = {fmt::format("{}:{}", impl.name, one->source().begin.line)};
+        record_origins(impl, *one, element, parts + 1);
+      }
+    }
     const auto* inner = node.as_table();
     if (!inner) continue;
     // A section and a dotted key in it, each short enough, may make a path that could be written but not read again.
@@ -299,7 +335,7 @@ void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::
 }
 
 bool is_below(std::string_view path, std::string_view ancestor) {
-  return path.size() > ancestor.size() && path.starts_with(ancestor) && path[ancestor.size()] == '.';
+  return path.size() > ancestor.size() && path.starts_with(ancestor) && (path[ancestor.size()] == '.' || path[ancestor.size()] == '[');
 }
 
 }  // namespace
@@ -308,7 +344,7 @@ const toml::node* SceneFile::Impl::find(const std::vector<std::string>& path) co
   const toml::node* node = &root;
   for (const std::string& key : path) {
     const toml::table* table = node->as_table();
-    node = table ? table->get(key) : nullptr;
+    node = table ? internal::child_of(*table, key) : nullptr;
     if (!node) return nullptr;
   }
   return node;
@@ -376,8 +412,13 @@ void SceneFile::Impl::insert(const std::vector<std::string>& path, const toml::n
   for (const std::string& key : path) {
     parent = std::exchange(path_text, join_path(path_text, key));
     if (&key == &path.back()) break;
-    if (!table->contains(key)) table->insert(key, toml::table{});
-    table = table->get(key)->as_table();
+    toml::node* const known = const_cast<toml::node*>(internal::child_of(*table, key));
+    if (known == nullptr) {
+      if (internal::without_element(key).second)
+        throw InvalidInput(fmt::format("{}: {} is not an element of a list in this scene", place.text, path_text));
+      table->insert(key, toml::table{});
+    }
+    table = (known != nullptr ? known : table->get(key))->as_table();
     if (!table) throw InvalidInput(fmt::format("{}: {} is not a section", place.text, written(path_text)));
   }
   if (const internal::Section* section = internal::find_section(path.front(), path.size() > 1 ? path[1] : std::string());
@@ -498,8 +539,7 @@ void SceneFile::set(std::string_view assignment) {
 
 void SceneFile::assign(const std::string& path, const SceneValue& value) {
   const std::vector<std::string> parts = internal::split_path(path);
-  const internal::Section* section = internal::find_section(parts.front(), parts.size() > 1 ? parts[1] : std::string());
-  const internal::Key* key = section ? section->find(parts.back()) : nullptr;
+  const internal::Key* key = internal::find_key(parts);
   if (key == nullptr) throw std::logic_error("no scene has the key " + path);
   toml::table holder;
   std::visit(
@@ -515,8 +555,7 @@ void SceneFile::assign(const std::string& path, const SceneValue& value) {
 
 void SceneFile::assign(const std::string& path, const Quantity& value, std::size_t element) {
   const std::vector<std::string> parts = internal::split_path(path);
-  const internal::Section* section = internal::find_section(parts.front(), parts.size() > 1 ? parts[1] : std::string());
-  const internal::Key* key = section ? section->find(parts.back()) : nullptr;
+  const internal::Key* key = internal::find_key(parts);
   if (key == nullptr) throw std::logic_error("no scene has the key " + path);
   toml::table holder;
   internal::insert_quantity(*key, value, [&](const auto& node) { holder.insert(internal::value_key, node); });

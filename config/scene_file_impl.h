@@ -21,8 +21,11 @@ namespace softland::internal {
 [[nodiscard]] std::string join_path(const std::string& path, std::string_view key);
 /// The parts of such a text. Throws InvalidInput with the rule only.
 [[nodiscard]] std::vector<std::string> split_path(std::string_view path);
+/// The parts of a path may be elements of lists of tables: structure.sections[2].width.
 /// "electrode.main.span[2]" as its path and 2; a name that ends otherwise as it is, without a number.
 [[nodiscard]] std::pair<std::string, std::optional<std::size_t>> without_element(std::string_view name);
+/// The node of this key, or of an element of the list there: "sections[2]". Null when there is none.
+[[nodiscard]] const toml::node* child_of(const toml::table& table, const std::string& key);
 /// Whether TOML takes this key without quotes.
 [[nodiscard]] bool is_bare_key(std::string_view key);
 /// A basic TOML string with its quotes.

@@ -24,13 +24,17 @@ class SectionReader;
 /// What may stand for the end of the beam where a place is due.
 inline constexpr std::string_view tip = "tip";
 
-enum class KeyType { text, texts, flag, integer, choice, quantity, quantities };
+struct Section;
 
-/// The member of a scene that a key sets, by its kind: of these at most one is there. The second argument tells which electrode
-/// is meant, that of a place which element of the list.
+/// `table`: keys in braces; `tables`: a list of such.
+enum class KeyType { text, texts, flag, integer, choice, quantity, quantities, table, tables };
+
+/// The member of a scene that a key sets, by its kind: of these at most one is there, but that a table may be a word instead. The
+/// second argument tells which electrode, or which table of a list, is meant, `element` which element of a list.
 struct Bound {
   double& (*number)(Scene&, std::size_t) = nullptr;
   Place& (*place)(Scene&, std::size_t, std::size_t element) = nullptr;
+  double& (*element)(Scene&, std::size_t, std::size_t element) = nullptr;
   bool& (*flag)(Scene&, std::size_t) = nullptr;
   int& (*integer)(Scene&, std::size_t) = nullptr;
   std::string& (*text)(Scene&, std::size_t) = nullptr;
@@ -45,6 +49,7 @@ struct Key {
   Range range = {};        ///< see range_of()
   std::size_t count = 0;   ///< quantities: how many; 0: any number
   bool any_word = false;   ///< integer: any text may stand instead of a number
+  bool may_be_one = false;  ///< quantities: a single one may stand instead of a list
   bool is_nested = false;  ///< quantities: may be a list of such lists, read one after the other
   std::vector<std::string_view> choices = {};
   std::vector<std::string_view> words = {};  ///< integer, quantity, an element of quantities: what may stand instead of a number
@@ -56,6 +61,8 @@ struct Key {
   std::string_view beyond = {};                   ///< what to do where a value must lie outside the range
   std::string_view why_fixed = {};                ///< why devices cannot differ by it; empty: they can
   std::string_view like = {};                     ///< a value that a switch may have; empty: see example_of()
+  std::string_view unless = {};                   ///< the key in whose presence it is not required
+  const Section* (*part)() = nullptr;             ///< table, tables: the keys of one
   Bound bound = {};
 
   // What the makers of keys (config/schema/sections.h) leave open.
@@ -104,6 +111,9 @@ struct Section {
 [[nodiscard]] const std::vector<Section>& schema();
 /// [name] or [name.ENTRY]. Null when there is none.
 [[nodiscard]] const Section* find_section(std::string_view name, std::string_view entry = {});
+
+/// The key at a path whose parts may name elements of lists: {"structure", "sections[2]", "width"}. Null when there is none.
+[[nodiscard]] const Key* find_key(const std::vector<std::string>& path);
 
 /// " (did you mean 'thickness'?)" for a near miss, else " (known: a, b, c)"; empty when nothing is known.
 [[nodiscard]] std::string hint(std::string_view word, const std::vector<std::string_view>& known);

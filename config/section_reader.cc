@@ -29,6 +29,11 @@ std::string wanted(const Key& key) {
                              [](const std::string& all, std::string_view word) { return all + " or " + toml_string(word); });
     case KeyType::choice:
       return fmt::format("one of {}", fmt::join(key.choices, ", "));
+    case KeyType::table:
+      return std::accumulate(key.words.begin(), key.words.end(), fmt::format("keys in braces such as {}", key.like),
+                             [](const std::string& all, std::string_view word) { return all + " or " + toml_string(word); });
+    case KeyType::tables:
+      return fmt::format("a list such as {}", key.like);
     case KeyType::quantity:
     case KeyType::quantities:
       break;
@@ -39,7 +44,7 @@ std::string wanted(const Key& key) {
   }
   std::vector<std::string> examples;
   for (const Dimension& dimension : key.dimensions) examples.push_back(toml_string(key.example_of(dimension)));
-  if (key.type == KeyType::quantities)
+  if (key.type == KeyType::quantities && !key.may_be_one)
     return fmt::format("a list such as [{}, {}]", examples.front(),
                        key.words.empty() ? examples.front() : toml_string(key.words.front()));
   for (const std::string_view word : key.words) examples.push_back(toml_string(word));
@@ -139,6 +144,15 @@ SectionReader::SectionReader(const SceneFile::Impl& file, std::string_view secti
     if (section_.required) throw InvalidInput(fmt::format("{}: section [{}] is missing", file.name, path_));
     if (!section_.always_in_force) return;
   }
+  read();
+}
+
+SectionReader::SectionReader(const SceneFile::Impl& file, const Section& part, std::string path, const toml::table& table)
+    : file_(file), section_(part), path_(std::move(path)), table_(&table) {
+  read();
+}
+
+void SectionReader::read() {
   check_keys();
   read_selector();
   for (const Key& key : section_.keys) {
@@ -147,7 +161,7 @@ SectionReader::SectionReader(const SceneFile::Impl& file, std::string_view secti
 }
 
 void SectionReader::check_keys() const {
-  if (!table_ || section_.name.empty()) return;  // sections stand beside the keys above the first one
+  if (!table_ || path_.empty()) return;  // sections stand beside the keys above the first one
   std::vector<std::string_view> known;
   for (const Key& key : section_.keys) {
     if (std::find(known.begin(), known.end(), key.name) == known.end()) known.push_back(key.name);
@@ -191,7 +205,7 @@ void SectionReader::read_key(const Key& key) {
     return;
   }
   if (is_replaced(key)) return;
-  if (key.required) {
+  if (key.required && (key.unless.empty() || !is_given(key.unless))) {
     std::string others;
     for (const std::string_view other : key.instead_of) {
       if (section_.find(other, choice_)->belongs_to(choice_)) others += fmt::format(" or '{}'", other);
@@ -239,9 +253,46 @@ SectionReader::Value SectionReader::parse(const Key& key, const toml::node& node
       return std::vector{parse_number(key, node)};
     case KeyType::quantities:
       if (const auto* array = node.as_array()) return parse_list(key, *array);
+      if (key.may_be_one) return std::vector{parse_number(key, node)};
+      break;
+    case KeyType::table:
+      if (text && std::ranges::find(key.words, text->get()) != key.words.end()) return text->get();
+      if (node.is_table()) return Tables{};
+      break;
+    case KeyType::tables:
+      if (const auto* array = node.as_array();
+          array && !array->empty() && std::ranges::all_of(*array, [](const toml::node& one) { return one.is_table(); }))
+        return Tables{};
       break;
   }
   throw InvalidInput(fmt::format("expected {}", wanted(key)));
+}
+
+std::vector<SectionReader> SectionReader::parts(std::string_view key) const {
+  std::vector<SectionReader> all;
+  const auto found = values_.find(key);
+  if (found == values_.end() || !std::holds_alternative<Tables>(found->second)) return all;
+  const Section& part = *find(key)->part();
+  const toml::node& node = *table_->get(key);
+  if (const toml::table* const table = node.as_table()) {
+    all.push_back(SectionReader(file_, part, path(key), *table));
+  } else {
+    for (const toml::node& one : *node.as_array())
+      all.push_back(SectionReader(file_, part, fmt::format("{}[{}]", path(key), all.size() + 1), *one.as_table()));
+  }
+  return all;
+}
+
+std::optional<std::pair<SectionReader, std::size_t>> SectionReader::holder(std::span<const std::string> path,
+                                                                           std::size_t entry) const {
+  if (path.size() <= 1) return std::pair{*this, entry};
+  const auto [name, number] = without_element(path.front());
+  const Key* const key = find(name);
+  if (key == nullptr || key->part == nullptr || (key->type == KeyType::tables) != number.has_value()) return std::nullopt;
+  const std::vector<SectionReader> all = parts(key->name);
+  const std::size_t index = number.value_or(1);
+  if (index < 1 || index > all.size()) return std::nullopt;
+  return all[index - 1].holder(path.subspan(1), number ? index - 1 : entry);
 }
 
 double SectionReader::number(std::string_view key) const {
@@ -322,6 +373,18 @@ toml::table SectionReader::in_si_units() const {
       toml::array array;
       for (const std::string& one : *texts) array.push_back(one);
       insert(array);
+    } else if (std::holds_alternative<Tables>(value)) {
+      toml::array array;
+      for (const SectionReader& part : parts(name)) {
+        toml::table one = part.in_si_units();
+        one.is_inline(true);
+        array.push_back(std::move(one));
+      }
+      if (key.type == KeyType::tables) {
+        insert(array);
+      } else {
+        insert(*array.front().as_table());
+      }
     } else if (const auto* text = std::get_if<std::string>(&value)) {
       insert(*text);
     } else if (const auto* flag = std::get_if<bool>(&value)) {
@@ -336,7 +399,16 @@ toml::table SectionReader::in_si_units() const {
 void SectionReader::set_members(Scene& scene, std::size_t entry) const {
   for (const auto& [name, value] : values_) {
     const Bound& bound = find(name)->bound;
-    if (bound.place != nullptr) {
+    if (const Key& key = *find(name); key.part != nullptr && !is_word(name)) {
+      std::size_t number = 0;
+      for (const SectionReader& part : parts(name)) {
+        const std::size_t own = key.type == KeyType::tables ? number++ : entry;
+        part.set_members(scene, own);
+        if (key.part()->check != nullptr) key.part()->check(scene, part, own);
+      }
+    } else if (bound.element != nullptr) {
+      for (std::size_t k = 0; k < quantities(name).size(); ++k) bound.element(scene, entry, k) = quantities(name)[k].value;
+    } else if (bound.place != nullptr) {
       if (is_word(name)) continue;  // the place that holds where none is said
       for (std::size_t k = 0; k < quantities(name).size(); ++k) bound.place(scene, entry, k) = place_of(quantities(name)[k]);
     } else if (bound.number != nullptr) {

@@ -4,8 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -24,6 +27,14 @@ class SectionReader {
   /// Reads [section] or [section.NAME]. Throws InvalidInput for an unknown or missing key, a value of the wrong kind, dimension
   /// or range. Keys that are not given take their defaults. `file` must outlive the reader.
   explicit SectionReader(const SceneFile::Impl& file, std::string_view section, std::string_view name = {});
+
+  /// The tables of a key that is in force: the one of a `table`, none where a word stands instead, or those of `tables`.
+  [[nodiscard]] std::vector<SectionReader> parts(std::string_view key) const;
+  /// The table that holds the last key of a path below this one, as {"sections[2]", "holes", "pitch"}, and its number in the list;
+  /// none where there is no such table.
+  [[nodiscard]] std::optional<std::pair<SectionReader, std::size_t>> holder(std::span<const std::string> path,
+                                                                                 std::size_t entry = 0) const;
+  [[nodiscard]] const std::vector<Key>& keys() const { return section_.keys; }
 
   /// Whether the section stands in the file.
   [[nodiscard]] bool is_present() const { return table_ != nullptr; }
@@ -81,7 +92,11 @@ class SectionReader {
   [[nodiscard]] std::string written(std::string_view key) const { return file_.written(path(key)); }
 
  private:
-  using Value = std::variant<std::vector<Quantity>, std::string, std::vector<std::string>, bool, std::int64_t>;
+  struct Tables {};
+  using Value = std::variant<std::vector<Quantity>, std::string, std::vector<std::string>, bool, std::int64_t, Tables>;
+
+  SectionReader(const SceneFile::Impl& file, const Section& part, std::string path, const toml::table& table);
+  void read();
 
   static Value parse(const Key& key, const toml::node& node);
   void check_keys() const;

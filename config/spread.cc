@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <set>
+#include <span>
 #include <utility>
 #include <variant>
 
@@ -136,11 +137,18 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
   const Section* section = find_section(parts.front(), entry_name);
   const bool named = section && file.is_named(*section);
   const std::size_t depth = named ? 3 : 2;
-  if (section && section->may_vary && parts.size() == depth && file.find({parts.begin(), parts.end() - 1})) {
-    const SectionReader of_key(file, parts[0], named ? entry_name : std::string());
-    for (const Key& key : section->keys) {
+  if (section && section->may_vary && parts.size() >= depth && file.find({parts.begin(), parts.end() - 1})) {
+    const SectionReader of_section(file, parts[0], named ? entry_name : std::string());
+    const auto holder = of_section.holder(std::span(parts).subspan(depth - 1));
+    if (!holder) file.fail_section(in.path(), fmt::format("'{}' is not a key of this scene", name));
+    const SectionReader& of_key = holder->first;
+    for (const Key& key : of_key.keys()) {
+      const std::size_t size =
+          key.bound.element != nullptr && of_key.has_value(key.name) ? of_key.quantities(key.name).size() : 0;
       const bool is_number = key.type == KeyType::quantity ? element == 0
-                                                           : key.bound.place != nullptr && element >= 1 && element <= key.count &&
+                             : key.bound.element != nullptr
+                                 ? (of_key.is_list(key.name) ? element >= 1 && element <= size : element == 0)
+                                 : key.bound.place != nullptr && element >= 1 && element <= key.count &&
                                                                  !of_key.is_nested(key.name);
       if (is_number && of_key.find(key.name) == &key && of_key.has_value(key.name)) candidates.push_back(key.name);
     }
@@ -163,8 +171,8 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
                                 .drive = {},
                                 .refusal = {}},
                      .dimensions = {given.dimension}};
-      if (key.bound.number != nullptr || key.bound.place != nullptr) {
-        std::size_t entry = 0;
+      if (key.bound.number != nullptr || key.bound.place != nullptr || key.bound.element != nullptr) {
+        std::size_t entry = holder->second;
         if (section->name == "electrode") {
           const auto& all = scene.device.electrodes;
           while (entry < all.size() && all[entry].name != entry_name) ++entry;
@@ -174,6 +182,7 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
         }
         found.varied.member = [bound = key.bound, entry, element = element](Scene& s) -> double& {
           if (bound.number != nullptr) return bound.number(s, entry);
+          if (bound.element != nullptr) return bound.element(s, entry, element > 0 ? element - 1 : 0);
           return bound.place(s, entry, element > 0 ? element - 1 : 0).value;
         };
       }

@@ -116,6 +116,7 @@ constexpr std::array names{
     Name{dimension::stress_gradient, "a stress gradient", "Pa/m", "0.5 MPa/um"},
     Name{dimension::viscosity, "a viscosity", "Pa s", "1.86e-5 Pa s"},
     Name{dimension::stiffness, "a stiffness", "N/m", "100 N/m"},
+    Name{dimension::rotational_stiffness, "a stiffness of rotation", "N m/rad", "1e-7 N m/rad"},
     Name{dimension::slowness, "an inverse velocity", "s/m", "0.3 s/m"},
     Name{dimension::voltage, "a voltage", "V", "45 V"},
     Name{dimension::inverse_voltage, "an inverse voltage", "1/V", "1.6 %/V"},

@@ -47,6 +47,7 @@ inline constexpr Dimension pressure{{-1, 1, -2}};
 inline constexpr Dimension stress_gradient{{-2, 1, -2}};
 inline constexpr Dimension viscosity{{-1, 1, -1}};
 inline constexpr Dimension stiffness{{0, 1, -2}};
+inline constexpr Dimension rotational_stiffness{{2, 1, -2, 0, 0, -1}};
 inline constexpr Dimension slowness{{-1, 0, 1}};
 inline constexpr Dimension voltage{{2, 1, -3, -1}};
 inline constexpr Dimension inverse_voltage{{-2, -1, 3, 1}};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -13,7 +14,9 @@
 #include "base/engineering.h"
 #include "base/gauss.h"
 #include "base/require.h"
+#include "model/built_beam.h"
 #include "model/constants.h"
+#include "model/laminate.h"
 #include "model/surface.h"
 
 namespace softland {
@@ -36,6 +39,10 @@ Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::Matrix
   }
   return basis;
 }
+
+// What a linear rigidity adds to the bending energy between the functions m and m + 1 of an element whose taper is 1: the integral
+// of xi and two neighbours of the normalised Legendre polynomials.
+double taper_coupling(int m) { return (m + 1) / std::sqrt((2 * m + 1.0) * (2 * m + 3.0)); }
 
 // The phase of a mode over the beam where it bends as waves do that travel along it, and what it grows by with omega^2. It hardly
 // changes from a beam to a similar one.
@@ -78,6 +85,100 @@ std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double p
   return {};
 }
 
+// 1 / (omega^2) of the first mode of a general beam held at a place as well, of the deflections there of all its motions of unit
+// elastic energy: the receptance sum of r^2 / (1 - lambda / lambda_i) grows from the first frequency to the second.
+double general_pinned_inverse_square(const Eigen::RowVectorXd& deflections, const Eigen::VectorXd& inverse_squares) {
+  constexpr int bits = 60;
+  const Eigen::Index last = inverse_squares.size() - 1;
+  double low = 1 / inverse_squares[last], high = 1 / inverse_squares[last - 1];
+  const Eigen::ArrayXd weights = deflections.transpose().array().square();
+  for (int i = 0; i < bits; ++i) {
+    const double middle = (low + high) / 2;
+    (((weights / (1 - middle * inverse_squares.array())).sum() > 0) ? high : low) = middle;
+  }
+  return 1 / high;
+}
+
+// What the axial force stretches the beam by, over the force: the integral of 1 / (E A) [m/N]. E is that as given: the sides of
+// the beam are free to contract.
+double stretch_per_force(const Structure& s) {
+  double sum = 0;
+  for (const LocalSection& local : local_sections(s)) {
+    const double length = local.end - local.begin, growth = local.end_width / local.width - 1;
+    const double per_width = local.youngs_modulus * local.thickness * ligament_efficiency(local.holes);
+    // The mean of 1 / width over a linear one.
+    const double mean = growth == 0 ? 1 / local.width : std::log1p(growth) / (growth * local.width);
+    sum += length * mean / per_width;
+  }
+  return sum;
+}
+
+// What is left in a beam between its anchors of the same stress everywhere before its release: sections pull at each other until
+// the force is the same all along [N].
+double axial_force(const Structure& s, double stress) {
+  double shrinks = 0;  // by which the beam would shrink if it were free [m]
+  for (const LocalSection& local : local_sections(s)) shrinks += stress / local.youngs_modulus * (local.end - local.begin);
+  return shrinks / stretch_per_force(s);
+}
+
+// The stretches of a beam of parts, between the edges of all of them, under a stress that grows by `gradient` [Pa/m] over the
+// thickness of the beam itself. A layer of piezo lies outside of all layers.
+std::vector<BeamSection> built_sections(const Device& device, double gradient) {
+  const Structure& s = device.structure;
+  const Beam& beam = part_of<Beam>(s);
+  std::vector<double> edges = edges_of_parts(s);
+  const double piezo_begin = device.piezo ? device.piezo->begin.on(s.length) : 0,
+               piezo_end = device.piezo ? std::min(device.piezo->end.on(s.length), s.length) : 0;
+  if (device.piezo) edges.insert(edges.end(), {piezo_begin, piezo_end});
+  std::ranges::sort(edges);
+  // Names of one place that differ by a rounding are one edge.
+  const auto same = [&](double a, double b) { return b - a < 1e-9 * s.length; };
+  edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
+  edges.back() = s.length;
+  const auto modulus = [&](double youngs, double ratio) { return beam.plate_strain ? youngs / (1 - ratio * ratio) : youngs; };
+  std::vector<BeamSection> sections;
+  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+    const double begin = edges[i], end = edges[i + 1], middle = (begin + end) / 2;
+    const LocalSection local = section_at(s, middle);
+    std::vector<Lamina> stack{{.modulus = modulus(local.youngs_modulus, beam.poissons_ratio),
+                               .density = local.density,
+                               .thickness = local.thickness,
+                               .gradient = gradient}};
+    for (const LayerPart& layer : beam.layers) {
+      if (middle < layer.begin.on(s.length) || middle > layer.end.on(s.length)) continue;
+      stack.insert(layer.face == Side::near ? stack.begin() : stack.end(),
+                   {.modulus = modulus(layer.youngs_modulus, layer.poissons_ratio),
+                    .density = layer.density,
+                    .thickness = layer.thickness,
+                    .stress = layer.stress});
+    }
+    const bool has_piezo = device.piezo && middle > piezo_begin && middle < piezo_end;
+    double piezo_middle = 0;  // height above the near face
+    if (has_piezo) {
+      for (const Lamina& l : stack) piezo_middle += l.thickness;
+      piezo_middle += device.piezo->thickness / 2;
+      stack.push_back({.modulus = device.piezo->youngs_modulus,
+                       .density = device.piezo->density,
+                       .thickness = device.piezo->thickness});
+    }
+    const Laminate laminate(stack);
+    const double width = local.width_at(middle), carrying = width * ligament_efficiency(local.holes);
+    BeamSection section{.begin = begin,
+                        .end = end,
+                        .rigidity = carrying * laminate.rigidity,
+                        .mass_per_length = width * area_left(local.holes) * laminate.mass,
+                        .taper = local.is_even() ? 0 : local.width_at(end) / width - 1,
+                        .curvature = laminate.curvature};
+    if (has_piezo) {
+      const Piezo& p = *device.piezo;
+      const double e31 = std::isnan(p.e31) ? p.d31 * p.youngs_modulus : p.e31;
+      section.piezo_moment = e31 * carrying * (piezo_middle - laminate.neutral_axis);
+    }
+    sections.push_back(section);
+  }
+  return sections;
+}
+
 }  // namespace
 
 double bending_modulus(const Structure& s) {
@@ -109,10 +210,14 @@ double axial_stress(const Bridge& bridge) { return bridge.residual_stress * (bri
 
 BeamSupport beam_support(const Structure& s, const std::optional<Surface>& surface) {
   const double pull = surface ? surface_pull(*surface, s) : 0;
-  if (const auto* bridge = s.find<Bridge>()) {
-    return {.far_clamp = true, .axial_force = axial_stress(*bridge) * s.width * s.thickness + pull};
+  const Anchor near = s.near_hold(), far = s.far_hold();
+  const auto* const bridge = s.find<Bridge>();
+  if (bridge != nullptr && s.has_far_clamp()) {
+    const double force = s.is_built() ? axial_force(s, axial_stress(*bridge)) : axial_stress(*bridge) * s.width * s.thickness;
+    return {.far_clamp = far.is_clamp(), .axial_force = force + pull, .near = near, .far = far};
   }
-  return {.axial_force = surface && surface->cantilever_load == ResidualLoad::compression ? -pull : 0};
+  if (s.has_far_clamp()) return {.far_clamp = far.is_clamp(), .near = near, .far = far};
+  return {.axial_force = surface && surface->cantilever_load == ResidualLoad::compression ? -pull : 0, .near = near};
 }
 
 double buckling_stress(const Structure& s, const std::optional<Surface>& surface) {
@@ -121,6 +226,17 @@ double buckling_stress(const Structure& s, const std::optional<Surface>& surface
 }
 
 std::string why_buckled(const Structure& s, const std::optional<Surface>& surface) {
+  if (s.is_built() || !s.near_hold().is_clamp() || !(s.far_hold().is_clamp() || s.far_hold().is_free())) {
+    Structure lowest = s;
+    lowest.modes = 1;
+    try {
+      static_cast<void>(beam_modes({.structure = lowest, .surface = surface}));
+    } catch (const InvalidInput&) {
+      return fmt::format("leaves a force of {} along the beam, which buckles below it",
+                         engineering(beam_support(s, surface).axial_force, "N"));
+    }
+    return {};
+  }
   const double stress = beam_support(s, surface).axial_force / (s.width * s.thickness), limit = -buckling_stress(s, surface);
   if (stress > limit) return {};
   return fmt::format("leaves {:.4g} MPa along the beam, which buckles at {:.4g} MPa", stress / 1e6, limit / 1e6);
@@ -131,6 +247,7 @@ std::string why_no_beam(const Device& d) {
     return fmt::format("structure.poissons_ratio = {}: {} needs one between -1 and 0.5", ratio, who);
   };
   const Beam& beam = part_of<Beam>(d.structure);
+  if (const auto conflict = part_conflict(d)) return fmt::format("structure.{}: {}", conflict->key, conflict->rule);
   const bool has_ratio = beam.poissons_ratio > -1 && beam.poissons_ratio < 0.5;
   if (beam.plate_strain && !has_ratio) return needs_ratio("plate_strain", beam.poissons_ratio);
   const auto* const bridge = d.structure.find<Bridge>();
@@ -144,6 +261,7 @@ std::string why_no_beam(const Device& d) {
 
 std::vector<BeamSection> beam_sections(const Device& device) {
   const Structure& s = device.structure;
+  if (s.is_built()) return built_sections(device, 0);
   const CompositeSection plain = plain_section(s, device.surface);
   std::vector<BeamSection> sections;
   const auto add = [&](double begin, double end, const CompositeSection& c) {
@@ -165,40 +283,49 @@ NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_
   // A strong tension bends the beam close to its clamps only, over lengths of L / sqrt(N L^2 / EI).
   const double layers = std::sqrt(std::max(0.0, beam_.axial_force)) / 5;
   const int count = std::max({shortest_count, beam_.modes, static_cast<int>(std::min(layers, 40.0))});
+  double lowest = std::numeric_limits<double>::infinity();  // fourth power of a wave number, over the square of the frequency
+  for (const Beam::Section& s : beam_.sections) lowest = std::min(lowest, s.mass / s.rigidity);
   for (const Beam::Section& s : beam_.sections) {
-    const int parts = std::max(1, static_cast<int>(std::ceil((s.end - s.begin) * count - 1e-9)));
+    // Waves are shorter where the beam is thin: at half their length and below, elements are, too.
+    const double shorter = std::max(1.0, std::sqrt(std::sqrt(s.mass / s.rigidity / lowest)) / 2);
+    const int parts = std::max(1, static_cast<int>(std::ceil((s.end - s.begin) * shorter * count - 1e-9)));
     for (int k = 0; k < parts; ++k) {
+      const double larger = 1 + s.taper * ((2 * k + 1.0) / parts - 1);  // than in the middle of the section
       elements_.push_back({.begin = s.begin + (s.end - s.begin) * k / parts,
                            .end = k + 1 == parts ? s.end : s.begin + (s.end - s.begin) * (k + 1) / parts,
-                           .rigidity = s.rigidity,
-                           .mass = s.mass});
+                           .rigidity = s.rigidity * larger,
+                           .mass = s.mass * larger,
+                           .taper = s.taper / parts / larger});
     }
   }
+  if (std::isfinite(beam_.near_translation)) shift_ = 1 / std::sqrt(1 + beam_.near_translation);
+  if (std::isfinite(beam_.near_rotation)) turn_ = 1 / std::sqrt(1 + beam_.near_rotation);
   if (near == nullptr || !follow(*near)) search();
 }
 
 void NormalisedModes::search() {
   const GaussRule rule = gauss_rule(functions + 2);  // exact for squares of polynomials of degree 9
   const auto points = static_cast<Eigen::Index>(rule.points.size()),
-             total = functions * static_cast<Eigen::Index>(elements_.size());
+             total = shape(1, 0).size();
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(total, total), slopes = mass;
   for (const BeamElement& element : elements_) {
     const double half = element.half();
-    const auto gram = [&](double factor, int derivative) {
+    const auto gram = [&](double factor, double taper, int derivative) {
       Eigen::MatrixXd rows(points, total);
       for (Eigen::Index g = 0; g < points; ++g) {
         const auto i = static_cast<std::size_t>(g);
-        rows.row(g) = std::sqrt(factor * rule.weights[i] * half) * shape(element, rule.points[i], derivative);
+        rows.row(g) = std::sqrt(factor * (1 + taper * rule.points[i]) * rule.weights[i] * half) * shape(element, rule.points[i], derivative);
       }
       return Eigen::MatrixXd(rows.transpose() * rows);
     };
-    mass += gram(element.mass, 0);
-    slopes += gram(1, 1);
+    mass += gram(element.mass, element.taper, 0);
+    slopes += gram(1, 0, 1);
   }
   Eigen::MatrixXd end(total, 2);  // value and slope at the far end
   end << shape(1, 0).transpose(), shape(1, 1).transpose();
-  const Eigen::MatrixXd basis = permitted(beam_, end, slopes);
-  if (beam_.far_clamp || beam_.axial_force != 0) mass = basis.transpose() * mass * basis;
+  const bool is_general = beam_.is_general();
+  const Eigen::MatrixXd basis = is_general ? permitted_motions(end, slopes) : permitted(beam_, end, slopes);
+  if (is_general || beam_.far_clamp || beam_.axial_force != 0) mass = basis.transpose() * mass * basis;
 
   // M x = x / omega^2: the low modes, which matter, are the largest eigenvalues and so the most accurate ones.
   const SymmetricEigen modes = symmetric_eigen(mass);
@@ -210,13 +337,85 @@ void NormalisedModes::search() {
     shapes_.col(i) = basis * modes.vectors.col(k) / std::sqrt(inverse_squares_[i]);
   }
   orient();
-  moving_place_ = moving_place();
+  if (is_general) {
+    all_motions_ = basis * modes.vectors;
+    all_inverse_squares_ = modes.values;
+  } else {
+    moving_place_ = moving_place();
+  }
+}
+
+bool NormalisedModes::Beam::is_general() const {
+  return std::isfinite(near_rotation) || std::isfinite(near_translation) ||
+         (!far_clamp && (far_rotation != 0 || far_translation != 0)) ||
+         std::any_of(sections.begin(), sections.end(), [](const Section& s) { return s.taper != 0; });
+}
+
+// A stiff spring must not cost digits: the motions of its end are kept apart from those that leave it alone, the stiffer first.
+Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) const {
+  const Eigen::Index total = slopes.rows();
+  Eigen::MatrixXd energy = beam_.axial_force * slopes;
+  Eigen::Index at = 0;
+  for (const BeamElement& element : elements_) {
+    energy.diagonal().segment<functions>(at).array() += 1;
+    for (int m = 0; m + 1 < functions; ++m) {
+      const double coupling = element.taper * taper_coupling(m);
+      energy(at + m, at + m + 1) += coupling, energy(at + m + 1, at + m) += coupling;
+    }
+    at += functions;
+  }
+  if (shift_ > 0) energy(at, at) += beam_.near_translation * shift_ * shift_, ++at;
+  if (turn_ > 0) energy(at, at) += beam_.near_rotation * turn_ * turn_;
+
+  const double translation = beam_.far_clamp ? Anchor::rigid : beam_.far_translation,
+               rotation = beam_.far_clamp ? Anchor::rigid : beam_.far_rotation;
+  std::vector<std::pair<double, Eigen::Index>> springs;  // with the column of `end`
+  std::vector<Eigen::Index> held;
+  for (const auto& [stiffness, column] : {std::pair{translation, 0}, std::pair{rotation, 1}}) {
+    if (std::isinf(stiffness)) held.push_back(column);
+    if (stiffness > 0 && std::isfinite(stiffness)) springs.emplace_back(stiffness, column);
+  }
+  std::ranges::sort(springs, std::greater());
+  Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(total, total);
+  if (!held.empty()) basis = orthogonal_complement(end(Eigen::all, held));
+  const auto count = static_cast<Eigen::Index>(springs.size());
+  Eigen::MatrixXd along(basis.cols(), count), by_spring = Eigen::MatrixXd::Zero(count, count);  // orthonormal, and what moves it
+  for (Eigen::Index k = 0; k < count; ++k) {
+    Eigen::VectorXd left = basis.transpose() * end.col(springs[static_cast<std::size_t>(k)].second);
+    for (Eigen::Index j = 0; j < k; ++j) {
+      by_spring(j, k) = along.col(j).dot(left);
+      left -= by_spring(j, k) * along.col(j);
+    }
+    by_spring(k, k) = left.norm();
+    along.col(k) = left / by_spring(k, k);
+  }
+  if (count > 0) {
+    Eigen::MatrixXd turned(basis.cols(), basis.cols());
+    turned << along, orthogonal_complement(along);
+    basis = basis * turned;
+  }
+  Eigen::MatrixXd elastic = basis.transpose() * energy * basis;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    elastic.topLeftCorner(count, count) +=
+        springs[static_cast<std::size_t>(k)].first * by_spring.col(k) * by_spring.col(k).transpose();
+  }
+  std::optional<Eigen::MatrixXd> orthonormal = orthonormal_in(elastic, basis);
+  require(orthonormal.has_value(), "beyond the buckling load of the beam");
+  return std::move(*orthonormal);
+}
+
+Eigen::MatrixXd NormalisedModes::slope_products() const {
+  const Eigen::Index bending = functions * static_cast<Eigen::Index>(elements_.size());
+  if (bending == shapes_.rows()) return softland::slope_products(elements_, shapes_);
+  return softland::slope_products(elements_, shapes_.topRows(bending),
+                                  turn_ > 0 ? Eigen::RowVectorXd(turn_ * shapes_.bottomRows<1>())
+                                            : Eigen::RowVectorXd::Zero(shapes_.cols()));
 }
 
 bool NormalisedModes::follow(const NormalisedModes& near) {
   const int modes = beam_.modes;
   constexpr double least_end = 0.05;  // of the length: a far clamp that holds a shorter element costs digits
-  if (near.beam_.modes != modes || near.beam_.far_clamp != beam_.far_clamp ||
+  if (beam_.is_general() || near.beam_.is_general() || near.beam_.modes != modes || near.beam_.far_clamp != beam_.far_clamp ||
       near.beam_.sections.size() != beam_.sections.size() || (beam_.far_clamp && 2 * elements_.back().half() < least_end)) {
     return false;
   }
@@ -252,7 +451,8 @@ bool NormalisedModes::follow(const NormalisedModes& near) {
 
 void NormalisedModes::orient() {
   constexpr double close_to_the_clamp = 1e-3;  // of the length: far short of the first zero of forty modes
-  const Eigen::RowVectorXd positive = shape(beam_.far_clamp ? close_to_the_clamp : 1, 0);
+  const bool is_held = beam_.far_clamp || beam_.far_rotation != 0 || beam_.far_translation != 0;
+  const Eigen::RowVectorXd positive = shape(is_held ? close_to_the_clamp : 1, 0);
   for (Eigen::Index i = 0; i < shapes_.cols(); ++i) {
     if (positive.dot(shapes_.col(i)) < 0) shapes_.col(i) *= -1;
   }
@@ -272,7 +472,8 @@ double NormalisedModes::moving_place() const {
 Eigen::RowVectorXd NormalisedModes::shape(const BeamElement& element, double xi, int derivative) const {
   static const ElementRow ends[] = {element_integrals(1, 0), element_integrals(1, 1)};
   static const Eigen::Array<double, 1, functions> orders = Eigen::Array<double, 1, functions>::LinSpaced(0.5, functions - 0.5);
-  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(functions * static_cast<Eigen::Index>(elements_.size()));
+  const Eigen::Index bending = functions * static_cast<Eigen::Index>(elements_.size());
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(bending + (shift_ > 0 ? 1 : 0) + (turn_ > 0 ? 1 : 0));
   const double x = element.begin + (element.end - element.begin) * (1 + xi) / 2;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const BeamElement& other = elements_[e];
@@ -283,6 +484,8 @@ Eigen::RowVectorXd NormalisedModes::shape(const BeamElement& element, double xi,
     if (!inside && derivative == 0) local += (x - other.end) * half * ends[1];  // straight on
     row.segment<functions>(functions * static_cast<Eigen::Index>(e)) = local.array() * (orders / (half * other.rigidity)).sqrt();
   }
+  if (shift_ > 0) row[bending] = derivative == 0 ? shift_ : 0;
+  if (turn_ > 0) row[row.size() - 1] = derivative == 0 ? turn_ * x : turn_;
   return row;
 }
 
@@ -297,6 +500,7 @@ Eigen::RowVectorXd NormalisedModes::shape(double x, int derivative) const {
 double NormalisedModes::pinned_inverse_square(double x, std::optional<double> near) const {
   constexpr double rounding = 1e-12, last_step = 1e-8;  // Newton's step after that is rounding
   constexpr int most_steps = 100;
+  if (beam_.is_general()) return general_pinned_inverse_square(shape(x, 0) * all_motions_, all_inverse_squares_);
   Receptance receptance(elements_, beam_.axial_force, beam_.far_clamp);
   const double second = beam_.modes > 1 ? 1 / inverse_squares_[1] : std::numeric_limits<double>::infinity();
   double low = 1 / inverse_squares_[0], high = second;
@@ -333,9 +537,15 @@ BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const 
   NormalisedModes::Beam beam{.sections = {},
                              .modes = modes,
                              .far_clamp = support.far_clamp,
-                             .axial_force = support.axial_force * length_ * length_ / ei};
+                             .axial_force = support.axial_force * length_ * length_ / ei,
+                             .near_rotation = support.near.rotation * length_ / ei,
+                             .near_translation = support.near.translation * std::pow(length_, 3) / ei};
+  if (!support.far_clamp) {
+    beam.far_rotation = support.far.rotation * length_ / ei;
+    beam.far_translation = support.far.translation * std::pow(length_, 3) / ei;
+  }
   for (const BeamSection& s : sections)
-    beam.sections.push_back({s.begin / length_, s.end / length_, s.rigidity / ei, s.mass_per_length / mu});
+    beam.sections.push_back({s.begin / length_, s.end / length_, s.rigidity / ei, s.mass_per_length / mu, s.taper});
   try {
     normalised_ =
         known && known->beam() == beam ? std::move(known) : std::make_shared<const NormalisedModes>(std::move(beam), known.get());
@@ -349,19 +559,44 @@ double curl(const Device& device, double gradient, double x) {
   const Structure& s = device.structure;
   const double moment = gradient * s.width * std::pow(s.thickness, 3) / 12;
   double offset = 0;
-  for (const BeamSection& section : beam_sections(device)) {
+  for (const BeamSection& section : s.is_built() ? built_sections(device, gradient) : beam_sections(device)) {
     if (section.begin >= x) break;
     const double near = x - section.begin, far = std::max(0.0, x - section.end);  // arms of its turn, from its begin and its end
-    offset += moment / section.rigidity * (near * near - far * far) / 2;
+    offset += (s.is_built() ? section.curvature : moment / section.rigidity) * (near * near - far * far) / 2;
   }
   return offset;
+}
+
+double lowest_curl(const Device& device, double gradient) {
+  double lowest = 0, offset = 0, slope = 0;
+  for (const BeamSection& section : built_sections(device, gradient)) {
+    const double length = section.end - section.begin, flat = -slope / section.curvature;  // where the curl turns back
+    if (flat > 0 && flat < length) lowest = std::min(lowest, offset + slope * flat / 2);
+    offset += (slope + section.curvature * length / 2) * length;
+    slope += section.curvature * length;
+    lowest = std::min(lowest, offset);
+  }
+  return lowest;
+}
+
+// Its moment m is linear over a stretch: the integral of m phi'' is that of (m phi')' - m' phi'.
+Eigen::VectorXd piezo_forces(const Device& device, const BeamModes& modes) {
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(modes.count());
+  for (const BeamSection& s : beam_sections(device)) {
+    if (s.piezo_moment == 0) continue;
+    const double at_begin = s.piezo_moment * (1 - s.taper), at_end = s.piezo_moment * (1 + s.taper);
+    forces += at_end * modes.slope(s.end) - at_begin * modes.slope(s.begin) -
+              (at_end - at_begin) / (s.end - s.begin) * (modes.value(s.end) - modes.value(s.begin));
+  }
+  return forces;
 }
 
 MidPlaneStretching stretching_of(const BeamModes& beam, const Structure& s) {
   const Eigen::MatrixXd slopes = beam.slope_products();
   return {.modes = static_cast<std::size_t>(slopes.rows()),
           .slopes = std::vector<double>(slopes.data(), slopes.data() + slopes.size()),
-          .stiffness = part_of<Beam>(s).youngs_modulus * s.width * s.thickness / (2 * s.length)};
+          .stiffness = s.is_built() ? 1 / (2 * stretch_per_force(s))
+                                    : part_of<Beam>(s).youngs_modulus * s.width * s.thickness / (2 * s.length)};
 }
 
 BeamModes beam_modes(const Device& device, std::shared_ptr<const NormalisedModes> known) {

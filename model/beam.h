@@ -1,8 +1,9 @@
-// Bending modes of a beam of piecewise constant rigidity and mass (Euler-Bernoulli), clamped at x = 0, its far end free or
-// clamped, under an axial force.
+// Bending modes of a beam (Euler-Bernoulli) whose rigidity and mass are constant or linear from stretch to stretch, clamped at
+// x = 0, its far end free or clamped, or on springs at either end, under an axial force.
 //
 //   (EI(x) phi'')'' - N phi'' = omega^2 mu(x) phi,   phi(0) = phi'(0) = 0
 //   free:     (EI phi'')(L) = (EI phi'')'(L) - N phi'(L) = 0          clamped:  phi(L) = phi'(L) = 0
+//   springs:  at either end a force k phi and a moment c phi' instead, k [N/m] and c [N m/rad] from 0 to rigid
 //
 // EI rigidity [N m^2], N axial force, positive in tension [N], mu mass per length [kg/m], omega [rad/s]. Modes are
 // mass-normalised, integral of mu phi_i phi_j = delta_ij, so phi has the unit kg^(-1/2), and positive at the free end; between
@@ -11,7 +12,8 @@
 // functions are orthonormal in the bending energy, so the stiffness is the unit matrix whatever the lengths of the elements, and
 // a handful of long elements reaches 1e-9. A far clamp leaves the combinations with no value and no slope there, and an axial
 // force makes them orthonormal in the elastic energy anew: what follows sees a unit stiffness again. In compression that fails at
-// the buckling load, where the straight beam stops being stable. Source: textbook Ritz-Galerkin; integrated Legendre shape
+// the buckling load, where the straight beam stops being stable. Springs and linear stretches add their energies to that unit
+// matrix, and springs at x = 0 the two motions of a rigid beam to the functions. Source: textbook Ritz-Galerkin; integrated Legendre shape
 // functions: Szabo & Babuska, Finite Element Analysis, 1991, sec. 6; axial force and buckling: Timoshenko & Gere, Theory of
 // Elastic Stability, 1961, sec. 2.1.
 #pragma once
@@ -29,12 +31,15 @@
 
 namespace softland {
 
-/// One stretch of constant section.
+/// One stretch of constant section, or of one that changes along it in proportion.
 struct BeamSection {
   double begin = 0;            ///< [m]
   double end = 0;              ///< [m]
   double rigidity = 0;         ///< EI [N m^2]
   double mass_per_length = 0;  ///< mu [kg/m]
+  double taper = 0;            ///< both above are those of its middle; at its end they are this share larger, linear in between
+  double curvature = 0;        ///< at rest, of a beam of parts, positive away from the near electrode [1/m]
+  double piezo_moment = 0;     ///< of a piezo layer, of a beam of parts, in its middle [N m / V]
 };
 
 /// Bending of a two-layer section about its own neutral axis.
@@ -68,8 +73,10 @@ struct CompositeSection {
 [[nodiscard]] std::string why_no_beam(const Device& device);
 
 struct BeamSupport {
-  bool far_clamp = false;  ///< the end at L is clamped as well
-  double axial_force = 0;  ///< N, positive in tension [N]
+  bool far_clamp = false;      ///< the end at L is clamped as well
+  double axial_force = 0;      ///< N, positive in tension [N]
+  Anchor near = {};            ///< the end at x = 0
+  Anchor far = free_end;       ///< the end at L unless it is clamped
 };
 /// Clamps, and the axial force that residual stresses of bulk and surfaces leave.
 [[nodiscard]] BeamSupport beam_support(const Structure& structure, const std::optional<Surface>& surface = {});
@@ -81,13 +88,18 @@ class NormalisedModes {
   /// What they depend on.
   struct Beam {
     struct Section {
-      double begin = 0, end = 0, rigidity = 0, mass = 0;
+      double begin = 0, end = 0, rigidity = 0, mass = 0, taper = 0;
       [[nodiscard]] bool operator==(const Section&) const = default;
     };
     std::vector<Section> sections;
     int modes = 0;
     bool far_clamp = false;
-    double axial_force = 0;  ///< N L^2 / EI
+    double axial_force = 0;                       ///< N L^2 / EI
+    double near_rotation = Anchor::rigid;         ///< c L / EI
+    double near_translation = Anchor::rigid;      ///< k L^3 / EI
+    double far_rotation = 0, far_translation = 0;  ///< unless far_clamp
+    /// Whether there is more to it than even sections between clamps and free ends.
+    [[nodiscard]] bool is_general() const;
     [[nodiscard]] bool operator==(const Beam&) const = default;
   };
   /// From those of a beam `near` this one, of as many sections and modes, where they lead to the same quickly, else by a full
@@ -101,7 +113,7 @@ class NormalisedModes {
   [[nodiscard]] Eigen::VectorXd value(double x) const { return (shape(x, 0) * shapes_).transpose(); }
   [[nodiscard]] Eigen::VectorXd slope(double x) const { return (shape(x, 1) * shapes_).transpose(); }
   /// Integrals of the products of slopes.
-  [[nodiscard]] Eigen::MatrixXd slope_products() const { return softland::slope_products(elements_, shapes_); }
+  [[nodiscard]] Eigen::MatrixXd slope_products() const;
   /// omega^-2 of the first mode of the beam held at x as well. `near` is that of a similar beam.
   [[nodiscard]] double pinned_inverse_square(double x, std::optional<double> near = {}) const;
 
@@ -115,6 +127,8 @@ class NormalisedModes {
   // All functions, x in units of the length; xi in [-1, 1] over an element.
   [[nodiscard]] Eigen::RowVectorXd shape(double x, int derivative) const;
   [[nodiscard]] Eigen::RowVectorXd shape(const BeamElement& element, double xi, int derivative) const;
+  // Combinations of the functions that a general beam permits, orthonormal in its elastic energy.
+  [[nodiscard]] Eigen::MatrixXd permitted_motions(const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) const;
   // Turned to the sign that they have by definition.
   void orient();
 
@@ -123,6 +137,10 @@ class NormalisedModes {
   Eigen::MatrixXd shapes_;  // functions x modes
   Eigen::VectorXd inverse_squares_;
   double moving_place_ = 1;
+  double shift_ = 0, turn_ = 0;  // motions of the rigid beam, behind the functions of the elements; 0: x = 0 does not move so
+  // Of a general beam: all motions that Ritz's method knows, of unit elastic energy, with omega^-2 each.
+  Eigen::MatrixXd all_motions_;
+  Eigen::VectorXd all_inverse_squares_;
 };
 
 class BeamModes {
@@ -164,6 +182,10 @@ class BeamModes {
 /// section by M = gradient a b^3/12, so that the curvature is M/EI, gradient/E of a plain beam and less where a layer stiffens
 /// it. Source: W. Fang & J. A. Wickert 1996, J. Micromech. Microeng. 6, 301. Valid for slopes well below 1.
 [[nodiscard]] double curl(const Device& device, double gradient, double x);
+/// The least of it along the beam, at most 0.
+[[nodiscard]] double lowest_curl(const Device& device, double gradient);
+/// Modal force of the piezo layer per volt on each mode, of a beam of parts: the integral of its moment per volt and phi_i''.
+[[nodiscard]] Eigen::VectorXd piezo_forces(const Device& device, const BeamModes& modes);
 
 /// Stretching of a beam between two clamps.
 [[nodiscard]] MidPlaneStretching stretching_of(const BeamModes& modes, const Structure& structure);

@@ -9,6 +9,7 @@
 #include "base/engineering.h"
 #include "base/require.h"
 #include "model/beam.h"
+#include "model/built_beam.h"
 #include "model/forces/electrostatic.h"
 #include "model/surface.h"
 
@@ -35,7 +36,7 @@ void check_fields(const std::string& part, Owner owner, Owner unset, std::span<c
     // A scene's bound that has a way beyond it, and what a rule of its own decides.
     if (field.in == nullptr || !field.beyond.empty() || field.range == Range{}) continue;
     const double value = field.in(owner), missing = field.in(unset);
-    const bool may_miss = !field.required || !field.instead_of.empty();
+    const bool may_miss = !field.required || !field.instead_of.empty() || !field.unless.empty();
     if (may_miss && (value == missing || (std::isnan(value) && std::isnan(missing)))) continue;
     const std::string name = part + "." + std::string(field.key), unit(field.unit);
     const auto refuse_unless = [&](bool right, const auto& rule) {
@@ -63,10 +64,19 @@ void check_fields(const std::string& part, const Law& law) {
 void check_structure(const Device& d) {
   const Structure& s = d.structure;
   positive(s.length, "m", "structure.length");
-  positive(s.width, "m", "structure.width");
+  const Beam* const beam = s.find<Beam>();
+  const bool has_sections = beam != nullptr && !beam->sections.empty();
+  if (!has_sections) positive(s.width, "m", "structure.width");
   Structure unset;
   std::visit([&]<class Kind>(const Kind&) { unset.kind = Kind{}; }, s.kind);
   check_fields("structure", s, unset, fields_in_force(s));
+  if (!has_sections) {
+    for (const Field<Structure>& field : fields_in_force(s)) {
+      if (field.unless.empty()) continue;
+      Structure own = s;
+      positive(field.in(own), std::string(field.unit).c_str(), ("structure." + std::string(field.key)).c_str());
+    }
+  }
   require(s.modes >= 1 && s.modes <= most_modes,
           [&] { return fmt::format("structure.modes = {}: must be from 1 to {}", s.modes, most_modes); });
   require(s.damping_ratio >= 0 && s.damping_ratio < 1e3,
@@ -91,7 +101,7 @@ void check_gap_and_electrodes(const Device& d) {
   for (const Electrode& e : d.electrodes) {
     for (const Stretch& pad : e.pads(s.length)) span(pad.begin, pad.end, s.length, "electrode." + e.name + ".span");
     if (e.side != Side::near) positive(e.gap, "m", ("electrode." + e.name + ".gap").c_str());
-    if (row_of(fringing_laws, e.fringing).needs_thickness) positive(s.thickness, "m", "structure.thickness");
+    if (row_of(fringing_laws, e.fringing).needs_thickness && !s.is_built()) positive(s.thickness, "m", "structure.thickness");
   }
   if (const auto conflict = electrode_conflict(s, d.electrodes)) {
     throw InvalidInput(fmt::format("electrode.{}: {}", d.electrodes[conflict->electrode].name, conflict->why));
@@ -121,8 +131,9 @@ void check_rest_shape(const Device& d) {
 }
 
 void check_gas(const Gas& g, const Structure& s) {
-  if (limits_of(g).needs_thickness) positive(s.thickness, "m", "structure.thickness");
+  if (limits_of(g).needs_thickness && !s.is_built()) positive(s.thickness, "m", "structure.thickness");
   std::visit([](const auto& law) { check_fields("gas", law); }, g);
+  require(!is_compressible(g) || !s.is_built(), "gas.model = reynolds: not with sections or layers of a beam");
   const auto* const damper = std::get_if<LinearGas>(&g);
   require(damper == nullptr || std::isnan(damper->damping) != std::isnan(damper->quality_factor),
           "gas.model = linear: needs either damping or quality_factor");

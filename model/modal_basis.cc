@@ -9,7 +9,7 @@
 namespace softland {
 
 ModalBasis::ModalBasis(Eigen::VectorXd angular_frequencies, const Scales& scales, const SampledModes& sampled,
-                       const Device& device)
+                       const Device& device, const std::optional<Eigen::VectorXd>& piezo)
     : frequencies_(std::move(angular_frequencies)),
       squares_(frequencies_.cwiseAbs2()),
       contact_shape_(scales.shape * sampled.contact_shape),
@@ -20,7 +20,9 @@ ModalBasis::ModalBasis(Eigen::VectorXd angular_frequencies, const Scales& scales
   const Structure& s = device.structure;
   const double slope_scale = scales.shape / scales.length;
   if (device.touches_along_pad()) pad_slope_ = slope_scale * sampled.contact_slope;
-  if (device.piezo) {
+  if (piezo) {
+    piezo_shape_ = *piezo;
+  } else if (device.piezo) {
     piezo_shape_ = piezo_moment_per_volt(s, *device.piezo) *
                    (slope_scale * sampled.piezo_end_slope - slope_scale * sampled.piezo_begin_slope);
   }

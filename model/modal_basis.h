@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "base/lanes.h"
@@ -23,7 +24,9 @@ class ModalBasis {
     double frequency = 0;  ///< [rad/s]
   };
   ModalBasis() = default;
-  ModalBasis(Eigen::VectorXd angular_frequencies, const Scales& scales, const SampledModes& sampled, const Device& device);
+  /// `piezo`: the piezo_shape() of a beam of parts; none: of a layer on a beam that is the same all along it.
+  ModalBasis(Eigen::VectorXd angular_frequencies, const Scales& scales, const SampledModes& sampled, const Device& device,
+             const std::optional<Eigen::VectorXd>& piezo = {});
 
   [[nodiscard]] int modes() const { return static_cast<int>(frequencies_.size()); }
   [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s]

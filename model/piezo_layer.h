@@ -2,7 +2,7 @@
 //
 //   C = eps0 eps_r w (Lp2 - Lp1) / b_p
 //
-// C capacitance [F]; eps_r relative permittivity of the layer between its electrodes; w width of the beam, which the layer has
+// (of a beam of sections, the area between Lp1 and Lp2) C capacitance [F]; eps_r relative permittivity of the layer between its electrodes; w width of the beam, which the layer has
 // [m]; Lp1, Lp2 begin and end of the layer [m]; b_p its thickness [m]. The formula leaves out edges and holds at constant strain:
 // the charge that the motion of the beam moves is ModalBasis::piezo_charge(), which drives and energies have anyway.
 //

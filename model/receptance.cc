@@ -73,11 +73,12 @@ ElementRow element_integrals(double xi, int derivative) {
   return n;
 }
 
-Eigen::MatrixXd slope_products(const std::vector<BeamElement>& elements, const Eigen::MatrixXd& motions) {
+Eigen::MatrixXd slope_products(const std::vector<BeamElement>& elements, const Eigen::MatrixXd& motions,
+                               const std::optional<Eigen::RowVectorXd>& first_slopes) {
   const Eigen::Index modes = motions.cols();
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(modes, modes);
   Eigen::Matrix<double, ElementProducts::size, Eigen::Dynamic> local(ElementProducts::size, modes);
-  Eigen::RowVectorXd deflection = Eigen::RowVectorXd::Zero(modes), slope = deflection;
+  Eigen::RowVectorXd deflection = Eigen::RowVectorXd::Zero(modes), slope = first_slopes.value_or(deflection);
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const double half = elements[e].half(), reach = std::sqrt(std::pow(half, 3) / elements[e].rigidity);
     local << deflection, half * slope,

@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "base/lanes.h"
@@ -29,14 +30,17 @@ using ElementRow = Eigen::Matrix<double, 1, element_functions>;
 struct BeamElement {
   double begin = 0, end = 0;  // in units of the beam's length, as all that follows
   double rigidity = 0, mass = 0;
+  double taper = 0;  // at its end both are this share larger than in its middle, linear in between
 
   [[nodiscard]] double half() const { return (end - begin) / 2; }
 };
 
-/// Integrals over the beam of the products of slopes of motions, a column of factors of the functions each.
-[[nodiscard]] Eigen::MatrixXd slope_products(const std::vector<BeamElement>& elements, const Eigen::MatrixXd& motions);
+/// Integrals over the beam of the products of slopes of motions, a column of factors of the functions each. `first_slopes` are
+/// theirs at x = 0; none: they are 0.
+[[nodiscard]] Eigen::MatrixXd slope_products(const std::vector<BeamElement>& elements, const Eigen::MatrixXd& motions,
+                                             const std::optional<Eigen::RowVectorXd>& first_slopes = {});
 
-/// Of up to four lambda at once.
+/// Of up to four lambda at once, for elements without taper.
 class Receptance {
  public:
   /// Axial force positive in tension.

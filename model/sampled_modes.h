@@ -14,6 +14,7 @@
 
 #include "base/gauss.h"
 #include "model/beam.h"
+#include "model/built_beam.h"
 #include "model/device.h"
 #include "model/structure/tabulated_modes.h"
 
@@ -33,6 +34,9 @@ struct SampledModes {
                    piezo_end = d.piezo ? d.piezo->end.on(length) : 0;
       for (const Electrode& e : d.electrodes)
         for (const Stretch& pad : e.pads(length)) corners.insert({pad.begin, std::min(pad.end, length)});
+      if (d.structure.is_built()) {
+        for (const double edge : edges_of_parts(d.structure)) corners.insert(edge);
+      }
       if (d.piezo) corners.insert({piezo_begin, piezo_end});
       if (d.touches_along_pad()) {
         const auto [begin, end] = d.pad();

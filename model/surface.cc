@@ -12,6 +12,7 @@ namespace softland {
 std::string why_no_surface(const Device& d) {
   const Surface& surface = *d.surface;
   if (const std::string_view why = d.structure.why_no_skins(); !why.empty()) return std::string(why);
+  if (d.structure.is_built()) return "is for a beam without sections and layers";
   if (d.piezo) return "is for a bare beam, and the piezo layer covers a face";
   if (!std::isfinite(surface.elastic_modulus) || !std::isfinite(surface.residual_stress)) return "must be finite";
   if (surface.cantilever_load != ResidualLoad::none && d.structure.has_far_clamp()) {

@@ -9,6 +9,7 @@
 
 #include "base/decompositions.h"
 #include "base/require.h"
+#include "model/built_beam.h"
 #include "model/far_side.h"
 #include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
@@ -34,11 +35,39 @@ std::shared_ptr<const DistributedLaw> erased(Law law, PointRange range, double f
   return std::make_shared<const DistributedLawOf<Law>>(law, range.begin, range.end, floor);
 }
 
+// The points of a range that lie under a structure of this width and thickness; width without holes.
+struct EvenRange {
+  PointRange points;
+  double width, thickness;
+};
+
+// Ranges of points between two places, each of one size: of a structure that is the same all along that is one, and under a width
+// that changes, each point by itself.
+std::vector<EvenRange> even_ranges(const Structure& s, const Eigen::ArrayXd& positions, double begin, double end) {
+  if (!s.is_built()) return {{points_in(positions, begin, end), s.width, s.thickness}};
+  std::vector<EvenRange> ranges;
+  for (const LocalSection& local : local_sections(s)) {
+    const PointRange points = points_in(positions, std::max(begin, local.begin), std::min(end, local.end));
+    const double left = area_left(local.holes);
+    if (local.is_even()) {
+      if (points.begin < points.end) ranges.push_back({points, local.width * left, local.thickness});
+    } else {
+      for (Eigen::Index p = points.begin; p < points.end; ++p)
+        ranges.push_back({{p, p + 1}, local.width_at(positions[p]) * left, local.thickness});
+    }
+  }
+  return ranges;
+}
+
+std::shared_ptr<const DistributedLaw> one_law(std::vector<std::shared_ptr<const DistributedLaw>> pads) {
+  return pads.size() == 1 ? pads.front() : std::make_shared<const LawOnPads>(std::move(pads));
+}
+
 // Calls `make` with the force law of an electrode.
 template <class Make>
-std::shared_ptr<const DistributedLaw> electrostatic(Fringing fringing, const Structure& s, Make&& make) {
+std::shared_ptr<const DistributedLaw> electrostatic(Fringing fringing, const EvenRange& range, Make&& make) {
   return std::visit([&](const auto& law) { return make(ElectrostaticForce<std::decay_t<decltype(law)>>{law}); },
-                    row_of(fringing_laws, fringing).make(s.width, s.thickness));
+                    row_of(fringing_laws, fringing).make(range.width, range.thickness));
 }
 
 std::shared_ptr<const DistributedLaw> dispersion_force(const Dispersion& d, double width, PointRange range, double floor) {
@@ -69,9 +98,13 @@ void Switch::set_modes(const Modes& structure, double points_per_length, int few
     if constexpr (std::same_as<Modes, TabulatedModes>) sampled->table = *structure.normalised();
     sampled_ = std::move(sampled);
   }
+  std::optional<Eigen::VectorXd> piezo;
+  if constexpr (std::same_as<Modes, BeamModes>) {
+    if (device_.piezo && device_.structure.is_built()) piezo = piezo_forces(device_, structure);
+  }
   basis_ = ModalBasis(structure.angular_frequencies(),
                       {.length = structure.length(), .shape = structure.scale(), .frequency = structure.frequency_scale()},
-                      *sampled_, device_);
+                      *sampled_, device_, piezo);
   Eigen::ArrayXd gaps = Eigen::ArrayXd::Constant(sampled_->positions.size(), device_.gap.electrode);
   for (Eigen::Index p = 0; p < gaps.size(); ++p) gaps[p] += device_.rest_offset(sampled_->positions[p]);
   quadrature_ = PointQuadrature(sampled_->positions, sampled_->weights, structure.scale() * sampled_->shapes, gaps);
@@ -111,33 +144,47 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
   for (const Electrode& e : device_.electrodes) {
     std::vector<std::shared_ptr<const DistributedLaw>> pads;
     for (const Stretch& pad : e.pads(s.length)) {
-      const PointRange range = points_in(quadrature_.positions(), pad.begin, pad.end);
-      pads.push_back(electrostatic(e.fringing, s, [&](const auto& law) {
-        if (e.side == Side::near) return erased(law, range, gap_floor());
-        const auto far = on_far_side(law, e.gap);
-        return e.side == Side::far ? erased(far, range, gap_floor())
-                                   : erased(BothSides<std::decay_t<decltype(law)>>{.near = law, .far = far}, range, gap_floor());
-      }));
+      for (const EvenRange& even : even_ranges(s, quadrature_.positions(), pad.begin, pad.end)) {
+        const PointRange range = even.points;
+        pads.push_back(electrostatic(e.fringing, even, [&](const auto& law) {
+          if (e.side == Side::near) return erased(law, range, gap_floor());
+          const auto far = on_far_side(law, e.gap);
+          return e.side == Side::far
+                     ? erased(far, range, gap_floor())
+                     : erased(BothSides<std::decay_t<decltype(law)>>{.near = law, .far = far}, range, gap_floor());
+        }));
+      }
     }
-    driven_laws_.push_back(pads.size() == 1 ? pads.front() : std::make_shared<const LawOnPads>(std::move(pads)));
+    driven_laws_.push_back(one_law(std::move(pads)));
   }
+  std::vector<EvenRange> everywhere{{{0, n}, s.width, s.thickness}};
+  if (s.is_built()) everywhere = even_ranges(s, quadrature_.positions(), 0, s.length);
   if (device_.dispersion) {
-    driven_laws_.push_back(dispersion_force(*device_.dispersion, s.width, {0, n}, gap_floor()));
+    std::vector<std::shared_ptr<const DistributedLaw>> pads;
+    for (const EvenRange& even : everywhere)
+      pads.push_back(dispersion_force(*device_.dispersion, even.width, even.points, gap_floor()));
+    driven_laws_.push_back(one_law(std::move(pads)));
   }
   if (device_.gas) {
     const double first_mode = (quadrature_.weights() * quadrature_.shapes().col(0).head(n).array().square()).sum();
-    gas_ = gas_law(*device_.gas, s, basis_.angular_frequencies()[0] / first_mode);
+    const double unit_quality = basis_.angular_frequencies()[0] / first_mode;
+    const LocalSection contact = section_at(s, device_.contact_position());
+    gas_ = gas_law(*device_.gas, contact.width_at(device_.contact_position()), contact.thickness, unit_quality);
+    const auto film_on = [&](const EvenRange& even) { return gas_law(*device_.gas, even.width, even.thickness, unit_quality); };
     if (is_compressible(*device_.gas)) {
       film_.emplace(*film_of(*device_.gas), s.width, n, gap_floor());
     } else {
-      passive_laws_.push_back(std::visit([&](const auto& law) { return erased(law, {0, n}, gap_floor()); }, *gas_));
+      for (const EvenRange& even : everywhere)
+        passive_laws_.push_back(
+            std::visit([&](const auto& law) { return erased(law, even.points, gap_floor()); }, film_on(even)));
     }
     if (const double gap = far_gap(*device_.gas); !std::isnan(gap)) {
-      passive_laws_.push_back(std::visit(
-          [&](const auto& law) {
-            return erased(on_far_side(law, gap), {0, n}, gap_floor());
-          },
-          *gas_));
+      for (const EvenRange& even : everywhere)
+        passive_laws_.push_back(std::visit(
+            [&](const auto& law) {
+              return erased(on_far_side(law, gap), even.points, gap_floor());
+            },
+            film_on(even)));
     }
   }
   // What bends the beam by the contact gap at x_c.
@@ -145,10 +192,10 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
   const double force = contact_gap_ / compliance;
   bending_energy_ = force * contact_gap_ / 2;
   if (device_.has_contact()) {
-    contact_ = contact_law(device_.contacts.front(), s.width);
+    contact_ = contact_law(device_.contacts.front(), width_at(s, device_.contact_position()));
     for (std::size_t c = 1; c < device_.contacts.size(); ++c) {
       const Contact& contact = device_.contacts[c];
-      further_.push_back({.law = contact_law(contact, s.width),
+      further_.push_back({.law = contact_law(contact, width_at(s, device_.contact_position(c))),
                           .shape = (contact.side == Side::far ? -1 : 1) * basis_.further_contact_shapes()[c - 1],
                           .gap = device_.contact_gap(c)});
     }

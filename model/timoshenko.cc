@@ -54,7 +54,7 @@ Basis basis(const std::vector<double>& points, int functions, bool both_clamped)
 
 std::vector<double> frequency_excess(const Structure& s) {
   const auto* const beam = s.find<Beam>();
-  if (beam == nullptr) return {};
+  if (beam == nullptr || beam->is_built() || beam->anchor || beam->far_anchor) return {};
   const bool both_clamped = s.has_far_clamp();
   const double nu = std::isnan(beam->poissons_ratio) ? usual_poissons_ratio : beam->poissons_ratio;
   const double beyond = std::min(1.0, most_slender * s.thickness / s.length);

@@ -19,7 +19,8 @@
 namespace softland {
 
 /// How much too high Euler-Bernoulli's frequencies are, relative to Timoshenko's, mode by mode: 0.05 is 5 %. A Poisson's ratio
-/// that is not given counts as 0.3. For a beam; empty for a plate.
+/// that is not given counts as 0.3. For a beam that is the same all along, between
+/// clamps and free ends; empty for all else.
 [[nodiscard]] std::vector<double> frequency_excess(const Structure& structure);
 
 /// One sentence with the excess of every mode; empty where none reaches 2 %.

@@ -20,7 +20,7 @@ inline bool figure_of_no_drive(const Figure& figure) { return figure.conditionin
 inline bool figure_of_contact(const Figure& figure) {
   if (figure.key == key_of(&Metrics::drive_energy)) return false;
   const bool is_at_rest = figure.conditioning == Conditioning::rest || figure.conditioning == Conditioning::open;
-  return figure_of_no_drive(figure) && (!is_at_rest || figure.key == key_of(&Metrics::hold_force));
+  return figure_of_no_drive(figure) && (!is_at_rest || figure.key == key_of(&Metrics::hold_force) || figure.asked != nullptr);
 }
 inline bool figure_of_number(const Figure& figure) { return !figure.is_yes_or_no(); }
 

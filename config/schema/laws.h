@@ -44,7 +44,8 @@ template <class Owner>
           .about = field.about,
           .beyond = field.beyond,
           .why_fixed = field.why_fixed,
-          .like = field.such_as};
+          .like = field.such_as,
+          .unless = field.unless};
   if (!field.instead_of.empty()) key.instead_of.push_back(field.instead_of);
   if (field.words != nullptr) {
     key.type = KeyType::choice;

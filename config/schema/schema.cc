@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <string>
 
 #include "base/engineering.h"
 #include "config/schema/sections.h"
@@ -38,6 +39,7 @@ constexpr std::array extents{
     Extent{dimension::stress_gradient, 1e-6, 1e18},
     Extent{dimension::viscosity, 1e-18, 1e6},
     Extent{dimension::stiffness, 1e-12, 1e12},
+    Extent{dimension::rotational_stiffness, 1e-24, 1e6},
     Extent{dimension::resistance, 1e-6, 1e15},
     Extent{dimension::resistivity, 1e-12, 1e6},
     Extent{dimension::capacitance, 1e-18, 1},
@@ -124,6 +126,18 @@ const Section* find_section(std::string_view name, std::string_view entry) {
     if (section.name == name && (section.entry.empty() || section.entry == entry)) found = &section;
   }
   return found;
+}
+
+const Key* find_key(const std::vector<std::string>& path) {
+  const Section* section = find_section(path.front(), path.size() > 1 ? path[1] : std::string());
+  const Key* key = section != nullptr ? section->find(path.back()) : nullptr;
+  for (std::size_t i = 1; section != nullptr && i + 1 < path.size(); ++i) {
+    const Key* const table = section->find(std::string_view(path[i]).substr(0, path[i].find('[')));
+    if (table == nullptr || table->part == nullptr) continue;
+    section = table->part();
+    key = section->find(path.back());
+  }
+  return key;
 }
 
 std::string hint(std::string_view word, const std::vector<std::string_view>& known) {

@@ -88,6 +88,9 @@ struct Of {
   }
 };
 
+/// The keys of a beam's sections, layers and anchors.
+[[nodiscard]] std::vector<Key> beam_part_keys();
+
 [[nodiscard]] Section title_section();
 [[nodiscard]] Section structure_section();
 [[nodiscard]] Section gap_section();

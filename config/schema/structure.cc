@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <type_traits>
@@ -11,6 +12,7 @@
 #include "config/schema/sections.h"
 #include "config/section_reader.h"
 #include "model/beam.h"
+#include "model/built_beam.h"
 
 namespace softland::internal {
 namespace {
@@ -38,6 +40,7 @@ bool is_same(const Key& a, const Key& b) {
 template <class Kind>
 std::vector<Key> further_keys() {
   if constexpr (std::is_same_v<Kind, ModalStructure>) return modal_table_keys();
+  if constexpr (std::derived_from<Kind, Beam>) return beam_part_keys();
   return {};
 }
 
@@ -73,7 +76,12 @@ void check(Plate&, Structure& s, Scene&, const SectionReader& in) {
 
 void check(ModalStructure&, Structure&, Scene& scene, const SectionReader& in) { read_modal_table(scene, in); }
 
-void check(Beam&, Structure& s, Scene&, const SectionReader& in) {
+void check(Beam& beam, Structure& s, Scene& scene, const SectionReader& in) {
+  if (!beam.sections.empty()) {
+    s.length = 0;
+    for (const SectionPart& part : beam.sections) s.length += part.length;
+  }
+  if (const auto conflict = part_conflict(scene.device)) in.file().fail(in.path(conflict->key), conflict->rule);
   for (const char* key : {"plate_strain", "biaxial"}) {
     if (!in.has_value(key)) continue;
     in.require(!in.flag(key) || in.is_given("poissons_ratio"), key, "needs structure.poissons_ratio");

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/engineering.h"
+#include "model/built_beam.h"
 
 namespace softland {
 
@@ -16,8 +17,12 @@ double end_flow(double ratio) {
 }
 
 GasLaw gas_law(const Gas& gas, const Structure& s, double unit_quality) {
-  const double length = film_length(gas), kept = std::isnan(length) ? 1 : end_flow(s.width / length);
-  Film film{.width = s.width, .thickness = s.thickness, .viscosity = 0, .mean_free_path = 0, .unit_quality = unit_quality};
+  return gas_law(gas, s.width, s.thickness, unit_quality);
+}
+
+GasLaw gas_law(const Gas& gas, double width, double thickness, double unit_quality) {
+  const double length = film_length(gas), kept = std::isnan(length) ? 1 : end_flow(width / length);
+  Film film{.width = width, .thickness = thickness, .viscosity = 0, .mean_free_path = 0, .unit_quality = unit_quality};
   if (const FilmState* state = film_of(gas)) {
     film.viscosity = viscosity(*state) * kept;
     film.mean_free_path = mean_free_path(*state);
@@ -32,7 +37,7 @@ double squeeze_number(const FilmState& gas, double width, double gap, double rat
 double squeeze_number(const Device& device, double rest_gap, const TrajectoryPoint& point) {
   const double h = rest_gap - point.position;
   if (!device.gas || !std::isfinite(limits_of(*device.gas).most_squeeze) || !(h > 0)) return 0;
-  return squeeze_number(*film_of(*device.gas), device.structure.width, h, std::abs(point.velocity) / h);
+  return squeeze_number(*film_of(*device.gas), width_at(device.structure, device.contact_position()), h, std::abs(point.velocity) / h);
 }
 
 std::vector<std::string> gas_warnings(const Device& device, double smallest_gap, double largest_squeeze) {

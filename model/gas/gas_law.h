@@ -30,8 +30,10 @@ using GasLaw = internal::LawsOf<Gas>::Type;
 /// Richardson & Yamanami, J. Basic Eng. 88 (1966) 451; the series is that of torsion of a rectangular bar).
 [[nodiscard]] double end_flow(double ratio);
 
-/// Of the compressible film its incompressible limit.
+/// Of the compressible film its incompressible limit. Of a structure that is the same all along, or of one with this width and
+/// thickness [m].
 [[nodiscard]] GasLaw gas_law(const Gas& gas, const Structure& structure, double unit_quality);
+[[nodiscard]] GasLaw gas_law(const Gas& gas, double width, double thickness, double unit_quality);
 
 /// c in f = -c v [N s/m^2] at this gap [m].
 [[nodiscard]] inline double damping_per_length(const GasLaw& law, double gap) {

@@ -2,11 +2,14 @@
 // Their modes: model/beam.h.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "model/structure/beam_parts.h"
 #include "model/structure/kind.h"
 
 namespace softland {
@@ -17,6 +20,13 @@ struct Beam {
   double density = 0;         ///< rho [kg/m^3]
   bool plate_strain = false;  ///< use E / (1 - nu^2)
   double poissons_ratio = not_given;
+  std::vector<SectionPart> sections = {};       ///< from x = 0 on; none: the beam is the same all along
+  std::vector<LayerPart> layers = {};           ///< on its faces
+  std::optional<Anchor> anchor = {};            ///< at x = 0; none: a clamp
+  std::optional<Anchor> far_anchor = {};        ///< at the far end; none: what the kind says
+
+  /// Whether it is made of more than one even piece.
+  [[nodiscard]] bool is_built() const { return !sections.empty() || !layers.empty(); }
 
   static constexpr std::array usual_spread{UsualSpread{"thickness", "2 %"}, UsualSpread{"youngs_modulus", "3 %"}};
 
@@ -25,11 +35,11 @@ struct Beam {
     constexpr Range possible_ratio{.least = -1, .most = 0.5, .least_open = true, .most_open = true};
     // clang-format off
     return std::to_array<Field<S>>({
-        {.key = "length", .unit = "m", .about = "along the beam", .in = reach<S, &S::length>, .required = true, .such_as = "250 um"},
-        {.key = "width", .unit = "m", .about = "across the beam", .in = reach<S, &S::width>, .required = true, .such_as = "20 um"},
-        {.key = "thickness", .unit = "m", .about = "in the direction of motion", .in = reach<S, &S::thickness>, .required = true},
-        {.key = "youngs_modulus", .unit = "Pa", .about = "used as given unless plate_strain is on", .in = within<S, Beam, &Beam::youngs_modulus>, .required = true},
-        {.key = "density", .unit = "kg/m^3", .about = "of the beam", .in = within<S, Beam, &Beam::density>, .required = true},
+        {.key = "length", .unit = "m", .about = "along the beam", .in = reach<S, &S::length>, .required = true, .instead_of = "sections", .such_as = "250 um"},
+        {.key = "width", .unit = "m", .about = "across the beam", .in = reach<S, &S::width>, .required = true, .unless = "sections", .such_as = "20 um"},
+        {.key = "thickness", .unit = "m", .about = "in the direction of motion", .in = reach<S, &S::thickness>, .required = true, .unless = "sections"},
+        {.key = "youngs_modulus", .unit = "Pa", .about = "used as given unless plate_strain is on", .in = within<S, Beam, &Beam::youngs_modulus>, .required = true, .unless = "sections"},
+        {.key = "density", .unit = "kg/m^3", .about = "of the beam", .in = within<S, Beam, &Beam::density>, .required = true, .unless = "sections"},
         {.key = "modes", .about = "number of modes kept; auto: until the figures stop moving", .count = reach<S, &S::modes>, .or_word = "auto", .range = {.least = 1, .most = S::most_modes}, .fallback = "4"},
         S::damping(),
         {.key = "plate_strain", .about = "use E / (1 - nu^2) for a wide beam", .flag = within<S, Beam, &Beam::plate_strain>, .fallback = "false"},
@@ -62,11 +72,17 @@ struct Cantilever : Beam {
   }
   template <class Device>
   [[nodiscard]] double rest_offset(const Device& device, double x) const {
-    return stress_gradient == 0 ? 0 : curl(device, stress_gradient, x);
+    return is_straight() ? 0 : curl(device, stress_gradient, x);
   }
   template <class Device>
   [[nodiscard]] double lowest_rest_offset(const Device& device) const {
+    if (is_built()) return is_straight() ? 0 : lowest_curl(device, stress_gradient);
     return stress_gradient < 0 ? rest_offset(device, device.structure.length) : 0;
+  }
+
+  [[nodiscard]] bool is_straight() const {
+    return stress_gradient == 0 &&
+           std::none_of(layers.begin(), layers.end(), [](const LayerPart& layer) { return layer.stress != 0; });
   }
 
   template <class S>
@@ -104,7 +120,7 @@ struct Bridge : Beam {
   /// None where bending does not stretch it.
   template <class Modes, class S>
   [[nodiscard]] auto stretching(const Modes& modes, const S& structure) const {
-    return stretches ? std::optional(stretching_of(modes, structure)) : std::nullopt;
+    return stretches && structure.has_far_clamp() ? std::optional(stretching_of(modes, structure)) : std::nullopt;
   }
 };
 

@@ -54,8 +54,13 @@ struct Structure {
 
   /// It moves as one: there is one mode, and no place along it differs from another.
   [[nodiscard]] bool is_rigid() const;
-  /// Its far end is held as its near end is.
+  /// Its far end is held, by a clamp or by an anchor that gives way.
   [[nodiscard]] bool has_far_clamp() const;
+  /// How its ends are held: what a beam's anchors say, else what the kind does.
+  [[nodiscard]] Anchor near_hold() const;
+  [[nodiscard]] Anchor far_hold() const;
+  /// It is a beam of sections, or with layers.
+  [[nodiscard]] bool is_built() const;
   /// Why it cannot have a piezo layer, or skins; empty where it can.
   [[nodiscard]] std::string_view why_no_layer() const;
   [[nodiscard]] std::string_view why_no_skins() const;
@@ -89,14 +94,26 @@ inline bool Structure::is_rigid() const {
       },
       kind);
 }
-inline bool Structure::has_far_clamp() const {
-  return std::visit(
+inline Anchor Structure::near_hold() const {
+  const Beam* const beam = find<Beam>();
+  return beam != nullptr && beam->anchor ? *beam->anchor : Anchor{};
+}
+inline Anchor Structure::far_hold() const {
+  if (const Beam* const beam = find<Beam>(); beam != nullptr && beam->far_anchor) return *beam->far_anchor;
+  const bool is_clamped = std::visit(
       []<class Kind>(const Kind&) {
         return requires { Kind::has_far_clamp; };
       },
       kind);
+  return is_clamped ? Anchor{} : free_end;
+}
+inline bool Structure::has_far_clamp() const { return !far_hold().is_free(); }
+inline bool Structure::is_built() const {
+  const Beam* const beam = find<Beam>();
+  return beam != nullptr && beam->is_built();
 }
 inline std::string_view Structure::why_no_layer() const {
+  if (find<Beam>() != nullptr) return has_far_clamp() ? Bridge::why_no_layer : "";
   return std::visit(
       []<class Kind>(const Kind&) -> std::string_view {
         if constexpr (requires { Kind::why_no_layer; }) return Kind::why_no_layer;
