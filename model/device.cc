@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "base/engineering.h"
@@ -91,17 +92,34 @@ void check_structure(const Device& d) {
       s.kind);
 }
 
+void check_dielectric(const Electrode& e) {
+  const Dielectric& dielectric = *e.dielectric;
+  const std::string name = "electrode." + e.name + ".dielectric.";
+  positive(dielectric.thickness, "m", (name + "thickness").c_str());
+  require(dielectric.permittivity >= 1 && dielectric.permittivity < 1e6,
+          [&] { return fmt::format("{}permittivity = {}: must be from 1 to 1000000", name, dielectric.permittivity); });
+  require(dielectric.roughness >= 0 && dielectric.roughness < 1,
+          [&] { return fmt::format("{}roughness = {}: must not be negative", name, engineering(dielectric.roughness, "m")); });
+  require(e.side == Side::near,
+          [&] { return fmt::format("electrode.{}.dielectric: belongs to an electrode on the near side alone", e.name); });
+}
+
 void check_gap_and_electrodes(const Device& d) {
   const Structure& s = d.structure;
   positive(d.gap.electrode, "m", "gap.electrode");
-  require(d.gap.contact > 0 && d.gap.contact < d.gap.electrode, [&] {
-    return fmt::format("gap.contact = {}: must be positive and below gap.electrode = {}", engineering(d.gap.contact, "m"),
+  require(d.gap.contact > 0 && d.gap.contact <= d.gap.electrode, [&] {
+    return fmt::format("gap.contact = {}: must be positive and not above gap.electrode = {}", engineering(d.gap.contact, "m"),
                        engineering(d.gap.electrode, "m"));
   });
   for (const Electrode& e : d.electrodes) {
     for (const Stretch& pad : e.pads(s.length)) span(pad.begin, pad.end, s.length, "electrode." + e.name + ".span");
     if (e.side != Side::near) positive(e.gap, "m", ("electrode." + e.name + ".gap").c_str());
+    if (e.dielectric) check_dielectric(e);
     if (row_of(fringing_laws, e.fringing).needs_thickness && !s.is_built()) positive(s.thickness, "m", "structure.thickness");
+  }
+  if (d.lands_on_dielectric()) {
+    const std::string wrong = why_no_landing(d);
+    require(wrong.empty(), [&] { return fmt::format("gap.contact = {}: {}", engineering(d.gap.contact, "m"), wrong); });
   }
   if (const auto conflict = electrode_conflict(s, d.electrodes)) {
     throw InvalidInput(fmt::format("electrode.{}: {}", d.electrodes[conflict->electrode].name, conflict->why));
@@ -228,6 +246,23 @@ double Device::contact_gap(std::size_t contact) const {
   const double offset = rest_offset(contact_position(contact));
   if (contact == 0) return gap.contact + offset;
   return contacts[contact].gap + (contacts[contact].side == Side::far ? -offset : offset);
+}
+
+double Device::dielectric_depth() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Electrode& e : electrodes) {
+    if (e.side != Side::far) least = std::min(least, e.dielectric ? e.dielectric->depth() : 0);
+  }
+  return std::isfinite(least) ? least : 0;
+}
+
+std::string why_no_landing(const Device& d) {
+  if (!d.structure.is_rigid())
+    return "must be less than 0.99 times gap.electrode: the landing of a beam along the face of its electrode is not simulated";
+  if (!(d.dielectric_depth() > 0))
+    return "must be less than 0.99 times gap.electrode, unless every near electrode has a dielectric";
+  if (d.dispersion) return "a plate that lands on a dielectric takes no dispersion force";
+  return {};
 }
 
 double Device::rest_offset(double x) const {

@@ -26,6 +26,16 @@ struct Gap {
   double contact = 0;    ///< dt, rest distance of the first contact to its plane, or of the contact point without contact [m]
 };
 
+/// An insulator on an electrode, which faces the moving part: the gaps of the scene end at its face, the metal lies deeper.
+struct Dielectric {
+  double thickness = 0;     ///< [m]
+  double permittivity = 1;  ///< relative
+  double roughness = 0;     ///< air that is left where its summits touch [m]
+
+  /// What it adds to the gap of the field, t / eps_r + roughness [m].
+  [[nodiscard]] double depth() const { return thickness / permittivity + roughness; }
+};
+
 /// One voltage, on one pad or several.
 struct Electrode {
   std::string name = {};
@@ -34,7 +44,8 @@ struct Electrode {
   std::vector<Span> further = {};  ///< pads beside that first one
   Fringing fringing = Fringing::meijs_fokkema;
   Side side = Side::near;
-  double gap = 0;  ///< far, both: rest distance of the face on the far side to the moving part [m]
+  double gap = 0;                             ///< far, both: rest distance of the face on the far side to the moving part [m]
+  std::optional<Dielectric> dielectric = {};  ///< near side alone
 
   /// All pads on a beam of this length [m].
   [[nodiscard]] std::vector<Stretch> pads(double length) const;
@@ -126,6 +137,13 @@ struct Device {
   [[nodiscard]] double rest_offset(double x) const;
   /// Rest distance of a contact's place to its plane [m]: that of the straight shape and what the rest shape adds.
   [[nodiscard]] double contact_gap(std::size_t contact = 0) const;
+  /// Whether a plate lands on the dielectric of its electrodes, nearer than a hundredth of the gap to it.
+  [[nodiscard]] bool lands_on_dielectric() const { return gap.contact > 0.99 * gap.electrode; }
+  /// Local gap between a closed switch and the face of its electrode, for the laws of films: at least a hundredth of the rest
+  /// gap, from where on these are continued [m].
+  [[nodiscard]] double closed_gap() const { return std::max(gap.electrode - gap.contact, gap.electrode / 100); }
+  /// What all near electrodes add to the gap of their fields at least, where each has a dielectric; else 0 [m].
+  [[nodiscard]] double dielectric_depth() const;
   /// Whether the contact acts along its pad, not at one place.
   [[nodiscard]] bool touches_along_pad() const {
     return has_contact() && contacts.front().distribution == ContactDistribution::pad;
@@ -157,6 +175,9 @@ struct ContactConflict {
 /// The first contact is one on the near side, two on one side lie at two places, and a rigid one or one along its pad stands
 /// alone. Nothing when all is well.
 [[nodiscard]] std::optional<ContactConflict> contact_conflict(const Device& device);
+
+/// Why a device whose contact lies at its electrode cannot land there; empty when it can.
+[[nodiscard]] std::string why_no_landing(const Device& device);
 
 /// Why this contact cannot act along the pad of this structure; empty when it can.
 [[nodiscard]] std::string why_not_along_pad(const Structure& structure, const Contact& contact);

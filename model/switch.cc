@@ -140,6 +140,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     most_gap_ = std::min(most_gap_, both_gaps - floor);
     return FarSide<std::decay_t<decltype(law)>>{.law = law, .both_gaps = both_gaps, .floor = floor};
   };
+  const double film_floor = device_.gap.electrode / 100;
   electrodes_ = device_.electrodes.size();
   for (const Electrode& e : device_.electrodes) {
     std::vector<std::shared_ptr<const DistributedLaw>> pads;
@@ -147,11 +148,12 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
       for (const EvenRange& even : even_ranges(s, quadrature_.positions(), pad.begin, pad.end)) {
         const PointRange range = even.points;
         pads.push_back(electrostatic(e.fringing, even, [&](const auto& law) {
+          using Law = std::decay_t<decltype(law)>;
+          if (e.dielectric) return erased(ThroughDielectric<Law>{.law = law, .depth = e.dielectric->depth()}, range, gap_floor());
           if (e.side == Side::near) return erased(law, range, gap_floor());
           const auto far = on_far_side(law, e.gap);
-          return e.side == Side::far
-                     ? erased(far, range, gap_floor())
-                     : erased(BothSides<std::decay_t<decltype(law)>>{.near = law, .far = far}, range, gap_floor());
+          return e.side == Side::far ? erased(far, range, gap_floor())
+                                     : erased(BothSides<Law>{.near = law, .far = far}, range, gap_floor());
         }));
       }
     }
@@ -172,19 +174,15 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     gas_ = gas_law(*device_.gas, contact.width_at(device_.contact_position()), contact.thickness, unit_quality);
     const auto film_on = [&](const EvenRange& even) { return gas_law(*device_.gas, even.width, even.thickness, unit_quality); };
     if (is_compressible(*device_.gas)) {
-      film_.emplace(*film_of(*device_.gas), s.width, n, gap_floor());
+      film_.emplace(*film_of(*device_.gas), s.width, n, film_floor);
     } else {
       for (const EvenRange& even : everywhere)
-        passive_laws_.push_back(
-            std::visit([&](const auto& law) { return erased(law, even.points, gap_floor()); }, film_on(even)));
+        passive_laws_.push_back(std::visit([&](const auto& law) { return erased(law, even.points, film_floor); }, film_on(even)));
     }
     if (const double gap = far_gap(*device_.gas); !std::isnan(gap)) {
       for (const EvenRange& even : everywhere)
-        passive_laws_.push_back(std::visit(
-            [&](const auto& law) {
-              return erased(on_far_side(law, gap), even.points, gap_floor());
-            },
-            film_on(even)));
+        passive_laws_.push_back(
+            std::visit([&](const auto& law) { return erased(on_far_side(law, gap), even.points, gap_floor()); }, film_on(even)));
     }
   }
   // What bends the beam by the contact gap at x_c.

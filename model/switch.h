@@ -99,9 +99,12 @@ class Switch {
   [[nodiscard]] const std::optional<MidPlaneStretching>& stretching() const { return stretching_; }
   /// Rest distance of the contact point to the contact plane [m].
   [[nodiscard]] double contact_gap(std::size_t c = 0) const { return c == 0 ? contact_gap_ : further_[c - 1].gap; }
-  /// Gap below which every law is continued by its tangent and a run counts as having touched the electrode: a hundredth of d0
-  /// [m].
-  [[nodiscard]] double gap_floor() const { return device_.gap.electrode / 100; }
+  /// Gap below which every law is continued by its tangent and a run counts as having touched the electrode: a hundredth of d0,
+  /// and of a plate that lands on a dielectric half of what that adds to the field's gap, below its face [m]. The laws of a film
+  /// are continued from a hundredth of d0 on there, too.
+  [[nodiscard]] double gap_floor() const {
+    return device_.lands_on_dielectric() ? -device_.dielectric_depth() / 2 : device_.gap.electrode / 100;
+  }
   /// Interference at which the contact law carries the force that bends the beam by the contact gap [m]: the scale of
   /// penetration.
   [[nodiscard]] double penetration_scale() const { return penetration_scale_; }

@@ -359,6 +359,7 @@ std::string why_no_circuit(const Switch& model) {
     return "a Casimir force between gold, which is a table";
   for (const Electrode& e : device.electrodes) {
     if (e.fringing == Fringing::bao_2001) return "fringing by bao-2001, whose charge is an integral";
+    if (e.dielectric) return "a dielectric on an electrode";
   }
   if (!model.has_contact()) return {};
   if (model.contacts() > 1) return "several contacts";

@@ -207,7 +207,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     add("drive " + name, fmt::format("{}hold {}, peak {}, {}", before, given_quantity(signal.hold_level(), "V"),
                                      given_quantity(signal.peak(), "V"), driver));
   }
-  const double closed_gap = p.scene.device.gap.electrode - p.scene.device.gap.contact;
+  const double closed_gap = p.scene.device.closed_gap();
   for (std::string& warning : gas_warnings(p.scene.device, closed_gap, 0)) warnings.push_back(std::move(warning));
   if (const std::string start = start_words(p); !start.empty()) add("start", start);
   if (!p.start_equilibrium() && (p.scene.begins_closed || p.model.rest()))

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "config/schema/sections.h"
 #include "config/section_reader.h"
@@ -11,6 +12,29 @@ namespace {
 
 Electrode& electrode(Scene& scene, std::size_t k) { return scene.device.electrodes[k]; }
 using OfElectrode = Of<electrode>;
+
+Dielectric& dielectric(Scene& scene, std::size_t k) {
+  std::optional<Dielectric>& one = electrode(scene, k).dielectric;
+  if (!one) one.emplace();
+  return *one;
+}
+using OfDielectric = Of<dielectric>;
+
+const Section* dielectric_keys() {
+  static const Section keys{
+      .name = "dielectric",
+      .keys = {OfDielectric::number<&Dielectric::thickness>("thickness", dimension::length, positive, "of the insulator")
+                   .needed()
+                   .such_as("0.2 um"),
+               OfDielectric::number<&Dielectric::permittivity>("permittivity", dimension::none, {.least = 1, .most = 1e6},
+                                                               "of the insulator, relative")
+                   .needed(),
+               OfDielectric::number<&Dielectric::roughness>("roughness", dimension::length, not_negative,
+                                                            "air that is left where its summits touch")
+                   .by_default("'0 m'")},
+      .about = "an insulator on the electrode"};
+  return &keys;
+}
 
 std::size_t begin_electrode(Scene& scene, const SectionReader&, std::string_view name) {
   scene.device.electrodes.push_back({.name = std::string(name)});
@@ -52,6 +76,7 @@ void check_electrode(Scene& scene, const SectionReader& in, std::size_t k) {
   Electrode& e = scene.device.electrodes[k];
   check_extent(scene.device.structure, e, in);
   check_fringing(scene.device.structure, e, in);
+  in.require(!e.dielectric || e.side == Side::near, "dielectric", "belongs to an electrode on the near side alone");
   in.require(e.side != Side::near || !in.is_given("gap"), "gap",
              "belongs to side = \"far\" or \"both\"; on the near side the distance is gap.electrode");
   if (e.side != Side::near && !in.is_given("gap")) {
@@ -77,7 +102,12 @@ Section electrode_section() {
                    "gap", dimension::length, positive,
                    "far, both: rest distance of the face on the far side to the beam; required there"),
                OfElectrode::choice<fringing_laws, &Electrode::fringing>("fringing", "law of the fringing field")
-                   .by_default("'meijs-fokkema'")},
+                   .by_default("'meijs-fokkema'"),
+               Key{.name = "dielectric",
+                   .type = KeyType::table,
+                   .about = "an insulator on it, at whose face all gaps of the scene end",
+                   .like = "{ thickness = \"0.2 um\", permittivity = 7.6 }",
+                   .part = dielectric_keys}},
       .about = "an electrode under the beam",
       .begin = begin_electrode,
       .check = check_electrode};

@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "config/schema/sections.h"
 #include "config/section_reader.h"
 
@@ -9,6 +13,14 @@ namespace {
 Gap& gap(Scene& scene, std::size_t) { return scene.device.gap; }
 using OfGap = Of<gap>;
 
+/// A plate lands where every electrode has a dielectric.
+bool may_land(const Structure& structure, const SceneFile::Impl& file) {
+  const std::vector<std::string> electrodes = file.names_in("electrode");
+  return structure.is_rigid() && !electrodes.empty() && std::ranges::all_of(electrodes, [&](const std::string& name) {
+           return file.find({"electrode", name, "dielectric"}) != nullptr;
+         });
+}
+
 void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
   const Gap& gap = scene.device.gap;
   if (in.file().is_named(*find_section("contact"))) {
@@ -17,6 +29,7 @@ void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
     return;
   }
   if (!in.is_given("contact")) in.fail(R"(missing key 'contact' (a length such as "2 um"))");
+  if (gap.contact <= gap.electrode && may_land(scene.device.structure, in.file())) return;
   in.require(gap.contact < gap.electrode, "contact", "must be less than " + in.written("electrode"));
   // A run that comes within a hundredth of the electrode gap of the electrode has failed: see Switch::gap_floor().
   constexpr double most = 0.99;

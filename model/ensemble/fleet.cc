@@ -350,6 +350,8 @@ std::string why_not_in_lanes(const Switch& model) {
   if (model.modes() > fleet::most_modes) return fmt::format("more than {} modes", fleet::most_modes);
   if (model.quadrature().points() > fleet::most_points) return fmt::format("more than {} quadrature points", fleet::most_points);
   if (model.drives() > fleet::most_drives) return fmt::format("more than {} drives", fleet::most_drives);
+  if (std::ranges::any_of(device.electrodes, [](const Electrode& e) { return e.dielectric.has_value(); }))
+    return "a dielectric on an electrode";
   if (!lane_dispersion(device.dispersion)) return "a dispersion force between gold";
   if (!lane_contact(model)) return "a contact other than linear, hysteretic or asperity-uniform at the contact point";
   if (!lane_film(device.gas))

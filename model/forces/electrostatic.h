@@ -36,4 +36,18 @@ struct ElectrostaticForce {
   [[nodiscard]] double potential(double gap) const { return -capacitance(gap) / 2; }
 };
 
+/// The same through a dielectric on the electrode: the field crosses h + depth, the local gap being that to its face.
+template <class Law>
+struct ThroughDielectric {
+  Law law;
+  double depth = 0;  ///< Dielectric::depth() [m]
+  static constexpr bool driven = Law::driven;
+
+  template <class S>
+  [[gnu::always_inline]] S load(S gap, S velocity) const {
+    return law.load(gap + S(depth), velocity);
+  }
+  [[nodiscard]] double potential(double gap) const { return law.potential(gap + depth); }
+};
+
 }  // namespace softland

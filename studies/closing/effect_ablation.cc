@@ -103,9 +103,21 @@ void add_omissible_fringing(const PreparedScene& prepared, std::vector<Omissible
   }
 }
 
+void add_omissible_dielectrics(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
+  const Device& d = prepared.scene.device;
+  if (d.lands_on_dielectric()) return;
+  for (const Electrode& e : d.electrodes) {
+    if (!e.dielectric) continue;
+    list.push_back({.effect = "electrode." + e.name + ".dielectric",
+                    .magnitude = {.name = "added to the gap of the field", .unit = "m", .value = e.dielectric->depth()},
+                    .group = {.name = "over the rest gap", .value = e.dielectric->depth() / d.gap.electrode},
+                    .instead = {}});
+  }
+}
+
 void add_omissible_gas(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
-  const double width = d.structure.width, closed = d.gap.electrode - d.gap.contact;
+  const double width = d.structure.width, closed = d.closed_gap();
   const double omega = prepared.model.basis().angular_frequencies()[0];
   list.push_back(
       {.effect = "gas",
@@ -155,6 +167,7 @@ std::vector<OmissibleEffect> omissible_effects(const PreparedScene& prepared) {
   std::vector<OmissibleEffect> list;
   add_omissible_structure(prepared, list);
   add_omissible_fringing(prepared, list);
+  add_omissible_dielectrics(prepared, list);
   if (d.gas) add_omissible_gas(prepared, list);
   if (d.has_contact()) add_omissible_contact(prepared, list);
   if (d.dispersion && !prepared.drives.at(dispersion_drive).waveform) {

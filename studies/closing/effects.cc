@@ -42,7 +42,7 @@ Effect closing_with(const PreparedScene& prepared, const std::optional<Gas>& gas
            .rhs_seconds = watch.stopped() ? Metrics::unset : right_hand_side_seconds(model, signals, prepared.duration),
            .warnings = t.warnings};
   if (!gas) return e;
-  const double closed = described.gap.electrode - described.gap.contact;
+  const double closed = described.closed_gap();
   e.choice = name_of(*gas);
   e.magnitude.value = damping_per_length(*model.gas(), closed);
   if (const FilmState* const film = film_of(*gas)) e.group.value = mean_free_path(*film) / closed;

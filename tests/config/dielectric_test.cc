@@ -1,0 +1,84 @@
+// [electrode.NAME] dielectric: what is read, what is refused, and where its keys may vary.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "base/require.h"
+#include "config/scene.h"
+
+namespace softland {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string plate = R"(
+[structure]
+kind = "plate"
+mass = "0.1 ug"
+stiffness = "10 N/m"
+area = "10000 um^2"
+[gap]
+electrode = "4 um"
+contact = "4 um"
+[electrode.main]
+fringing = "none"
+dielectric = { thickness = "0.2 um", permittivity = 7.6, roughness = "5 nm" }
+[contact]
+model = "rigid"
+restitution = 0.3
+[waveform.main]
+family = "step"
+level = "1.2 Vsp"
+[spread]
+"electrode.main.dielectric.thickness" = { distribution = "normal", cov = "5 %" }
+)";
+
+std::string with(const std::string& old, const std::string& replacement) {
+  std::string text = plate;
+  const std::size_t at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return text.replace(at, old.size(), replacement);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    (void)SceneFile::parse(text, "x.toml").scene();
+  } catch (const InvalidInput& e) {
+    return e.what();
+  }
+  return "nothing is refused";
+}
+
+TEST(DielectricKeys, AreReadAndMayVary) {
+  SceneFile file = SceneFile::parse(plate, "x.toml");
+  const Scene scene = file.scene();
+  ASSERT_TRUE(scene.device.electrodes[0].dielectric);
+  const Dielectric& d = *scene.device.electrodes[0].dielectric;
+  EXPECT_DOUBLE_EQ(d.thickness, 0.2e-6);
+  EXPECT_DOUBLE_EQ(d.permittivity, 7.6);
+  EXPECT_DOUBLE_EQ(d.roughness, 5e-9);
+  EXPECT_TRUE(scene.device.lands_on_dielectric());
+  ASSERT_EQ(scene.spread.variables.size(), 1U);
+  file.set("electrode.main.dielectric.thickness=\"0.3 um\"");
+  EXPECT_DOUBLE_EQ(file.scene().device.electrodes[0].dielectric->thickness, 0.3e-6);
+  const Scene again = SceneFile::parse(file.text(), "again.toml").scene();
+  EXPECT_DOUBLE_EQ(again.device.electrodes[0].dielectric->thickness, 0.3e-6);
+}
+
+TEST(DielectricKeys, AreRefusedByFileLineAndKey) {
+  EXPECT_THAT(refusal(with("thickness = \"0.2 um\", ", "")),
+              HasSubstr("x.toml:12: electrode.main.dielectric: missing key 'thickness'"));
+  EXPECT_THAT(refusal(with("7.6", "0.6")), HasSubstr("x.toml:12: electrode.main.dielectric.permittivity = 0.6: must be"));
+  EXPECT_THAT(refusal(with("\"5 nm\"", "\"-5 nm\"")),
+              HasSubstr("x.toml:12: electrode.main.dielectric.roughness = \"-5 nm\": must not be negative"));
+  EXPECT_THAT(refusal(with("thickness =", "thick =")), HasSubstr("electrode.main.dielectric.thick = \"0.2 um\": unknown key"));
+  EXPECT_THAT(refusal(with("{ thickness = \"0.2 um\", permittivity = 7.6, roughness = \"5 nm\" }", "\"0.2 um\"")),
+              HasSubstr("electrode.main.dielectric = \"0.2 um\": expected keys in braces"));
+  EXPECT_THAT(refusal(with("fringing = \"none\"", "fringing = \"none\"\nside = \"both\"\ngap = \"4 um\"")),
+              HasSubstr("belongs to an electrode on the near side alone"));
+  EXPECT_THAT(refusal(with("dielectric =", "# dielectric =")), HasSubstr("x.toml:9: gap.contact = \"4 um\": must be less than"));
+}
+
+}  // namespace
+}  // namespace softland
