@@ -71,6 +71,8 @@ struct ElasticContact {
 };
 std::optional<ElasticContact> lane_contact(const Switch& model) {
   if (model.contacts() != 1 || model.has_pad_contact()) return std::nullopt;
+  // When a contact is electrically closed is located on the motion of a single closing.
+  if (model.device().electrical.is_asked()) return std::nullopt;
   using Lane = fleet::LaneContact;
   const ContactLaw& law = model.contact();
   const auto rough = [](const UniformAsperityContact& c, double damping) {

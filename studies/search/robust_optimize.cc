@@ -367,6 +367,8 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given
   fit_robust_budget(setting, options, asked.verdict);
   const KnownUnits known = known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch).front();
   RobustOptions robust = asked;
+  for (const Criterion& one : robust.aim.conditions) require_asked(one, setting.given.scene.metrics.asked);
+  if (robust.aim.measure.yield) require_asked(*robust.aim.measure.yield, setting.given.scene.metrics.asked);
   const RobustCost cost(setting, robust.aim, own_devices(setting, known, robust.samples, options.seed, 0, options.jobs, watch));
   RobustResult result{.found = {.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline},
                       .findings = {.measure = robust.aim.measure.text, .devices = static_cast<double>(robust.samples)}};

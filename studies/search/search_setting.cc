@@ -305,6 +305,15 @@ PreparedScene SearchSetting::within_limits() const {
   return limited;
 }
 
+void require_asked(const Criterion& condition, const AskedFigures& asked) {
+  require_request(condition.figure.is_asked(asked), [&] {
+    return fmt::format("{} \"{}\": the scene has no such figure: it needs {}", requested("constrain"), condition.text,
+                       condition.figure.asked == &AskedFigures::resistance
+                           ? "the resistivity of its contacts"
+                           : "metrics.closed_force, metrics.closed_resistance or metrics.closed_after");
+  });
+}
+
 SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
                              const Watch& watch, std::vector<Criterion> conditions, const OwnWaveforms& own) {
   for (const Criterion& one : conditions)
@@ -312,6 +321,7 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
       return fmt::format("{} \"{}\": a switch that closes has no such figure", requested("constrain"), one.text);
     });
   PreparedScene given = prepare_and_choose(file, true, watch);
+  for (const Criterion& one : conditions) require_asked(one, given.scene.metrics.asked);
   require_open_start(given.scene, "optimize closes the switch");
   require(given.model.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
   require_request(!(target.is_about(Target::force) && given.model.rigid_contact() != nullptr), [] {

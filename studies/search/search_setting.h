@@ -103,6 +103,9 @@ struct SearchSetting {
   [[nodiscard]] SearchCosts worst_price(const RecordedClosing& closing) const;
 };
 
+/// Throws InvalidInput where the scene does not ask for the figure of a condition.
+void require_asked(const Criterion& condition, const AskedFigures& asked);
+
 /// Throws InvalidInput for a scene or a family that cannot be searched; Interrupted where `watch` asks to stop.
 [[nodiscard]] SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
                                            const Watch& watch, std::vector<Criterion> conditions = {},

@@ -64,6 +64,31 @@ TEST(ResultOf, EachOfSeveralContactsHasItsFigures) {
     EXPECT_THAT(page, testing::HasSubstr(words));
 }
 
+TEST(ResultOf, AContactThatConductsIsReportedLikeItsJson) {
+  const char* const keys[] = {"resistance_ohm", "electrical_contact_time_s", "electrical_settling_time_s",
+                              "electrical_bounce_count"};
+  const PreparedScene prepared = prepare(
+      shipped("mem-gold.toml", {"contact.resistivity=22 nOhm m", "contact.hardness=1 GPa", "metrics.closed_force=0.1 uN"}));
+  const Result made = result_of(prepared, simulate(prepared, true), command);
+  expect_the_same_reports(made);
+  const json with = result_json(made);
+  const PreparedScene plain = prepare(shipped("mem-gold.toml", {}));
+  const Result unasked = result_of(plain, simulate(plain, true), command);
+  const json without = result_json(unasked);
+  for (const char* key : keys) {
+    EXPECT_TRUE(with["metrics"].contains(key)) << key;
+    EXPECT_TRUE(with["errors"].contains(key)) << key;
+    EXPECT_FALSE(without["metrics"].contains(key)) << key;
+    EXPECT_FALSE(without["errors"].contains(key)) << key;
+  }
+  EXPECT_TRUE(with["curves"]["best"].contains("contact_resistance_ohm"));
+  EXPECT_FALSE(without["curves"]["best"].contains("contact_resistance_ohm"));
+  const std::string csv = trajectory_csv(made.best.curve);
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "time_s,tip_gap_m,tip_velocity_m_s,contact_force_N,contact_resistance_ohm");
+  EXPECT_NE(csv.find(",0,\n"), std::string::npos) << "an open contact has no resistance";
+  EXPECT_EQ(trajectory_csv(unasked.best.curve).find("ohm"), std::string::npos);
+}
+
 TEST(ResultOf, ACertifiedClosingIsReportedLikeItsJson) {
   const PreparedScene prepared = prepare(shipped("mem-gold.toml", {}));
   const Result made = result_of(prepared, certify(prepared), command);
