@@ -5,12 +5,13 @@
 // that of those contacts in series, or side by side (model/contact/resistance.h). What decides is a continuous function of the
 // motion within a step: where it changes sign is located on that motion, as the events of the contacts are. It is looked at after
 // every piece of the step, where a contact turns back, and at an extremum in between that the slopes at both ends show. Along a
-// pad, and of a plate at rest on a rigid contact, the force goes in a straight line.
+// pad the force goes in a straight line.
 //
 // An opening counts when it is longer than ElectricalClosing::after; one that is shorter is as if it had not been.
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -40,8 +41,8 @@ class ElectricalRecord {
 
   /// Takes a step between two times [s] in which every contact stays in the state of its law.
   void take(double begin, double end, std::span<const ContactInStep> contacts);
-  /// Takes a time over which the force of the only contact goes from one value to the other in a straight line.
-  void take_line(const TrajectoryPoint& from, const TrajectoryPoint& to);
+  /// Takes a time [s] in which the plate rests on its rigid contact, under a force [N] that is a function of the time.
+  void take_rest(double begin, double end, const std::function<double(double)>& force);
   /// The run has ended at this time [s].
   void finish(double time);
 
@@ -66,6 +67,7 @@ class ElectricalRecord {
   [[nodiscard]] Instant instant(std::size_t c, const ContactInStep& contact, double time) const;
   [[nodiscard]] Instant connected(std::span<const Instant> contacts) const;
   [[nodiscard]] double margin(const Instant& instant) const;
+  [[nodiscard]] bool is_of_touch() const { return !(closing_.force >= 0 || closing_.resistance > 0); }
   template <class Margin>
   void follow(Followed& followed, const Margin& at, double begin, double end) const;
   template <class Margin>

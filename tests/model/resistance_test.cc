@@ -162,7 +162,7 @@ TEST(ContactResistance, TakesWhatAdhesionAddsToTheLoad) {
   adhesive.conduction = lossless.conduction = gold_spring().conduction;
   const ContactLaw with = contact_law(adhesive, 20_um), without = contact_law(lossless, 20_um);
   bool has_pulled = false;
-  for (const double depth : {1e-9, 2e-9, 5e-9, 20e-9, 60e-9}) {
+  for (const double depth : {0.1e-9, 1e-9, 2e-9, 5e-9, 20e-9, 60e-9}) {
     const double net = contact_force(with, depth), load = contact_force(without, depth);
     has_pulled = has_pulled || net < 0;
     expect_ohm(resistance_law(adhesive).resistance(depth, net), resistance_law(lossless).resistance(depth, load), 1e-9,
