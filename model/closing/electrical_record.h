@@ -1,11 +1,11 @@
-// When the connection that a switch makes is electrically closed: while its contact force is above a value, or its resistance
-// below one, or both (Device::electrical); while it is in touch where neither is given.
+// The times at which the connection of a switch is electrically closed: while its contact force is above a value, or its
+// resistance below one, or both (Device::electrical); while it is in touch where neither is given.
 //
-// The force of the connection is the least of the contacts that make it, or with Connection::any the largest; its resistance is
-// that of those contacts in series, or side by side (model/contact/resistance.h). What decides is a continuous function of the
-// motion within a step: where it changes sign is located on that motion, as the events of the contacts are. It is looked at after
-// every piece of the step, where a contact turns back, and at an extremum in between that the slopes at both ends show. Along a
-// pad the force goes in a straight line.
+// The force of the connection is the least of the contacts that make it, or with Connection::any the largest. Its resistance is
+// that of those contacts in series, or side by side (model/contact/resistance.h). A margin that is positive while it is closed is
+// a continuous function of the motion within a step: its changes of sign are located on that motion, as the events of the
+// contacts are. The margin is looked at after every piece of the step, where a contact turns back, and at an extremum in between
+// that the slopes at both ends show. Along a pad the force goes in a straight line.
 //
 // An opening counts when it is longer than ElectricalClosing::after; one that is shorter is as if it had not been.
 #pragma once
@@ -36,7 +36,7 @@ struct ContactInStep {
 
 class ElectricalRecord {
  public:
-  /// Keeps a reference. Of a device that asks for it.
+  /// Keeps a reference. The device must ask for it.
   explicit ElectricalRecord(const Switch& model);
 
   /// Takes a step between two times [s] in which every contact stays in the state of its law.
@@ -58,7 +58,7 @@ class ElectricalRecord {
     double opened_at = std::numeric_limits<double>::quiet_NaN();  // [s]
     ElectricalOutcome outcome = {};
   };
-  // What a contact does at one time.
+  // A contact at one time.
   struct Instant {
     double interference = 0, force = 0;  // [m], [N]
     double conductance = 0;              // [S]
