@@ -160,10 +160,9 @@ class Run {
     here().time = stay.until;
     const FieldFigures field = parts_.equations.field(here().state.data());
     const TrajectoryPoint before = parts_.first().course.last(), now = parts_.point(parts_.first(), here());
-    if (now.time > before.time) {
-      parts_.first().force.take_line(before, now);
-      if (parts_.electrical) parts_.electrical->take_line(before, now);
-    }
+    if (now.time > before.time) parts_.first().force.take_line(before, now);
+    if (parts_.electrical)
+      parts_.electrical->take_rest(before.time, now.time, [&](double t) { return parts_.plate.press(here(), t); });
     parts_.first().course.push(now);
     if (stay.leaves) pass({.time = stay.until, .edge = Edge{.level = plane_, .side = 1, .next = Phase::flight}});
     parts_.hand_over();

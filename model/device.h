@@ -101,7 +101,7 @@ struct Surface {
   ResidualLoad cantilever_load = ResidualLoad::none;  ///< what tau_0 does to a cantilever
 };
 
-/// From when on the connection of a switch counts as electrically closed. Where nothing is given nobody looks at it.
+/// The rule by which the connection of a switch counts as electrically closed. Nobody looks at it where nothing is given.
 struct ElectricalClosing {
   double force = std::numeric_limits<double>::quiet_NaN();       ///< its contact force is above this [N]; NaN: any force will do
   double resistance = std::numeric_limits<double>::quiet_NaN();  ///< its resistance is below this [Ohm]; NaN: any will do
@@ -124,7 +124,7 @@ struct Device {
   std::optional<Surface> surface = {};
 
   [[nodiscard]] bool has_contact() const { return !contacts.empty(); }
-  /// Whether the resistance of the connection is known: every contact that makes it conducts.
+  /// True where the resistance of the connection is known: every contact that makes it conducts.
   [[nodiscard]] bool conducts() const {
     return has_contact() &&
            std::ranges::all_of(contacts, [](const Contact& c) { return !c.connects || c.conduction.is_given(); });

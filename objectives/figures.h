@@ -54,7 +54,7 @@ struct Figure {
     return conditioning == Conditioning::first_touch || conditioning == Conditioning::high_rebound ||
            conditioning == Conditioning::every_touch || conditioning == Conditioning::open;
   }
-  /// Whether results of a scene that asks for these tell it.
+  /// True where results of a scene that asks for these tell it.
   [[nodiscard]] constexpr bool is_asked(const AskedFigures& of_scene) const { return asked == nullptr || of_scene.*asked; }
   /// Whether certify() gives it an error.
   [[nodiscard]] constexpr bool has_error() const { return !is_yes_or_no() && conditioning != Conditioning::drives; }

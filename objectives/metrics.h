@@ -19,7 +19,7 @@ struct AskedFigures {
   bool electrical = false;  ///< of a device with Device::electrical
   bool operator==(const AskedFigures&) const = default;
 };
-/// What a device asks for.
+/// Returns what a device asks for.
 [[nodiscard]] inline AskedFigures asked_figures(const Device& device) {
   return {.resistance = device.conducts(), .electrical = device.electrical.is_asked()};
 }

@@ -72,7 +72,8 @@ struct Picture {
   std::vector<Chart> charts;
 };
 
-/// All charts of a result, in the order of the page: gap, landing, drives, velocity, force, resistance, search. What has no data is left out.
+/// All charts of a result, in the order of the page: gap, landing, drives, velocity, force, resistance, search. What has no data
+/// is left out.
 [[nodiscard]] Picture picture(const Result& result);
 
 /// CurveTables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as integer steps

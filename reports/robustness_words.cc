@@ -85,7 +85,7 @@ std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k) {
 bool is_had(const RobustnessRecord& found, const Figure& figure) {
   const auto some = [&](auto&& holds) { return std::any_of(found.drives.begin(), found.drives.end(), holds); };
   return some([&](const auto& d) { return d.figures[figure].devices > 0; }) ||
-         !some([](const auto& d) { return d.closing.devices > 0; });
+         (figure.asked == nullptr && !some([](const auto& d) { return d.closing.devices > 0; }));
 }
 
 bool some_collapse(const RobustnessRecord& found) {

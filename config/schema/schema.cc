@@ -34,6 +34,7 @@ constexpr std::array extents{
     Extent{dimension::density, 1e-6, 1e6},
     Extent{dimension::frequency, 1e-6, 1e15},
     Extent{dimension::angular_frequency, 1e-6, 1e15},
+    Extent{dimension::force, 1e-18, 1},
     Extent{dimension::energy, 1e-30, 1},
     Extent{dimension::pressure, 1e-12, 1e15},
     Extent{dimension::stress_gradient, 1e-6, 1e18},

@@ -51,7 +51,7 @@ double ElectricalRecord::margin(const Instant& now) const {
   double least = std::numeric_limits<double>::infinity();
   if (closing_.force >= 0) least = now.force - closing_.force;
   if (closing_.resistance > 0) least = std::min(least, now.conductance * closing_.resistance - 1);
-  return std::isinf(least) ? now.interference : least;
+  return is_of_touch() ? now.interference : least;
 }
 
 void ElectricalRecord::take(double begin, double end, std::span<const ContactInStep> contacts) {
@@ -88,17 +88,14 @@ void ElectricalRecord::take(double begin, double end, std::span<const ContactInS
   }
 }
 
-void ElectricalRecord::take_line(const TrajectoryPoint& from, const TrajectoryPoint& to) {
-  const double plane = model_.contact_gap();
-  follow(
-      followed_.front(),
-      [&](double time) {
-        Instant now{.interference = from.position - plane,
-                    .force = std::lerp(from.contact_force, to.contact_force, (time - from.time) / (to.time - from.time))};
-        if (closing_.resistance > 0) now.conductance = resistances_.front().conductance(now.interference, now.force);
-        return margin(now);
-      },
-      from.time, to.time);
+void ElectricalRecord::take_rest(double begin, double end, const std::function<double(double)>& force) {
+  if (!(end > begin)) return;
+  const auto at = [&](double time) {
+    Instant now{.interference = 0, .force = force(time)};
+    if (closing_.resistance > 0) now.conductance = resistances_.front().conductance(now.interference, now.force);
+    return is_of_touch() ? 1.0 : margin(now);
+  };
+  follow(followed_.front(), at, begin, end);
 }
 
 // An extremum in between shows where the margin leaves both ends towards 0.

@@ -1,16 +1,17 @@
-// When the connection that a switch makes is electrically closed: while its contact force is above a value, or its resistance
-// below one, or both (Device::electrical); while it is in touch where neither is given.
+// The times at which the connection of a switch is electrically closed: while its contact force is above a value, or its
+// resistance below one, or both (Device::electrical); while it is in touch where neither is given.
 //
-// The force of the connection is the least of the contacts that make it, or with Connection::any the largest; its resistance is
-// that of those contacts in series, or side by side (model/contact/resistance.h). What decides is a continuous function of the
-// motion within a step: where it changes sign is located on that motion, as the events of the contacts are. It is looked at after
-// every piece of the step, where a contact turns back, and at an extremum in between that the slopes at both ends show. Along a
-// pad, and of a plate at rest on a rigid contact, the force goes in a straight line.
+// The force of the connection is the least of the contacts that make it, or with Connection::any the largest. Its resistance is
+// that of those contacts in series, or side by side (model/contact/resistance.h). A margin that is positive while it is closed is
+// a continuous function of the motion within a step: its changes of sign are located on that motion, as the events of the
+// contacts are. The margin is looked at after every piece of the step, where a contact turns back, and at an extremum in between
+// that the slopes at both ends show. Along a pad the force goes in a straight line.
 //
 // An opening counts when it is longer than ElectricalClosing::after; one that is shorter is as if it had not been.
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -35,13 +36,13 @@ struct ContactInStep {
 
 class ElectricalRecord {
  public:
-  /// Keeps a reference. Of a device that asks for it.
+  /// Keeps a reference. The device must ask for it.
   explicit ElectricalRecord(const Switch& model);
 
   /// Takes a step between two times [s] in which every contact stays in the state of its law.
   void take(double begin, double end, std::span<const ContactInStep> contacts);
-  /// Takes a time over which the force of the only contact goes from one value to the other in a straight line.
-  void take_line(const TrajectoryPoint& from, const TrajectoryPoint& to);
+  /// Takes a time [s] in which the plate rests on its rigid contact, under a force [N] that is a function of the time.
+  void take_rest(double begin, double end, const std::function<double(double)>& force);
   /// The run has ended at this time [s].
   void finish(double time);
 
@@ -57,7 +58,7 @@ class ElectricalRecord {
     double opened_at = std::numeric_limits<double>::quiet_NaN();  // [s]
     ElectricalOutcome outcome = {};
   };
-  // What a contact does at one time.
+  // A contact at one time.
   struct Instant {
     double interference = 0, force = 0;  // [m], [N]
     double conductance = 0;              // [S]
@@ -66,6 +67,7 @@ class ElectricalRecord {
   [[nodiscard]] Instant instant(std::size_t c, const ContactInStep& contact, double time) const;
   [[nodiscard]] Instant connected(std::span<const Instant> contacts) const;
   [[nodiscard]] double margin(const Instant& instant) const;
+  [[nodiscard]] bool is_of_touch() const { return !(closing_.force >= 0 || closing_.resistance > 0); }
   template <class Margin>
   void follow(Followed& followed, const Margin& at, double begin, double end) const;
   template <class Margin>

@@ -11,7 +11,7 @@ namespace softland {
 
 class RestingPlate {
  public:
-  /// Keeps references. Without a rigid contact nothing may be asked of it but press() and force().
+  /// Keeps references. Without a rigid contact nothing may be asked of it but force().
   RestingPlate(const Switch& model, DriveCourse& drives, ClosingEquations& equations);
 
   struct Impact {
@@ -33,11 +33,10 @@ class RestingPlate {
   Stay stay(const Knot& here, double stretch_end);
   /// On the contact while it rests [N].
   [[nodiscard]] double force() const { return force_ > 0 ? force_ : 0; }
-
- private:
   /// Force with which the plate would press on the contact at `here` under the drives of another time [N]; negative: pull.
   [[nodiscard]] double press(const Knot& here, double t);
 
+ private:
   const Switch& model_;
   DriveCourse& drives_;
   ClosingEquations& equations_;

@@ -38,7 +38,7 @@ enum class Connection { all, any };
 inline constexpr auto connections = std::to_array<Named<Connection>>({{Connection::all, "all"}, {Connection::any, "any"}});
 static_assert(is_complete<connections>());
 
-/// What the current through a closed contact meets: see model/contact/resistance.h. Without a resistivity nothing conducts.
+/// The electrical side of a closed contact: see model/contact/resistance.h. A contact without resistivity has no resistance.
 struct Conduction {
   double resistivity = std::numeric_limits<double>::quiet_NaN();  ///< rho of both metals [Ohm m]
   double hardness = std::numeric_limits<double>::quiet_NaN();     ///< H of the softer metal; that of a law which has one [Pa]

@@ -31,7 +31,7 @@ namespace softland {
 
 class ContactResistance {
  public:
-  /// Of a valid contact, whose moving part has this width [m].
+  /// Takes a valid contact, whose moving part has this width [m].
   ContactResistance(const Contact& contact, double width);
 
   /// Whether the contact has a resistivity; else nothing is known of its resistance, and nobody may ask.

@@ -8,7 +8,7 @@
 namespace softland {
 namespace {
 
-// What one contact conducts at times that increase.
+// The conductance of one contact at times that increase.
 class ContactCourse {
  public:
   ContactCourse(const Device& device, std::size_t contact, double gap, const std::vector<TrajectoryPoint>& points)

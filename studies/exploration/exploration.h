@@ -114,7 +114,7 @@ class Exploration {
   std::optional<PointStudy> study_;  // none: the other one
   std::optional<OtherStudy> other_;
   std::vector<PointFigure> figures_;
-  AskedFigures asked_ = {};  // by the scene of the plan
+  AskedFigures asked_ = {};              // by the scene of the plan
   std::vector<std::string> parameters_;  // of a search
   bool shares_switches_ = false;         // points of the plan may have the same switch
   PullInMemory pull_in_;

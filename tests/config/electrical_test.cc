@@ -26,7 +26,7 @@ Scene read_with(std::vector<std::string> options, const std::vector<std::string>
 
 std::string refusal_with(std::vector<std::string> options, const std::vector<std::string>& more = {}) {
   options.insert(options.end(), more.begin(), more.end());
-  return message(small_scene, options);
+  return softland::message(std::string(small_scene), options);
 }
 
 TEST(Electrical, KeysOfAContactAreReadInSI) {
@@ -86,11 +86,11 @@ TEST(Electrical, AResistanceNeedsEveryContactThatConnects) {
     return edited(edited(small_scene, "contact = \"2 um\"\n", ""), one, contacts) + "[metrics]\n" + metrics;
   };
   const std::string left = contact("left", "gap = \"2 um\"\n" + metal), right = contact("right", "gap = \"2.1 um\"\n");
-  EXPECT_THAT(message(with(left + right, "closed_resistance = \"1 ohm\"\n")), HasSubstr("contact.right.resistivity"));
-  EXPECT_EQ(message(with(left + right, "closed = [\"left\"]\nclosed_resistance = \"1 ohm\"\n")), "");
+  EXPECT_THAT(softland::message(with(left + right, "closed_resistance = \"1 ohm\"\n")), HasSubstr("contact.right.resistivity"));
+  EXPECT_EQ(softland::message(with(left + right, "closed = [\"left\"]\nclosed_resistance = \"1 ohm\"\n")), "");
   EXPECT_TRUE(read_scene(SceneFile::parse(with(left + right, "closed = [\"left\"]\n"), "x.toml")).metrics.asked.resistance);
   const std::string stop = contact("stop", "gap = \"1 um\"\nside = \"far\"\nat = \"200 um\"\n" + metal);
-  EXPECT_THAT(message(with(left + stop, "")), HasSubstr("back stop"));
+  EXPECT_THAT(softland::message(with(left + stop, "")), HasSubstr("back stop"));
 }
 
 // The law elastic-plastic has a hardness of its own, by which its spots are as large as their load asks for.
@@ -99,8 +99,8 @@ TEST(Electrical, TheHardnessOfALawIsThatOfItsSpots) {
       small_scene, "model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"\n",
       "model = \"elastic-plastic\"\npad_length = \"5 um\"\nasperity_radius = \"100 nm\"\nasperity_density = \"1e11 1/m^2\"\n"
       "asperity_height = \"100 nm\"\neffective_modulus = \"48 GPa\"\nhardness = \"1 GPa\"\n");
-  EXPECT_EQ(message(text), "");
-  EXPECT_EQ(message(text, {"contact.resistivity=22 nOhm m"}), "");
+  EXPECT_EQ(softland::message(text), "");
+  EXPECT_EQ(softland::message(text, {"contact.resistivity=22 nOhm m"}), "");
 }
 
 TEST(Electrical, NumbersMayDifferFromDeviceToDevice) {

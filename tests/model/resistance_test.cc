@@ -44,7 +44,7 @@ TEST(ContactResistance, OfOnePlasticSpotAgreesWithAnIndependentProgram) {
     expect_ohm(resistance_law(contact).resistance(any_depth, row.force), row.both, kept_to, "Sharvin and Holm");
     contact.conduction.mean_free_path = 0;
     expect_ohm(resistance_law(contact).resistance(any_depth, row.force), row.holm, kept_to, "Holm");
-    // What is left of the whole when electrons fly through the spot: G falls to 0.83 / 1.33, and Holm's part to nothing.
+    // Electrons that fly through the spot leave this of the whole: G falls to 0.83 / 1.33, and Holm's part to nothing.
     const double radius = std::sqrt(row.force / (std::numbers::pi * gold_pair.hardness));
     constexpr double long_path = 1e-2;  // [m]
     expect_ohm(ContactResistance::of_spot(radius, gold_pair.resistivity, long_path) * gold_pair.mean_free_path / long_path,
@@ -162,7 +162,7 @@ TEST(ContactResistance, TakesWhatAdhesionAddsToTheLoad) {
   adhesive.conduction = lossless.conduction = gold_spring().conduction;
   const ContactLaw with = contact_law(adhesive, 20_um), without = contact_law(lossless, 20_um);
   bool has_pulled = false;
-  for (const double depth : {1e-9, 2e-9, 5e-9, 20e-9, 60e-9}) {
+  for (const double depth : {0.1e-9, 1e-9, 2e-9, 5e-9, 20e-9, 60e-9}) {
     const double net = contact_force(with, depth), load = contact_force(without, depth);
     has_pulled = has_pulled || net < 0;
     expect_ohm(resistance_law(adhesive).resistance(depth, net), resistance_law(lossless).resistance(depth, load), 1e-9,

@@ -39,8 +39,8 @@ TEST(Figures, AreTheMembersOfMetricsEachOnce) {
   }
   // Does not compile with another number of members.
   const auto& [status, t_i, t_p, t_b, n_b, b_h, t_1, v_i, force, impact, hold, steady, least, capacitance, drive, settled,
-               resistance, closed, closed_for_good, n_e, asked, deflection, overshoot, settling, voltage, slew, v_max, closest, separated, last_end, excess, end, reopened] =
-      distinct_metrics();
+               resistance, closed, closed_for_good, n_e, asked, deflection, overshoot, settling, voltage, slew, v_max, closest,
+               separated, last_end, excess, end, reopened] = distinct_metrics();
   EXPECT_EQ(status, Status::not_run);
   constexpr std::size_t members = 29, told = 24;
   EXPECT_EQ(figure_table.size(), members);
@@ -49,9 +49,9 @@ TEST(Figures, AreTheMembersOfMetricsEachOnce) {
   EXPECT_EQ(n_b, 17);
   EXPECT_EQ(n_e, 17);
   EXPECT_EQ(asked, AskedFigures());
-  for (const double number :
-       {t_i,   t_p,        t_b,       b_h,      t_1,     v_i,  force, impact,  hold,      steady,   least, capacitance,
-        drive, deflection, overshoot, settling, voltage, slew, v_max, closest, separated, last_end, excess, resistance, closed, closed_for_good})
+  for (const double number : {t_i,    t_p,     t_b,         b_h,      t_1,        v_i,        force,    impact,         hold,
+                              steady, least,   capacitance, drive,    deflection, overshoot,  settling, voltage,        slew,
+                              v_max,  closest, separated,   last_end, excess,     resistance, closed,   closed_for_good})
     EXPECT_TRUE(number > 0);
   EXPECT_TRUE(std::isnan(end) && !reopened) << "no figures of merit";
 }
@@ -113,9 +113,10 @@ TEST(Figures, HaveTheirErrorsFromThoseWhoCanTell) {
     }
     return all;
   };
-  EXPECT_EQ(keys([](const Figure& f) { return f.is_told_by_two_runs(); }),
-            "t_i, B_H, t_1, v_i, peak force, impact energy, t_F, least force, t_e, static deflection, overshoot, open settling time, "
-            "drive energy, ");
+  EXPECT_EQ(
+      keys([](const Figure& f) { return f.is_told_by_two_runs(); }),
+      "t_i, B_H, t_1, v_i, peak force, impact energy, t_F, least force, t_e, static deflection, overshoot, open settling time, "
+      "drive energy, ");
   EXPECT_EQ(keys([](const Figure& f) { return f.has_error() && !f.is_told_by_two_runs(); }),
             "t_p, t_b, N_B, hold force, contact resistance, t_c, N_e, capacitance, ");
   EXPECT_EQ(keys([](const Figure& f) { return !f.has_error(); }), "peak voltage, peak slew, settled, ");

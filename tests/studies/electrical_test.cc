@@ -32,6 +32,7 @@ SceneFile two_dimples(const std::string& closed) {
   SceneFile file = gold_at_17_volts({"waveform.main.level=20 V", "simulate.duration=150 us"});
   file.erase("contact");
   file.erase("gap.contact");
+  file.erase("spread");
   for (const auto& [name, gap] : {std::pair{"left", "2 um"}, std::pair{"right", "2.0002 um"}}) {
     const std::string path = std::string("contact.") + name + ".";
     for (const std::string key :

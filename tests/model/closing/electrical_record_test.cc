@@ -48,7 +48,7 @@ struct LetGo {
     const double still = contact_stiffness * gap / (stiffness + contact_stiffness), swing = gap + penetration - still;
     return std::acos((gap + force / contact_stiffness - still) / swing) / std::sqrt((stiffness + contact_stiffness) / mass);
   }
-  /// Between leaving the contact and coming back to it [s].
+  /// The time between leaving the contact and coming back to it [s].
   [[nodiscard]] static double flight() {
     const double free = std::sqrt(stiffness / mass), bound = std::sqrt((stiffness + contact_stiffness) / mass);
     const double still = contact_stiffness * gap / (stiffness + contact_stiffness), swing = gap + penetration - still;
@@ -227,7 +227,7 @@ TEST(ElectricalRecord, OfAConnectionAgreesWithTheCoursesOfItsContacts) {
   EXPECT_GE(lasting, 3);
 }
 
-// Under every law, whatever it remembers or loses.
+// This holds under every law, whatever it remembers or loses.
 TEST(ElectricalRecord, OfTouchIsTheMechanicalOneUnderEveryLaw) {
   int several = 0;
   for (const Contact& contact : test::contacts()) {
