@@ -287,7 +287,8 @@ NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_
   for (const Beam::Section& s : beam_.sections) lowest = std::min(lowest, s.mass / s.rigidity);
   for (const Beam::Section& s : beam_.sections) {
     // Waves are shorter where the beam is thin: at half their length and below, elements are, too.
-    const double shorter = std::max(1.0, std::sqrt(std::sqrt(s.mass / s.rigidity / lowest)) / 2);
+    double shorter = std::max(1.0, std::sqrt(std::sqrt(s.mass / s.rigidity / lowest)) / 2);
+    if (s.taper != 0) shorter *= 1.5;  // a curvature over a linear rigidity is no polynomial
     const int parts = std::max(1, static_cast<int>(std::ceil((s.end - s.begin) * shorter * count - 1e-9)));
     for (int k = 0; k < parts; ++k) {
       const double larger = 1 + s.taper * ((2 * k + 1.0) / parts - 1);  // than in the middle of the section

@@ -97,6 +97,14 @@ double ligament_efficiency(const Holes& holes) {
 }
 
 std::vector<LocalSection> local_sections(const Structure& s) {
+  if (const auto* const modal = s.find<ModalStructure>(); modal != nullptr && s.is_built()) {
+    const std::vector<double>&x = modal->table->positions(), &widths = modal->table->widths();
+    std::vector<LocalSection> all;
+    for (std::size_t k = 0; k + 1 < x.size(); ++k)
+      all.push_back(
+          {.begin = x[k], .end = x[k + 1], .width = widths[k], .end_width = widths[k + 1], .thickness = s.thickness});
+    return all;
+  }
   const Beam* const beam = s.find<Beam>();
   LocalSection whole{.end = s.length, .width = s.width, .end_width = s.width, .thickness = s.thickness};
   if (beam != nullptr) whole.youngs_modulus = beam->youngs_modulus, whole.density = beam->density;
@@ -129,8 +137,8 @@ double width_at(const Structure& s, double x) { return section_at(s, x).width_at
 
 std::vector<double> edges_of_parts(const Structure& s) {
   std::set<double> edges{0, s.length};
-  for (const LocalSection& local : local_sections(s)) edges.insert(local.end);
   if (const Beam* const beam = s.find<Beam>()) {
+    for (const LocalSection& local : local_sections(s)) edges.insert(local.end);
     for (const LayerPart& layer : beam->layers)
       edges.insert({layer.begin.on(s.length), std::min(layer.end.on(s.length), s.length)});
   }

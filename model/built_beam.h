@@ -40,13 +40,13 @@ struct LocalSection {
 /// Share of the stiffness along the beam that holes leave, k above.
 [[nodiscard]] double ligament_efficiency(const Holes& holes);
 
-/// The structure from end to end: one stretch unless it has sections.
+/// The structure from end to end: one stretch unless it has sections, or is a table of modes with widths.
 [[nodiscard]] std::vector<LocalSection> local_sections(const Structure& structure);
 /// The stretch at this place: of two that meet there, the second.
 [[nodiscard]] LocalSection section_at(const Structure& structure, double x);
 /// Across the structure at this place, with its holes [m].
 [[nodiscard]] double width_at(const Structure& structure, double x);
-/// Where sections and layers begin and end, from 0 to the length [m]: both of these alone for a structure without parts.
+/// Where sections and layers of a beam begin and end, from 0 to the length [m]: both of these alone for all other structures.
 [[nodiscard]] std::vector<double> edges_of_parts(const Structure& structure);
 
 /// A part that a device cannot have, and why.

@@ -347,6 +347,7 @@ Vectors vectors_in_use() {
 
 std::string why_not_in_lanes(const Switch& model) {
   const Device& device = model.device();
+  if (device.structure.is_built()) return "a size that changes along the beam";
   if (model.modes() > fleet::most_modes) return fmt::format("more than {} modes", fleet::most_modes);
   if (model.quadrature().points() > fleet::most_points) return fmt::format("more than {} quadrature points", fleet::most_points);
   if (model.drives() > fleet::most_drives) return fmt::format("more than {} drives", fleet::most_drives);
