@@ -24,7 +24,8 @@ void vary_sections(SceneFile& file, std::string_view key, std::string_view cov) 
     if (file.written(path)) keys.push_back('"' + path + '"');
   };
   add(fmt::format("structure.{}", key));
-  for (int k = 1; file.written(fmt::format("structure.sections[{}]", k)); ++k) add(fmt::format("structure.sections[{}].{}", k, key));
+  for (int k = 1; file.written(fmt::format("structure.sections[{}]", k)); ++k)
+    add(fmt::format("structure.sections[{}].{}", k, key));
   if (keys.empty()) return;
   file.set(fmt::format("spread.{}={{keys=[{}],distribution=\"normal\",cov=\"{}\"}}", key, fmt::join(keys, ","), cov));
 }

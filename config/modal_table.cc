@@ -124,8 +124,8 @@ std::shared_ptr<const ModalTable> table_of_scene(Structure& s, const SectionRead
     s.width = std::ranges::max(widths);
   }
   try {
-    return std::make_shared<const ModalTable>(std::move(positions), std::move(frequencies), std::move(shapes),
-                                              std::move(offsets), std::move(widths));
+    return std::make_shared<const ModalTable>(std::move(positions), std::move(frequencies), std::move(shapes), std::move(offsets),
+                                              std::move(widths));
   } catch (const InvalidInput& error) {
     in.file().fail(in.path(keys::shapes), error.what());
   }

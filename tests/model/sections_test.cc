@@ -17,6 +17,8 @@
 #include "model/built_beam.h"
 #include "model/closing.h"
 #include "model/constants.h"
+#include "model/gas/perforated_strip.h"
+#include "model/gas/strip.h"
 #include "model/laminate.h"
 #include "model/piezo_layer.h"
 #include "model/pull_in.h"
@@ -45,8 +47,8 @@ Device gold(std::vector<SectionPart> sections, double electrode_begin, int modes
 }
 Device uniform(int modes = 4) { return gold({}, 60_um, modes); }
 Device hinged(int modes = 4) {
-  return gold({{.length = 60_um, .width = 10_um, .thickness = 1_um}, {.length = 190_um, .width = 40_um, .thickness = 2_um}}, 40_um,
-              modes);
+  return gold({{.length = 60_um, .width = 10_um, .thickness = 1_um}, {.length = 190_um, .width = 40_um, .thickness = 2_um}},
+              40_um, modes);
 }
 /// Its anchor turns as one thickness more of the beam would.
 Device turning(int modes = 4) {
@@ -285,8 +287,7 @@ TEST(Tapers, AreTheLimitOfManySteps) {
     return d;
   };
   std::vector<SectionPart> staircase;
-  for (int k = 0; k < steps; ++k)
-    staircase.push_back({.length = 250_um / steps, .width = 40_um - 30_um * (k + 0.5) / steps});
+  for (int k = 0; k < steps; ++k) staircase.push_back({.length = 250_um / steps, .width = 40_um - 30_um * (k + 0.5) / steps});
   const std::vector<SectionPart> linear{{.length = 250_um, .width = 40_um, .end_width = 10_um}};
   const Gas strip = *test::gold_cantilever().gas;
   for (const Fringing fringing : {Fringing::none, Fringing::linear, Fringing::meijs_fokkema, Fringing::bao_2001}) {
@@ -365,7 +366,13 @@ TEST(Layers, LeaveTheLowestPointInsideABeamThatBendsBothWays) {
   Device d = uniform();
   part_of<Beam>(d.structure).layers = {
       {.face = Side::near, .begin = 0, .end = 100_um, .thickness = 0.1_um, .youngs_modulus = 78e9, .density = 1, .stress = 20e6},
-      {.face = Side::far, .begin = 100_um, .end = 250_um, .thickness = 0.1_um, .youngs_modulus = 78e9, .density = 1, .stress = 40e6}};
+      {.face = Side::far,
+       .begin = 100_um,
+       .end = 250_um,
+       .thickness = 0.1_um,
+       .youngs_modulus = 78e9,
+       .density = 1,
+       .stress = 40e6}};
   double least = 0;
   for (int k = 0; k <= 5000; ++k) least = std::min(least, d.rest_offset(250_um * k / 5000));
   EXPECT_LT(least, d.rest_offset(250_um));
@@ -428,9 +435,90 @@ TEST(HolesInABeam, LeaveStiffnessAndMass) {
   EXPECT_NEAR(static_pull_in(holed, 0).voltage, volts, 1e-9 * volts);
 }
 
+constexpr double air = 1.86e-5;  // [Pa s]
+
+// Where holes are few the gas leaves at the edges alone.
+TEST(PerforatedFilm, IsTheStripFilmWhereHolesAreFew) {
+  const StripSqueezeFilm strip{.viscosity = air, .width = 20_um};
+  const PerforatedStripFilm film(air, 20_um, 2_um, {.pitch = 20_um, .size = 0.05_um});
+  for (const double gap : {0.5_um, 2_um, 3.5_um}) EXPECT_NEAR(film.load(gap, 0.1) / strip.load(gap, 0.1), 1, 1e-3) << gap;
+}
+
+// Under a wide plate every cell lets its own gas out: the pressure is the same all over, but for its edges.
+TEST(PerforatedFilm, OfAWidePlateIsThatOfItsCells) {
+  const Holes holes{.pitch = 10_um, .size = 5_um};
+  const double gap = 2_um, per_width = PerforatedStripFilm(air, 1e-2, 2_um, holes).load(gap, 1.0) / 1e-2;
+  // The flow in a hole, its two ends, and the film around it, each as its own textbook has it.
+  const double hole = 5_um / std::sqrt(pi), cell = 10_um / std::sqrt(pi), flow = 10_um * 10_um;
+  const double channel = 8 * air * 2_um * flow / (pi * std::pow(hole, 4)), ends = 3 * air * flow / std::pow(hole, 3);
+  const auto ring = [&](double r) {
+    return 12 * air / std::pow(gap, 3) * (cell * cell / 2 * std::log(r / hole) - (r * r - hole * hole) / 4);
+  };
+  double mean = 0;  // of the pressure around the hole, over the cell
+  constexpr int rings = 20000;
+  for (int k = 0; k < rings; ++k) {
+    const double r = hole + (cell - hole) * (k + 0.5) / rings;
+    mean += ring(r) * 2 * r * (cell - hole) / rings / (cell * cell);
+  }
+  EXPECT_NEAR(-per_width, channel + ends + mean, 2e-3 * -per_width);
+}
+
+TEST(PerforatedFilm, ObeysItsEquationAcrossTheWidth) {
+  const Holes holes{.pitch = 10_um, .size = 4_um};
+  const double gap = 1.5_um, width = 60_um;
+  const PerforatedStripFilm film(air, width, 2_um, holes);
+  const double resistance = film.through + film.around / std::pow(gap, 3), square = std::pow(gap, 3) * resistance / (12 * air);
+  // p'' = p / l^2 - 12 mu v / h^3 by differences.
+  constexpr int places = 2000;
+  const double step = width / places;
+  std::vector<double> upper(places - 1), right(places - 1);
+  const double middle = -2 / (step * step) - 1 / square, beside = 1 / (step * step), load = -12 * air / std::pow(gap, 3);
+  for (int k = 0; k < places - 1; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double pivot = middle - (k > 0 ? beside * upper[i - 1] : 0);
+    upper[i] = beside / pivot;
+    right[i] = (load - (k > 0 ? beside * right[i - 1] : 0)) / pivot;
+  }
+  double force = 0, pressure = 0;
+  for (std::size_t i = places - 1; i-- > 0;) {
+    pressure = right[i] - upper[i] * pressure;
+    force += pressure * step;
+  }
+  EXPECT_NEAR(-film.load(gap, 1.0), force, 1e-5 * force);
+  EXPECT_LT(force, air * std::pow(width / gap, 3)) << "below the strip film";
+  const Dual at = film.load(Dual(gap, 1), Dual(1.0));
+  constexpr double little = 1e-10;
+  const double slope = (film.load(gap + little, 1.0) - film.load(gap - little, 1.0)) / (2 * little);
+  EXPECT_NEAR(at.slope, slope, 1e-6 * std::abs(slope));
+}
+
+TEST(PerforatedFilm, ActsUnderASectionWithHoles) {
+  const auto lost = [](const Holes& holes, const Gas& gas) {
+    Device d = gold({{.length = 250_um, .holes = holes}}, 60_um, 2);
+    d.gas = gas;
+    const Switch model(d);
+    Switch::Workspace work = model.workspace();
+    const Eigen::VectorXd q = Eigen::VectorXd::Zero(2);
+    Eigen::VectorXd v = model.basis().contact_shape().cwiseQuotient(model.basis().squares());
+    v *= 0.1 / model.contact_deflection(v.data());
+    return model.dissipated_power(q.data(), v.data(), work);
+  };
+  const Gas strip = *test::gold_cantilever().gas;
+  EXPECT_LT(lost({.pitch = 10_um, .size = 4_um}, strip), 0.5 * lost({}, strip));
+  Device refused = gold({{.length = 250_um, .holes = {.pitch = 10_um, .size = 4_um}}}, 60_um, 2);
+  refused.gas = VeijolaGas{};
+  try {
+    validate(refused);
+    ADD_FAILURE() << "a law without holes was taken";
+  } catch (const InvalidInput& error) {
+    EXPECT_THAT(error.what(), HasSubstr("gas.model = veijola: not over holes"));
+  }
+}
+
 // Sections in a row stretch like springs in a row.
 TEST(Bridges, OfSectionsStretchAsSpringsInARow) {
-  Structure s{.length = 300_um, .width = 20_um, .thickness = 2_um, .kind = Bridge{{.youngs_modulus = 78_GPa, .density = 19300}, 10e6}};
+  Structure s{
+      .length = 300_um, .width = 20_um, .thickness = 2_um, .kind = Bridge{{.youngs_modulus = 78_GPa, .density = 19300}, 10e6}};
   const double force = 10e6 * 20_um * 2_um;
   part_of<Beam>(s).sections = {{.length = 100_um}, {.length = 200_um}};
   EXPECT_NEAR(beam_support(s).axial_force, force, 1e-12 * force);
@@ -496,7 +584,8 @@ TEST(PartsOfABeam, ThatCannotBeAreRefused) {
               HasSubstr("structure.far_anchor: stiffnesses"));
   EXPECT_THAT(with([&](Device& d, Beam&) { d.surface = Surface{.elastic_modulus = 1}; }),
               HasSubstr("surface: is for a beam without sections"));
-  EXPECT_THAT(with([&](Device& d, Beam&) { d.gas = ReynoldsGas{}; }), HasSubstr("gas.model = reynolds: not with a structure whose width changes"));
+  EXPECT_THAT(with([&](Device& d, Beam&) { d.gas = ReynoldsGas{}; }),
+              HasSubstr("gas.model = reynolds: not with a structure whose width changes"));
   EXPECT_THAT(with([&](Device& d, Beam& b) { part_of<Cantilever>(d.structure).stress_gradient = 1e10, b.far_anchor = Anchor{}; }),
               HasSubstr("structure.stress_gradient: needs a free far end"));
 }
