@@ -17,6 +17,19 @@ void vary(SceneFile& file, const std::string& key, std::string_view cov, bool al
   if (always || file.written(key)) file.set(fmt::format("spread.\"{}\"={{distribution=\"normal\",cov=\"{}\"}}", key, cov));
 }
 
+// A number of the structure that sections may have instead of it: all of these by one factor.
+void vary_sections(SceneFile& file, std::string_view key, std::string_view cov) {
+  std::vector<std::string> keys;
+  const auto add = [&](const std::string& path) {
+    if (file.written(path)) keys.push_back('"' + path + '"');
+  };
+  add(fmt::format("structure.{}", key));
+  for (int k = 1; file.written(fmt::format("structure.sections[{}]", k)); ++k)
+    add(fmt::format("structure.sections[{}].{}", k, key));
+  if (keys.empty()) return;
+  file.set(fmt::format("spread.{}={{keys=[{}],distribution=\"normal\",cov=\"{}\"}}", key, fmt::join(keys, ","), cov));
+}
+
 }  // namespace
 
 bool assume_spread(SceneFile& file) {
@@ -30,8 +43,13 @@ bool assume_spread(SceneFile& file) {
   if (const auto kind = law_named<StructureKind>(file.written("structure.kind").value_or(""))) {
     std::visit(
         [&](const auto& own) {
-          for (const UsualSpread& usual : own.usual_spread)
+          for (const UsualSpread& usual : own.usual_spread) {
+            if (file.written("structure.sections")) {
+              vary_sections(file, usual.key, usual.cov);
+              continue;
+            }
             vary(file, "structure." + std::string(usual.key), usual.cov, usual.has_default);
+          }
         },
         *kind);
   }

@@ -44,8 +44,8 @@ ModeKeys mode_keys(const SectionReader& in) {
   return made;
 }
 
-// That of the file, of the key, or of both where they agree.
-void take_width(Structure& s, const ModeTable& table, const SectionReader& in) {
+// That of the file, of the key, or of both where they agree. Returns the widths at the positions where they differ.
+std::vector<double> take_width(Structure& s, const ModeTable& table, const SectionReader& in) {
   constexpr double even = 1e-3;
   double low = std::numeric_limits<double>::infinity(), high = 0;
   for (const double width : table.widths) {
@@ -54,18 +54,23 @@ void take_width(Structure& s, const ModeTable& table, const SectionReader& in) {
   if (high == 0) {
     if (!in.is_given("width"))
       in.fail("missing key 'width' (a length such as \"20 um\"): the file does not say how wide the structure is");
-    return;
+    return {};
   }
   constexpr int digits = 4;
-  in.require(high <= (1 + even) * low, keys::file,
-             fmt::format("the width runs from {} to {} along the axis: only structures of constant width are simulated",
-                         engineering(low, "m", digits), engineering(high, "m", digits)));
+  const bool is_even = high <= (1 + even) * low;
   if (!in.is_given("width")) {
     s.width = high;
-    return;
+    if (is_even) return {};
+    in.require(std::ranges::none_of(table.widths, [](double width) { return std::isnan(width); }), keys::file,
+               "the width changes along the axis, and the file does not give it everywhere");
+    return table.widths;
   }
+  in.require(is_even, "width",
+             fmt::format("the width of the file runs from {} to {} along the axis: leave the key out to take it from there",
+                         engineering(low, "m", digits), engineering(high, "m", digits)));
   in.require(std::abs(s.width - high) <= even * high, "width",
              fmt::format("the file says that the width is {}", engineering(high, "m", digits)));
+  return {};
 }
 
 // Empty where the face is straight.
@@ -84,19 +89,19 @@ std::shared_ptr<const ModalTable> table_of_file(Scene& scene, const SectionReade
   } catch (const InvalidInput& error) {
     in.file().fail(in.path(keys::file), error.what());
   }
-  take_width(scene.device.structure, table, in);
+  std::vector<double> widths = take_width(scene.device.structure, table, in);
   if (table.nodes > 0) scene.file_notes.push_back(fmt::format("{}: {}", in.written(keys::file), summary(table)));
   std::vector<double> offsets = offsets_of(table);
   return std::make_shared<const ModalTable>(std::move(table.positions), std::move(table.frequencies), std::move(table.shapes),
-                                            std::move(offsets));
+                                            std::move(offsets), std::move(widths));
 }
 
-std::shared_ptr<const ModalTable> table_of_scene(const SectionReader& in) {
+std::shared_ptr<const ModalTable> table_of_scene(Structure& s, const SectionReader& in) {
   for (const std::string_view key :
        {keys::axis, keys::direction, keys::length_unit, keys::mass_unit, keys::mass, keys::mass_normalised, keys::clamp})
     in.require(!in.is_given(key), key, "says how a file is read, and the scene holds its modes itself");
   for (const std::string_view key : {keys::frequencies, keys::shapes, std::string_view("width")}) {
-    if (!in.is_given(key))
+    if (!in.is_given(key) && !(key == "width" && in.is_given(keys::widths)))
       in.fail(fmt::format("missing key '{}': beside positions there must be frequencies, shapes and width", key));
   }
   std::vector<double> positions = in.numbers(keys::positions), frequencies = in.numbers(keys::frequencies),
@@ -112,9 +117,15 @@ std::shared_ptr<const ModalTable> table_of_scene(const SectionReader& in) {
   std::vector<double> offsets;
   if (in.is_given(keys::rest_offsets)) offsets = in.numbers(keys::rest_offsets);
   in.require(offsets.empty() || offsets.size() == positions.size(), keys::rest_offsets, "must hold a number per position");
+  std::vector<double> widths;
+  if (in.is_given(keys::widths)) {
+    widths = in.numbers(keys::widths);
+    in.require(widths.size() == positions.size(), keys::widths, "must hold a number per position");
+    s.width = std::ranges::max(widths);
+  }
   try {
-    return std::make_shared<const ModalTable>(std::move(positions), std::move(frequencies), std::move(shapes),
-                                              std::move(offsets));
+    return std::make_shared<const ModalTable>(std::move(positions), std::move(frequencies), std::move(shapes), std::move(offsets),
+                                              std::move(widths));
   } catch (const InvalidInput& error) {
     in.file().fail(in.path(keys::shapes), error.what());
   }
@@ -150,6 +161,10 @@ std::vector<Key> modal_table_keys() {
       numbers(keys::rest_offsets, {dimension::length}, any,
               "of the face at the positions, towards the near electrode; absent: it is straight at rest")
           .fixed(rest_is_of_file),
+      numbers(keys::widths, {dimension::length}, positive,
+              "across the axis at the positions, straight between them; instead of width")
+          .instead("width")
+          .fixed("it belongs to the modes"),
   };
 }
 
@@ -157,9 +172,9 @@ void read_modal_table(Scene& scene, const SectionReader& in) {
   Structure& s = scene.device.structure;
   std::shared_ptr<const ModalTable>& table = part_of<ModalStructure>(s).table;
   if (in.is_given(keys::positions)) {
-    table = table_of_scene(in);
+    table = table_of_scene(s, in);
   } else {
-    for (const std::string_view key : {keys::shapes, keys::rest_offsets})
+    for (const std::string_view key : {keys::shapes, keys::rest_offsets, keys::widths})
       in.require(!in.is_given(key), key, "stands beside positions, not beside a file");
     table = table_of_file(scene, in);
   }
@@ -174,7 +189,7 @@ void hold_table(toml::table& root, const Structure& s) {
   toml::table& section = *root["structure"].as_table();
   for (const std::string_view key :
        {keys::file, keys::axis, keys::direction, keys::length_unit, keys::mass_unit, keys::mass, keys::mass_normalised,
-        keys::clamp, keys::positions, keys::frequencies, keys::shapes, keys::rest_offsets})
+        keys::clamp, keys::positions, keys::frequencies, keys::shapes, keys::rest_offsets, keys::widths})
     section.erase(key);
   toml::array positions, frequencies, shapes;
   for (const double x : modal->table->positions()) positions.push_back(quantity_text(x, dimension::length));
@@ -191,6 +206,12 @@ void hold_table(toml::table& root, const Structure& s) {
     toml::array all;
     for (const double offset : offsets) all.push_back(quantity_text(offset, dimension::length));
     section.insert_or_assign(keys::rest_offsets, std::move(all));
+  }
+  if (const std::vector<double>& widths = modal->table->widths(); !widths.empty()) {
+    toml::array all;
+    for (const double width : widths) all.push_back(quantity_text(width, dimension::length));
+    section.insert_or_assign(keys::widths, std::move(all));
+    return;
   }
   if (!section.contains("width")) section.insert("width", quantity_text(s.width, dimension::length));
 }

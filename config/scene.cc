@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/engineering.h"
 #include "base/require.h"
 #include "config/drives.h"
 #include "config/file_rows.h"
 #include "config/modal_table.h"
 #include "config/section_reader.h"
 #include "config/spread_reader.h"
+#include "model/built_beam.h"
 
 namespace softland {
 namespace {
@@ -124,8 +126,18 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
   constexpr double rounding = 1e-12;  // 20 um is not more than five times 4 um, whatever the last bit says
   const Structure& structure = device.structure;
   const auto* const beam = structure.find<Beam>();
-  if (beam != nullptr && !file.find({"structure", "plate_strain"}) &&
-      structure.width > wide * structure.thickness * (1 + rounding)) {
+  if (beam != nullptr && structure.is_built() && !beam->plate_strain && !file.find({"structure", "plate_strain"})) {
+    for (const LocalSection& local : local_sections(structure)) {
+      if (std::max(local.width, local.end_width) <= wide * local.thickness * (1 + rounding)) continue;
+      warnings.push_back(
+          fmt::format("{}: structure: wider than five thicknesses from {} to {}; moduli are used as given (plate_strain = "
+                      "false), plate_strain "
+                      "= true with poissons_ratio would use E / (1 - nu^2)",
+                      file.origin("structure").text, engineering(local.begin, "m"), engineering(local.end, "m")));
+      break;
+    }
+  } else if (beam != nullptr && !file.find({"structure", "plate_strain"}) &&
+             structure.width > wide * structure.thickness * (1 + rounding)) {
     warnings.push_back(fmt::format(
         "{}: {}: more than five thicknesses; youngs_modulus is used as given (plate_strain = false), plate_strain = true with "
         "poissons_ratio would use E / (1 - nu^2)",

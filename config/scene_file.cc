@@ -335,7 +335,8 @@ void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::
 }
 
 bool is_below(std::string_view path, std::string_view ancestor) {
-  return path.size() > ancestor.size() && path.starts_with(ancestor) && (path[ancestor.size()] == '.' || path[ancestor.size()] == '[');
+  return path.size() > ancestor.size() && path.starts_with(ancestor) &&
+         (path[ancestor.size()] == '.' || path[ancestor.size()] == '[');
 }
 
 }  // namespace

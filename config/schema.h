@@ -46,11 +46,11 @@ struct Key {
   KeyType type = KeyType::quantity;
   /// quantity, quantities: the dimensions a value may have; empty: decided by another key. The first one names the key's SI unit.
   std::vector<Dimension> dimensions = {};
-  Range range = {};        ///< see range_of()
-  std::size_t count = 0;   ///< quantities: how many; 0: any number
-  bool any_word = false;   ///< integer: any text may stand instead of a number
+  Range range = {};         ///< see range_of()
+  std::size_t count = 0;    ///< quantities: how many; 0: any number
+  bool any_word = false;    ///< integer: any text may stand instead of a number
   bool may_be_one = false;  ///< quantities: a single one may stand instead of a list
-  bool is_nested = false;  ///< quantities: may be a list of such lists, read one after the other
+  bool is_nested = false;   ///< quantities: may be a list of such lists, read one after the other
   std::vector<std::string_view> choices = {};
   std::vector<std::string_view> words = {};  ///< integer, quantity, an element of quantities: what may stand instead of a number
   std::string_view fallback = {};            ///< the default as TOML; empty: none

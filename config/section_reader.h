@@ -30,10 +30,10 @@ class SectionReader {
 
   /// The tables of a key that is in force: the one of a `table`, none where a word stands instead, or those of `tables`.
   [[nodiscard]] std::vector<SectionReader> parts(std::string_view key) const;
-  /// The table that holds the last key of a path below this one, as {"sections[2]", "holes", "pitch"}, and its number in the list;
-  /// none where there is no such table.
+  /// The table that holds the last key of a path below this one, as {"sections[2]", "holes", "pitch"}, and its number in the
+  /// list; none where there is no such table.
   [[nodiscard]] std::optional<std::pair<SectionReader, std::size_t>> holder(std::span<const std::string> path,
-                                                                                 std::size_t entry = 0) const;
+                                                                            std::size_t entry = 0) const;
   [[nodiscard]] const std::vector<Key>& keys() const { return section_.keys; }
 
   /// Whether the section stands in the file.

@@ -145,11 +145,11 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
     for (const Key& key : of_key.keys()) {
       const std::size_t size =
           key.bound.element != nullptr && of_key.has_value(key.name) ? of_key.quantities(key.name).size() : 0;
-      const bool is_number = key.type == KeyType::quantity ? element == 0
-                             : key.bound.element != nullptr
-                                 ? (of_key.is_list(key.name) ? element >= 1 && element <= size : element == 0)
-                                 : key.bound.place != nullptr && element >= 1 && element <= key.count &&
-                                                                 !of_key.is_nested(key.name);
+      const bool is_number =
+          key.type == KeyType::quantity ? element == 0
+          : key.bound.element != nullptr
+              ? (of_key.is_list(key.name) ? element >= 1 && element <= size : element == 0)
+              : key.bound.place != nullptr && element >= 1 && element <= key.count && !of_key.is_nested(key.name);
       if (is_number && of_key.find(key.name) == &key && of_key.has_value(key.name)) candidates.push_back(key.name);
     }
     if (std::find(candidates.begin(), candidates.end(), parts.back()) != candidates.end()) {

@@ -40,8 +40,8 @@ Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::Matrix
   return basis;
 }
 
-// What a linear rigidity adds to the bending energy between the functions m and m + 1 of an element whose taper is 1: the integral
-// of xi and two neighbours of the normalised Legendre polynomials.
+// What a linear rigidity adds to the bending energy between the functions m and m + 1 of an element whose taper is 1: the
+// integral of xi and two neighbours of the normalised Legendre polynomials.
 double taper_coupling(int m) { return (m + 1) / std::sqrt((2 * m + 1.0) * (2 * m + 3.0)); }
 
 // The phase of a mode over the beam where it bends as waves do that travel along it, and what it grows by with omega^2. It hardly
@@ -157,9 +157,8 @@ std::vector<BeamSection> built_sections(const Device& device, double gradient) {
     if (has_piezo) {
       for (const Lamina& l : stack) piezo_middle += l.thickness;
       piezo_middle += device.piezo->thickness / 2;
-      stack.push_back({.modulus = device.piezo->youngs_modulus,
-                       .density = device.piezo->density,
-                       .thickness = device.piezo->thickness});
+      stack.push_back(
+          {.modulus = device.piezo->youngs_modulus, .density = device.piezo->density, .thickness = device.piezo->thickness});
     }
     const Laminate laminate(stack);
     const double width = local.width_at(middle), carrying = width * ligament_efficiency(local.holes);
@@ -287,7 +286,8 @@ NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_
   for (const Beam::Section& s : beam_.sections) lowest = std::min(lowest, s.mass / s.rigidity);
   for (const Beam::Section& s : beam_.sections) {
     // Waves are shorter where the beam is thin: at half their length and below, elements are, too.
-    const double shorter = std::max(1.0, std::sqrt(std::sqrt(s.mass / s.rigidity / lowest)) / 2);
+    double shorter = std::max(1.0, std::sqrt(std::sqrt(s.mass / s.rigidity / lowest)) / 2);
+    if (s.taper != 0) shorter *= 1.5;  // a curvature over a linear rigidity is no polynomial
     const int parts = std::max(1, static_cast<int>(std::ceil((s.end - s.begin) * shorter * count - 1e-9)));
     for (int k = 0; k < parts; ++k) {
       const double larger = 1 + s.taper * ((2 * k + 1.0) / parts - 1);  // than in the middle of the section
@@ -305,8 +305,7 @@ NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_
 
 void NormalisedModes::search() {
   const GaussRule rule = gauss_rule(functions + 2);  // exact for squares of polynomials of degree 9
-  const auto points = static_cast<Eigen::Index>(rule.points.size()),
-             total = shape(1, 0).size();
+  const auto points = static_cast<Eigen::Index>(rule.points.size()), total = shape(1, 0).size();
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(total, total), slopes = mass;
   for (const BeamElement& element : elements_) {
     const double half = element.half();
@@ -314,7 +313,8 @@ void NormalisedModes::search() {
       Eigen::MatrixXd rows(points, total);
       for (Eigen::Index g = 0; g < points; ++g) {
         const auto i = static_cast<std::size_t>(g);
-        rows.row(g) = std::sqrt(factor * (1 + taper * rule.points[i]) * rule.weights[i] * half) * shape(element, rule.points[i], derivative);
+        rows.row(g) = std::sqrt(factor * (1 + taper * rule.points[i]) * rule.weights[i] * half) *
+                      shape(element, rule.points[i], derivative);
       }
       return Eigen::MatrixXd(rows.transpose() * rows);
     };
@@ -407,9 +407,9 @@ Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, c
 Eigen::MatrixXd NormalisedModes::slope_products() const {
   const Eigen::Index bending = functions * static_cast<Eigen::Index>(elements_.size());
   if (bending == shapes_.rows()) return softland::slope_products(elements_, shapes_);
-  return softland::slope_products(elements_, shapes_.topRows(bending),
-                                  turn_ > 0 ? Eigen::RowVectorXd(turn_ * shapes_.bottomRows<1>())
-                                            : Eigen::RowVectorXd::Zero(shapes_.cols()));
+  return softland::slope_products(
+      elements_, shapes_.topRows(bending),
+      turn_ > 0 ? Eigen::RowVectorXd(turn_ * shapes_.bottomRows<1>()) : Eigen::RowVectorXd::Zero(shapes_.cols()));
 }
 
 bool NormalisedModes::follow(const NormalisedModes& near) {

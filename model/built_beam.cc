@@ -35,9 +35,9 @@ std::optional<PartConflict> section_conflict(const Structure& s, std::size_t i) 
     if (!is_number_above_zero(holes.size) || !(holes.size < holes.pitch && holes.pitch < 1e30))
       return PartConflict{path + ".holes", "needs a size above 0 and a pitch above the size"};
     if (holes.pitch > std::min({local.width, local.end_width, part.length}) * (1 + 1e-12))
-      return PartConflict{path + ".holes", fmt::format("the pitch must not exceed length and width of the section, {} and {}",
-                                                       engineering(part.length, "m"),
-                                                       engineering(std::min(local.width, local.end_width), "m"))};
+      return PartConflict{path + ".holes",
+                          fmt::format("the pitch must not exceed length and width of the section, {} and {}",
+                                      engineering(part.length, "m"), engineering(std::min(local.width, local.end_width), "m"))};
   }
   return std::nullopt;
 }
@@ -93,10 +93,17 @@ double area_left(const Holes& holes) {
 
 double ligament_efficiency(const Holes& holes) {
   const double ratio = holes.size / holes.pitch;
-  return holes.exist() ? (1 - ratio) / (1 - ratio + ratio * ratio) : 1;
+  return holes.exist() ? (1 - ratio) * (1 + 1 / (1 - ratio + ratio * ratio)) / 2 : 1;
 }
 
 std::vector<LocalSection> local_sections(const Structure& s) {
+  if (const auto* const modal = s.find<ModalStructure>(); modal != nullptr && s.is_built()) {
+    const std::vector<double>&x = modal->table->positions(), &widths = modal->table->widths();
+    std::vector<LocalSection> all;
+    for (std::size_t k = 0; k + 1 < x.size(); ++k)
+      all.push_back({.begin = x[k], .end = x[k + 1], .width = widths[k], .end_width = widths[k + 1], .thickness = s.thickness});
+    return all;
+  }
   const Beam* const beam = s.find<Beam>();
   LocalSection whole{.end = s.length, .width = s.width, .end_width = s.width, .thickness = s.thickness};
   if (beam != nullptr) whole.youngs_modulus = beam->youngs_modulus, whole.density = beam->density;
@@ -129,8 +136,8 @@ double width_at(const Structure& s, double x) { return section_at(s, x).width_at
 
 std::vector<double> edges_of_parts(const Structure& s) {
   std::set<double> edges{0, s.length};
-  for (const LocalSection& local : local_sections(s)) edges.insert(local.end);
   if (const Beam* const beam = s.find<Beam>()) {
+    for (const LocalSection& local : local_sections(s)) edges.insert(local.end);
     for (const LayerPart& layer : beam->layers)
       edges.insert({layer.begin.on(s.length), std::min(layer.end.on(s.length), s.length)});
   }

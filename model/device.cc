@@ -66,12 +66,12 @@ void check_structure(const Device& d) {
   const Structure& s = d.structure;
   positive(s.length, "m", "structure.length");
   const Beam* const beam = s.find<Beam>();
-  const bool has_sections = beam != nullptr && !beam->sections.empty();
+  const bool has_sections = beam != nullptr ? !beam->sections.empty() : s.is_built();
   if (!has_sections) positive(s.width, "m", "structure.width");
   Structure unset;
   std::visit([&]<class Kind>(const Kind&) { unset.kind = Kind{}; }, s.kind);
   check_fields("structure", s, unset, fields_in_force(s));
-  if (!has_sections) {
+  if (beam != nullptr && !has_sections) {
     for (const Field<Structure>& field : fields_in_force(s)) {
       if (field.unless.empty()) continue;
       Structure own = s;
@@ -151,7 +151,13 @@ void check_rest_shape(const Device& d) {
 void check_gas(const Gas& g, const Structure& s) {
   if (limits_of(g).needs_thickness && !s.is_built()) positive(s.thickness, "m", "structure.thickness");
   std::visit([](const auto& law) { check_fields("gas", law); }, g);
-  require(!is_compressible(g) || !s.is_built(), "gas.model = reynolds: not with sections or layers of a beam");
+  const std::vector<LocalSection> sections = local_sections(s);
+  const bool has_holes = std::ranges::any_of(sections, [](const LocalSection& one) { return one.holes.exist(); });
+  require(!has_holes || std::holds_alternative<StripGas>(g) || std::holds_alternative<LinearGas>(g), [&] {
+    return fmt::format("gas.model = {}: not over holes, whose film is that of strip, or a linear damper", name_of(g));
+  });
+  require(!is_compressible(g) || !s.is_built(),
+          "gas.model = reynolds: not with a structure whose width changes, nor with layers");
   const auto* const damper = std::get_if<LinearGas>(&g);
   require(damper == nullptr || std::isnan(damper->damping) != std::isnan(damper->quality_factor),
           "gas.model = linear: needs either damping or quality_factor");

@@ -14,6 +14,7 @@
 #include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
 #include "model/forces/gold_casimir.h"
+#include "model/gas/perforated_strip.h"
 #include "model/modal_projection.h"
 #include "model/sampled_modes.h"
 
@@ -35,10 +36,13 @@ std::shared_ptr<const DistributedLaw> erased(Law law, PointRange range, double f
   return std::make_shared<const DistributedLawOf<Law>>(law, range.begin, range.end, floor);
 }
 
-// The points of a range that lie under a structure of this width and thickness; width without holes.
+// The points of a range that lie under a structure of this width and thickness, and with these holes: the width that they leave,
+// and all of it.
 struct EvenRange {
   PointRange points;
   double width, thickness;
+  Holes holes = {};
+  double full_width = width;
 };
 
 // Ranges of points between two places, each of one size: of a structure that is the same all along that is one, and under a width
@@ -50,10 +54,11 @@ std::vector<EvenRange> even_ranges(const Structure& s, const Eigen::ArrayXd& pos
     const PointRange points = points_in(positions, std::max(begin, local.begin), std::min(end, local.end));
     const double left = area_left(local.holes);
     if (local.is_even()) {
-      if (points.begin < points.end) ranges.push_back({points, local.width * left, local.thickness});
+      if (points.begin < points.end) ranges.push_back({points, local.width * left, local.thickness, local.holes, local.width});
     } else {
       for (Eigen::Index p = points.begin; p < points.end; ++p)
-        ranges.push_back({{p, p + 1}, local.width_at(positions[p]) * left, local.thickness});
+        ranges.push_back(
+            {{p, p + 1}, local.width_at(positions[p]) * left, local.thickness, local.holes, local.width_at(positions[p])});
     }
   }
   return ranges;
@@ -172,17 +177,23 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     const double unit_quality = basis_.angular_frequencies()[0] / first_mode;
     const LocalSection contact = section_at(s, device_.contact_position());
     gas_ = gas_law(*device_.gas, contact.width_at(device_.contact_position()), contact.thickness, unit_quality);
-    const auto film_on = [&](const EvenRange& even) { return gas_law(*device_.gas, even.width, even.thickness, unit_quality); };
+    // Calls `make` with the law of the film under one range.
+    const auto film_on = [&](const EvenRange& even, auto&& make) {
+      const GasLaw law = gas_law(*device_.gas, even.full_width, even.thickness, unit_quality);
+      const auto* const strip = even.holes.exist() ? std::get_if<StripSqueezeFilm>(&law) : nullptr;
+      if (strip != nullptr) return make(PerforatedStripFilm(strip->viscosity, even.full_width, even.thickness, even.holes));
+      return std::visit(make, law);
+    };
     if (is_compressible(*device_.gas)) {
       film_.emplace(*film_of(*device_.gas), s.width, n, film_floor);
     } else {
       for (const EvenRange& even : everywhere)
-        passive_laws_.push_back(std::visit([&](const auto& law) { return erased(law, even.points, film_floor); }, film_on(even)));
+        passive_laws_.push_back(film_on(even, [&](const auto& law) { return erased(law, even.points, film_floor); }));
     }
     if (const double gap = far_gap(*device_.gas); !std::isnan(gap)) {
       for (const EvenRange& even : everywhere)
         passive_laws_.push_back(
-            std::visit([&](const auto& law) { return erased(on_far_side(law, gap), even.points, gap_floor()); }, film_on(even)));
+            film_on(even, [&](const auto& law) { return erased(on_far_side(law, gap), even.points, gap_floor()); }));
     }
   }
   // What bends the beam by the contact gap at x_c.

@@ -16,6 +16,7 @@
 
 #include "base/require.h"
 #include "base/select.h"
+#include "model/built_beam.h"
 #include "model/far_side.h"
 #include "model/forces/casimir.h"
 #include "model/forces/dispersion.h"
@@ -144,6 +145,8 @@ class Maker {
   // [N/m]; adds the capacitances of this point to those of the electrodes [F].
   Formula load_at(double x, const Formula& gap, const Formula& velocity, double weight, std::vector<Formula>& capacitances) {
     const Structure& s = device_.structure;
+    const LocalSection local = section_at(s, x);
+    const double width = s.is_built() ? local.width_at(x) * area_left(local.holes) : s.width;
     Formula load = 0;
     for (std::size_t k = 0; k < device_.electrodes.size(); ++k) {
       const Electrode& e = device_.electrodes[k];
@@ -164,10 +167,11 @@ class Maker {
               capacitances[k] += Formula(weight) * force.capacitance(max(Formula(both) - gap, Formula(floor)));
             }
           },
-          row_of(fringing_laws, e.fringing).make(s.width, s.thickness));
+          row_of(fringing_laws, e.fringing).make(width, local.thickness));
     }
-    if (device_.dispersion) load += strengths_.back() * dispersion(gap, velocity);
+    if (device_.dispersion) load += strengths_.back() * dispersion(width, gap, velocity);
     if (!model_.gas()) return load;
+    const bool is_local = s.is_built() && !std::holds_alternative<LinearGas>(*device_.gas);
     std::visit(
         [&](const auto& law) {
           load += law.load(gap, velocity);
@@ -176,16 +180,14 @@ class Maker {
                         .load(gap, velocity);
           }
         },
-        *model_.gas());
+        is_local ? gas_law(*device_.gas, width, local.thickness, 1) : *model_.gas());
     return load;
   }
 
-  Formula dispersion(const Formula& gap, const Formula& velocity) const {
+  Formula dispersion(double width, const Formula& gap, const Formula& velocity) const {
     const Dispersion& force = *device_.dispersion;
     const VanDerWaals near{.hamaker_constant = force.hamaker_constant, .equilibrium_distance = force.equilibrium_distance};
-    const auto along = [&](auto law) {
-      return DispersionForce<decltype(law)>{.law = law, .width = device_.structure.width}.load(gap, velocity);
-    };
+    const auto along = [&](auto law) { return DispersionForce<decltype(law)>{.law = law, .width = width}.load(gap, velocity); };
     if (force.model == DispersionModel::van_der_waals) return along(near);
     if (force.model == DispersionModel::casimir) return along(IdealCasimir{});
     return along(SmallerOfBoth<IdealCasimir>{IdealCasimir{}, near});
@@ -357,6 +359,9 @@ std::string why_no_circuit(const Switch& model) {
   if (device.dispersion && device.dispersion->conductor == Conductor::gold &&
       device.dispersion->model != DispersionModel::van_der_waals)
     return "a Casimir force between gold, which is a table";
+  if (device.gas && !std::holds_alternative<LinearGas>(*device.gas) &&
+      std::ranges::any_of(local_sections(device.structure), [](const LocalSection& one) { return one.holes.exist(); }))
+    return "a gas film under holes";
   for (const Electrode& e : device.electrodes) {
     if (e.fringing == Fringing::bao_2001) return "fringing by bao-2001, whose charge is an integral";
     if (e.dielectric) return "a dielectric on an electrode";

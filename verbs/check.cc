@@ -10,9 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "model/built_beam.h"
 #include "model/constants.h"
 #include "model/gas/gas_law.h"
 #include "model/pull_in.h"
+#include "reports/beam_drawing.h"
 #include "reports/check_report.h"
 #include "reports/quantity.h"
 #include "studies/closing/auto_settings.h"
@@ -93,12 +95,58 @@ ElectrodePullIn quick_pull_in(const Switch& model, std::size_t electrode, Bias b
   return found;
 }
 
+std::string end_words(const Anchor& anchor) {
+  if (anchor.is_clamp()) return "clamped";
+  if (anchor.is_free()) return "free";
+  const auto stiffness = [](double value, const char* unit) {
+    return std::isinf(value) ? std::string("rigid") : given_quantity(value, unit, 4);
+  };
+  return fmt::format("rotation {}, translation {}", stiffness(anchor.rotation, "N m/rad"), stiffness(anchor.translation, "N/m"));
+}
+
+// Sections, layers and anchors of a beam that has any.
+void add_parts(CheckRecord& record, const Device& device) {
+  const Structure& s = device.structure;
+  const Beam* const beam = s.find<Beam>();
+  if (beam == nullptr) return;
+  const auto length = [](double value) { return given_quantity(value, "m", 4); };
+  const auto span = [&](double begin, double end) { return fmt::format("{} to {}", length(begin), length(end)); };
+  int number = 0;
+  for (const LocalSection& local : local_sections(s)) {
+    if (beam->sections.empty()) break;
+    std::string words = fmt::format("{}, {}{} wide, {} thick", span(local.begin, local.end), length(local.width),
+                                    local.is_even() ? "" : " to " + length(local.end_width), length(local.thickness));
+    if (local.holes.exist())
+      words += fmt::format(", holes of {} every {}: {} % of the area and {} % of the stiffness are left",
+                           length(local.holes.size), length(local.holes.pitch), plain_number(100 * area_left(local.holes), 3),
+                           plain_number(100 * ligament_efficiency(local.holes), 3));
+    record.lines.push_back({fmt::format("section {}", ++number), words});
+  }
+  number = 0;
+  for (const LayerPart& layer : beam->layers)
+    record.lines.push_back({fmt::format("layer {}", ++number),
+                            fmt::format("{} face, {}, {} thick, {}", name_of(sides, layer.face),
+                                        span(layer.begin.on(s.length), layer.end.on(s.length)), length(layer.thickness),
+                                        layer.stress == 0 ? "without stress" : given_quantity(layer.stress, "Pa", 4))});
+  if (beam->anchor || beam->far_anchor)
+    record.lines.push_back(
+        {"anchors", fmt::format("near end {}; far end {}", end_words(s.near_hold()), end_words(s.far_hold()))});
+  if (beam->is_built() && device.rest_offset(s.length) != 0)
+    record.lines.push_back(
+        {"rest shape", fmt::format("the far end rests {} {} the near electrode", length(std::abs(device.rest_offset(s.length))),
+                                   device.rest_offset(s.length) > 0 ? "further from" : "nearer to")});
+}
+
 Outcome shown(const CheckRecord& record) { return {.json = json_of(record), .text = text_of(record)}; }
 
 struct CheckRequest : Usual {
   static constexpr bool is_explorable = true;
   static constexpr auto name = "check", about = "validate a scene and print derived numbers and warnings", python = "checked",
-                        remarks = "Examples:\n  softland check my-switch.toml\n  softland check my-switch.toml --json -";
+                        leaves = "folder for beam.svg, a drawing of a beam as it is built",
+                        remarks =
+                            "Examples:\n  softland check my-switch.toml\n  softland check my-switch.toml --json -\n"
+                            "  softland check my-switch.toml --out drawn";
+  static std::vector<std::string> files() { return {"beam.svg"}; }
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_check(json)); }
 };
 
@@ -122,6 +170,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     record.frequencies.push_back(omega);
     frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
   }
+  add_parts(record, p.scene.device);
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   if (p.model.has_contact()) add("in-contact period", quantity(p.model.basis().in_contact_period(), "s", 4));
   std::map<std::string, PullInVoltages> searched_to;  // what a search takes for the limit where the scene has none
@@ -167,13 +216,13 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   if (const FilmState* const film = p.scene.device.gas ? film_of(*p.scene.device.gas) : nullptr) {
     const double g = p.scene.device.gap.electrode;
     const double closed = g - p.scene.device.gap.contact, lambda = mean_free_path(*film);
-    const double omega = p.model.basis().angular_frequencies()[0];
+    const double omega = p.model.basis().angular_frequencies()[0], width = width_at(s, p.scene.device.contact_position());
     const double most = limits_of(*p.scene.device.gas).most_squeeze;
     const std::string holds =
         std::isfinite(most) ? fmt::format("; {} holds below about {}", name_of(*p.scene.device.gas), plain_number(most)) : "";
     add("squeeze number",
-        fmt::format("{} at the rest gap, {} closed (first mode{})", plain_number(squeeze_number(*film, s.width, g, omega)),
-                    plain_number(squeeze_number(*film, s.width, closed, omega)), holds));
+        fmt::format("{} at the rest gap, {} closed (first mode{})", plain_number(squeeze_number(*film, width, g, omega)),
+                    plain_number(squeeze_number(*film, width, closed, omega)), holds));
     add("Knudsen number", fmt::format("{} at the rest gap, {} closed (mean free path {})", plain_number(lambda / g),
                                       plain_number(lambda / closed), given_quantity(lambda, "m", 3)));
   }
@@ -248,7 +297,11 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   watch.throw_if_stopped();
   warnings.insert(warnings.end(), few_summits.begin(), few_summits.end());
   record.origin = origin_of("check", p, setting.command);
-  return shown(record);
+  Outcome outcome = shown(record);
+  if (s.find<Beam>() != nullptr)
+    outcome.files = {
+        {"beam.svg", [title = p.scene.title, device = p.scene.device] { return beam_drawing(title, device); }, "beam.svg"}};
+  return outcome;
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ int new_verb(const std::string& kind) {
   const std::map<std::string, std::string> scenes{{"cantilever", "mem-gold.toml"},
                                                   {"cantilever-pzt", "mem-gold-pzt.toml"},
                                                   {"clamped-clamped", "new/clamped-clamped.toml"},
+                                                  {"hinged-plate", "new/hinged-plate.toml"},
                                                   {"plate", "new/plate.toml"},
                                                   {"nem-cantilever", "nem-tin.toml"},
                                                   {"nem-casimir", "new/nem-casimir.toml"},
@@ -37,10 +38,10 @@ int new_verb(const std::string& kind) {
 
 void add_new(Verb& verb) {
   const auto kind = std::make_shared<std::string>("cantilever");
-  verb.positional(
-      "KIND", *kind,
-      "cantilever (default), cantilever-pzt, clamped-clamped, plate, two-contacts, two-electrodes, nem-cantilever or nem-casimir",
-      false);
+  verb.positional("KIND", *kind,
+                  "cantilever (default), cantilever-pzt, hinged-plate, clamped-clamped, plate, two-contacts, two-electrodes, "
+                  "nem-cantilever or nem-casimir",
+                  false);
   verb.footer("Example:\n  softland new cantilever > my-switch.toml");
   verb.runs([kind](const Common&) { return new_verb(*kind); });
 }

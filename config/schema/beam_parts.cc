@@ -37,11 +37,10 @@ const Section* holes_keys() {
                    .such_as("20 um"),
                OfHoles::number<&Holes::size>("size", dimension::length, positive, "side of a hole").needed().such_as("8 um")},
       .about = "square holes in a square pattern",
-      .check =
-          [](Scene& scene, const SectionReader& in, std::size_t number) {
-            const Holes& h = holes(scene, number);
-            in.require(h.size < h.pitch, "size", "must be less than " + in.written("pitch"));
-          }};
+      .check = [](Scene& scene, const SectionReader& in, std::size_t number) {
+        const Holes& h = holes(scene, number);
+        in.require(h.size < h.pitch, "size", "must be less than " + in.written("pitch"));
+      }};
   return &keys;
 }
 
@@ -53,7 +52,8 @@ double& width_of_section(Scene& scene, std::size_t number, std::size_t element) 
 
 const Section* section_keys() {
   static const Section keys = [] {
-    Key width = numbers("width", {dimension::length}, positive, "across the beam, or a list of it at begin and end, linear between");
+    Key width =
+        numbers("width", {dimension::length}, positive, "across the beam, or a list of it at begin and end, linear between");
     width.may_be_one = true;
     width.like = "20 um";
     width.bound.element = width_of_section;
@@ -65,18 +65,18 @@ const Section* section_keys() {
     return Section{
         .name = "sections",
         .keys = {number("length", {dimension::length}, positive, "along the beam").needed(), std::move(width),
-                 OfSection::number<&SectionPart::thickness>("thickness", dimension::length, positive, "in the direction of motion"),
+                 OfSection::number<&SectionPart::thickness>("thickness", dimension::length, positive,
+                                                            "in the direction of motion"),
                  OfSection::number<&SectionPart::youngs_modulus>("youngs_modulus", dimension::pressure, positive,
                                                                  "absent: that of [structure], as all that a section leaves out"),
                  OfSection::number<&SectionPart::density>("density", dimension::density, positive, "of the section"),
                  std::move(of_holes)},
         .about = "a stretch of the beam",
-        .check =
-            [](Scene& scene, const SectionReader& in, std::size_t part) {
-              section_part(scene, part).length = in.number("length");
-              in.require(!in.has_value("width") || in.quantities("width").size() <= 2, "width",
-                         "must be one width, or a list of two: at the begin and at the end of the section");
-            }};
+        .check = [](Scene& scene, const SectionReader& in, std::size_t part) {
+          section_part(scene, part).length = in.number("length");
+          in.require(!in.has_value("width") || in.quantities("width").size() <= 2, "width",
+                     "must be one width, or a list of two: at the begin and at the end of the section");
+        }};
   }();
   return &keys;
 }
@@ -89,8 +89,7 @@ const Section* layer_keys() {
     };
     return Section{
         .name = "layers",
-        .keys = {std::move(face),
-                 OfLayer::span<&LayerPart::begin, &LayerPart::end>("span", "begin and end, from x = 0").needed(),
+        .keys = {std::move(face), OfLayer::span<&LayerPart::begin, &LayerPart::end>("span", "begin and end, from x = 0").needed(),
                  OfLayer::number<&LayerPart::thickness>("thickness", dimension::length, positive, "of the layer").needed(),
                  OfLayer::number<&LayerPart::youngs_modulus>("youngs_modulus", dimension::pressure, positive, "of the layer")
                      .needed(),
@@ -99,9 +98,9 @@ const Section* layer_keys() {
                                                      "along the beam before its release, positive in tension")
                      .by_default("'0 Pa'")
                      .such_as("50 MPa"),
-                 OfLayer::number<&LayerPart::poissons_ratio>("poissons_ratio", dimension::none,
-                                                             Range{.least = -1, .most = 0.5, .least_open = true, .most_open = true},
-                                                             "needed by plate_strain")},
+                 OfLayer::number<&LayerPart::poissons_ratio>(
+                     "poissons_ratio", dimension::none, Range{.least = -1, .most = 0.5, .least_open = true, .most_open = true},
+                     "needed by plate_strain")},
         .about = "a layer on a face of the beam",
         .check = [](Scene&, const SectionReader&, std::size_t) {}};
   }();
@@ -118,11 +117,10 @@ const Section* anchor_keys() {
                OfAnchor::template number<&Anchor::translation>("translation", dimension::stiffness, not_negative,
                                                                "force per deflection; absent: rigid")},
       .about = "how an end of the beam is held",
-      .check =
-          [](Scene&, const SectionReader& in, std::size_t) {
-            if (!in.has_value("rotation") && !in.has_value("translation"))
-              in.fail("needs rotation, translation or both: the one that is not given is rigid");
-          }};
+      .check = [](Scene&, const SectionReader& in, std::size_t) {
+        if (!in.has_value("rotation") && !in.has_value("translation"))
+          in.fail("needs rotation, translation or both: the one that is not given is rigid");
+      }};
   return &keys;
 }
 
@@ -143,20 +141,21 @@ Key anchor_key(std::string_view name, std::vector<std::string_view> words, std::
 }  // namespace
 
 std::vector<Key> beam_part_keys() {
-  return {{.name = "sections",
-           .type = KeyType::tables,
-           .instead_of = {"length"},
-           .about = "the beam from x = 0 on, stretch by stretch",
-           .like = "[{ length = \"60 um\", width = \"10 um\" }, { length = \"190 um\", width = [\"40 um\", \"20 um\"] }]",
-           .part = section_keys},
-          {.name = "layers",
-           .type = KeyType::tables,
-           .about = "on the faces of the beam; of several on a face the later one lies outside",
-           .like = "[{ face = \"far\", span = [\"0 um\", \"tip\"], thickness = \"0.2 um\", youngs_modulus = \"70 GPa\", density = "
-                   "\"2200 kg/m^3\" }]",
-           .part = layer_keys},
-          anchor_key<&Beam::anchor>("anchor", {"clamped"}, "the end at x = 0; absent: clamped"),
-          anchor_key<&Beam::far_anchor>("far_anchor", {"free", "clamped"}, "the far end; absent: what the kind says")};
+  return {
+      {.name = "sections",
+       .type = KeyType::tables,
+       .instead_of = {"length"},
+       .about = "the beam from x = 0 on, stretch by stretch",
+       .like = "[{ length = \"60 um\", width = \"10 um\" }, { length = \"190 um\", width = [\"40 um\", \"20 um\"] }]",
+       .part = section_keys},
+      {.name = "layers",
+       .type = KeyType::tables,
+       .about = "on the faces of the beam; of several on a face the later one lies outside",
+       .like = "[{ face = \"far\", span = [\"0 um\", \"tip\"], thickness = \"0.2 um\", youngs_modulus = \"70 GPa\", density = "
+               "\"2200 kg/m^3\" }]",
+       .part = layer_keys},
+      anchor_key<&Beam::anchor>("anchor", {"clamped"}, "the end at x = 0; absent: clamped"),
+      anchor_key<&Beam::far_anchor>("far_anchor", {"free", "clamped"}, "the far end; absent: what the kind says")};
 }
 
 }  // namespace softland::internal

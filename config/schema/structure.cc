@@ -81,7 +81,7 @@ void check(Beam& beam, Structure& s, Scene& scene, const SectionReader& in) {
     s.length = 0;
     for (const SectionPart& part : beam.sections) s.length += part.length;
   }
-  if (const auto conflict = part_conflict(scene.device)) in.file().fail(in.path(conflict->key), conflict->rule);
+  if (const auto conflict = part_conflict(scene.device)) in.file().fail(in.path() + "." + conflict->key, conflict->rule);
   for (const char* key : {"plate_strain", "biaxial"}) {
     if (!in.has_value(key)) continue;
     in.require(!in.flag(key) || in.is_given("poissons_ratio"), key, "needs structure.poissons_ratio");

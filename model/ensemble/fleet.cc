@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/require.h"
+#include "model/built_beam.h"
 #include "model/closing/tolerances.h"
 #include "model/ensemble/lane_closing.h"
 #include "model/ensemble/lane_drives.h"
@@ -95,8 +96,8 @@ bool is_usual(const Switch& model) {
   const auto alike = [&](const Electrode& e) { return e.side == Side::near && e.fringing == all.front().fringing; };
   const bool is_plate = device.structure.is_rigid();  // whose electrodes lie over the same points
   const bool film = !device.gas || (std::holds_alternative<StripGas>(*device.gas) && std::isnan(far_gap(*device.gas)));
-  return model.modes() <= fleet::usual_modes && !device.dispersion && !model.stretching() && film &&
-         std::holds_alternative<UniformAsperityContact>(model.contact()) && std::ranges::all_of(all, alike) &&
+  return model.modes() <= fleet::usual_modes && !device.structure.is_built() && !device.dispersion && !model.stretching() &&
+         film && std::holds_alternative<UniformAsperityContact>(model.contact()) && std::ranges::all_of(all, alike) &&
          !(is_plate && all.size() > 1) && !electrode_conflict(device.structure, all);
 }
 
@@ -144,6 +145,30 @@ std::vector<Segment> faces_of(const Switch& model) {
   return faces;
 }
 
+/// Points under one width and thickness, with the width that holes leave.
+struct LaneStretch {
+  fleet::PointStretch points;
+  double width, thickness;
+};
+std::vector<LaneStretch> stretches_of(const Switch& model) {
+  const Structure& s = model.device().structure;
+  const int points = to_int(model.quadrature().points());
+  if (!s.is_built()) return {{{0, points}, s.width, s.thickness}};
+  const Eigen::ArrayXd& x = model.quadrature().positions();
+  const std::vector<LocalSection> sections = local_sections(s);
+  std::vector<LaneStretch> stretches;
+  std::size_t last = sections.size();
+  for (int p = 0; p < points; ++p) {
+    std::size_t k = 0;
+    while (k + 1 < sections.size() && x[p] >= sections[k].end) ++k;
+    if (k != last || !sections[k].is_even())
+      stretches.push_back({{p, p}, sections[k].width_at(x[p]) * area_left(sections[k].holes), sections[k].thickness});
+    stretches.back().points.end = p + 1;
+    last = k;
+  }
+  return stretches;
+}
+
 LaneLayout layout_of(const Switch& model, bool measures_work) {
   const Device& device = model.device();
   const ElasticContact contact = *lane_contact(model);
@@ -165,6 +190,9 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
   const std::vector<Segment> segments = layout.usual ? segments_between(model) : faces_of(model);
   layout.segments = to_int(segments.size());
   std::ranges::copy(segments, layout.segment);
+  const std::vector<LaneStretch> stretches = stretches_of(model);
+  layout.stretches = to_int(stretches.size());
+  for (std::size_t k = 0; k < stretches.size(); ++k) layout.stretch[k] = stretches[k].points;
   return layout;
 }
 
@@ -191,7 +219,7 @@ void set_far_side(LaneSwitch& s, const Device& device) {
 void set_film(LaneSwitch& s, const GasLaw& law) {
   std::visit(
       [&](const auto& film) {
-        if constexpr (requires { film.viscosity; }) s.viscosity = film.viscosity;
+        if constexpr (requires { film.viscosity; }) std::fill_n(s.viscosity, fleet::most_points, film.viscosity);
         if constexpr (requires { film.mean_free_path; }) s.mean_free_path = film.mean_free_path;
         if constexpr (requires { film.slit_height; }) s.slit_height = film.slit_height, s.slit_length = film.slit_length;
         if constexpr (requires { film.damping; }) s.damping = film.damping;
@@ -219,14 +247,23 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
                .open = model.quadrature().rest_gaps().maxCoeff(),
                .plane = model.contact_gap(),
                .floor = model.gap_floor(),
-               .width = device.structure.width,
-               .thickness = device.structure.thickness,
                .strength = contact.strength,
                .height = contact.height,
                .contact_damping = contact.damping,
                .unloading_stiffness = contact.unloading,
                .negligible_depth = depth_of_energy(contact, tolerance * model.bending_energy())};
   if (model.gas()) set_film(s, *model.gas());
+  const std::vector<LaneStretch> stretches = stretches_of(model);
+  for (std::size_t k = 0; k < stretches.size(); ++k) {
+    s.width[k] = stretches[k].width, s.thickness[k] = stretches[k].thickness;
+    // A film whose ends are open lets out more where it is wide.
+    if (!device.structure.is_built() || !device.gas) continue;
+    std::visit(
+        [&](const auto& film) {
+          if constexpr (requires { film.viscosity; }) s.viscosity[k] = film.viscosity;
+        },
+        gas_law(*device.gas, s.width[k], s.thickness[k], 1));
+  }
   if (device.dispersion) set_dispersion(s, *device.dispersion);
   if (model.stretching()) set_stretching(s, *model.stretching());
   set_far_side(s, device);
@@ -349,6 +386,9 @@ Vectors vectors_in_use() {
 
 std::string why_not_in_lanes(const Switch& model) {
   const Device& device = model.device();
+  if (device.gas && !std::holds_alternative<LinearGas>(*device.gas) &&
+      std::ranges::any_of(local_sections(device.structure), [](const LocalSection& one) { return one.holes.exist(); }))
+    return "a gas film under holes";
   if (model.modes() > fleet::most_modes) return fmt::format("more than {} modes", fleet::most_modes);
   if (model.quadrature().points() > fleet::most_points) return fmt::format("more than {} quadrature points", fleet::most_points);
   if (model.drives() > fleet::most_drives) return fmt::format("more than {} drives", fleet::most_drives);

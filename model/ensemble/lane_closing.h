@@ -23,6 +23,12 @@ struct Segment {
   [[nodiscard]] bool operator==(const Segment&) const = default;
 };
 
+/// Points from one number to before another, under one width and thickness.
+struct PointStretch {
+  int begin = 0, end = 0;
+  [[nodiscard]] bool operator==(const PointStretch&) const = default;
+};
+
 /// What the lanes of a run have in common.
 struct LaneLayout {
   bool usual = true;  ///< for UsualLaws: segments follow one another; else they are pads, which may lie over the same points
@@ -37,6 +43,8 @@ struct LaneLayout {
   bool remembers = false;      // a contact of stiffnesses of loading and of unloading
   bool measures_work = false;  ///< of the drives; not by UsualLaws
   Segment segment[most_segments];
+  int stretches = 1;  ///< one unless the size changes along the structure; a width that changes all along has one per point
+  PointStretch stretch[most_points];
   [[nodiscard]] bool operator==(const LaneLayout&) const = default;
 };
 
@@ -50,7 +58,8 @@ struct LaneSwitch {
   double rest_gap[most_points] = {};                                     // [m]
   double flying[most_modes] = {}, touching[most_modes] = {};             // absolute tolerances of coordinates
   double speed[most_modes] = {};                                         // and of velocities
-  double width = 0, thickness = 0, viscosity = 0;                        // [m], [m], [Pa s]
+  double width[most_points] = {}, thickness[most_points] = {};           // by stretch [m]
+  double viscosity[most_points] = {};                                    // by stretch [Pa s]
   double mean_free_path = 0, slit_height = 0, slit_length = 0;           // [m]
   double damping = 0;                                                    // of the film `linear` [N s/m^2]
   double electrode_gaps[most_drives] = {}, film_gaps = 0;                // of both sides together, where there is a far one [m]

@@ -51,7 +51,7 @@ class UsualLaws {
       for (int i = 0; i < capacity; ++i) shape_[p][i][l] = s.shape[p][i];
     }
     open_[l] = s.open, floor_[l] = s.floor;
-    width_[l] = s.width, thickness_[l] = s.thickness, viscosity_[l] = s.viscosity;
+    width_[l] = s.width[0], thickness_[l] = s.thickness[0], viscosity_[l] = s.viscosity[0];
     strength_[l] = s.strength, height_[l] = s.height;
     if constexpr (std::is_same_v<FringingOf<V>, MeijsFokkemaFringingOf<V>>) {
       force_ = Force{{.width = width_, .thickness = thickness_}};
@@ -140,7 +140,10 @@ class AnyLaws {
   static constexpr int capacity = most_modes;
   static constexpr bool has_damped_contact = true, has_memory = true;  // where the layout says so
 
-  explicit AnyLaws(const LaneLayout& layout) : layout_(layout), modes_(layout.modes) {}
+  explicit AnyLaws(const LaneLayout& layout) : layout_(layout), modes_(layout.modes) {
+    for (int s = 0; s < layout.segments; ++s)
+      has_meijs_fokkema_ = has_meijs_fokkema_ || layout.segment[s].fringing == LaneFringing::meijs_fokkema;
+  }
 
   void take(const LaneSwitch& s, std::size_t l) {
     for (int p = 0; p < layout_.points; ++p) {
@@ -148,8 +151,12 @@ class AnyLaws {
       for (int i = 0; i < modes_; ++i) shape_[p * modes_ + i][l] = s.shape[p][i];
     }
     open_[l] = s.open, floor_[l] = s.floor, most_gap_[l] = s.most_gap;
-    width_[l] = s.width, thickness_[l] = s.thickness;
-    viscosity_[l] = s.viscosity, mean_free_path_[l] = s.mean_free_path;
+    for (int k = 0; k < layout_.stretches; ++k) {
+      width_[k][l] = s.width[k], thickness_[k][l] = s.thickness[k], viscosity_[k][l] = s.viscosity[k];
+      // Roots of the width are found once here, not at every call.
+      if (has_meijs_fokkema_) meijs_fokkema_[k] = {.width = width_[k], .thickness = thickness_[k]};
+    }
+    mean_free_path_[l] = s.mean_free_path;
     slit_height_[l] = s.slit_height, slit_length_[l] = s.slit_length, damping_[l] = s.damping;
     for (int k = 0; k < layout_.electrodes; ++k)
       electrode_gaps_[k][l] = s.electrode_gaps[k], electrode_floor_[k][l] = s.electrode_floor[k];
@@ -243,25 +250,39 @@ class AnyLaws {
     }
   }
 
+  // Calls f(begin, end, k) for every stretch k that has points in [begin, end), with those.
+  template <class F>
+  [[gnu::always_inline]] void on_stretches(int begin, int end, F&& f) const {
+    for (int k = 0; k < layout_.stretches; ++k) {
+      const PointStretch stretch = layout_.stretch[k];
+      const int first = stretch.begin > begin ? stretch.begin : begin, last = stretch.end < end ? stretch.end : end;
+      if (first < last) f(first, last, k);
+    }
+  }
+
   // A film on the far side takes the same of the velocity, which it sees from there, and pulls the other way.
   void add_film(const V* gap) {
-    const auto with = [&](auto law) { add_law(law, gap, 0, layout_.points, V(1)); };
+    on_stretches(0, layout_.points, [&](int begin, int end, int k) { add_film(gap, begin, end, k); });
+  }
+  void add_film(const V* gap, int begin, int end, int k) {
+    const V& width = width_[k];
+    const auto with = [&](auto law) { add_law(law, gap, begin, end, V(1)); };
     switch (layout_.film) {
       case LaneFilm::none:
         return;
       case LaneFilm::strip:
-        return with(StripSqueezeFilmOf<V>{.viscosity = viscosity_, .width = width_});
+        return with(StripSqueezeFilmOf<V>{.viscosity = viscosity_[k], .width = width});
       case LaneFilm::strip_slit:
         return with(StripOverSlitOf<V>{
-            .viscosity = viscosity_, .width = width_, .slit_height = slit_height_, .slit_length = slit_length_});
+            .viscosity = viscosity_[k], .width = width, .slit_height = slit_height_, .slit_length = slit_length_});
       case LaneFilm::veijola:
-        return with(VeijolaFilmOf<V>{.viscosity = viscosity_, .mean_free_path = mean_free_path_, .width = width_});
+        return with(VeijolaFilmOf<V>{.viscosity = viscosity_[k], .mean_free_path = mean_free_path_, .width = width});
       case LaneFilm::gallis_torczynski:
-        return with(GallisTorczynskiFilmOf<V>{.viscosity = viscosity_, .mean_free_path = mean_free_path_, .width = width_});
+        return with(GallisTorczynskiFilmOf<V>{.viscosity = viscosity_[k], .mean_free_path = mean_free_path_, .width = width});
       case LaneFilm::near_contact:
-        return with(NearContactFilmOf<V>{.viscosity = viscosity_, .mean_free_path = mean_free_path_, .width = width_});
+        return with(NearContactFilmOf<V>{.viscosity = viscosity_[k], .mean_free_path = mean_free_path_, .width = width});
       case LaneFilm::guo_alexeenko:
-        return with(GuoAlexeenkoFilmOf<V>{.mean_free_path = mean_free_path_, .width = width_, .thickness = thickness_});
+        return with(GuoAlexeenkoFilmOf<V>{.mean_free_path = mean_free_path_, .width = width, .thickness = thickness_[k]});
       case LaneFilm::linear:
         return with(LinearDamperOf<V>{.damping = damping_});
     }
@@ -274,28 +295,33 @@ class AnyLaws {
       look_far(pad.begin, pad.end, electrode_gaps_[pad.electrode], electrode_floor_[pad.electrode]);
       drive = -drive, gap = far_gap_;
     }
-    const auto with = [&](auto law) {
-      const ElectrostaticForce<decltype(law)> force{law};
-      if (layout_.measures_work) {
-        add_law_and_power(force, gap, pad.begin, pad.end, drive);
-      } else {
-        add_law(force, gap, pad.begin, pad.end, drive);
-      }
+    const auto with = [&](auto law_of) {
+      on_stretches(pad.begin, pad.end, [&](int begin, int end, int k) {
+        const auto law = law_of(k);
+        const ElectrostaticForce<std::remove_const_t<decltype(law)>> force{law};
+        if (layout_.measures_work) {
+          add_law_and_power(force, gap, begin, end, drive);
+        } else {
+          add_law(force, gap, begin, end, drive);
+        }
+      });
     };
     switch (pad.fringing) {
       case LaneFringing::none:
-        return with(NoFringingOf<V>{.width = width_});
+        return with([&](int k) { return NoFringingOf<V>{.width = width_[k]}; });
       case LaneFringing::linear:
-        return with(LinearFringingOf<V>{.width = width_});
+        return with([&](int k) { return LinearFringingOf<V>{.width = width_[k]}; });
       case LaneFringing::meijs_fokkema:
-        return with(MeijsFokkemaFringingOf<V>{.width = width_, .thickness = thickness_});
+        return with([&](int k) { return meijs_fokkema_[k]; });
     }
   }
 
   void add_dispersion(V factor) {
     const VanDerWaalsOf<V> near{.hamaker_constant = hamaker_, .equilibrium_distance = distance_};
     const auto with = [&](auto law) {
-      add_law(DispersionForce<decltype(law), V>{.law = law, .width = width_}, gap_, 0, layout_.points, factor);
+      on_stretches(0, layout_.points, [&](int begin, int end, int k) {
+        add_law(DispersionForce<decltype(law), V>{.law = law, .width = width_[k]}, gap_, begin, end, factor);
+      });
     };
     switch (layout_.dispersion) {
       case LaneDispersion::none:
@@ -340,8 +366,10 @@ class AnyLaws {
   const int modes_;
   V shape_[most_points * capacity], weight_[most_points], rest_gap_[most_points];
   V gap_[most_points], far_gap_[most_points], velocity_[most_points], load_[most_points];
-  V open_, floor_, most_gap_, width_, thickness_;
-  V viscosity_, mean_free_path_, slit_height_, slit_length_, damping_;
+  V open_, floor_, most_gap_, width_[most_points], thickness_[most_points], viscosity_[most_points];
+  MeijsFokkemaFringingOf<V> meijs_fokkema_[most_points];
+  bool has_meijs_fokkema_ = false;
+  V mean_free_path_, slit_height_, slit_length_, damping_;
   V electrode_gaps_[most_drives], electrode_floor_[most_drives], film_gaps_, film_floor_;
   V hamaker_, distance_, crossover_;
   V tension_, slopes_[capacity * capacity];

@@ -37,7 +37,8 @@ double squeeze_number(const FilmState& gas, double width, double gap, double rat
 double squeeze_number(const Device& device, double rest_gap, const TrajectoryPoint& point) {
   const double h = rest_gap - point.position;
   if (!device.gas || !std::isfinite(limits_of(*device.gas).most_squeeze) || !(h > 0)) return 0;
-  return squeeze_number(*film_of(*device.gas), width_at(device.structure, device.contact_position()), h, std::abs(point.velocity) / h);
+  return squeeze_number(*film_of(*device.gas), width_at(device.structure, device.contact_position()), h,
+                        std::abs(point.velocity) / h);
 }
 
 std::vector<std::string> gas_warnings(const Device& device, double smallest_gap, double largest_squeeze) {

@@ -59,7 +59,7 @@ struct Structure {
   /// How its ends are held: what a beam's anchors say, else what the kind does.
   [[nodiscard]] Anchor near_hold() const;
   [[nodiscard]] Anchor far_hold() const;
-  /// It is a beam of sections, or with layers.
+  /// Its size changes along it: a beam of sections, or with layers, or a table of modes with widths.
   [[nodiscard]] bool is_built() const;
   /// Why it cannot have a piezo layer, or skins; empty where it can.
   [[nodiscard]] std::string_view why_no_layer() const;
@@ -109,6 +109,7 @@ inline Anchor Structure::far_hold() const {
 }
 inline bool Structure::has_far_clamp() const { return !far_hold().is_free(); }
 inline bool Structure::is_built() const {
+  if (const auto* const modal = find<ModalStructure>()) return modal->table != nullptr && !modal->table->widths().empty();
   const Beam* const beam = find<Beam>();
   return beam != nullptr && beam->is_built();
 }

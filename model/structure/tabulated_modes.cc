@@ -30,11 +30,12 @@ bool is_finite(const std::vector<double>& values) {
 }  // namespace
 
 ModalTable::ModalTable(std::vector<double> positions, std::vector<double> frequencies, std::vector<std::vector<double>> shapes,
-                       std::vector<double> rest_offsets)
+                       std::vector<double> rest_offsets, std::vector<double> widths)
     : positions_(std::move(positions)),
       frequencies_(std::move(frequencies)),
       shapes_(std::move(shapes)),
-      rest_offsets_(std::move(rest_offsets)) {
+      rest_offsets_(std::move(rest_offsets)),
+      widths_(std::move(widths)) {
   constexpr std::size_t fewest = 3;
   require_table(positions_.size() >= fewest && positions_.front() == 0 && rises(positions_) && is_finite(positions_),
                 "three positions at least must rise from 0, the clamp");
@@ -43,6 +44,9 @@ ModalTable::ModalTable(std::vector<double> positions, std::vector<double> freque
   require_table(shapes_.size() == frequencies_.size(), "there must be as many shapes as frequencies");
   require_table(rest_offsets_.empty() || (rest_offsets_.size() == positions_.size() && is_finite(rest_offsets_)),
                 "there must be a rest offset per position, and finite, or none");
+  const auto is_width = [](double width) { return width > 0 && width < 1e30; };
+  require_table(widths_.empty() || (widths_.size() == positions_.size() && std::ranges::all_of(widths_, is_width)),
+                "there must be a width per position, above 0, or none");
   for (const std::vector<double>& shape : shapes_) {
     require_table(shape.size() == positions_.size(), "a shape must have a value per position");
     require_table(is_finite(shape) && shape.front() == 0, "a shape must be 0 at the clamp, and finite");

@@ -28,9 +28,9 @@ class ModalTable {
   /// `positions` [m] rise from 0, `frequencies` [Hz] rise, a shape [kg^(-1/2)] per frequency and a value in it per position, 0 at
   /// the first one. Throws InvalidInput with the rule unless that holds, with three positions at least.
   /// `rest_offsets` [m], one per position or none of a straight structure, are those of its face, positive towards the near
-  /// electrode.
+  /// electrode. `widths` [m], one per position or none of a structure as wide everywhere, run straight between positions.
   ModalTable(std::vector<double> positions, std::vector<double> frequencies, std::vector<std::vector<double>> shapes,
-             std::vector<double> rest_offsets = {});
+             std::vector<double> rest_offsets = {}, std::vector<double> widths = {});
 
   [[nodiscard]] int count() const { return static_cast<int>(frequencies_.size()); }
   [[nodiscard]] double length() const { return positions_.back(); }                         ///< [m]
@@ -42,6 +42,7 @@ class ModalTable {
   }  ///< x in [m]
   [[nodiscard]] double slope(int mode, double x) const { return splines_[static_cast<std::size_t>(mode)].slope(x); }
   [[nodiscard]] const std::vector<double>& rest_offsets() const { return rest_offsets_; }  ///< [m]
+  [[nodiscard]] const std::vector<double>& widths() const { return widths_; }              ///< [m]
   /// How far the face rests from where it is at the clamp, away from the near electrode [m]: a straight line between positions.
   [[nodiscard]] double rest_offset(double x) const;
   /// The least of these [m].
@@ -50,13 +51,13 @@ class ModalTable {
   [[nodiscard]] bool is_held_at_both_ends() const;
   [[nodiscard]] bool operator==(const ModalTable& other) const {
     return positions_ == other.positions_ && frequencies_ == other.frequencies_ && shapes_ == other.shapes_ &&
-           rest_offsets_ == other.rest_offsets_;
+           rest_offsets_ == other.rest_offsets_ && widths_ == other.widths_;
   }
 
  private:
   std::vector<double> positions_, frequencies_;
   std::vector<std::vector<double>> shapes_;
-  std::vector<double> rest_offsets_;
+  std::vector<double> rest_offsets_, widths_;
   std::vector<ClampedSpline> splines_;
 };
 
@@ -92,7 +93,7 @@ class TabulatedModes {
   Eigen::VectorXd frequencies_;
 };
 
-/// The kind "modes": of constant width, clamped at x = 0 and free at its far end.
+/// The kind "modes": clamped at x = 0 and free at its far end.
 struct ModalStructure {
   static constexpr std::string_view name = "modes", whose = "beside the modes of a file",
                                     length_is = "the {} of the modes' table",
@@ -112,7 +113,7 @@ struct ModalStructure {
     return std::to_array<Field<S>>({
         S::damping(),
         {.key = "frequency_factor", .about = "of all natural frequencies, over those of the file", .in = within<S, ModalStructure, &ModalStructure::frequency_factor>, .range = {.least = 0.01, .most = 100}, .fallback = "1.0"},
-        {.key = "width", .unit = "m", .about = "across the axis, the same everywhere; absent: that of the file", .in = reach<S, &S::width>, .why_fixed = follows_no_size},
+        {.key = "width", .unit = "m", .about = "across the axis, the same everywhere; absent: that of the file, which may change along it", .in = reach<S, &S::width>, .why_fixed = follows_no_size},
         {.key = "thickness", .unit = "m", .about = "needed by fringing and gas laws that depend on it, and by nothing else", .in = reach<S, &S::thickness>, .why_fixed = follows_no_size},
         {.key = "modes", .about = "number of modes kept; absent: all of the file", .count = reach<S, &S::modes>, .range = {.least = 1, .most = S::most_modes}},
     });

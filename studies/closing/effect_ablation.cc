@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/built_beam.h"
 #include "model/closing.h"
 #include "model/forces/electrostatic.h"
 #include "model/gas/gas_law.h"
@@ -98,7 +99,7 @@ void add_omissible_fringing(const PreparedScene& prepared, std::vector<Omissible
     without.electrodes[k].fringing = Fringing::none;
     list.push_back({.effect = "electrode." + e.name + ".fringing",
                     .magnitude = {.name = "force added, at rest", .value = force_at_rest(d, k) / force_at_rest(without, k) - 1},
-                    .group = {.name = "gap / width", .value = d.gap.electrode / d.structure.width},
+                    .group = {.name = "gap / width", .value = d.gap.electrode / width_at(d.structure, d.contact_position())},
                     .instead = std::string(name_of(fringing_laws, Fringing::none))});
   }
 }
@@ -117,7 +118,7 @@ void add_omissible_dielectrics(const PreparedScene& prepared, std::vector<Omissi
 
 void add_omissible_gas(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
-  const double width = d.structure.width, closed = d.closed_gap();
+  const double width = width_at(d.structure, d.contact_position()), closed = d.closed_gap();
   const double omega = prepared.model.basis().angular_frequencies()[0];
   list.push_back(
       {.effect = "gas",

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "base/engineering.h"
+#include "model/built_beam.h"
 #include "model/contact/contact_law.h"
 #include "studies/closing/simulate.h"
 
@@ -35,7 +36,8 @@ std::optional<SummitsAtHold> summits_at_hold(const Switch& model, const ClosedEq
   return std::visit(
       [&]<class Law>(const Law& law) -> std::optional<SummitsAtHold> {
         if constexpr (requires { law.summits.density; }) {
-          const double all = law.summits.count(pad_of(device.contacts.front(), device.structure.width));
+          const double all =
+              law.summits.count(pad_of(device.contacts.front(), width_at(device.structure, device.contact_position())));
           return SummitsAtHold{.touching = all * touching_share(law, d), .all = all};
         } else {
           return std::nullopt;

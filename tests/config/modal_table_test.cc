@@ -9,7 +9,10 @@
 #include "base/require.h"
 #include "config/assumed_spread.h"
 #include "config/scene.h"
+#include "model/built_beam.h"
+#include "model/pull_in.h"
 #include "model/structure/tabulated_modes.h"
+#include "model/switch.h"
 #include "tests/config/small_scene.h"
 #include "tests/exchange/mode_samples.h"
 #include "tests/support/temporary_folder.h"
@@ -150,7 +153,25 @@ TEST_F(ModalScene, RefusesByNameWhatItCannotDo) {
   EXPECT_THAT(refusal(edited(text, "file = \"modes.csv\"", "")), HasSubstr("missing key 'file' or 'positions'"));
   EXPECT_THAT(refusal(edited(text, "modes.csv", "none.csv")), HasSubstr("x.toml:3: structure.file = \"none.csv\""));
   write("modes.csv", modes_csv("2e-05"));
-  EXPECT_THAT(refusal(text), HasSubstr("the width runs from 10 um to 20 um along the axis"));
+  EXPECT_THAT(refusal(text, {"structure.width=10 um"}),
+              HasSubstr("the width of the file runs from 10 um to 20 um along the axis"));
+}
+
+// Row 7 of 10 is 20 um wide; between the rows the width runs straight.
+TEST_F(ModalScene, HasTheWidthsOfItsTable) {
+  write("modes.csv", modes_csv("2e-05"));
+  const Scene first = scene(std::string(modes_scene));
+  for (const Scene& one : {first, read_scene(resolved(first, {})), read_scene(canonical(first.file, "again"))}) {
+    const Structure& s = one.device.structure;
+    EXPECT_TRUE(s.is_built());
+    EXPECT_DOUBLE_EQ(width_at(s, 30e-6), 10e-6);
+    EXPECT_NEAR(width_at(s, 65e-6), 15e-6, 1e-15);
+    EXPECT_NEAR(width_at(s, 70e-6), 20e-6, 1e-15);
+  }
+  // The field over the wide place pulls more.
+  const double wide = static_pull_in(Switch(first.device), 0).voltage;
+  write("modes.csv", modes_csv());
+  EXPECT_LT(wide, 0.98 * static_pull_in(Switch(scene(std::string(modes_scene)).device), 0).voltage);
 }
 
 // The face of row 7 of 10 is 100 nm nearer to the electrode.

@@ -37,6 +37,9 @@ std::string some_value(const Key& key) {
       return "1";
     case KeyType::choice:
       return fmt::format("'{}'", key.choices.front());
+    case KeyType::table:
+    case KeyType::tables:
+      return std::string(key.like);
     case KeyType::quantity:
     case KeyType::quantities:
       break;

@@ -205,6 +205,16 @@ TEST(Derivatives, OfACurledCantilever_optimized) {
                     with(beam, {"structure.stress_gradient", "contact.pad_length"})},
                    1);
 }
+TEST(Derivatives, OfABeamOfSections_optimized) {
+  expect_agreement(
+      {"mem-gold.toml",
+       Actuator::electrostatic,
+       "pulse",
+       {in_100_us, "structure.sections=[{length=\"60 um\", width=\"15 um\"}, {length=\"190 um\", width=[\"20 um\", \"18 um\"]}]",
+        "structure.anchor.rotation=1e-6 N m/rad"},
+       {"structure.sections[1].width", "structure.anchor.rotation", "structure.thickness", "gap.electrode"}},
+      1);
+}
 TEST(Derivatives, OfAStructureByItsModes_optimized) {
   expect_agreement({"mem-gold-modes.toml",
                     Actuator::electrostatic,

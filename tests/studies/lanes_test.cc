@@ -177,6 +177,19 @@ std::vector<Case> cases() {
   all.push_back({"curled up", gold_at_17_volts({"structure.stress_gradient=0.2 MPa/um"})});
   all.push_back({"curled down over a film on either side",
                  gold_at_17_volts({"structure.stress_gradient=-0.2 MPa/um", "gas.far_gap=2 um"})});
+  const std::string stepped =
+      "structure.sections=[{length=\"60 um\", width=\"15 um\"}, {length=\"190 um\", thickness=\"2.2 um\"}]";
+  const std::string tapered = "structure.sections=[{length=\"100 um\", width=[\"12 um\", \"20 um\"]}, {length=\"150 um\"}]";
+  all.push_back({"two sections", gold_at_17_volts({stepped})});
+  all.push_back({"a taper, linear fringing, film on either side",
+                 gold_at_17_volts({tapered, "electrode.main.fringing=linear", "gas.far_gap=2 um"})});
+  all.push_back({"a taper, no film, layers, an anchor that turns",
+                 without(gold_at_17_volts({tapered, "structure.anchor.rotation=1e-6 N m/rad",
+                                           "structure.layers=[{face=\"far\", span=[\"0 um\", \"60 um\"], thickness=\"0.1 um\", "
+                                           "youngs_modulus=\"250 GPa\", density=\"3100 kg/m^3\", stress=\"1 MPa\"}]"}),
+                         "gas")});
+  all.push_back({"two sections in dispersion and a thin gas",
+                 gold_at_17_volts({stepped, "dispersion={model=\"casimir\"}", "gas.model=veijola"})});
   all.push_back({"six modes", gold_at_17_volts({"structure.modes=6"})});
   all.push_back({"modes of a file", scene("mem-gold-modes.toml", {"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V",
                                                                   "simulate.duration=100 us", "simulate.accuracy=1e-4"})});

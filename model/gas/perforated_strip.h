@@ -1,0 +1,48 @@
+// Squeezed gas film under a long strip with holes, through which gas leaves as well as at both edges.
+//
+//   f = -R a [1 - tanh(x) / x] v,   x = a / (2 l),   l^2 = h^3 R / (12 mu)      [N/m], positive towards the electrode
+//   R = 8 mu (H + 3 pi r0 / 8) / (b^2 r0^2) + 12 mu rc^2 I / h^3,   b = r0 / rc,   I = -ln(b) / 2 - 3/8 + b^2 / 2 - b^4 / 8
+//
+// mu viscosity [Pa s], a width [m], h local gap [m], v velocity towards the electrode [m/s], H thickness of the strip [m], rc and
+// r0 radii of circles of the area of a cell and of a hole, pi rc^2 = pitch^2, pi r0^2 = size^2 [m]. R is the mean pressure over
+// v where gas leaves through the holes alone [Pa s/m]: first Poiseuille's flow in the hole, lengthened by Sampson's resistance 3
+// mu / r0^3 of its two ends together, then the film from the rim of a cell to its hole, whose mean is Reynolds' equation solved
+// on the ring. Along the width p'' - p / l^2 + 12 mu v / h^3 = 0, with p = 0 at both edges.
+//
+// Without holes, l -> infinity, it is the strip film mu (a / h)^3 v; under a strip much wider than l it is R a v. Derived, from
+// these textbook flows. Valid for pitches well below the width, gaps well below the pitch and above the mean free path, and
+// squeeze numbers below about 10. Singular at h = 0.
+#pragma once
+
+#include <cmath>
+
+#include "model/constants.h"
+#include "model/structure/beam_parts.h"
+
+namespace softland {
+
+struct PerforatedStripFilm {
+  double viscosity = 0;  ///< [Pa s]
+  double width = 0;      ///< with the holes [m]
+  double through = 0;    ///< R of the holes [Pa s/m]
+  double around = 0;     ///< h^3 times R of the film around a hole [Pa s m^2]
+  static constexpr bool driven = false;
+
+  PerforatedStripFilm(double mu, double a, double thickness, const Holes& holes) : viscosity(mu), width(a) {
+    const double hole = holes.size / std::sqrt(pi), cell = holes.pitch / std::sqrt(pi), b = hole / cell;
+    through = 8 * mu * (thickness + 3 * pi * hole / 8) / (b * b * hole * hole);
+    around = 12 * mu * cell * cell * (-std::log(b) / 2 - 3.0 / 8 + b * b / 2 - std::pow(b, 4) / 8);
+  }
+
+  /// [N/m]
+  template <class S>
+  S load(S gap, S velocity) const {
+    using std::exp;
+    using std::sqrt;
+    const S cube = gap * gap * gap, resistance = S(through) + S(around) / cube;
+    const S x = S(width / 2) / sqrt(cube * resistance / S(12 * viscosity)), decayed = exp(S(-2) * x);
+    return -resistance * S(width) * (S(1) - (S(1) - decayed) / ((S(1) + decayed) * x)) * velocity;
+  }
+};
+
+}  // namespace softland

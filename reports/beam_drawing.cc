@@ -1,0 +1,185 @@
+#include "reports/beam_drawing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "model/beam.h"
+#include "model/built_beam.h"
+#include "reports/quantity.h"
+#include "reports/svg.h"
+
+namespace softland {
+namespace {
+
+using internal::given_quantity;
+using Corners = std::vector<std::pair<double, double>>;
+
+constexpr const char *of_beam = "#c9a227", *of_layer = "#7a5cc4", *of_electrode = "#2b6cb0", *of_contact = "#b83232",
+                     *ink = "#1b1f24", *pale = "#5f6b76";
+
+std::string polygon(const Corners& corners, const std::string& paint) {
+  std::string points;
+  for (const auto& [x, y] : corners) points += fmt::format("{:.2f},{:.2f} ", x, y);
+  return fmt::format("<polygon points=\"{}\" {}/>\n", points, paint);
+}
+std::string rectangle(double left, double top, double right, double bottom, const std::string& paint) {
+  return polygon({{left, top}, {right, top}, {right, bottom}, {left, bottom}}, paint);
+}
+std::string filled(const char* colour, double opacity = 1) {
+  return fmt::format("fill=\"{}\" fill-opacity=\"{}\" stroke=\"{}\" stroke-width=\"0.6\"", colour, opacity, ink);
+}
+std::string outlined(const char* colour) { return fmt::format("fill=\"none\" stroke=\"{}\" stroke-dasharray=\"5 3\"", colour); }
+std::string label(double x, double y, const std::string& text, const char* colour = pale) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"12\" fill=\"{}\">{}</text>\n", x, y, colour, text);
+}
+
+constexpr double most_holes = 4000;  // that are drawn
+
+class Drawing {
+ public:
+  Drawing(const Device& device, double width)
+      : d_(device), s_(device.structure), sections_(local_sections(s_)), scale_(width / s_.length) {}
+
+  // Elements of the view from above, whose middle line lies at `middle`, and where they end.
+  std::pair<std::string, double> from_above(double top) const {
+    double widest = 0;
+    for (const LocalSection& one : sections_) widest = std::max({widest, one.width, one.end_width});
+    constexpr double most_height = 260;
+    const double across = std::min(scale_, most_height / widest), middle = top + 20 + widest * across / 2;
+    std::string out =
+        label(0, top,
+              fmt::format("from above{}: {} long, up to {} wide",
+                          across < scale_ ? fmt::format(", across the beam at {:.2g} of the scale", across / scale_) : "",
+                          given_quantity(s_.length, "m", 4), given_quantity(widest, "m", 4)));
+    for (const LocalSection& one : sections_) {
+      const double a = one.width * across / 2, b = one.end_width * across / 2, from = x(one.begin), to = x(one.end);
+      out += polygon({{from, middle - a}, {to, middle - b}, {to, middle + b}, {from, middle + a}}, filled(of_beam, 0.55));
+      out += holes(one, across, middle);
+    }
+    for (const LayerPart& layer : part_of<Beam>(s_).layers) {
+      const double half = width_at(s_, layer.begin.on(s_.length)) * across / 2;
+      out +=
+          rectangle(x(layer.begin.on(s_.length)), middle - half, x(layer.end.on(s_.length)), middle + half, outlined(of_layer));
+    }
+    const double edge = widest * across / 2 + 6;
+    for (const Electrode& e : d_.electrodes) {
+      for (const Stretch& pad : e.pads(s_.length)) {
+        out += rectangle(x(pad.begin), middle - edge, x(pad.end), middle + edge, outlined(of_electrode));
+        out += label(x(pad.begin) + 4, middle - edge - 3, e.name, of_electrode);
+      }
+    }
+    for (std::size_t c = 0; c < d_.contacts.size(); ++c)
+      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"{}\"/>\n", x(d_.contact_position(c)), middle,
+                         of_contact);
+    return {out, middle + edge + 24};
+  }
+
+  std::pair<std::string, double> from_the_side(double top) const {
+    double highest = 0;
+    for (int k = 0; k <= places; ++k) highest = std::max(highest, height(s_.length * k / places, true));
+    constexpr double most_height = 220;
+    const double up = most_height / (highest + d_.gap.electrode), ground = top + 20 + most_height;  // [px/m]
+    const auto y = [&](double above_electrode) { return ground - above_electrode * up; };
+    std::string out = label(0, top,
+                            fmt::format("from the side, heights enlarged {:.3g} times: {} above the electrode", up / scale_,
+                                        given_quantity(d_.gap.electrode, "m", 4)));
+    for (const LocalSection& one : sections_) {
+      Corners corners;
+      band(one.begin, one.end, corners, y, [&](double) { return std::pair{0.0, one.thickness}; });
+      out += polygon(corners, filled(of_beam, 0.8));
+    }
+    // Layers lie on each other from the face outwards; those of the near face are flush with it below.
+    double lifted = 0;
+    for (const LayerPart& layer : part_of<Beam>(s_).layers) {
+      const double begin = layer.begin.on(s_.length), end = layer.end.on(s_.length);
+      if (layer.face == Side::near) continue;
+      Corners corners;
+      band(begin, end, corners, y, [&](double at) {
+        const double on = section_at(s_, at).thickness + lifted;
+        return std::pair{on, on + layer.thickness};
+      });
+      out += polygon(corners, filled(of_layer, 0.8));
+      lifted += layer.thickness;
+    }
+    for (const LayerPart& layer : part_of<Beam>(s_).layers) {
+      if (layer.face != Side::near) continue;
+      Corners corners;
+      band(layer.begin.on(s_.length), layer.end.on(s_.length), corners, y, [&](double) {
+        return std::pair{0.0, layer.thickness};
+      });
+      out += polygon(corners, filled(of_layer, 0.8));
+    }
+    for (const Electrode& e : d_.electrodes) {
+      for (const Stretch& pad : e.pads(s_.length)) {
+        if (e.side != Side::far) out += rectangle(x(pad.begin), ground, x(pad.end), ground + 8, filled(of_electrode));
+      }
+    }
+    for (std::size_t c = 0; c < d_.contacts.size(); ++c) {
+      if (d_.contacts[c].side == Side::far) continue;
+      const double at = d_.contact_position(c), plane = d_.gap.electrode + d_.rest_offset(at) - d_.contact_gap(c);
+      out += rectangle(x(at) - 3, y(plane), x(at) + 3, ground, filled(of_contact));
+    }
+    return {out, ground + 24};
+  }
+
+ private:
+  static constexpr int places = 100;
+
+  [[nodiscard]] double x(double place) const { return place * scale_; }
+  // Of the upper or lower face above the electrode, layers left aside [m].
+  [[nodiscard]] double height(double at, bool upper) const {
+    return d_.gap.electrode + d_.rest_offset(at) + (upper ? section_at(s_, at).thickness : 0);
+  }
+  // Corners around what lies between two heights over the lower face, from place to place.
+  template <class ToPixel, class Heights>
+  void band(double begin, double end, Corners& corners, ToPixel&& y, Heights&& heights) const {
+    const double inside = 1e-9 * s_.length;
+    for (int k = 0; k <= 2 * places; ++k) {
+      const double share = static_cast<double>(k <= places ? k : 2 * places - k) / places;
+      const double at = begin + (end - begin) * share, look = std::clamp(at, begin + inside, end - inside);
+      const auto [low, high] = heights(look);
+      corners.emplace_back(x(at), y(d_.gap.electrode + d_.rest_offset(at) + (k <= places ? low : high)));
+    }
+  }
+  [[nodiscard]] std::string holes(const LocalSection& one, double across, double middle) const {
+    std::string out;
+    if (!one.holes.exist()) return out;
+    const double pitch = one.holes.pitch, half = one.holes.size / 2;
+    const int along = static_cast<int>((one.end - one.begin) / pitch + 1e-9);
+    const double first = one.begin + (one.end - one.begin - (along - 1) * pitch) / 2;
+    double drawn = 0;
+    for (int i = 0; i < along; ++i) {
+      const double at = first + i * pitch;
+      const int rows = static_cast<int>(one.width_at(at) / pitch + 1e-9);
+      for (int j = 0; j < rows && drawn < most_holes; ++j, ++drawn) {
+        const double side = (j - (rows - 1) / 2.0) * pitch;
+        out += rectangle(x(at - half), middle + (side - half) * across, x(at + half), middle + (side + half) * across,
+                         "fill=\"#fff\"");
+      }
+    }
+    return out;
+  }
+
+  const Device& d_;
+  const Structure& s_;
+  std::vector<LocalSection> sections_;
+  double scale_;  // [px/m]
+};
+
+}  // namespace
+
+std::string beam_drawing(const std::string& title, const Device& device) {
+  return svg_frame(title.empty() ? "The beam as it is built" : title, "The beam at rest, from above and from the side.",
+                   [&](double width, double top) {
+                     const Drawing drawing(device, width);
+                     auto [above, middle] = drawing.from_above(top + 12);
+                     auto [side, bottom] = drawing.from_the_side(middle + 12);
+                     return std::pair{above + side, bottom};
+                   });
+}
+
+}  // namespace softland

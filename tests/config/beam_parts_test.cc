@@ -1,0 +1,231 @@
+// Scenes whose beams are made of sections, layers and anchors: what they are read as, what may vary, and what is refused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "config/assumed_spread.h"
+#include "config/edited_scene.h"
+#include "config/plan.h"
+#include "config/scene.h"
+#include "config/spread.h"
+#include "model/beam.h"
+#include "model/built_beam.h"
+#include "tests/config/message.h"
+#include "tests/config/small_scene.h"
+
+namespace softland {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+// Lines are cited by the expected messages.
+constexpr std::string_view built_scene = R"([structure]
+kind = "cantilever"
+sections = [
+  { length = "60 um", width = "10 um", thickness = "1 um" },
+  { length = "190 um", width = ["40 um", "20 um"], holes = { pitch = "10 um", size = "4 um" } },
+]
+layers = [
+  { face = "far", span = ["0 um", "tip"], thickness = "0.2 um", youngs_modulus = "70 GPa", density = "2200 kg/m^3", stress = "1 MPa" },
+]
+anchor = { rotation = "1e-7 N m/rad" }
+thickness = "2 um"
+youngs_modulus = "78 GPa"
+density = "19300 kg/m^3"
+[gap]
+electrode = "3.5 um"
+contact = "2 um"
+[electrode.main]
+span = ["40 um", "240 um"]
+[contact]
+model = "linear"
+pad_length = "5 um"
+stiffness = "100 N/m"
+[waveform.main]
+family = "step"
+level = "5 V"
+)";
+
+Scene read(const std::string& text, const std::vector<std::string>& options = {}) {
+  SceneFile file = SceneFile::parse(text, "x.toml");
+  for (const std::string& option : options) file.set(option);
+  return read_scene(file);
+}
+Scene built(const std::string& from = "", const std::string& to = "") {
+  return read(from.empty() ? std::string(built_scene) : edited(built_scene, from, to));
+}
+std::string refusal(const std::string& from, const std::string& to) { return message(edited(built_scene, from, to)); }
+const Beam& beam(const Scene& scene) { return part_of<Beam>(scene.device.structure); }
+
+TEST(BeamParts, AreReadWithTheNumbersOfTheStructureWhereTheyHaveNone) {
+  const Scene scene = built();
+  EXPECT_DOUBLE_EQ(scene.device.structure.length, 250e-6);
+  const std::vector<LocalSection> sections = local_sections(scene.device.structure);
+  ASSERT_EQ(sections.size(), 2u);
+  EXPECT_EQ(sections[0].thickness, 1e-6);
+  EXPECT_EQ(sections[1].thickness, 2e-6);
+  EXPECT_EQ(sections[0].end_width, 10e-6);
+  EXPECT_EQ(sections[1].width, 40e-6);
+  EXPECT_EQ(sections[1].end_width, 20e-6);
+  EXPECT_EQ(sections[1].holes.size, 4e-6);
+  EXPECT_FALSE(sections[0].holes.exist());
+  ASSERT_EQ(beam(scene).layers.size(), 1u);
+  EXPECT_EQ(beam(scene).layers[0].face, Side::far);
+  EXPECT_EQ(beam(scene).layers[0].end.on(250e-6), 250e-6);
+  EXPECT_EQ(beam(scene).layers[0].stress, 1e6);
+  ASSERT_TRUE(beam(scene).anchor);
+  EXPECT_EQ(beam(scene).anchor->rotation, 1e-7);
+  EXPECT_EQ(beam(scene).anchor->translation, Anchor::rigid) << "what is not given is rigid";
+}
+
+TEST(BeamParts, SayHowTheFarEndIsHeld) {
+  const auto far_end = [](const std::string& kind, const std::string& anchor) {
+    const std::string text = edited(edited(small_scene, "cantilever", kind), "width", anchor + "\nwidth");
+    return read(edited(edited(edited(text,
+                                     "[piezo]\nspan = [\"5 um\", \"240 um\"]\nthickness = \"1 um\"\nyoungs_modulus = \"61 "
+                                     "GPa\"\ndensity = \"7750 kg/m^3\"\nd31 = \"-171 pm/V\"\n",
+                                     ""),
+                              "[waveform.piezo]\nfamily = \"pulse\"\nlevels = [\"0.2 V\", \"0.6 V\", \"0 V\"]\ntimes = [\"20 "
+                              "us\", \"41 us\"]\nedge = \"5 us\"\n",
+                              ""),
+                       "[driver.piezo]\nmin_voltage = \"-1 V\"\nmax_voltage = \"1 V\"\n", ""))
+        .device.structure;
+  };
+  EXPECT_TRUE(far_end("cantilever", "").far_hold().is_free());
+  EXPECT_TRUE(far_end("clamped-clamped", "").far_hold().is_clamp());
+  EXPECT_TRUE(far_end("clamped-clamped", "far_anchor = \"free\"").far_hold().is_free());
+  EXPECT_FALSE(far_end("clamped-clamped", "far_anchor = \"free\"").has_far_clamp());
+  EXPECT_TRUE(far_end("cantilever", "far_anchor = \"clamped\"").has_far_clamp());
+  EXPECT_EQ(far_end("cantilever", "far_anchor = { translation = \"3 N/m\" }").far_hold().translation, 3);
+}
+
+TEST(BeamParts, MayBeSetOneByOne) {
+  const auto with = [](const std::string& option) { return read(std::string(built_scene), {option}); };
+  EXPECT_EQ(beam(with("structure.sections[2].width[2]=30 um")).sections[1].end_width, 30e-6);
+  EXPECT_EQ(beam(with("structure.sections[1].width=12 um")).sections[0].width, 12e-6);
+  EXPECT_EQ(beam(with("structure.sections[2].holes.size=5 um")).sections[1].holes.size, 5e-6);
+  EXPECT_EQ(beam(with("structure.layers[1].stress=-3 MPa")).layers[0].stress, -3e6);
+  EXPECT_EQ(beam(with("structure.anchor.translation=5 N/m")).anchor->translation, 5);
+  EXPECT_DOUBLE_EQ(with("structure.sections[1].length=70 um").device.structure.length, 260e-6);
+}
+
+TEST(BeamParts, MayVary) {
+  const std::string spread =
+      "[spread]\n"
+      "\"structure.sections[2].width[1]\" = { distribution = \"normal\", cov = \"2 %\" }\n"
+      "\"structure.sections[1].length\" = { distribution = \"normal\", cov = \"2 %\" }\n"
+      "\"structure.layers[1].stress\" = { distribution = \"normal\", standard_deviation = \"1 MPa\" }\n"
+      "\"structure.anchor.rotation\" = { distribution = \"lognormal\", cov = \"20 %\" }\n"
+      "\"structure.sections[2].holes.size\" = { distribution = \"normal\", cov = \"2 %\" }\n";
+  Scene scene = read(std::string(built_scene) + spread);
+  for (const SpreadVariable& v : scene.spread.variables) {
+    const VariedKey& key = v.keys.front();
+    if (key.path == "structure.sections[1].length") {
+      EXPECT_EQ(key.member, nullptr) << "the length of the beam follows it";
+      EXPECT_EQ(key.nominal, 60e-6);
+      continue;
+    }
+    ASSERT_NE(key.member, nullptr) << key.name();
+    EXPECT_EQ(key.member(scene), key.nominal) << key.name();
+    key.member(scene) *= 1.5;
+  }
+  EXPECT_DOUBLE_EQ(beam(scene).sections[1].width, 60e-6);
+  EXPECT_DOUBLE_EQ(beam(scene).layers[0].stress, 1.5e6);
+  EXPECT_DOUBLE_EQ(beam(scene).anchor->rotation, 1.5e-7);
+  EXPECT_DOUBLE_EQ(beam(scene).sections[1].holes.size, 6e-6);
+  const auto refused = [](const std::string& key) {
+    return message(std::string(built_scene) + "[spread]\n\"" + key + "\" = { distribution = \"normal\", cov = \"2 %\" }\n");
+  };
+  EXPECT_THAT(refused("structure.sections[3].width"), HasSubstr("x.toml:26: [spread.\"structure.sections[3].width\"]: "));
+  EXPECT_THAT(refused("structure.sections[2].width"), HasSubstr("is not a key of this scene that holds one number"));
+  EXPECT_THAT(refused("structure.sections[1].width[1]"), HasSubstr("is not a key of this scene that holds one number"));
+}
+
+TEST(BeamParts, VaryByTheUsualSpreadTogether) {
+  SceneFile file = SceneFile::parse(std::string(built_scene), "x.toml");
+  ASSERT_TRUE(assume_spread(file));
+  const Scene scene = read_scene(file);
+  std::vector<std::string> keys;
+  for (const SpreadVariable& v : scene.spread.variables) {
+    for (const VariedKey& key : v.keys) keys.push_back(key.name());
+  }
+  EXPECT_THAT(keys, ElementsAre("gap.contact", "gap.electrode", "structure.thickness", "structure.sections[1].thickness",
+                                "structure.youngs_modulus"));
+}
+
+TEST(BeamParts, ArePlanned) {
+  PlanRequest request{.scene = SceneFile::parse(std::string(built_scene), "x.toml")};
+  request.vary = {"structure.sections[2].width[1]=30 um:50 um:3", "structure.layers[1].thickness=0.1 um,0.3 um"};
+  EXPECT_EQ(Plan(request).points(), 6u);
+  request.vary = {"structure.sections[2].width=30 um:50 um:3"};
+  EXPECT_THROW(Plan{request}, InvalidInput);
+}
+
+TEST(BeamParts, AreTheSameInWholeSentencesAndInSiUnits) {
+  const Scene scene = built();
+  const Scene again = read_scene(canonical(scene.file, "again")), resolved_one = read_scene(resolved(scene, {}));
+  for (const Scene* other : {&again, &resolved_one}) {
+    const std::vector<BeamSection> first = beam_sections(scene.device), second = beam_sections(other->device);
+    ASSERT_EQ(first.size(), second.size());
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      EXPECT_EQ(first[i].rigidity, second[i].rigidity);
+      EXPECT_EQ(first[i].mass_per_length, second[i].mass_per_length);
+      EXPECT_EQ(first[i].curvature, second[i].curvature);
+    }
+    EXPECT_EQ(beam(*other).anchor->rotation, 1e-7);
+  }
+}
+
+TEST(BeamParts, AreEditedWhereTheyStand) {
+  const std::string text = edited_scene(
+      built_scene, "x.toml",
+      {{.path = "structure.sections[2].width", .element = 1, .value = {.value = 41e-6, .dimension = dimension::length}}});
+  EXPECT_THAT(text, HasSubstr("width = [\"41 um\", \"20 um\"]"));
+}
+
+TEST(BeamParts, ThatCannotBeAreRefusedWithTheirPlace) {
+  EXPECT_EQ(message(std::string(built_scene)), "");
+  EXPECT_EQ(refusal("width = \"10 um\"", "width = \"0 um\""),
+            "x.toml:4: structure.sections[1].width = \"0 um\": must be in [1 pm, 1 m]");
+  EXPECT_EQ(refusal("[\"40 um\", \"20 um\"]", "[\"40 um\", \"0 um\"]"),
+            "x.toml:5: structure.sections[2].width = [\"40 um\", \"0 um\"]: value 2: must be in [1 pm, 1 m]");
+  EXPECT_THAT(
+      refusal("[\"40 um\", \"20 um\"]", "[\"40 um\", \"20 um\", \"3 um\"]"),
+      HasSubstr("x.toml:5: structure.sections[2].width = [\"40 um\", \"20 um\", \"3 um\"]: must be one width, or a list"));
+  EXPECT_THAT(refusal("width = \"10 um\", ", ""), HasSubstr("x.toml:4: structure.sections[1]"));
+  EXPECT_THAT(refusal("width = \"10 um\", ", ""), HasSubstr("needs width, which [structure] does not give either"));
+  EXPECT_THAT(refusal("length = \"60 um\", ", ""), HasSubstr("x.toml:4: [structure.sections[1]]: missing key 'length'"));
+  EXPECT_THAT(refusal("width = \"10 um\"", "widht = \"10 um\""),
+              HasSubstr("x.toml:4: structure.sections[1].widht = \"10 um\": unknown key (did you mean 'width'?)"));
+  EXPECT_THAT(refusal("thickness = \"2 um\"", "thickness = \"2 um\"\nlength = \"250 um\""),
+              HasSubstr("structure.length = \"250 um\": cannot stand beside structure.sections"));
+  EXPECT_THAT(refusal("[\"0 um\", \"tip\"]", "[\"0 um\", \"251 um\"]"),
+              HasSubstr("x.toml:8: structure.layers[1].span = [\"0 um\", \"251 um\"]: from 0 m to 251 um: must increase and lie "
+                        "on the beam, from 0 m to 250 um"));
+  EXPECT_THAT(refusal("face = \"far\"", "face = \"both\""), HasSubstr("structure.layers[1].face = \"both\": unknown value"));
+  EXPECT_THAT(refusal("size = \"4 um\"", "size = \"10 um\""),
+              HasSubstr("x.toml:5: structure.sections[2].holes.size = \"10 um\": must be less than "
+                        "structure.sections[2].holes.pitch = \"10 um\""));
+  EXPECT_THAT(
+      refusal("pitch = \"10 um\"", "pitch = \"21 um\""),
+      HasSubstr("x.toml:5: structure.sections[2].holes = { pitch = \"21 um\", size = \"4 um\" }: the pitch must not exceed"));
+  EXPECT_THAT(refusal("{ rotation = \"1e-7 N m/rad\" }", "{}"),
+              HasSubstr("[structure.anchor]: needs rotation, translation or both"));
+  EXPECT_THAT(refusal("{ rotation = \"1e-7 N m/rad\" }", "\"free\""),
+              HasSubstr("x.toml:10: structure.anchor = \"free\": expected"));
+  EXPECT_THAT(refusal("{ rotation = \"1e-7 N m/rad\" }", "{ rotation = \"0 N m/rad\" }"),
+              HasSubstr("x.toml:10: structure.anchor = { rotation = \"0 N m/rad\" }: nothing holds the beam"));
+  EXPECT_THAT(refusal("anchor = { rotation", "far_anchor = { rotation"), HasSubstr("x.toml:7: structure.layers = "));
+  EXPECT_THAT(refusal("sections = [", "sections = []\nfurther = ["), StartsWith("x.toml:4: structure.further = "));
+  EXPECT_THAT(message(edited(small_scene, "length = \"250 um\"", "sections = []")),
+              HasSubstr("x.toml:4: structure.sections = []: expected a list such as [{ length"));
+  EXPECT_THAT(message(std::string(built_scene) + "[surface]\nelastic_modulus = \"1 N/m\"\n"), HasSubstr("sections and layers"));
+  EXPECT_THAT(message(std::string(built_scene) + "[gas]\nmodel = \"reynolds\"\n"), HasSubstr("gas.model = reynolds: not with"));
+}
+
+}  // namespace
+}  // namespace softland
