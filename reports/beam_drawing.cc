@@ -39,9 +39,9 @@ std::string label(double x, double y, const std::string& text, const char* colou
 
 constexpr double most_holes = 4000;  // that are drawn
 
-class Drawing {
+class BeamSketch {
  public:
-  Drawing(const Device& device, double width)
+  BeamSketch(const Device& device, double width)
       : d_(device), s_(device.structure), sections_(local_sections(s_)), scale_(width / s_.length) {}
 
   // Elements of the view from above, whose middle line lies at `middle`, and where they end.
@@ -175,7 +175,7 @@ class Drawing {
 std::string beam_drawing(const std::string& title, const Device& device) {
   return svg_frame(title.empty() ? "The beam as it is built" : title, "The beam at rest, from above and from the side.",
                    [&](double width, double top) {
-                     const Drawing drawing(device, width);
+                     const BeamSketch drawing(device, width);
                      auto [above, middle] = drawing.from_above(top + 12);
                      auto [side, bottom] = drawing.from_the_side(middle + 12);
                      return std::pair{above + side, bottom};

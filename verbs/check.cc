@@ -208,6 +208,9 @@ Outcome run(const Setting& setting, const CheckRequest&) {
       if (std::isfinite(v.release)) shifts += ", release by " + shift_words(v.by_modes->release);
       add("", shifts);
     }
+    if (const std::optional<Dielectric>& dielectric = p.scene.device.electrodes[k].dielectric)
+      add("", fmt::format("its dielectric adds {} to the gap of the field{}", given_quantity(dielectric->depth(), "m"),
+                          p.scene.device.lands_on_dielectric() ? "; the plate lands on it" : ""));
   }
   if (p.scene.device.dispersion) {
     add("dispersion force", dispersion_words(p, watch));
