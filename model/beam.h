@@ -13,9 +13,9 @@
 // a handful of long elements reaches 1e-9. A far clamp leaves the combinations with no value and no slope there, and an axial
 // force makes them orthonormal in the elastic energy anew: what follows sees a unit stiffness again. In compression that fails at
 // the buckling load, where the straight beam stops being stable. Springs and linear stretches add their energies to that unit
-// matrix, and springs at x = 0 the two motions of a rigid beam to the functions. Source: textbook Ritz-Galerkin; integrated Legendre shape
-// functions: Szabo & Babuska, Finite Element Analysis, 1991, sec. 6; axial force and buckling: Timoshenko & Gere, Theory of
-// Elastic Stability, 1961, sec. 2.1.
+// matrix, and springs at x = 0 the two motions of a rigid beam to the functions. Source: textbook Ritz-Galerkin; integrated
+// Legendre shape functions: Szabo & Babuska, Finite Element Analysis, 1991, sec. 6; axial force and buckling: Timoshenko & Gere,
+// Theory of Elastic Stability, 1961, sec. 2.1.
 #pragma once
 
 #include <Eigen/Core>
@@ -73,10 +73,10 @@ struct CompositeSection {
 [[nodiscard]] std::string why_no_beam(const Device& device);
 
 struct BeamSupport {
-  bool far_clamp = false;      ///< the end at L is clamped as well
-  double axial_force = 0;      ///< N, positive in tension [N]
-  Anchor near = {};            ///< the end at x = 0
-  Anchor far = free_end;       ///< the end at L unless it is clamped
+  bool far_clamp = false;  ///< the end at L is clamped as well
+  double axial_force = 0;  ///< N, positive in tension [N]
+  Anchor near = {};        ///< the end at x = 0
+  Anchor far = free_end;   ///< the end at L unless it is clamped
 };
 /// Clamps, and the axial force that residual stresses of bulk and surfaces leave.
 [[nodiscard]] BeamSupport beam_support(const Structure& structure, const std::optional<Surface>& surface = {});
@@ -94,9 +94,9 @@ class NormalisedModes {
     std::vector<Section> sections;
     int modes = 0;
     bool far_clamp = false;
-    double axial_force = 0;                       ///< N L^2 / EI
-    double near_rotation = Anchor::rigid;         ///< c L / EI
-    double near_translation = Anchor::rigid;      ///< k L^3 / EI
+    double axial_force = 0;                        ///< N L^2 / EI
+    double near_rotation = Anchor::rigid;          ///< c L / EI
+    double near_translation = Anchor::rigid;       ///< k L^3 / EI
     double far_rotation = 0, far_translation = 0;  ///< unless far_clamp
     /// Whether there is more to it than even sections between clamps and free ends.
     [[nodiscard]] bool is_general() const;

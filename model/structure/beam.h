@@ -20,10 +20,10 @@ struct Beam {
   double density = 0;         ///< rho [kg/m^3]
   bool plate_strain = false;  ///< use E / (1 - nu^2)
   double poissons_ratio = not_given;
-  std::vector<SectionPart> sections = {};       ///< from x = 0 on; none: the beam is the same all along
-  std::vector<LayerPart> layers = {};           ///< on its faces
-  std::optional<Anchor> anchor = {};            ///< at x = 0; none: a clamp
-  std::optional<Anchor> far_anchor = {};        ///< at the far end; none: what the kind says
+  std::vector<SectionPart> sections = {};  ///< from x = 0 on; none: the beam is the same all along
+  std::vector<LayerPart> layers = {};      ///< on its faces
+  std::optional<Anchor> anchor = {};       ///< at x = 0; none: a clamp
+  std::optional<Anchor> far_anchor = {};   ///< at the far end; none: what the kind says
 
   /// Whether it is made of more than one even piece.
   [[nodiscard]] bool is_built() const { return !sections.empty() || !layers.empty(); }

@@ -20,10 +20,10 @@ struct Holes {
 
 /// One stretch of a beam. A number that is not given is that of the structure.
 struct SectionPart {
-  double length = 0;             ///< along the beam [m]
-  double width = not_given;      ///< where it begins [m]
-  double end_width = not_given;  ///< where it ends, linear in between; not given: as where it begins [m]
-  double thickness = not_given;  ///< [m]
+  double length = 0;                  ///< along the beam [m]
+  double width = not_given;           ///< where it begins [m]
+  double end_width = not_given;       ///< where it ends, linear in between; not given: as where it begins [m]
+  double thickness = not_given;       ///< [m]
   double youngs_modulus = not_given;  ///< [Pa]
   double density = not_given;         ///< [kg/m^3]
   Holes holes = {};

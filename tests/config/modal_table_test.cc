@@ -153,7 +153,8 @@ TEST_F(ModalScene, RefusesByNameWhatItCannotDo) {
   EXPECT_THAT(refusal(edited(text, "file = \"modes.csv\"", "")), HasSubstr("missing key 'file' or 'positions'"));
   EXPECT_THAT(refusal(edited(text, "modes.csv", "none.csv")), HasSubstr("x.toml:3: structure.file = \"none.csv\""));
   write("modes.csv", modes_csv("2e-05"));
-  EXPECT_THAT(refusal(text, {"structure.width=10 um"}), HasSubstr("the width of the file runs from 10 um to 20 um along the axis"));
+  EXPECT_THAT(refusal(text, {"structure.width=10 um"}),
+              HasSubstr("the width of the file runs from 10 um to 20 um along the axis"));
 }
 
 // Row 7 of 10 is 20 um wide; between the rows the width runs straight.
