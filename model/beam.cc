@@ -85,8 +85,9 @@ std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double p
   return {};
 }
 
-// 1 / (omega^2) of the first mode of a general beam held at a place as well, of the deflections there of all its motions of unit
-// elastic energy: the receptance sum of r^2 / (1 - lambda / lambda_i) grows from the first frequency to the second.
+// Finds 1 / omega^2 of the first mode of a general beam that is held at a place as well. `deflections` are those there of all its
+// motions of unit elastic energy. The receptance, the sum of r^2 / (1 - lambda / lambda_i), grows from the first frequency to the
+// second.
 double general_pinned_inverse_square(const Eigen::RowVectorXd& deflections, const Eigen::VectorXd& inverse_squares) {
   constexpr int bits = 60;
   const Eigen::Index last = inverse_squares.size() - 1;

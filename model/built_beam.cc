@@ -132,7 +132,7 @@ LocalSection section_at(const Structure& s, double x) {
   return *found;
 }
 
-double width_at(const Structure& s, double x) { return section_at(s, x).width_at(x); }
+double width_at(const Structure& s, double x) { return s.is_built() ? section_at(s, x).width_at(x) : s.width; }
 
 std::vector<double> edges_of_parts(const Structure& s) {
   std::set<double> edges{0, s.length};

@@ -2,9 +2,9 @@
 //
 //   C = eps0 eps_r w (Lp2 - Lp1) / b_p
 //
-// (of a beam of sections, the area between Lp1 and Lp2) C capacitance [F]; eps_r relative permittivity of the layer between its
-// electrodes; w width of the beam, which the layer has [m]; Lp1, Lp2 begin and end of the layer [m]; b_p its thickness [m]. The
-// formula leaves out edges and holds at constant strain: the charge that the motion of the beam moves is
+// C capacitance [F]; eps_r relative permittivity of the layer between its
+// electrodes; w width of the beam, which the layer has [m]; Lp1, Lp2 begin and end of the layer [m]; b_p its thickness [m]. On a
+// beam of sections w (Lp2 - Lp1) is the area of the layer. The formula leaves out edges and holds at constant strain: the charge that the motion of the beam moves is
 // ModalBasis::piezo_charge(), which drives and energies have anyway.
 //
 // The capacitor stores energy and dissipates none, so it has no part in the motion. It does take a source that supplies it: C

@@ -140,7 +140,7 @@ TEST(BeamParts, MayVary) {
   const auto refused = [](const std::string& key) {
     return message(std::string(built_scene) + "[spread]\n\"" + key + "\" = { distribution = \"normal\", cov = \"2 %\" }\n");
   };
-  EXPECT_THAT(refused("structure.sections[3].width"), HasSubstr("x.toml:26: [spread.\"structure.sections[3].width\"]: "));
+  EXPECT_THAT(refused("structure.sections[3].width"), HasSubstr("x.toml:27: [spread.\"structure.sections[3].width\"]: "));
   EXPECT_THAT(refused("structure.sections[2].width"), HasSubstr("is not a key of this scene that holds one number"));
   EXPECT_THAT(refused("structure.sections[1].width[1]"), HasSubstr("is not a key of this scene that holds one number"));
 }
@@ -224,7 +224,8 @@ TEST(BeamParts, ThatCannotBeAreRefusedWithTheirPlace) {
   EXPECT_THAT(message(edited(small_scene, "length = \"250 um\"", "sections = []")),
               HasSubstr("x.toml:4: structure.sections = []: expected a list such as [{ length"));
   EXPECT_THAT(message(std::string(built_scene) + "[surface]\nelastic_modulus = \"1 N/m\"\n"), HasSubstr("sections and layers"));
-  EXPECT_THAT(message(std::string(built_scene) + "[gas]\nmodel = \"reynolds\"\n"), HasSubstr("gas.model = reynolds: not with"));
+  EXPECT_THAT(message(std::string(built_scene) + "[gas]\nmodel = \"reynolds\"\n"),
+              HasSubstr("gas.model = reynolds: not over holes"));
 }
 
 }  // namespace

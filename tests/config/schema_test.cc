@@ -59,7 +59,7 @@ TEST(Schema, EveryKeySetsAMemberOrIsKnownToSetNone) {
                                    "gas.model", "structure.kind", "structure.sections", "structure.layers", "structure.file",
                                    "structure.axis", "structure.direction", "structure.length_unit", "structure.mass_unit",
                                    "structure.mass", "structure.mass_normalised", "structure.clamp", "structure.positions",
-                                   "structure.frequencies", "structure.shapes", "structure.rest_offsets"));
+                                   "structure.frequencies", "structure.shapes", "structure.rest_offsets", "structure.widths"));
 }
 
 TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {
