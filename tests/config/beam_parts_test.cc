@@ -50,13 +50,13 @@ family = "step"
 level = "5 V"
 )";
 
-Scene read(const std::string& text, const std::vector<std::string>& options = {}) {
+Scene read_built(const std::string& text, const std::vector<std::string>& options = {}) {
   SceneFile file = SceneFile::parse(text, "x.toml");
   for (const std::string& option : options) file.set(option);
   return read_scene(file);
 }
 Scene built(const std::string& from = "", const std::string& to = "") {
-  return read(from.empty() ? std::string(built_scene) : edited(built_scene, from, to));
+  return read_built(from.empty() ? std::string(built_scene) : edited(built_scene, from, to));
 }
 std::string refusal(const std::string& from, const std::string& to) { return message(edited(built_scene, from, to)); }
 const Beam& beam(const Scene& scene) { return part_of<Beam>(scene.device.structure); }
@@ -85,14 +85,15 @@ TEST(BeamParts, AreReadWithTheNumbersOfTheStructureWhereTheyHaveNone) {
 TEST(BeamParts, SayHowTheFarEndIsHeld) {
   const auto far_end = [](const std::string& kind, const std::string& anchor) {
     const std::string text = edited(edited(small_scene, "cantilever", kind), "width", anchor + "\nwidth");
-    return read(edited(edited(edited(text,
-                                     "[piezo]\nspan = [\"5 um\", \"240 um\"]\nthickness = \"1 um\"\nyoungs_modulus = \"61 "
-                                     "GPa\"\ndensity = \"7750 kg/m^3\"\nd31 = \"-171 pm/V\"\n",
-                                     ""),
-                              "[waveform.piezo]\nfamily = \"pulse\"\nlevels = [\"0.2 V\", \"0.6 V\", \"0 V\"]\ntimes = [\"20 "
-                              "us\", \"41 us\"]\nedge = \"5 us\"\n",
-                              ""),
-                       "[driver.piezo]\nmin_voltage = \"-1 V\"\nmax_voltage = \"1 V\"\n", ""))
+    return read_built(
+               edited(edited(edited(text,
+                                    "[piezo]\nspan = [\"5 um\", \"240 um\"]\nthickness = \"1 um\"\nyoungs_modulus = \"61 "
+                                    "GPa\"\ndensity = \"7750 kg/m^3\"\nd31 = \"-171 pm/V\"\n",
+                                    ""),
+                             "[waveform.piezo]\nfamily = \"pulse\"\nlevels = [\"0.2 V\", \"0.6 V\", \"0 V\"]\ntimes = [\"20 "
+                             "us\", \"41 us\"]\nedge = \"5 us\"\n",
+                             ""),
+                      "[driver.piezo]\nmin_voltage = \"-1 V\"\nmax_voltage = \"1 V\"\n", ""))
         .device.structure;
   };
   EXPECT_TRUE(far_end("cantilever", "").far_hold().is_free());
@@ -104,7 +105,7 @@ TEST(BeamParts, SayHowTheFarEndIsHeld) {
 }
 
 TEST(BeamParts, MayBeSetOneByOne) {
-  const auto with = [](const std::string& option) { return read(std::string(built_scene), {option}); };
+  const auto with = [](const std::string& option) { return read_built(std::string(built_scene), {option}); };
   EXPECT_EQ(beam(with("structure.sections[2].width[2]=30 um")).sections[1].end_width, 30e-6);
   EXPECT_EQ(beam(with("structure.sections[1].width=12 um")).sections[0].width, 12e-6);
   EXPECT_EQ(beam(with("structure.sections[2].holes.size=5 um")).sections[1].holes.size, 5e-6);
@@ -121,7 +122,7 @@ TEST(BeamParts, MayVary) {
       "\"structure.layers[1].stress\" = { distribution = \"normal\", standard_deviation = \"1 MPa\" }\n"
       "\"structure.anchor.rotation\" = { distribution = \"lognormal\", cov = \"20 %\" }\n"
       "\"structure.sections[2].holes.size\" = { distribution = \"normal\", cov = \"2 %\" }\n";
-  Scene scene = read(std::string(built_scene) + spread);
+  Scene scene = read_built(std::string(built_scene) + spread);
   for (const SpreadVariable& v : scene.spread.variables) {
     const VariedKey& key = v.keys.front();
     if (key.path == "structure.sections[1].length") {

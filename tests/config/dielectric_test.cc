@@ -43,7 +43,7 @@ std::string with(const std::string& old, const std::string& replacement) {
 
 std::string refusal(const std::string& text) {
   try {
-    (void)SceneFile::parse(text, "x.toml").scene();
+    (void)read_scene(SceneFile::parse(text, "x.toml"));
   } catch (const InvalidInput& e) {
     return e.what();
   }
@@ -52,7 +52,7 @@ std::string refusal(const std::string& text) {
 
 TEST(DielectricKeys, AreReadAndMayVary) {
   SceneFile file = SceneFile::parse(plate, "x.toml");
-  const Scene scene = file.scene();
+  const Scene scene = read_scene(file);
   ASSERT_TRUE(scene.device.electrodes[0].dielectric);
   const Dielectric& d = *scene.device.electrodes[0].dielectric;
   EXPECT_DOUBLE_EQ(d.thickness, 0.2e-6);
@@ -61,8 +61,8 @@ TEST(DielectricKeys, AreReadAndMayVary) {
   EXPECT_TRUE(scene.device.lands_on_dielectric());
   ASSERT_EQ(scene.spread.variables.size(), 1U);
   file.set("electrode.main.dielectric.thickness=\"0.3 um\"");
-  EXPECT_DOUBLE_EQ(file.scene().device.electrodes[0].dielectric->thickness, 0.3e-6);
-  const Scene again = SceneFile::parse(file.text(), "again.toml").scene();
+  EXPECT_DOUBLE_EQ(read_scene(file).device.electrodes[0].dielectric->thickness, 0.3e-6);
+  const Scene again = read_scene(SceneFile::parse(file.text(), "again.toml"));
   EXPECT_DOUBLE_EQ(again.device.electrodes[0].dielectric->thickness, 0.3e-6);
 }
 

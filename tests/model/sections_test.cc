@@ -111,14 +111,14 @@ const std::vector<Case> cases{
      {1.2702272029210514e-08, 2e-4}},
 };
 
-class Parts : public testing::TestWithParam<Case> {};
-INSTANTIATE_TEST_SUITE_P(Beams, Parts, testing::ValuesIn(cases), [](const auto& one) { return one.param.name; });
+class BuiltBeams : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Beams, BuiltBeams, testing::ValuesIn(cases), [](const auto& one) { return one.param.name; });
 
 void expect_near(double value, const Value& expected, const char* what) {
   EXPECT_NEAR(value, expected.value, expected.tolerance * expected.value) << what;
 }
 
-TEST_P(Parts, HaveTheFrequenciesOfAnIndependentProgram) {
+TEST_P(BuiltBeams, HaveTheFrequenciesOfAnIndependentProgram) {
   const Switch model(GetParam().device(4));
   for (Eigen::Index i = 0; i < 4; ++i) {
     const double expected = 2 * pi * GetParam().frequencies[static_cast<std::size_t>(i)];
@@ -126,7 +126,7 @@ TEST_P(Parts, HaveTheFrequenciesOfAnIndependentProgram) {
   }
 }
 
-TEST_P(Parts, ArePulledInAtTheVoltageOfAnIndependentProgram) {
+TEST_P(BuiltBeams, ArePulledInAtTheVoltageOfAnIndependentProgram) {
   for (const ByModes& one : GetParam().by_modes) {
     if (one.vsp.value == none) continue;
     expect_near(static_pull_in(Switch(GetParam().device(one.modes)), 0).voltage, one.vsp, "Vsp");
@@ -136,7 +136,7 @@ TEST_P(Parts, ArePulledInAtTheVoltageOfAnIndependentProgram) {
   expect_near(static_pull_in(Switch(GetParam().device(4), options), 0).voltage, {GetParam().vsp, 1e-5}, "Vsp of all modes");
 }
 
-TEST_P(Parts, CloseAsInAnIndependentProgram) {
+TEST_P(BuiltBeams, CloseAsInAnIndependentProgram) {
   for (const ByModes& one : GetParam().by_modes) {
     SCOPED_TRACE(one.modes);
     const Trajectory t = simulate_closing(Switch(GetParam().device(one.modes)), std::vector{Signal::constant(GetParam().volts)},
