@@ -34,14 +34,14 @@ level = "1.2 Vsp"
 "electrode.main.dielectric.thickness" = { distribution = "normal", cov = "5 %" }
 )";
 
-std::string with(const std::string& old, const std::string& replacement) {
+std::string edited_plate(const std::string& old, const std::string& replacement) {
   std::string text = plate;
   const std::size_t at = text.find(old);
   EXPECT_NE(at, std::string::npos) << old;
   return text.replace(at, old.size(), replacement);
 }
 
-std::string refusal(const std::string& text) {
+std::string refusal_of(const std::string& text) {
   try {
     (void)read_scene(SceneFile::parse(text, "x.toml"));
   } catch (const InvalidInput& e) {
@@ -67,17 +67,20 @@ TEST(DielectricKeys, AreReadAndMayVary) {
 }
 
 TEST(DielectricKeys, AreRefusedByFileLineAndKey) {
-  EXPECT_THAT(refusal(with("thickness = \"0.2 um\", ", "")),
+  EXPECT_THAT(refusal_of(edited_plate("thickness = \"0.2 um\", ", "")),
               HasSubstr("x.toml:12: electrode.main.dielectric: missing key 'thickness'"));
-  EXPECT_THAT(refusal(with("7.6", "0.6")), HasSubstr("x.toml:12: electrode.main.dielectric.permittivity = 0.6: must be"));
-  EXPECT_THAT(refusal(with("\"5 nm\"", "\"-5 nm\"")),
+  EXPECT_THAT(refusal_of(edited_plate("7.6", "0.6")),
+              HasSubstr("x.toml:12: electrode.main.dielectric.permittivity = 0.6: must be"));
+  EXPECT_THAT(refusal_of(edited_plate("\"5 nm\"", "\"-5 nm\"")),
               HasSubstr("x.toml:12: electrode.main.dielectric.roughness = \"-5 nm\": must not be negative"));
-  EXPECT_THAT(refusal(with("thickness =", "thick =")), HasSubstr("electrode.main.dielectric.thick = \"0.2 um\": unknown key"));
-  EXPECT_THAT(refusal(with("{ thickness = \"0.2 um\", permittivity = 7.6, roughness = \"5 nm\" }", "\"0.2 um\"")),
+  EXPECT_THAT(refusal_of(edited_plate("thickness =", "thick =")),
+              HasSubstr("electrode.main.dielectric.thick = \"0.2 um\": unknown key"));
+  EXPECT_THAT(refusal_of(edited_plate("{ thickness = \"0.2 um\", permittivity = 7.6, roughness = \"5 nm\" }", "\"0.2 um\"")),
               HasSubstr("electrode.main.dielectric = \"0.2 um\": expected keys in braces"));
-  EXPECT_THAT(refusal(with("fringing = \"none\"", "fringing = \"none\"\nside = \"both\"\ngap = \"4 um\"")),
+  EXPECT_THAT(refusal_of(edited_plate("fringing = \"none\"", "fringing = \"none\"\nside = \"both\"\ngap = \"4 um\"")),
               HasSubstr("belongs to an electrode on the near side alone"));
-  EXPECT_THAT(refusal(with("dielectric =", "# dielectric =")), HasSubstr("x.toml:9: gap.contact = \"4 um\": must be less than"));
+  EXPECT_THAT(refusal_of(edited_plate("dielectric =", "# dielectric =")),
+              HasSubstr("x.toml:9: gap.contact = \"4 um\": must be less than"));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ namespace {
 using namespace literals;
 using testing::HasSubstr;
 
-constexpr double mode_digits = 1e-9;  // relative, of frequencies
+constexpr double digits_of_modes = 1e-9;  // relative, of frequencies
 
 /// The gold beams of the cases: no fringing, gas and damping, a linear contact at 247.5 um.
 Device gold(std::vector<SectionPart> sections, double electrode_begin, int modes) {
@@ -45,14 +45,14 @@ Device gold(std::vector<SectionPart> sections, double electrode_begin, int modes
   d.contacts = {test::gold_contact(LinearSpring{.stiffness = 2000})};
   return d;
 }
-Device uniform(int modes = 4) { return gold({}, 60_um, modes); }
+Device even_beam(int modes = 4) { return gold({}, 60_um, modes); }
 Device hinged(int modes = 4) {
   return gold({{.length = 60_um, .width = 10_um, .thickness = 1_um}, {.length = 190_um, .width = 40_um, .thickness = 2_um}},
               40_um, modes);
 }
 /// Its anchor turns as one thickness more of the beam would.
 Device turning(int modes = 4) {
-  Device d = uniform(modes);
+  Device d = even_beam(modes);
   part_of<Beam>(d.structure).anchor = Anchor{.rotation = plain_section(d.structure).rigidity / 2_um};
   return d;
 }
@@ -66,7 +66,7 @@ struct ByModes {
   int modes;
   Value vsp, touch, speed;
 };
-struct Case {
+struct KeptCase {
   std::string name;
   std::function<Device(int)> device;
   double volts;
@@ -77,8 +77,8 @@ struct Case {
 };
 
 constexpr double none = 0;
-constexpr double window = 200e-6;  // of the independent program, in which bounces follow one another
-const std::vector<Case> cases{
+constexpr double run_window = 200e-6;  // of the independent program, in which bounces follow one another
+const std::vector<KeptCase> cases{
     {"uniform",
      uniform,
      case_u_volts,
@@ -111,7 +111,7 @@ const std::vector<Case> cases{
      {1.2702272029210514e-08, 2e-4}},
 };
 
-class BuiltBeams : public testing::TestWithParam<Case> {};
+class BuiltBeams : public testing::TestWithParam<KeptCase> {};
 INSTANTIATE_TEST_SUITE_P(Beams, BuiltBeams, testing::ValuesIn(cases), [](const auto& one) { return one.param.name; });
 
 void expect_near(double value, const Value& expected, const char* what) {
@@ -140,7 +140,7 @@ TEST_P(BuiltBeams, CloseAsInAnIndependentProgram) {
   for (const ByModes& one : GetParam().by_modes) {
     SCOPED_TRACE(one.modes);
     const Trajectory t = simulate_closing(Switch(GetParam().device(one.modes)), std::vector{Signal::constant(GetParam().volts)},
-                                          {.duration = window, .tolerance = 1e-10});
+                                          {.duration = run_window, .tolerance = 1e-10});
     ASSERT_FALSE(t.touches.empty());
     expect_near(t.touches.front().begin, one.touch, "time of the first touch");
     expect_near(t.touches.front().impact_velocity, one.speed, "impact velocity");
@@ -210,7 +210,7 @@ void expect_frequencies_by_shooting(const std::vector<BeamSection>& sections, co
     const double w = beam.angular_frequencies()[i], low = w * (1 - around), high = w * (1 + around);
     const auto left = [&](double at) { return end_condition(sections, support, at); };
     ASSERT_LT(left(low) * left(high), 0) << i;
-    EXPECT_NEAR(w, bracketed_zero(left, low, high), mode_digits * w) << i;
+    EXPECT_NEAR(w, bracketed_zero(left, low, high), digits_of_modes * w) << i;
   }
 }
 
@@ -236,7 +236,7 @@ TEST(SectionModes, OfAnEvenBeamOnHingesAreSines) {
   const BeamModes beam(even, 6, {.near = hinge, .far = hinge});
   for (int i = 0; i < 6; ++i) {
     const double number = (i + 1) * pi / 2, w = number * number * std::sqrt(3.0 / 5);
-    EXPECT_NEAR(beam.angular_frequencies()[i], w, mode_digits * w) << i;
+    EXPECT_NEAR(beam.angular_frequencies()[i], w, digits_of_modes * w) << i;
     EXPECT_NEAR(beam.value(0.4)[i], std::sin(number * 0.4) / std::sqrt(5), 1e-7) << i;
   }
   const Eigen::MatrixXd slopes = beam.slope_products();
@@ -250,7 +250,7 @@ TEST(SectionModes, OnStiffSpringsAreThoseBetweenClamps) {
   const BeamModes sprung(tapered(), 4, {.near = stiff, .far = stiff});
   for (int i = 0; i < 4; ++i) {
     const double w = clamped.angular_frequencies()[i];
-    EXPECT_NEAR(sprung.angular_frequencies()[i], w, mode_digits * w) << i;
+    EXPECT_NEAR(sprung.angular_frequencies()[i], w, digits_of_modes * w) << i;
     EXPECT_NEAR(sprung.value(0.6)[i], clamped.value(0.6)[i], 1e-7 * std::abs(clamped.value(0.6)[i])) << i;
   }
 }
@@ -259,18 +259,19 @@ TEST(SectionModes, OnStiffSpringsAreThoseBetweenClamps) {
 TEST(SectionModes, AreTheSameByBothMethods) {
   const BeamModes plain(stepped(), 6), general(stepped(), 6, {.far = {.rotation = 0, .translation = 1e-13}});
   for (int i = 0; i < 6; ++i) {
-    EXPECT_NEAR(general.angular_frequencies()[i], plain.angular_frequencies()[i], mode_digits * plain.angular_frequencies()[i]);
+    EXPECT_NEAR(general.angular_frequencies()[i], plain.angular_frequencies()[i],
+                digits_of_modes * plain.angular_frequencies()[i]);
   }
   for (const double x : {0.35, 0.7, 0.95, 1.0})
-    EXPECT_NEAR(general.pinned_frequency(x), plain.pinned_frequency(x), mode_digits * plain.pinned_frequency(x)) << x;
+    EXPECT_NEAR(general.pinned_frequency(x), plain.pinned_frequency(x), digits_of_modes * plain.pinned_frequency(x)) << x;
 }
 
 TEST(SectionModes, OfOneBeamInTwoPartsAreThoseOfTheWhole) {
-  const Switch whole(uniform());
+  const Switch whole(even_beam());
   const Switch parts(gold({{.length = 100_um}, {.length = 150_um}}, 60_um, 4));
   for (Eigen::Index i = 0; i < 4; ++i) {
     EXPECT_NEAR(parts.basis().angular_frequencies()[i], whole.basis().angular_frequencies()[i],
-                mode_digits * whole.basis().angular_frequencies()[i]);
+                digits_of_modes * whole.basis().angular_frequencies()[i]);
     EXPECT_NEAR(parts.basis().contact_shape()[i], whole.basis().contact_shape()[i],
                 1e-8 * std::abs(whole.basis().contact_shape()[i]));
   }
@@ -345,7 +346,7 @@ TEST(Layers, BendAsAnIndependentProgramSays) {
 // The layer of the case on the first 60 um of a beam of 1 um: an arc, and straight on behind it. On the other face it turns the
 // beam the other way.
 TEST(Layers, CurlTheBeamWhereTheyLie) {
-  Device d = uniform();
+  Device d = even_beam();
   d.structure.thickness = 1_um;
   Beam& beam = part_of<Beam>(d.structure);
   beam.layers = {{.begin = 0, .end = 60_um, .thickness = 0.5_um, .youngs_modulus = 250e9, .density = 3100, .stress = 50e6}};
@@ -363,7 +364,7 @@ TEST(Layers, CurlTheBeamWhereTheyLie) {
 }
 
 TEST(Layers, LeaveTheLowestPointInsideABeamThatBendsBothWays) {
-  Device d = uniform();
+  Device d = even_beam();
   part_of<Beam>(d.structure).layers = {
       {.face = Side::near, .begin = 0, .end = 100_um, .thickness = 0.1_um, .youngs_modulus = 78e9, .density = 1, .stress = 20e6},
       {.face = Side::far,
@@ -381,14 +382,14 @@ TEST(Layers, LeaveTheLowestPointInsideABeamThatBendsBothWays) {
 
 // A layer of the beam's own material is a thicker beam.
 TEST(Layers, OfTheBeamsMaterialMakeItThicker) {
-  Device thick = uniform(), thin = uniform();
+  Device thick = even_beam(), thin = even_beam();
   thin.structure.thickness = 1.5_um;
   part_of<Beam>(thin.structure).layers = {
       {.face = Side::near, .begin = 0, .end = 250_um, .thickness = 0.5_um, .youngs_modulus = 78_GPa, .density = 19300}};
   const Switch one(thick), two(thin);
   for (Eigen::Index i = 0; i < 4; ++i) {
     EXPECT_NEAR(two.basis().angular_frequencies()[i], one.basis().angular_frequencies()[i],
-                mode_digits * one.basis().angular_frequencies()[i]);
+                digits_of_modes * one.basis().angular_frequencies()[i]);
   }
 }
 
@@ -424,11 +425,11 @@ TEST(HolesInABeam, LeaveStiffnessAndMass) {
   EXPECT_GT(ligament_efficiency(holes), 1 - 0.4) << "the ligaments alone";
   EXPECT_LT(ligament_efficiency(holes), area_left(holes)) << "all material that is left";
   EXPECT_EQ(ligament_efficiency({}), 1);
-  const Switch plain(uniform()), holed(gold({{.length = 250_um, .holes = holes}}, 60_um, 4));
+  const Switch plain(even_beam()), holed(gold({{.length = 250_um, .holes = holes}}, 60_um, 4));
   const double softer = std::sqrt(ligament_efficiency(holes) / area_left(holes));
   for (Eigen::Index i = 0; i < 4; ++i) {
     const double w = softer * plain.basis().angular_frequencies()[i];
-    EXPECT_NEAR(holed.basis().angular_frequencies()[i], w, mode_digits * w);
+    EXPECT_NEAR(holed.basis().angular_frequencies()[i], w, digits_of_modes * w);
   }
   // The field keeps the share of the area, so that pull-in follows the root of stiffness over area.
   const double volts = static_pull_in(plain, 0).voltage * std::sqrt(ligament_efficiency(holes) / area_left(holes));
