@@ -173,7 +173,8 @@ void check_place_of_contact(const Device& d, std::size_t i, const std::string& p
   const double gap = d.contact_gap(i);
   require(gap > 0 && gap < 1,
           [&] { return fmt::format("{}.gap: rests {} from its plane, must be positive", path, engineering(gap, "m", 4)); });
-  require(c.side == Side::far || gap < d.gap.electrode + d.rest_offset(x), [&] {
+  const bool may_reach = c.side == Side::far || (i == 0 && d.lands_on_dielectric());
+  require(may_reach || gap < d.gap.electrode + d.rest_offset(x), [&] {
     return fmt::format("{}.gap = {}: must be below gap.electrode = {}", path, engineering(gap, "m"),
                        engineering(d.gap.electrode, "m"));
   });

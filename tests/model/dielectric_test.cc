@@ -32,7 +32,7 @@ Device plate_over_nitride() {
           .contacts = {Contact{.model = RigidStop{.restitution = 0.3}}}};
 }
 
-void expect_near(double value, double kept, double relative, const char* what) {
+void expect_within(double value, double kept, double relative, const char* what) {
   EXPECT_NEAR(value, kept, relative * std::abs(kept)) << what;
 }
 
@@ -41,21 +41,21 @@ TEST(Dielectric, APlateLandsOnItAsClosedFormsSay) {
   const Switch model(plate_over_nitride());
   const StaticPullIn fold = static_pull_in(model, 0);
   ASSERT_EQ(fold.kind, StaticKind::fold);
-  expect_near(fold.voltage, 46.73588788239068, 1e-8, "static pull-in");
-  expect_near(dynamic_pull_in(model, 0, fold).voltage, 42.92965424541772, 1e-7, "dynamic pull-in");
-  expect_near(release_voltage(model, 0), 0.7910192125773502, 1e-8, "release");
+  expect_within(fold.voltage, 46.73588788239068, 1e-8, "static pull-in");
+  expect_within(dynamic_pull_in(model, 0, fold).voltage, 42.92965424541772, 1e-7, "dynamic pull-in");
+  expect_within(release_voltage(model, 0), 0.7910192125773502, 1e-8, "release");
   Switch::Workspace work = model.workspace();
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(1), down = Eigen::VectorXd::Constant(1, 4_um / model.contact_shape()[0]);
-  expect_near(model.capacitance(0, rest.data(), work), 2.1990793260549024e-14, 1e-8, "capacitance of the open state");
-  expect_near(model.capacitance(0, down.data(), work), 3.364591368864e-12, 1e-8, "capacitance on the dielectric");
+  expect_within(model.capacitance(0, rest.data(), work), 2.1990793260549024e-14, 1e-8, "capacitance of the open state");
+  expect_within(model.capacitance(0, down.data(), work), 3.364591368864e-12, 1e-8, "capacitance on the dielectric");
 
   MetricsObserver figures(model.contact_gap());
   const Trajectory run = observe_closing(model, std::vector<Signal>{Signal::constant(1.2 * 46.73588788239068)},
                                          {.duration = 40e-6, .tolerance = 1e-10}, figures);
   ASSERT_EQ(run.status, Status::done) << run.message;
   const Metrics m = figures.metrics(run);
-  expect_near(m.initial_contact_time, 9.364403257595555e-06, 1e-7, "first touch");
-  expect_near(m.impact_velocity, 10.175222744232038, 1e-7, "speed of the first touch");
+  expect_within(m.initial_contact_time, 9.364403257595555e-06, 1e-7, "first touch");
+  expect_within(m.impact_velocity, 10.175222744232038, 1e-7, "speed of the first touch");
   EXPECT_GE(run.smallest_gap, -1e-15) << "the wall lets nothing through";
 }
 
@@ -64,8 +64,8 @@ TEST(Dielectric, RoughnessIsAirThatIsLeft) {
   rough.electrodes[0].dielectric->roughness = 20_nm;
   const double depth = 0.2e-6 / 7.6 + 20e-9;
   // The springs hold the plate at its rest gap against eps0 A V^2 / (2 depth^2).
-  expect_near(release_voltage(Switch(rough), 0), std::sqrt(2 * 10 * 4e-6 * depth * depth / (vacuum_permittivity * 1e-8)), 1e-8,
-              "release");
+  expect_within(release_voltage(Switch(rough), 0), std::sqrt(2 * 10 * 4e-6 * depth * depth / (vacuum_permittivity * 1e-8)), 1e-8,
+                "release");
 }
 
 // Where the beam does not land on it, a dielectric is a metal that lies deeper by t / eps.
@@ -78,8 +78,8 @@ TEST(Dielectric, ABeamFeelsADeeperElectrode) {
   coated.electrodes[0].dielectric = Dielectric{.thickness = 0.2_um, .permittivity = 7.6};
   bare.gap.electrode += 0.2_um / 7.6;
   const Switch through(coated), deeper(bare);
-  expect_near(static_pull_in(through, 0).voltage, static_pull_in(deeper, 0).voltage, 1e-10, "static pull-in");
-  expect_near(release_voltage(through, 0), release_voltage(deeper, 0), 1e-9, "release");
+  expect_within(static_pull_in(through, 0).voltage, static_pull_in(deeper, 0).voltage, 1e-10, "static pull-in");
+  expect_within(release_voltage(through, 0), release_voltage(deeper, 0), 1e-9, "release");
   const auto figures = [](const Switch& model) {
     MetricsObserver observer(model.contact_gap());
     const Trajectory run =
@@ -89,9 +89,9 @@ TEST(Dielectric, ABeamFeelsADeeperElectrode) {
     return observer.metrics(run);
   };
   const Metrics own = figures(through), other = figures(deeper);
-  expect_near(own.initial_contact_time, other.initial_contact_time, 1e-9, "first touch");
-  expect_near(own.impact_velocity, other.impact_velocity, 1e-8, "speed of the first touch");
-  expect_near(own.major_bounce_height, other.major_bounce_height, 1e-6, "highest rebound");
+  expect_within(own.initial_contact_time, other.initial_contact_time, 1e-9, "first touch");
+  expect_within(own.impact_velocity, other.impact_velocity, 1e-8, "speed of the first touch");
+  expect_within(own.major_bounce_height, other.major_bounce_height, 1e-6, "highest rebound");
   EXPECT_GT(std::abs(static_pull_in(Switch(test::gold_cantilever()), 0).voltage / static_pull_in(through, 0).voltage - 1), 1e-3)
       << "it does something";
 }
@@ -104,7 +104,7 @@ TEST(Dielectric, ABeamThatReachesItEndsItsRun) {
   MetricsObserver figures(model.contact_gap());
   const Trajectory run = observe_closing(model, std::vector<Signal>{Signal::constant(80)}, {.duration = 60e-6}, figures);
   EXPECT_EQ(run.status, Status::collapsed_onto_electrode);
-  EXPECT_EQ(run.message, "the beam came within 35 nm of the dielectric on the electrode");
+  EXPECT_TRUE(run.message.ends_with("the beam came within 35 nm of the dielectric on the electrode")) << run.message;
 }
 
 TEST(Dielectric, RefusesWhatItCannotMean) {

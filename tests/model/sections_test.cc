@@ -80,7 +80,7 @@ constexpr double none = 0;
 constexpr double run_window = 200e-6;  // of the independent program, in which bounces follow one another
 const std::vector<KeptCase> cases{
     {"uniform",
-     uniform,
+     even_beam,
      case_u_volts,
      {10391.99397168356, 65125.514544994796, 182353.32650552614, 357339.74025571166},
      16.05662206614814,
@@ -436,24 +436,25 @@ TEST(HolesInABeam, LeaveStiffnessAndMass) {
   EXPECT_NEAR(static_pull_in(holed, 0).voltage, volts, 1e-9 * volts);
 }
 
-constexpr double air = 1.86e-5;  // [Pa s]
+constexpr double viscosity_of_air = 1.86e-5;  // [Pa s]
 
 // Where holes are few the gas leaves at the edges alone.
 TEST(PerforatedFilm, IsTheStripFilmWhereHolesAreFew) {
-  const StripSqueezeFilm strip{.viscosity = air, .width = 20_um};
-  const PerforatedStripFilm film(air, 20_um, 2_um, {.pitch = 20_um, .size = 0.05_um});
+  const StripSqueezeFilm strip{.viscosity = viscosity_of_air, .width = 20_um};
+  const PerforatedStripFilm film(viscosity_of_air, 20_um, 2_um, {.pitch = 20_um, .size = 0.05_um});
   for (const double gap : {0.5_um, 2_um, 3.5_um}) EXPECT_NEAR(film.load(gap, 0.1) / strip.load(gap, 0.1), 1, 1e-3) << gap;
 }
 
 // Under a wide plate every cell lets its own gas out: the pressure is the same all over, but for its edges.
 TEST(PerforatedFilm, OfAWidePlateIsThatOfItsCells) {
   const Holes holes{.pitch = 10_um, .size = 5_um};
-  const double gap = 2_um, per_width = PerforatedStripFilm(air, 1e-2, 2_um, holes).load(gap, 1.0) / 1e-2;
+  const double gap = 2_um, per_width = PerforatedStripFilm(viscosity_of_air, 1e-2, 2_um, holes).load(gap, 1.0) / 1e-2;
   // The flow in a hole, its two ends, and the film around it, each as its own textbook has it.
   const double hole = 5_um / std::sqrt(pi), cell = 10_um / std::sqrt(pi), flow = 10_um * 10_um;
-  const double channel = 8 * air * 2_um * flow / (pi * std::pow(hole, 4)), ends = 3 * air * flow / std::pow(hole, 3);
+  const double channel = 8 * viscosity_of_air * 2_um * flow / (pi * std::pow(hole, 4)),
+               ends = 3 * viscosity_of_air * flow / std::pow(hole, 3);
   const auto ring = [&](double r) {
-    return 12 * air / std::pow(gap, 3) * (cell * cell / 2 * std::log(r / hole) - (r * r - hole * hole) / 4);
+    return 12 * viscosity_of_air / std::pow(gap, 3) * (cell * cell / 2 * std::log(r / hole) - (r * r - hole * hole) / 4);
   };
   double mean = 0;  // of the pressure around the hole, over the cell
   constexpr int rings = 20000;
@@ -467,13 +468,15 @@ TEST(PerforatedFilm, OfAWidePlateIsThatOfItsCells) {
 TEST(PerforatedFilm, ObeysItsEquationAcrossTheWidth) {
   const Holes holes{.pitch = 10_um, .size = 4_um};
   const double gap = 1.5_um, width = 60_um;
-  const PerforatedStripFilm film(air, width, 2_um, holes);
-  const double resistance = film.through + film.around / std::pow(gap, 3), square = std::pow(gap, 3) * resistance / (12 * air);
+  const PerforatedStripFilm film(viscosity_of_air, width, 2_um, holes);
+  const double resistance = film.through + film.around / std::pow(gap, 3),
+               square = std::pow(gap, 3) * resistance / (12 * viscosity_of_air);
   // p'' = p / l^2 - 12 mu v / h^3 by differences.
   constexpr int places = 2000;
   const double step = width / places;
   std::vector<double> upper(places - 1), right(places - 1);
-  const double middle = -2 / (step * step) - 1 / square, beside = 1 / (step * step), load = -12 * air / std::pow(gap, 3);
+  const double middle = -2 / (step * step) - 1 / square, beside = 1 / (step * step),
+               load = -12 * viscosity_of_air / std::pow(gap, 3);
   for (int k = 0; k < places - 1; ++k) {
     const auto i = static_cast<std::size_t>(k);
     const double pivot = middle - (k > 0 ? beside * upper[i - 1] : 0);
@@ -486,7 +489,7 @@ TEST(PerforatedFilm, ObeysItsEquationAcrossTheWidth) {
     force += pressure * step;
   }
   EXPECT_NEAR(-film.load(gap, 1.0), force, 1e-5 * force);
-  EXPECT_LT(force, air * std::pow(width / gap, 3)) << "below the strip film";
+  EXPECT_LT(force, viscosity_of_air * std::pow(width / gap, 3)) << "below the strip film";
   const Dual at = film.load(Dual(gap, 1), Dual(1.0));
   constexpr double little = 1e-10;
   const double slope = (film.load(gap + little, 1.0) - film.load(gap - little, 1.0)) / (2 * little);

@@ -15,7 +15,7 @@ namespace {
 using testing::HasSubstr;
 using namespace literals;
 
-int count(const std::string& text, std::string_view what) {
+int drawn(const std::string& text, std::string_view what) {
   int found = 0;
   for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
   return found;
@@ -28,16 +28,16 @@ TEST(BeamDrawing, ShowsEveryPartFromAboveAndFromTheSide) {
   Device d = test::gold_cantilever();
   const std::string plain = beam_drawing("plain <beam>", d);
   EXPECT_THAT(plain, HasSubstr("plain &lt;beam&gt;"));
-  EXPECT_EQ(count(plain, beam), 2) << "from above and from the side";
-  EXPECT_EQ(count(plain, electrode), 1);
+  EXPECT_EQ(drawn(plain, beam), 2) << "from above and from the side";
+  EXPECT_EQ(drawn(plain, electrode), 1);
   Beam& parts = part_of<Beam>(d.structure);
   parts.sections = {{.length = 50_um, .width = 10_um}, {.length = 200_um, .holes = {.pitch = 10_um, .size = 4_um}}};
   parts.layers = {{.begin = 0, .end = 100_um, .thickness = 0.2_um, .youngs_modulus = 70_GPa, .density = 2200, .stress = 10e6}};
   const std::string built = beam_drawing("", d);
-  EXPECT_EQ(count(built, beam), 4);
-  EXPECT_EQ(count(built, layer), 1);
-  EXPECT_EQ(count(built, hole) - count(plain, hole), 20 * 2) << "200 um by 20 um of holes every 10 um";
-  EXPECT_EQ(count(built, "nan"), 0);
+  EXPECT_EQ(drawn(built, beam), 4);
+  EXPECT_EQ(drawn(built, layer), 1);
+  EXPECT_EQ(drawn(built, hole) - drawn(plain, hole), 20 * 2) << "200 um by 20 um of holes every 10 um";
+  EXPECT_EQ(drawn(built, "nan"), 0);
 }
 
 }  // namespace
