@@ -4,8 +4,8 @@
 //
 // C capacitance [F]; eps_r relative permittivity of the layer between its
 // electrodes; w width of the beam, which the layer has [m]; Lp1, Lp2 begin and end of the layer [m]; b_p its thickness [m]. On a
-// beam of sections w (Lp2 - Lp1) is the area of the layer. The formula leaves out edges and holds at constant strain: the charge that the motion of the beam moves is
-// ModalBasis::piezo_charge(), which drives and energies have anyway.
+// beam of sections w (Lp2 - Lp1) is the area of the layer. The formula leaves out edges and holds at constant strain: the charge
+// that the motion of the beam moves is ModalBasis::piezo_charge(), which drives and energies have anyway.
 //
 // The capacitor stores energy and dissipates none, so it has no part in the motion. It does take a source that supplies it: C
 // V^2/2 for every rise from 0 V to V. The usual amplifier dissipates what comes back when the voltage falls, so nothing is taken
