@@ -108,7 +108,7 @@ void check_gap_and_electrodes(const Device& d) {
   const Structure& s = d.structure;
   positive(d.gap.electrode, "m", "gap.electrode");
   require(d.gap.contact > 0 && d.gap.contact <= d.gap.electrode, [&] {
-    return fmt::format("gap.contact = {}: must be positive and not above gap.electrode = {}", engineering(d.gap.contact, "m"),
+    return fmt::format("gap.contact = {}: must be positive and below gap.electrode = {}", engineering(d.gap.contact, "m"),
                        engineering(d.gap.electrode, "m"));
   });
   for (const Electrode& e : d.electrodes) {

@@ -18,6 +18,7 @@
 namespace softland {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -159,7 +160,8 @@ TEST(BeamParts, VaryByTheUsualSpreadTogether) {
 }
 
 TEST(BeamParts, ArePlanned) {
-  PlanRequest request{.scene = SceneFile::parse(std::string(built_scene), "x.toml")};
+  PlanRequest request{.scene = SceneFile::parse(std::string(built_scene), "x.toml"),
+                      .place = [](std::string_view key, std::size_t) { return std::string(key); }};
   request.vary = {"structure.sections[2].width[1]=30 um:50 um:3", "structure.layers[1].thickness=0.1 um,0.3 um"};
   EXPECT_EQ(Plan(request).points(), 6u);
   request.vary = {"structure.sections[2].width=30 um:50 um:3"};
@@ -203,7 +205,8 @@ TEST(BeamParts, ThatCannotBeAreRefusedWithTheirPlace) {
   EXPECT_THAT(refusal("width = \"10 um\"", "widht = \"10 um\""),
               HasSubstr("x.toml:4: structure.sections[1].widht = \"10 um\": unknown key (did you mean 'width'?)"));
   EXPECT_THAT(refusal("thickness = \"2 um\"", "thickness = \"2 um\"\nlength = \"250 um\""),
-              HasSubstr("structure.length = \"250 um\": cannot stand beside structure.sections"));
+              AllOf(HasSubstr("x.toml:3: structure.sections = [{ length"),
+                    HasSubstr("cannot stand beside structure.length = \"250 um\": give one of them")));
   EXPECT_THAT(refusal("[\"0 um\", \"tip\"]", "[\"0 um\", \"251 um\"]"),
               HasSubstr("x.toml:8: structure.layers[1].span = [\"0 um\", \"251 um\"]: from 0 m to 251 um: must increase and lie "
                         "on the beam, from 0 m to 250 um"));

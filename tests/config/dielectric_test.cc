@@ -68,11 +68,11 @@ TEST(DielectricKeys, AreReadAndMayVary) {
 
 TEST(DielectricKeys, AreRefusedByFileLineAndKey) {
   EXPECT_THAT(refusal_of(edited_plate("thickness = \"0.2 um\", ", "")),
-              HasSubstr("x.toml:12: electrode.main.dielectric: missing key 'thickness'"));
+              HasSubstr("x.toml:12: [electrode.main.dielectric]: missing key 'thickness'"));
   EXPECT_THAT(refusal_of(edited_plate("7.6", "0.6")),
               HasSubstr("x.toml:12: electrode.main.dielectric.permittivity = 0.6: must be"));
   EXPECT_THAT(refusal_of(edited_plate("\"5 nm\"", "\"-5 nm\"")),
-              HasSubstr("x.toml:12: electrode.main.dielectric.roughness = \"-5 nm\": must not be negative"));
+              HasSubstr("x.toml:12: electrode.main.dielectric.roughness = \"-5 nm\": must be in [0 m, 1 m]"));
   EXPECT_THAT(refusal_of(edited_plate("thickness =", "thick =")),
               HasSubstr("electrode.main.dielectric.thick = \"0.2 um\": unknown key"));
   EXPECT_THAT(refusal_of(edited_plate("{ thickness = \"0.2 um\", permittivity = 7.6, roughness = \"5 nm\" }", "\"0.2 um\"")),

@@ -52,14 +52,15 @@ TEST(Schema, EveryKeySetsAMemberOrIsKnownToSetNone) {
     }
   }
   // The areas decide lengths together with a width, the models and the kind what is there to have members. The keys of a file
-  // of modes make a table; those in sections and layers set members of their own. The side of a contact and what is closed decide
-  // which of them make the connection.
+  // of modes make a table; those in sections, layers and a dielectric set members of their own. The side of a contact and what is
+  // closed decide which of them make the connection.
   EXPECT_THAT(without_member,
-              UnorderedElementsAre("structure.area", "electrode.area", "contact.model", "contact.side", "metrics.closed",
-                                   "gas.model", "structure.kind", "structure.sections", "structure.layers", "structure.file",
-                                   "structure.axis", "structure.direction", "structure.length_unit", "structure.mass_unit",
-                                   "structure.mass", "structure.mass_normalised", "structure.clamp", "structure.positions",
-                                   "structure.frequencies", "structure.shapes", "structure.rest_offsets", "structure.widths"));
+              UnorderedElementsAre("structure.area", "electrode.area", "electrode.dielectric", "contact.model", "contact.side",
+                                   "metrics.closed", "gas.model", "structure.kind", "structure.sections", "structure.layers",
+                                   "structure.file", "structure.axis", "structure.direction", "structure.length_unit",
+                                   "structure.mass_unit", "structure.mass", "structure.mass_normalised", "structure.clamp",
+                                   "structure.positions", "structure.frequencies", "structure.shapes", "structure.rest_offsets",
+                                   "structure.widths"));
 }
 
 TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {

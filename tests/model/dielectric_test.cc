@@ -121,7 +121,7 @@ TEST(Dielectric, RefusesWhatItCannotMean) {
           "electrode.main.dielectric.roughness = -1 nm: must not be negative");
   refused([](Device& d) { d.electrodes[0].dielectric.reset(); },
           "gap.contact = 4 um: must be less than 0.99 times gap.electrode, unless every near electrode has a dielectric");
-  refused([](Device& d) { d.gap.contact = 4.1e-6; }, "gap.contact = 4.1 um: must be positive and not above gap.electrode = 4 um");
+  refused([](Device& d) { d.gap.contact = 4.1e-6; }, "gap.contact = 4.1 um: must be positive and below gap.electrode = 4 um");
   refused(
       [](Device& d) {
         d.electrodes[0].side = Side::both;
