@@ -29,7 +29,7 @@ TEST(BeamDrawing, ShowsEveryPartFromAboveAndFromTheSide) {
   const std::string plain = beam_drawing("plain <beam>", d);
   EXPECT_THAT(plain, HasSubstr("plain &lt;beam&gt;"));
   EXPECT_EQ(drawn(plain, beam), 2) << "from above and from the side";
-  EXPECT_EQ(drawn(plain, electrode), 1);
+  EXPECT_EQ(drawn(plain, electrode), 2) << "an outline from above, a body from the side";
   Beam& parts = part_of<Beam>(d.structure);
   parts.sections = {{.length = 50_um, .width = 10_um}, {.length = 200_um, .holes = {.pitch = 10_um, .size = 4_um}}};
   parts.layers = {{.begin = 0, .end = 100_um, .thickness = 0.2_um, .youngs_modulus = 70_GPa, .density = 2200, .stress = 10e6}};
