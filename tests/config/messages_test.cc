@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(Examples, BadFile, testing::Values(
 
 INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
     Edit{"thickness =", "thicknes =", R"(x.toml:6: structure.thicknes = "4 um": unknown key (did you mean 'thickness'?))"},
-    Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio, stress_gradient, residual_stress, biaxial, stretching, mass, stiffness, area, file, axis, direction, length_unit, mass_unit, mass_normalised, clamp, positions, frequencies, shapes, rest_offsets, widths, frequency_factor))"},
+    Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, sections, layers, anchor, far_anchor, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio, stress_gradient, residual_stress, biaxial, stretching, mass, stiffness, area, file, axis, direction, length_unit, mass_unit, mass_normalised, clamp, positions, frequencies, shapes, rest_offsets, widths, frequency_factor))"},
     Edit{"title =", "titel =", R"(x.toml:1: titel = "small": unknown key (did you mean 'title'?))"},
     Edit{"[gas]", "[gass]", "x.toml:14: [gass]: unknown section (did you mean 'gas'?)"},
     Edit{"[gas]", "[weather]", "x.toml:14: [weather]: unknown section (known: structure, gap, electrode, gas, contact, dispersion, surface, piezo, waveform, driver, simulate, metrics, spread, calibration)"},
