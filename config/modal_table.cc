@@ -44,7 +44,7 @@ ModeKeys mode_keys(const SectionReader& in) {
   return made;
 }
 
-// That of the file, of the key, or of both where they agree. Returns the widths at the positions where they differ.
+// Takes the width of the file, of the key, or of both where they agree. Returns the widths at the positions where they differ.
 std::vector<double> take_width(Structure& s, const ModeTable& table, const SectionReader& in) {
   constexpr double even = 1e-3;
   double low = std::numeric_limits<double>::infinity(), high = 0;

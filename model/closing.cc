@@ -173,8 +173,12 @@ class Run {
   void check_interval(const FieldFigures& field) {
     if (ended_) return;
     if (field.smallest_gap < model_.gap_floor()) {
-      return collapse(fmt::format("the beam came within {} of {}electrode", engineering(model_.gap_floor(), "m"),
-                                  model_.device().dielectric_depth() > 0 ? "the dielectric on the " : "the "));
+      const Device& device = model_.device();
+      const double floor = model_.gap_floor();
+      if (floor < 0)
+        return collapse(fmt::format("the plate sank {} into the dielectric on the electrode", engineering(-floor, "m", 4)));
+      return collapse(fmt::format("the beam came within {} of {}electrode", engineering(floor, "m"),
+                                  device.dielectric_depth() > 0 ? "the dielectric on the " : "the "));
     }
     if (field.at_far_side) return collapse("the beam came within a hundredth of the gap on its far side");
     if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) return end(Status::interrupted);

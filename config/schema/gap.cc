@@ -29,7 +29,11 @@ void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
     return;
   }
   if (!in.is_given("contact")) in.fail(R"(missing key 'contact' (a length such as "2 um"))");
-  if (gap.contact <= gap.electrode && may_land(scene.device.structure, in.file())) return;
+  if (gap.contact <= gap.electrode && may_land(scene.device.structure, in.file())) {
+    in.require(!scene.device.lands_on_dielectric() || in.file().find({"dispersion"}) == nullptr, "contact",
+               "a plate that lands on a dielectric takes no dispersion force");
+    return;
+  }
   in.require(gap.contact < gap.electrode, "contact", "must be less than " + in.written("electrode"));
   // A run that comes within a hundredth of the electrode gap of the electrode has failed: see Switch::gap_floor().
   constexpr double most = 0.99;

@@ -11,7 +11,7 @@ namespace softland {
 
 ElectricalRecord::ElectricalRecord(const Switch& model)
     : model_(model), closing_(model.device().electrical), followed_(model.contacts() > 1 ? 1 + model.contacts() : 1) {
-  for (const Contact& contact : model.device().contacts) resistances_.emplace_back(contact, model.device().structure.width);
+  for (std::size_t c = 0; c < model.contacts(); ++c) resistances_.push_back(contact_resistance(model.device(), c));
 }
 
 ElectricalRecord::Instant ElectricalRecord::instant(std::size_t c, const ContactInStep& contact, double time) const {

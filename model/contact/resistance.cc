@@ -6,6 +6,7 @@
 #include <numbers>
 #include <variant>
 
+#include "model/built_beam.h"
 #include "model/constants.h"
 #include "model/contact/contact_law.h"
 
@@ -57,6 +58,10 @@ double ContactResistance::conductance(double interference, double force) const {
 
 double ContactResistance::resistance(double interference, double force) const {
   return resistance_of(conductance(interference, force));
+}
+
+ContactResistance contact_resistance(const Device& device, std::size_t contact) {
+  return {device.contacts[contact], width_at(device.structure, device.contact_position(contact))};
 }
 
 double connection_conductance(const Device& device, std::span<const double> conductances) {

@@ -23,6 +23,7 @@
 // both limits.
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "model/device.h"
@@ -55,6 +56,9 @@ class ContactResistance {
   double modulus_ = 0;   // E* [Pa]
   double adhesion_ = 0;  // what adhesion adds to the load of a summit in touch [N]
 };
+
+/// Returns that of one contact of a device, whose moving part is as wide there as its sections say.
+[[nodiscard]] ContactResistance contact_resistance(const Device& device, std::size_t contact);
 
 /// Conductance [S] of the connection that contacts with these conductances make, in the order of the device: those that make it
 /// are in series where all of them are needed, else side by side. NaN where one of them is NaN, which is not known.

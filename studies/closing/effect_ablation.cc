@@ -63,7 +63,8 @@ void add_omissible_structure(const PreparedScene& prepared, std::vector<Omissibl
   if (bridge != nullptr && bridge->stretches) {
     list.push_back({.effect = "structure.stretching",
                     .magnitude = {.name = "contact gap", .unit = "m", .value = d.contact_gap()},
-                    .group = {.name = "(gap / thickness)^2", .value = std::pow(d.contact_gap() / s.thickness, 2)},
+                    .group = {.name = "(gap / thickness)^2",
+                              .value = std::pow(d.contact_gap() / section_at(s, d.contact_position()).thickness, 2)},
                     .instead = false});
   }
   if (bridge != nullptr && bridge->residual_stress != 0) {

@@ -12,7 +12,7 @@ namespace {
 class ContactCourse {
  public:
   ContactCourse(const Device& device, std::size_t contact, double gap, const std::vector<TrajectoryPoint>& points)
-      : resistance_(device.contacts[contact], device.structure.width), gap_(gap), points_(points) {}
+      : resistance_(contact_resistance(device, contact)), gap_(gap), points_(points) {}
 
   [[nodiscard]] bool is_kept() const { return !points_.empty(); }
   [[nodiscard]] double conductance(double time) {

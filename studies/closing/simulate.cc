@@ -454,7 +454,7 @@ Device with_first_contact(Device device, std::size_t c) {
 
 // Conductance of a contact at rest under this force [S]; NaN where it is not known.
 double conductance_at(const Switch& model, const Eigen::VectorXd& q, double force, std::size_t c = 0) {
-  const ContactResistance contact(model.device().contacts[c], model.device().structure.width);
+  const ContactResistance contact = contact_resistance(model.device(), c);
   if (!contact.is_known()) return Metrics::unset;
   return contact.conductance(model.contact_deflection(q.data(), c) - model.contact_gap(c), force);
 }

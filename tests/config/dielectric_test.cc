@@ -79,6 +79,8 @@ TEST(DielectricKeys, AreRefusedByFileLineAndKey) {
               HasSubstr("electrode.main.dielectric = \"0.2 um\": expected keys in braces"));
   EXPECT_THAT(refusal_of(edited_plate("fringing = \"none\"", "fringing = \"none\"\nside = \"both\"\ngap = \"4 um\"")),
               HasSubstr("belongs to an electrode on the near side alone"));
+  EXPECT_THAT(refusal_of(edited_plate("[contact]", "[dispersion]\nmodel = \"casimir\"\n[contact]")),
+              HasSubstr("x.toml:9: gap.contact = \"4 um\": a plate that lands on a dielectric takes no dispersion force"));
   EXPECT_THAT(refusal_of(edited_plate("dielectric =", "# dielectric =")),
               HasSubstr("x.toml:9: gap.contact = \"4 um\": must be less than"));
 }

@@ -107,6 +107,17 @@ TEST(Dielectric, ABeamThatReachesItEndsItsRun) {
   EXPECT_TRUE(run.message.ends_with("the beam came within 35 nm of the dielectric on the electrode")) << run.message;
 }
 
+// A contact that is too soft for the field at the face lets the plate sink in.
+TEST(Dielectric, APlateOnASoftContactSinksIn) {
+  Device soft = plate_over_nitride();
+  soft.contacts = {Contact{.model = LinearSpring{.stiffness = 100}}};
+  const Switch model(soft);
+  MetricsObserver figures(model.contact_gap());
+  const Trajectory run = observe_closing(model, std::vector<Signal>{Signal::constant(56)}, {.duration = 40e-6}, figures);
+  EXPECT_EQ(run.status, Status::collapsed_onto_electrode);
+  EXPECT_TRUE(run.message.ends_with("the plate sank 13.16 nm into the dielectric on the electrode")) << run.message;
+}
+
 TEST(Dielectric, RefusesWhatItCannotMean) {
   const auto refused = [](auto change, const std::string& message) {
     Device device = plate_over_nitride();

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "base/require.h"
@@ -56,6 +57,27 @@ TEST(ElectricalStudies, TheHoldResistanceIsThatOfTheClosedEquilibrium) {
   EXPECT_FALSE(closing.metrics.asked.electrical);
   EXPECT_TRUE(std::isnan(simulate(prepare(conducting_gold({"waveform.main.level=5 V"})), false).metrics.resistance)) << "open";
   EXPECT_TRUE(std::isnan(simulate(prepare(gold_with_two_modes()), false).metrics.resistance)) << "nobody asks";
+}
+
+// The pad of a contact is as wide as the section that it stands on, and as many asperities touch.
+TEST(ElectricalStudies, AContactUnderASectionHasItsWidth) {
+  const auto closed = [](bool of_sections) {
+    SceneFile file = conducting_gold({"contact.asperity_density=1e14 1/m^2", "metrics.closed_resistance=1 ohm"});
+    if (of_sections) {
+      for (const char* key : {"structure.length", "structure.width"}) file.erase(key);
+      file.set("structure.sections=[{length=\"200 um\", width=\"20 um\"}, {length=\"50 um\", width=\"20 um\"}]");
+    }
+    const PreparedScene p = prepare(file);
+    const Closing closing = simulate(p, false);
+    const double soon = closing.metrics.electrical_contact + 50e-9;  // in the first touch
+    const std::vector<double> course = resistance_course(p.scene.device, closing.trajectory, std::vector<double>{soon});
+    return std::tuple(closing.metrics.resistance, closing.metrics.electrical_contact, course.front());
+  };
+  const auto [hold, first, course] = closed(false);
+  const auto [own_hold, own_first, own_course] = closed(true);
+  EXPECT_NEAR(own_hold, hold, 1e-4 * hold);
+  EXPECT_NEAR(own_first, first, 1e-6 * first);
+  EXPECT_NEAR(own_course, course, 1e-4 * course);
 }
 
 TEST(ElectricalStudies, AConnectionIsInSeriesOrSideBySide) {
