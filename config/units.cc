@@ -113,7 +113,7 @@ constexpr std::array names{
     Name{dimension::energy, "an energy", "J", "1 fJ"},
     Name{dimension::power, "a power", "W", "1 uW"},
     Name{dimension::pressure, "a pressure", "Pa", "78 GPa"},
-    Name{dimension::stress_gradient, "a stress gradient", "Pa/m", "0.5 MPa/um"},
+    Name{dimension::stress_gradient, "a stress gradient, or a stiffness per area", "Pa/m", "0.5 MPa/um"},
     Name{dimension::viscosity, "a viscosity", "Pa s", "1.86e-5 Pa s"},
     Name{dimension::stiffness, "a stiffness", "N/m", "100 N/m"},
     Name{dimension::rotational_stiffness, "a stiffness of rotation", "N m/rad", "1e-7 N m/rad"},

@@ -109,7 +109,7 @@ class Run {
     FollowedContact& c = parts_.contacts[event.contact];
     TrajectoryPoint& p = c.course.last_waiting();
     if (event.edge) p.position = event.edge->level;  // to rounding
-    if (p.position == c.plane && !model_.has_pad_contact()) p.contact_force = 0;
+    if (p.position == c.plane && !model_.has_spread_contact()) p.contact_force = 0;
     audit_.settle(here());
     if (c.touches.note(event, p)) {
       if (!model_.has_contact()) {
@@ -176,7 +176,8 @@ class Run {
       const Device& device = model_.device();
       const double floor = model_.gap_floor();
       if (floor < 0)
-        return collapse(fmt::format("the plate sank {} into the dielectric on the electrode", engineering(-floor, "m", 4)));
+        return collapse(fmt::format("the {} sank {} into the dielectric on the electrode",
+                                    device.structure.is_rigid() ? "plate" : "beam", engineering(-floor, "m", 4)));
       return collapse(fmt::format("the beam came within {} of {}electrode", engineering(floor, "m"),
                                   device.dielectric_depth() > 0 ? "the dielectric on the " : "the "));
     }

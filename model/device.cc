@@ -92,7 +92,7 @@ void check_structure(const Device& d) {
       s.kind);
 }
 
-void check_dielectric(const Electrode& e) {
+void check_dielectric(const Electrode& e, const Gap& gap) {
   const Dielectric& dielectric = *e.dielectric;
   const std::string name = "electrode." + e.name + ".dielectric.";
   positive(dielectric.thickness, "m", (name + "thickness").c_str());
@@ -100,6 +100,13 @@ void check_dielectric(const Electrode& e) {
           [&] { return fmt::format("{}permittivity = {}: must be from 1 to 1000000", name, dielectric.permittivity); });
   require(dielectric.roughness >= 0 && dielectric.roughness < 1,
           [&] { return fmt::format("{}roughness = {}: must not be negative", name, engineering(dielectric.roughness, "m")); });
+  if (const auto& landing = dielectric.landing) {
+    if (!landing->is_wall()) positive(landing->stiffness, "Pa/m", (name + "landing.stiffness").c_str());
+    require(landing->from >= 0 && landing->from < gap.electrode, [&] {
+      return fmt::format("{}landing.from = {}: must be from 0 m to below gap.electrode", name, engineering(landing->from, "m"));
+    });
+    require(!landing->is_wall() || landing->from == 0, [&] { return name + "landing.from: a wall begins at the face"; });
+  }
   require(e.side == Side::near,
           [&] { return fmt::format("electrode.{}.dielectric: belongs to an electrode on the near side alone", e.name); });
 }
@@ -107,17 +114,17 @@ void check_dielectric(const Electrode& e) {
 void check_gap_and_electrodes(const Device& d) {
   const Structure& s = d.structure;
   positive(d.gap.electrode, "m", "gap.electrode");
+  for (const Electrode& e : d.electrodes) {
+    for (const Stretch& pad : e.pads(s.length)) span(pad.begin, pad.end, s.length, "electrode." + e.name + ".span");
+    if (e.side != Side::near) positive(e.gap, "m", ("electrode." + e.name + ".gap").c_str());
+    if (e.dielectric) check_dielectric(e, d.gap);
+    if (row_of(fringing_laws, e.fringing).needs_thickness && !s.is_built()) positive(s.thickness, "m", "structure.thickness");
+  }
   require(d.gap.contact > 0 && d.gap.contact <= d.gap.electrode, [&] {
     return fmt::format("gap.contact = {}: must be positive and below gap.electrode = {}", engineering(d.gap.contact, "m"),
                        engineering(d.gap.electrode, "m"));
   });
-  for (const Electrode& e : d.electrodes) {
-    for (const Stretch& pad : e.pads(s.length)) span(pad.begin, pad.end, s.length, "electrode." + e.name + ".span");
-    if (e.side != Side::near) positive(e.gap, "m", ("electrode." + e.name + ".gap").c_str());
-    if (e.dielectric) check_dielectric(e);
-    if (row_of(fringing_laws, e.fringing).needs_thickness && !s.is_built()) positive(s.thickness, "m", "structure.thickness");
-  }
-  if (d.lands_on_dielectric()) {
+  if (d.lands_on_dielectric() || d.landing() != nullptr) {
     const std::string wrong = why_no_landing(d);
     require(wrong.empty(), [&] { return fmt::format("gap.contact = {}: {}", engineering(d.gap.contact, "m"), wrong); });
   }
@@ -192,7 +199,8 @@ void check_contact(const Device& d, std::size_t i) {
   require(!rigid || !d.gas || !is_compressible(*d.gas), [&] {
     return path + ".model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests";
   });
-  const bool no_pad = s.is_rigid() && !acts_per_area(c.model) && c.pad_length == 0;  // only its area would count
+  const bool no_pad =
+      c.along_face || (s.is_rigid() && !acts_per_area(c.model) && c.pad_length == 0);  // only its area would count
   require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {
     return fmt::format("{}.pad_length = {}: must be positive and below structure.length = {}", path,
                        engineering(c.pad_length, "m"), engineering(s.length, "m"));
@@ -263,9 +271,65 @@ double Device::dielectric_depth() const {
   return std::isfinite(least) ? least : 0;
 }
 
+const Landing* Device::landing() const {
+  for (const Electrode& e : electrodes)
+    if (e.dielectric && e.dielectric->landing) return &*e.dielectric->landing;
+  return nullptr;
+}
+
+namespace {
+
+// Where a beam that bends under the pads of its faces touches them first: at the free end, or in the middle between two clamps,
+// or at the edge of a pad that lies nearest to it.
+Place first_touch_on(const Device& d) {
+  const double length = d.structure.length, aim = d.structure.has_far_clamp() ? length / 2 : length;
+  Place nearest;
+  double distance = std::numeric_limits<double>::infinity();
+  const auto consider = [&](const Place& place) {
+    if (const double away = std::abs(place.on(length) - aim); away < distance) distance = away, nearest = place;
+  };
+  for (const Electrode& e : d.electrodes) {
+    if (!e.dielectric || !e.dielectric->landing) continue;
+    for (const Stretch& pad : e.pads(length))
+      if (pad.begin < aim && aim < pad.end) return Place::share(0.5);
+    consider(e.begin), consider(e.end);
+    for (const Span& pad : e.further) consider(pad.begin), consider(pad.end);
+  }
+  return nearest;
+}
+
+}  // namespace
+
+void set_face_contact(Device& d) {
+  const Landing* landing = d.landing();
+  if (landing == nullptr || (d.has_contact() && !d.lands_along_face())) return;  // validate() refuses the latter
+  // The stiffness of a wall is that of the switch, which knows it by its modes.
+  Contact face{.model = LinearSpring{.stiffness = landing->is_wall() ? 1 : landing->stiffness}, .along_face = true};
+  if (!d.structure.is_rigid()) face.at = first_touch_on(d);
+  d.contacts = {std::move(face)};
+  d.gap.contact = d.gap.electrode - landing->from;
+}
+
+bool have_equal_landings(const Electrode& one, const Electrode& other) {
+  const auto of = [](const Electrode& e) { return e.dielectric && e.dielectric->landing ? &*e.dielectric->landing : nullptr; };
+  const Landing *a = of(one), *b = of(other);
+  if (a == nullptr || b == nullptr) return a == b;
+  return a->from == b->from && (a->stiffness == b->stiffness || (a->is_wall() && b->is_wall()));
+}
+
 std::string why_no_landing(const Device& d) {
+  if (d.landing() != nullptr) {
+    if (!d.lands_along_face()) return "the face of a dielectric with a landing is the contact: there is no other beside it";
+    const auto is_near = [](const Electrode& e) { return e.side != Side::far; };
+    const auto first = std::ranges::find_if(d.electrodes, is_near);
+    const bool all =
+        std::ranges::all_of(d.electrodes, [&](const Electrode& e) { return !is_near(e) || have_equal_landings(*first, e); });
+    if (!all) return unequal_landings;
+    if (d.dispersion) return "a beam that lands on a dielectric takes no dispersion force";
+    return {};
+  }
   if (!d.structure.is_rigid())
-    return "must be less than 0.99 times gap.electrode: the landing of a beam along the face of its electrode is not simulated";
+    return "must be less than 0.99 times gap.electrode, unless the dielectric of the electrodes has a landing";
   if (!(d.dielectric_depth() > 0))
     return "must be less than 0.99 times gap.electrode, unless every near electrode has a dielectric";
   if (d.dispersion) return "a plate that lands on a dielectric takes no dispersion force";
@@ -334,6 +398,7 @@ std::optional<ContactConflict> contact_conflict(const Device& d) {
     if (all.size() == 1) break;
     if (std::holds_alternative<RigidStop>(c.model))
       return ContactConflict{i, "model = \"rigid\" stands for a contact that is alone"};
+    if (c.along_face) return ContactConflict{i, "the face of a dielectric stands for a contact that is alone"};
     if (c.distribution == ContactDistribution::pad)
       return ContactConflict{i, "distribution = \"pad\" stands for a contact that is alone"};
     if (i > 0 && c.side == Side::near && all[i - 1].side == Side::far)

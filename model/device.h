@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -26,11 +27,20 @@ struct Gap {
   double contact = 0;    ///< dt, rest distance of the first contact to its plane, or of the contact point without contact [m]
 };
 
+/// How a beam lands on a dielectric: the pressure of its face on the beam, in proportion to the depth.
+struct Landing {
+  double stiffness = std::numeric_limits<double>::quiet_NaN();  ///< per area [Pa/m]; NaN: a wall, see model/contact/face.h
+  double from = 0;                                              ///< how far above the face the pressure begins [m]
+
+  [[nodiscard]] bool is_wall() const { return std::isnan(stiffness); }
+};
+
 /// An insulator on an electrode, which faces the moving part: the gaps of the scene end at its face, the metal lies deeper.
 struct Dielectric {
-  double thickness = 0;     ///< [m]
-  double permittivity = 1;  ///< relative
-  double roughness = 0;     ///< air that is left where its summits touch [m]
+  double thickness = 0;                 ///< [m]
+  double permittivity = 1;              ///< relative
+  double roughness = 0;                 ///< air that is left where its summits touch [m]
+  std::optional<Landing> landing = {};  ///< none: what reaches it has failed, or is a plate that stands on a contact
 
   /// What it adds to the gap of the field, t / eps_r + roughness [m].
   [[nodiscard]] double depth() const { return thickness / permittivity + roughness; }
@@ -137,8 +147,12 @@ struct Device {
   [[nodiscard]] double rest_offset(double x) const;
   /// Rest distance of a contact's place to its plane [m]: that of the straight shape and what the rest shape adds.
   [[nodiscard]] double contact_gap(std::size_t contact = 0) const;
-  /// Whether a plate lands on the dielectric of its electrodes, nearer than a hundredth of the gap to it.
-  [[nodiscard]] bool lands_on_dielectric() const { return gap.contact > 0.99 * gap.electrode; }
+  /// The landing on the dielectric of its electrodes, which is one for all that have any; null where none has.
+  [[nodiscard]] const Landing* landing() const;
+  /// Whether its contact is the face of a dielectric, all along its electrodes.
+  [[nodiscard]] bool lands_along_face() const { return has_contact() && contacts.front().along_face; }
+  /// Whether it lands on the dielectric of its electrodes, nearer than a hundredth of the gap to it.
+  [[nodiscard]] bool lands_on_dielectric() const { return lands_along_face() || gap.contact > 0.99 * gap.electrode; }
   /// Local gap between a closed switch and the face of its electrode, for the laws of films: at least a hundredth of the rest
   /// gap, from where on these are continued [m].
   [[nodiscard]] double closed_gap() const { return std::max(gap.electrode - gap.contact, gap.electrode / 100); }
@@ -175,6 +189,14 @@ struct ContactConflict {
 /// The first contact is one on the near side, two on one side lie at two places, and a rigid one or one along its pad stands
 /// alone. Nothing when all is well.
 [[nodiscard]] std::optional<ContactConflict> contact_conflict(const Device& device);
+
+/// Whether the beam lands on both electrodes in the same way, or on neither.
+[[nodiscard]] bool have_equal_landings(const Electrode& one, const Electrode& other);
+inline constexpr auto unequal_landings = "where a dielectric has a landing, every near electrode has the same one";
+
+/// Gives a device whose dielectric has a landing the contact that this is, with its plane and its place: where a beam that bends
+/// under its electrodes touches first. Nothing changes without a landing, and when it is called again.
+void set_face_contact(Device& device);
 
 /// Why a device whose contact lies at its electrode cannot land there; empty when it can.
 [[nodiscard]] std::string why_no_landing(const Device& device);

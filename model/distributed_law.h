@@ -1,7 +1,7 @@
 // A force law that acts along the beam, erased to one indirect call per law and right-hand side. A law is a small value that
 // gives load(gap, velocity) over the scalar type (double for runs, Dual for exact derivatives). A conservative law is scaled by a
-// drive (`driven`: V^2 of an electrode, the factor of a force) and also gives its potential(gap), of which the load is the slope;
-// the others dissipate.
+// drive (`driven`: V^2 of an electrode, the factor of a force), or acts by itself, and also gives its potential(gap), of which
+// the load is the slope; the others dissipate.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,7 +34,7 @@ class DistributedLaw {
   /// points; nothing at points below the floor, where the load goes on by its tangent.
   virtual void add_curvatures(const GapField& field, double drive, double* by_deflections, double* by_both,
                               double* by_velocities) const = 0;
-  /// Integral of the potential per length over the law's points, at unit drive [J]; 0 for laws that are not driven.
+  /// Integral of the potential per length over the law's points, at unit drive [J]; 0 for laws that dissipate.
   [[nodiscard]] virtual double potential(const GapField& field, const Eigen::ArrayXd& weights) const = 0;
 };
 
@@ -121,7 +121,7 @@ class DistributedLawOf final : public DistributedLaw {
 
   [[nodiscard]] double potential(const GapField& field, const Eigen::ArrayXd& weights) const override {
     double sum = 0;
-    if constexpr (Law::driven) {
+    if constexpr (requires { law_.potential(0.0); }) {
       for (Eigen::Index p = begin_; p < end_; ++p) sum += weights[p] * law_.potential(std::max(field.gap[p], floor_));
       if (begin_ == end_ || field.gap.segment(begin_, end_ - begin_).minCoeff() >= floor_) return sum;
       const Dual at = law_.load(Dual(floor_, 1), Dual());

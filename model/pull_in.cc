@@ -47,7 +47,7 @@ class Statics {
     none[drive] = model_.value_of_strength(drive, 0);
     const Eigen::VectorXd& shape = model_.basis().contact_shape();
     const double d = s - model_.contact_gap();
-    const bool acts = model_.has_contact() && !model_.has_pad_contact() && d > -model_.contact_reach();
+    const bool acts = model_.has_contact() && !model_.has_spread_contact() && d > -model_.contact_reach();
     const double push = acts ? contact_force(model_.contact(), d) : 0;
     Eigen::VectorXd others;
     Eigen::MatrixXd others_by_q;
@@ -107,7 +107,7 @@ class Statics {
 
   // Static modal forces and their derivative, without a contact that acts at the point that is held.
   void evaluate(const Eigen::VectorXd& q, std::span<const double> volts, Eigen::VectorXd& force, Eigen::MatrixXd& by_q) {
-    evaluate(q, volts, model_.has_pad_contact(), force, by_q);
+    evaluate(q, volts, model_.has_spread_contact(), force, by_q);
   }
 
   void evaluate(const Eigen::VectorXd& q, std::span<const double> volts, const ContactState& contact, Eigen::VectorXd& force,
@@ -170,24 +170,51 @@ std::vector<double> standing(const Switch& model, std::size_t drive, Bias bias) 
 class EquilibriumBranch {
  public:
   EquilibriumBranch(const Switch& model, std::size_t drive, Bias bias)
-      : statics_(model), drive_(drive), bias_(standing(model, drive, bias)) {}
+      : statics_(model), drive_(drive), bias_(standing(model, drive, bias)), goes_in_steps_(model.device().lands_along_face()) {}
 
   // Strength at deflection s; NaN where there is no equilibrium. Starts from the last one found, so ask in small steps.
   double operator()(double s) {
     if (start_.q.size() == 0) start_ = {.q = statics_.pushed(s)};
-    auto found = statics_.on_branch(drive_, bias_, s, start_);
-    if (!found) found = statics_.on_branch(drive_, bias_, s, {.q = statics_.pushed(s), .unknown = start_.unknown});
-    if (!found) return nan;
-    start_ = *found;
-    return found->unknown;
+    if (!reaches(s) && !(goes_in_steps_ && walks(s))) return nan;
+    return start_.unknown;
   }
   [[nodiscard]] const Eigen::VectorXd& q() const { return start_.q; }
 
  private:
+  bool reaches(double s) {
+    auto found = statics_.on_branch(drive_, bias_, s, start_);
+    if (!found) found = statics_.on_branch(drive_, bias_, s, {.q = statics_.pushed(s), .unknown = start_.unknown});
+    if (!found) return false;
+    start_ = *found;
+    here_ = s;
+    return true;
+  }
+
+  // Near the face of a thin dielectric the field grows so fast that Newton's method needs short steps.
+  bool walks(double s) {
+    constexpr int most_steps = 100;
+    constexpr double shortest = 1e-6;  // of the way
+    const double least = shortest * std::abs(s - here_);
+    double step = (s - here_) / 2;
+    for (int k = 0; k < most_steps && std::abs(step) > least; ++k) {
+      const bool is_last = std::abs(s - here_) <= std::abs(step);
+      if (!reaches(is_last ? s : here_ + step)) {
+        step = (is_last ? s - here_ : step) / 2;
+      } else if (is_last) {
+        return true;
+      } else {
+        step *= 1.5;
+      }
+    }
+    return false;
+  }
+
   Statics statics_;
   std::size_t drive_;
   std::vector<double> bias_;
+  bool goes_in_steps_;
   Held start_;
+  double here_ = 0;  // deflection of the last one found [m]
 };
 
 constexpr int branch_steps = 64;
@@ -498,10 +525,64 @@ double static_push(const Switch& model, const Eigen::VectorXd& q) {
   return model.contact_push(q.data(), still.data(), true);
 }
 
+// On the face of a dielectric, where a beam may stand on its first spot, or lie on it with most of its length. From the beam that
+// a force holds at the plane it goes down the potential by Newton's method, whose step leads downhill along every direction. A
+// step shortens no gap of the field by more than a share of it, so that it does not leap over the ridge that a soft face is.
+std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts) {
+  constexpr int most_steps = 1000;
+  constexpr double longest = 0.05, shortest = 1e-9, least_gap = 0.25;  // the last of the depth of the dielectric
+  constexpr double rounding = 1e-12;                                   // of the bending energy
+  constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;           // of that of the modes, of the longest step
+  Statics statics(model);
+  Switch::Workspace work = model.workspace();
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
+  const Eigen::VectorXd compliance = model.basis().angular_frequencies().cwiseInverse();
+  const double depth = model.device().dielectric_depth();
+  Eigen::VectorXd q = statics.pushed(model.contact_gap()), force(model.modes());
+  double radius = longest, energy = model.potential(q.data(), volts, true, work);
+  for (int k = 0; k < most_steps && radius > shortest; ++k) {
+    const SymmetricEigen along =
+        symmetric_eigen(compliance.asDiagonal() * stiffness_at(model, q, volts, true) * compliance.asDiagonal());
+    model.accelerations(q.data(), still.data(), volts, true, work, force.data());
+    const auto reach_of = [&](const Eigen::VectorXd& step) {
+      const Eigen::ArrayXd gaps = (work.field.gap + depth).max(least_gap * depth);
+      return ((model.quadrature().shapes() * step).array() / gaps).abs().maxCoeff();
+    };
+    const Eigen::VectorXd parts = (along.vectors.transpose() * force.cwiseProduct(compliance))
+                                      .cwiseQuotient(along.values.cwiseAbs().cwiseMax(least_stiffness));
+    Eigen::VectorXd step = (along.vectors * parts).cwiseProduct(compliance);
+    double reach = reach_of(step);
+    if (along.values[0] < 0 && reach < at_saddle * radius) {  // where no force shows the way down
+      step = along.vectors.col(0).cwiseProduct(compliance);
+      step *= radius / reach_of(step);
+      reach = radius;
+    } else if (reach > radius) {
+      step *= radius / reach;
+    }
+    const double next = model.potential((q + step).eval().data(), volts, true, work);
+    if (!(next < energy)) {
+      radius = std::min(radius, reach) / 4;
+      continue;
+    }
+    q += step;
+    const double gained = energy - next;
+    energy = next;
+    if (reach < radius && gained < rounding * model.bending_energy() && along.values[0] > 0) break;
+    radius = std::min(2 * radius, longest);
+  }
+  // Where the edge of what is in touch lies at a point of the quadrature, Newton's method may go to and fro about it.
+  if (const auto found = statics.closed(volts, q)) q = *found;
+  const double push = static_push(model, q);
+  if (!(push > 0)) return std::nullopt;
+  const ClosedEquilibrium found = closed_at(model, q, push, volts);
+  return found.smallest_eigenvalue > 0 ? std::optional(found) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::span<const double> volts) {
   if (!model.has_contact()) return std::nullopt;
+  if (model.device().lands_along_face()) return closed_on_face(model, volts);
   Statics statics(model);
   const double plane = model.contact_gap(), step = model.penetration_scale() / 16;
   if (model.rigid_contact() != nullptr) {
@@ -513,7 +594,7 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
   const auto excess = [&](double depth) {
     const auto held = statics.pinned(volts, plane + depth);
     if (!held) return nan;
-    return (model.has_pad_contact() ? 0 : contact_force(model.contact(), depth)) - held->unknown;
+    return (model.has_spread_contact() ? 0 : contact_force(model.contact(), depth)) - held->unknown;
   };
   // Where the beam presses hardest it must overcome the contact; the equilibrium is where, deeper, the contact takes over.
   const auto hardest = first_minimum(excess, step);

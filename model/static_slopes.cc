@@ -56,8 +56,8 @@ std::vector<double> held_slopes(const Switch& model, SwitchSlopes& by, std::size
   std::vector<double> volts(bias.begin(), bias.end());
   volts.resize(model.drives(), 0.0);
   volts[drive] = held->voltage;
-  const bool acts = model.has_pad_contact() || (model.has_contact() && model.rigid_contact() == nullptr &&
-                                                deflection > model.contact_gap() - model.contact_reach());
+  const bool acts = model.has_spread_contact() || (model.has_contact() && model.rigid_contact() == nullptr &&
+                                                   deflection > model.contact_gap() - model.contact_reach());
   const ContactState contact = acts;
   const Tangent tangent(model, held->q, volts, contact);
   const Eigen::Index n = model.modes();

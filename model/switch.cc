@@ -10,6 +10,7 @@
 #include "base/decompositions.h"
 #include "base/require.h"
 #include "model/built_beam.h"
+#include "model/contact/face.h"
 #include "model/far_side.h"
 #include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
@@ -62,6 +63,16 @@ std::vector<EvenRange> even_ranges(const Structure& s, const Eigen::ArrayXd& pos
     }
   }
   return ranges;
+}
+
+// Calls visit(range) for what lies over each face on which the beam may land.
+template <class Visit>
+void for_faces(const Device& device, const Eigen::ArrayXd& positions, Visit&& visit) {
+  for (const Electrode& e : device.electrodes) {
+    if (!e.dielectric || !e.dielectric->landing) continue;
+    for (const Stretch& pad : e.pads(device.structure.length))
+      for (const EvenRange& even : even_ranges(device.structure, positions, pad.begin, pad.end)) visit(even);
+  }
 }
 
 std::shared_ptr<const DistributedLaw> one_law(std::vector<std::shared_ptr<const DistributedLaw>> pads) {
@@ -117,6 +128,7 @@ void Switch::set_modes(const Modes& structure, double points_per_length, int few
 }
 
 Switch::Switch(const Device& device, const SwitchOptions& options, const Switch* like) : device_(device) {
+  set_face_contact(device_);
   validate(device_);
   if (options.modes && !device.structure.is_rigid()) {
     const int most = device.structure.find<Beam>() != nullptr ? most_static_modes : most_modes_of(device.structure);
@@ -154,7 +166,12 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
         const PointRange range = even.points;
         pads.push_back(electrostatic(e.fringing, even, [&](const auto& law) {
           using Law = std::decay_t<decltype(law)>;
-          if (e.dielectric) return erased(ThroughDielectric<Law>{.law = law, .depth = e.dielectric->depth()}, range, gap_floor());
+          if (e.dielectric) {
+            const ThroughDielectric<Law> through{.law = law, .depth = e.dielectric->depth()};
+            const bool is_wall = e.dielectric->landing && e.dielectric->landing->is_wall();
+            return is_wall ? erased(StopsAtFace<ThroughDielectric<Law>>{through}, range, gap_floor())
+                           : erased(through, range, gap_floor());
+          }
           if (e.side == Side::near) return erased(law, range, gap_floor());
           const auto far = on_far_side(law, e.gap);
           return e.side == Side::far ? erased(far, range, gap_floor())
@@ -200,6 +217,18 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
   const double compliance = basis_.contact_shape().cwiseAbs2().cwiseQuotient(basis_.squares()).sum();
   const double force = contact_gap_ / compliance;
   bending_energy_ = force * contact_gap_ / 2;
+  if (device_.lands_along_face()) {
+    auto& spring = std::get<LinearSpring>(device_.contacts.front().model);
+    if (device_.landing()->is_wall()) {
+      double area = 0;
+      for_faces(device_, quadrature_.positions(), [&](const EvenRange& even) {
+        area += even.width * quadrature_.weights().segment(even.points.begin, even.points.end - even.points.begin).sum();
+      });
+      const double depth = device_.dielectric_depth();
+      spring.stiffness = wall_stiffness(1 / compliance, device_.gap.electrode + depth, area, depth);
+    }
+    face_ = face_pressure();
+  }
   if (device_.has_contact()) {
     contact_ = contact_law(device_.contacts.front(), width_at(s, device_.contact_position()));
     for (std::size_t c = 1; c < device_.contacts.size(); ++c) {
@@ -214,12 +243,30 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
   if (device_.dispersion) rest_ = equilibrium_from(*rest_, std::vector<double>(drives(), 0.0));
 }
 
+std::shared_ptr<const DistributedLaw> Switch::face_pressure() const {
+  constexpr double no_floor = -std::numeric_limits<double>::infinity();
+  const double stiffness = std::get<LinearSpring>(device_.contacts.front().model).stiffness, from = device_.landing()->from;
+  std::vector<std::shared_ptr<const DistributedLaw>> pads;
+  for_faces(device_, quadrature_.positions(), [&](const EvenRange& even) {
+    pads.push_back(erased(FacePressure{.stiffness = even.width * stiffness, .from = from}, even.points, no_floor));
+  });
+  return one_law(std::move(pads));
+}
+
+GapField Switch::still_field(const double* q) const {
+  const Eigen::ArrayXd zero = Eigen::ArrayXd::Zero(quadrature_.shapes().rows());
+  GapField field{.gap = zero, .velocity = zero};
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(modes());
+  quadrature_.set_field(q, still.data(), field);
+  return field;
+}
+
 // The interference that carries a force, by bisection: laws grow. A pad is tilted as by that force at the contact point.
 double Switch::penetration_under(double force) const {
   const double plane = contact_gap_;
   const Eigen::VectorXd pushed = basis_.contact_shape().cwiseQuotient(basis_.squares()), still = Eigen::VectorXd::Zero(modes());
   const auto carried = [&](double depth) {
-    if (!pad_) return contact_force(*contact_, depth);
+    if (!has_spread_contact()) return contact_force(*contact_, depth);
     const Eigen::VectorXd q = pushed * ((plane + depth) / basis_.contact_shape().dot(pushed));
     return contact_push(q.data(), still.data(), true);
   };
@@ -304,8 +351,10 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
     if (const double drive = strength(k, volts[k]); drive != 0) driven_laws_[k]->add_load(work.field, drive, work.load.data());
   }
 
+  if (contact.active && face_) face_->add_load(work.field, 1, work.load.data());
+
   double push = 0;
-  if (contact.active && !pad_) {
+  if (contact.active && !has_spread_contact()) {
     const double d = contact_deflection(q) - contact_gap_;
     const auto rate = [&] { return contact_deflection(v); };
     push = visit_inline([&](const auto& law) { return force_of(law, d, contact, rate); }, *contact_);
@@ -335,6 +384,7 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
     driven_laws_[k]->add_derivatives(work.field, strength(k, volts[k]), work.by_deflection.data(), work.by_velocity.data());
   }
   for (const auto& law : passive_laws_) law->add_derivatives(work.field, 0, work.by_deflection.data(), work.by_velocity.data());
+  if (contact.active && face_) face_->add_derivatives(work.field, 1, work.by_deflection.data(), work.by_velocity.data());
   quadrature_.project_slopes(work.by_deflection, work.load, by_q);
   if (passive_laws_.empty()) {
     by_v.setZero();
@@ -343,7 +393,7 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
   }
   by_q.diagonal() -= basis_.squares();
   by_v.diagonal() -= 2 * device_.structure.damping_ratio * basis_.angular_frequencies();
-  if (contact.active) {
+  if (contact.active && !face_) {
     for_contact_points(q, [&](double xi, double share, double d) {
       const Eigen::VectorXd shape = basis_.contact_shape() - xi * basis_.pad_slope();
       const double rate = contact_rate(v, xi);
@@ -486,6 +536,11 @@ double Switch::contact_push(const double* q, const double* v, const ContactState
   if (c > 0) {
     return contact_force(this->contact(c), contact_deflection(q, c) - contact_gap(c), contact, contact_deflection(v, c));
   }
+  if (face_) {
+    Eigen::ArrayXd load = Eigen::ArrayXd::Zero(quadrature_.shapes().rows());
+    face_->add_load(still_field(q), 1, load.data());
+    return -(quadrature_.weights() * load.head(quadrature_.points())).sum();
+  }
   double sum = 0;
   for_contact_points(
       q, [&](double xi, double share, double d) { sum += share * contact_force(*contact_, d, contact, contact_rate(v, xi)); });
@@ -494,6 +549,7 @@ double Switch::contact_push(const double* q, const double* v, const ContactState
 
 double Switch::contact_stored(const double* q, const ContactState& contact, std::size_t c) const {
   if (c > 0) return stored_energy(this->contact(c), contact_deflection(q, c) - contact_gap(c), contact);
+  if (face_) return face_->potential(still_field(q), quadrature_.weights());
   double sum = 0;
   for_contact_points(q, [&](double, double share, double d) { sum += share * stored_energy(*contact_, d, contact); });
   return sum;
@@ -503,6 +559,7 @@ double Switch::contact_dissipation(const double* q, const double* v, std::size_t
   if (c > 0) {
     return softland::contact_dissipation(contact(c), contact_deflection(q, c) - contact_gap(c), contact_deflection(v, c));
   }
+  if (face_) return 0;
   double sum = 0;
   for_contact_points(q, [&](double xi, double share, double d) {
     sum += share * softland::contact_dissipation(*contact_, d, contact_rate(v, xi));
@@ -517,7 +574,9 @@ double Switch::potential(const double* q, std::span<const double> volts, const C
     if (const double drive = strength(k, volts[k]); drive != 0) energy += drive * law_potential(k, q, work);
   }
   if (device_.piezo) energy -= volts.back() * basis_.piezo_charge(q);
-  if (contact.active) {
+  if (contact.active && face_) {
+    energy += contact_stored(q, contact);
+  } else if (contact.active) {
     for_contact_points(q, [&](double, double share, double d) {
       energy += share * (contact.unloading ? stored_energy(*contact_, d, contact) : contact_energy(*contact_, d));
     });

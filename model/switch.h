@@ -86,12 +86,13 @@ class Switch {
   [[nodiscard]] const ContactLaw& contact(std::size_t c = 0) const { return c == 0 ? *contact_ : further_[c - 1].law; }
   /// How far above the plane of first touch the contact acts [m]; 0 for most laws, and without contact.
   [[nodiscard]] double contact_reach(std::size_t c = 0) const { return contact_ ? softland::contact_reach(contact(c)) : 0; }
-  /// Whether the contact acts along the pad. It is active then at all times, and acts wherever the pad is beyond the plane.
-  [[nodiscard]] bool has_pad_contact() const { return pad_.has_value(); }
+  /// Whether the contact acts along the pad or the face of a dielectric. It is active then at all times, and acts wherever these
+  /// are beyond the plane.
+  [[nodiscard]] bool has_spread_contact() const { return pad_.has_value() || face_ != nullptr; }
   /// State of a contact that has not been touched yet: it acts only within its reach.
   [[nodiscard]] ContactState untouched(const double* q) const {
     const double reach = contact_reach();
-    return has_pad_contact() || (reach > 0 && contact_deflection(q) > contact_gap_ - reach);
+    return has_spread_contact() || (reach > 0 && contact_deflection(q) > contact_gap_ - reach);
   }
   /// Null unless the contact is rigid.
   [[nodiscard]] const RigidContact* rigid_contact() const { return contact_ ? std::get_if<RigidContact>(&*contact_) : nullptr; }
@@ -100,9 +101,10 @@ class Switch {
   /// Rest distance of the contact point to the contact plane [m].
   [[nodiscard]] double contact_gap(std::size_t c = 0) const { return c == 0 ? contact_gap_ : further_[c - 1].gap; }
   /// Gap below which every law is continued by its tangent and a run counts as having touched the electrode: a hundredth of d0,
-  /// and of a plate that lands on a dielectric half of what that adds to the field's gap, below its face [m]. The laws of a film
-  /// are continued from a hundredth of d0 on there, too.
+  /// and of a switch that lands on a dielectric half of what that adds to the field's gap, below its face; a wall holds at any
+  /// depth [m]. The laws of a film are continued from a hundredth of d0 on there, too.
   [[nodiscard]] double gap_floor() const {
+    if (const Landing* landing = device_.landing(); landing != nullptr && landing->is_wall()) return -device_.gap.electrode;
     return device_.lands_on_dielectric() ? -device_.dielectric_depth() / 2 : device_.gap.electrode / 100;
   }
   /// Interference at which the contact law carries the force that bends the beam by the contact gap [m]: the scale of
@@ -227,6 +229,10 @@ class Switch {
   void for_further_contacts(const double* q, const ContactStates& contacts, F&& f) const;
   void add_pad_force(const double* q, const double* v, double* result) const;
   [[nodiscard]] double penetration_under(double force) const;
+  /// The pressure of the faces of the electrodes, whose contact this is.
+  [[nodiscard]] std::shared_ptr<const DistributedLaw> face_pressure() const;
+  /// The field of a state at rest.
+  [[nodiscard]] GapField still_field(const double* q) const;
   void set_free_field(const double* q, const double* v, Workspace& work) const;
   /// A share of what drives of these values do: V^2 of an electrode, the factor of the dispersion force, V of the piezo.
   [[nodiscard]] std::vector<double> share_of(double share, std::span<const double> values) const;
@@ -241,7 +247,8 @@ class Switch {
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // these dissipate
   std::optional<ContactLaw> contact_;
   std::vector<FurtherContact> further_;
-  std::optional<PadQuadrature> pad_;  // of a contact along the pad
+  std::optional<PadQuadrature> pad_;            // of a contact along the pad
+  std::shared_ptr<const DistributedLaw> face_;  // of a contact along the face of a dielectric; null for others
   std::optional<GasLaw> gas_;
   std::optional<ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;

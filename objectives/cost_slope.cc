@@ -42,10 +42,10 @@ class SlopeFinder {
         work_(model.workspace()) {}
 
   CostSlopes find() {
-    if (!model_.has_contact() || model_.has_damped_contact() || model_.has_pad_contact())
+    if (!model_.has_contact() || model_.has_damped_contact() || model_.has_spread_contact())
       slopes_.why_none[&Metrics::peak_contact_force] =
           "a damped contact, or one along the pad, does not press hardest at its deepest point";
-    if (model_.has_pad_contact())
+    if (model_.has_spread_contact())
       slopes_.why_none[&Metrics::impact_energy] = "a contact along the pad stores its energy all along it";
     auto passage = motion_.passages().begin();
     for (std::size_t i = 0; i < motion_.arcs().size(); ++i) {
@@ -111,7 +111,7 @@ class SlopeFinder {
   void deepen(std::size_t i, double depth) {
     depth_ = depth;
     const ContactState& law = arc(i).contact;
-    if (!law.active || model_.has_pad_contact()) return;
+    if (!law.active || model_.has_spread_contact()) return;
     const double step = 1e-5 * depth;
     force_ = contact_force(model_.contact(), depth, law, 0);
     const auto slope_of = [&](auto&& of) {

@@ -368,7 +368,7 @@ std::string why_no_circuit(const Switch& model) {
   }
   if (!model.has_contact()) return {};
   if (model.contacts() > 1) return "several contacts";
-  if (model.has_pad_contact()) return "a contact along its pad";
+  if (model.has_spread_contact()) return "a contact along its pad";
   const bool can = std::visit([](const auto& law) { return only_pushes<std::decay_t<decltype(law)>>; }, model.contact());
   return can ? "" : "a contact law other than linear or asperity-uniform";
 }

@@ -210,7 +210,9 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     }
     if (const std::optional<Dielectric>& dielectric = p.scene.device.electrodes[k].dielectric)
       add("", fmt::format("its dielectric adds {} to the gap of the field{}", given_quantity(dielectric->depth(), "m"),
-                          p.scene.device.lands_on_dielectric() ? "; the plate lands on it" : ""));
+                          !p.scene.device.lands_on_dielectric() ? std::string()
+                          : p.scene.device.structure.is_rigid()     ? "; the plate lands on it"
+                                                                    : "; the beam lands on it"));
   }
   if (p.scene.device.dispersion) {
     add("dispersion force", dispersion_words(p, watch));
@@ -218,7 +220,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   }
   if (const FilmState* const film = p.scene.device.gas ? film_of(*p.scene.device.gas) : nullptr) {
     const double g = p.scene.device.gap.electrode;
-    const double closed = g - p.scene.device.gap.contact, lambda = mean_free_path(*film);
+    const double closed = p.scene.device.closed_gap(), lambda = mean_free_path(*film);
     const double omega = p.model.basis().angular_frequencies()[0], width = width_at(s, p.scene.device.contact_position());
     const double most = limits_of(*p.scene.device.gas).most_squeeze;
     const std::string holds =

@@ -1,9 +1,11 @@
 // Scenes to start from: each can be checked, simulated, searched and judged on devices that differ.
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <map>
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/exit_status.h"
@@ -16,32 +18,38 @@
 namespace softland::apps {
 namespace {
 
-int new_verb(const std::string& kind) {
-  const std::map<std::string, std::string> scenes{{"cantilever", "mem-gold.toml"},
-                                                  {"cantilever-pzt", "mem-gold-pzt.toml"},
-                                                  {"clamped-clamped", "new/clamped-clamped.toml"},
-                                                  {"hinged-plate", "new/hinged-plate.toml"},
-                                                  {"plate", "new/plate.toml"},
-                                                  {"nem-cantilever", "nem-tin.toml"},
-                                                  {"nem-casimir", "new/nem-casimir.toml"},
-                                                  {"two-contacts", "new/two-contacts.toml"},
-                                                  {"two-electrodes", "two-electrodes.toml"}};
-  const auto found = scenes.find(kind);
-  std::vector<std::string> kinds;
-  for (const auto& [name, scene] : scenes) kinds.push_back(name);
-  require(found != scenes.end(), fmt::format("new {}: must be one of {}", kind, fmt::join(kinds, ", ")));
-  print(read_file(shipped_scene(found->second)));
+struct Kind {
+  std::string_view name, scene;  // a shipped one
+};
+constexpr std::array kinds{Kind{"cantilever", "mem-gold.toml"},
+                           Kind{"cantilever-pzt", "mem-gold-pzt.toml"},
+                           Kind{"hinged-plate", "new/hinged-plate.toml"},
+                           Kind{"clamped-clamped", "new/clamped-clamped.toml"},
+                           Kind{"plate", "new/plate.toml"},
+                           Kind{"two-contacts", "new/two-contacts.toml"},
+                           Kind{"two-electrodes", "two-electrodes.toml"},
+                           Kind{"capacitive-bridge", "new/capacitive-bridge.toml"},
+                           Kind{"nem-cantilever", "nem-tin.toml"},
+                           Kind{"nem-casimir", "new/nem-casimir.toml"}};
+
+std::string names_of_kinds() {
+  std::vector<std::string_view> names;
+  for (const Kind& kind : kinds) names.push_back(kind.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+int new_verb(const std::string& name) {
+  const auto found = std::ranges::find(kinds, name, &Kind::name);
+  require(found != kinds.end(), fmt::format("new {}: must be one of {}", name, names_of_kinds()));
+  print(read_file(shipped_scene(std::string(found->scene))));
   return exit_done;
 }
 
 }  // namespace
 
 void add_new(Verb& verb) {
-  const auto kind = std::make_shared<std::string>("cantilever");
-  verb.positional("KIND", *kind,
-                  "cantilever (default), cantilever-pzt, hinged-plate, clamped-clamped, plate, two-contacts, two-electrodes, "
-                  "nem-cantilever or nem-casimir",
-                  false);
+  const auto kind = std::make_shared<std::string>(kinds.front().name);
+  verb.positional("KIND", *kind, names_of_kinds() + "; the first one where none is named", false);
   verb.footer("Example:\n  softland new cantilever > my-switch.toml");
   verb.runs([kind](const Common&) { return new_verb(*kind); });
 }

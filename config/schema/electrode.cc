@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/engineering.h"
 #include "config/schema/sections.h"
 #include "config/section_reader.h"
 #include "model/forces/electrostatic.h"
@@ -20,6 +21,35 @@ Dielectric& dielectric(Scene& scene, std::size_t k) {
 }
 using OfDielectric = Of<dielectric>;
 
+Landing& landing(Scene& scene, std::size_t k) {
+  std::optional<Landing>& one = dielectric(scene, k).landing;
+  if (!one) one.emplace();
+  return *one;
+}
+using OfLanding = Of<landing>;
+
+const Section* landing_keys() {
+  static const Section keys = [] {
+    Key model =
+        one_of("model", {"wall", "linear"}, "wall: it does not yield; linear: a spring on every spot of the face").needed();
+    model.bound.choose = [](Scene& scene, std::size_t k, std::string_view) { static_cast<void>(landing(scene, k)); };
+    Key stiffness = OfLanding::number<&Landing::stiffness>("stiffness", dimension::stress_gradient, positive,
+                                                           "pressure of the face per depth")
+                        .needed()
+                        .such_as("1e17 Pa/m");
+    Key from = OfLanding::number<&Landing::from>("from", dimension::length, not_negative,
+                                                 "how far above the face the pressure begins; default 0")
+                   .such_as("30 nm");
+    stiffness.only_for = {"linear"};
+    from.only_for = {"linear"};
+    return Section{.name = "landing",
+                   .selector = "model",
+                   .keys = {std::move(model), std::move(stiffness), std::move(from)},
+                   .about = "how the beam lands on the face"};
+  }();
+  return &keys;
+}
+
 const Section* dielectric_keys() {
   static const Section keys{
       .name = "dielectric",
@@ -31,7 +61,13 @@ const Section* dielectric_keys() {
                    .needed(),
                OfDielectric::number<&Dielectric::roughness>("roughness", dimension::length, not_negative,
                                                             "air that is left where its summits touch")
-                   .by_default("'0 m'")},
+                   .by_default("'0 m'"),
+               Key{.name = "landing",
+                   .type = KeyType::table,
+                   .about =
+                       "how the beam lands on its face, which then is the contact; absent: a beam that reaches it has failed",
+                   .like = "{ model = \"wall\" }",
+                   .part = landing_keys}},
       .about = "an insulator on the electrode"};
   return &keys;
 }
@@ -72,11 +108,34 @@ void check_fringing(const Structure& s, const Electrode& e, const SectionReader&
   }
 }
 
+/// The face of a dielectric on which a beam lands is the contact of the scene.
+void check_landing(Device& d, const Electrode& e, const SectionReader& in) {
+  if (!e.dielectric || !e.dielectric->landing) return;
+  const SectionReader gap(in.file(), "gap");
+  in.require(in.file().find({"contact"}) == nullptr, "dielectric",
+             "has a landing, which is the contact: there is no [contact] beside it");
+  in.require(in.file().find({"dispersion"}) == nullptr, "dielectric",
+             "has a landing: a beam that lands on a dielectric takes no dispersion force");
+  const double from = e.dielectric->landing->from, plane = d.gap.electrode - from;
+  in.require(plane > 0, "dielectric",
+             "has a landing that begins at the beam: 'from' must be less than " + gap.written("electrode"));
+  if (gap.is_given("contact")) {
+    gap.require(std::abs(d.gap.contact - plane) <= 1e-9 * d.gap.electrode, "contact",
+                "must be " + engineering(plane, "m") + ", where the landing begins: leave it out");
+  }
+  set_face_contact(d);
+}
+
 void check_electrode(Scene& scene, const SectionReader& in, std::size_t k) {
   Electrode& e = scene.device.electrodes[k];
   check_extent(scene.device.structure, e, in);
   check_fringing(scene.device.structure, e, in);
   in.require(!e.dielectric || e.side == Side::near, "dielectric", "belongs to an electrode on the near side alone");
+  for (std::size_t i = 0; i < k; ++i) {
+    const Electrode& other = scene.device.electrodes[i];
+    if (e.side != Side::far && other.side != Side::far && !have_equal_landings(other, e)) in.fail(unequal_landings);
+  }
+  check_landing(scene.device, e, in);
   in.require(e.side != Side::near || !in.is_given("gap"), "gap",
              "belongs to side = \"far\" or \"both\"; on the near side the distance is gap.electrode");
   if (e.side != Side::near && !in.is_given("gap")) {

@@ -21,6 +21,13 @@ bool may_land(const Structure& structure, const SceneFile::Impl& file) {
          });
 }
 
+/// The face of a dielectric is where the beam lands.
+bool has_landing(const SceneFile::Impl& file) {
+  return std::ranges::any_of(file.names_in("electrode"), [&](const std::string& name) {
+    return file.find({"electrode", name, "dielectric", "landing"}) != nullptr;
+  });
+}
+
 void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
   const Gap& gap = scene.device.gap;
   if (in.file().is_named(*find_section("contact"))) {
@@ -28,6 +35,7 @@ void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
     in.require(!in.is_given("contact"), "contact", "belongs to one [contact]: every [contact.NAME] has a gap of its own");
     return;
   }
+  if (has_landing(in.file())) return;  // see check_landing()
   if (!in.is_given("contact")) in.fail(R"(missing key 'contact' (a length such as "2 um"))");
   if (gap.contact <= gap.electrode && may_land(scene.device.structure, in.file())) {
     in.require(!scene.device.lands_on_dielectric() || in.file().find({"dispersion"}) == nullptr, "contact",
@@ -45,17 +53,18 @@ void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
 }  // namespace
 
 Section gap_section() {
-  return {
-      .name = "gap",
-      .required = true,
-      .may_vary = true,
-      .keys =
-          {OfGap::number<&Gap::electrode>("electrode", dimension::length, positive, "rest distance beam to electrode").needed(),
-           OfGap::number<&Gap::contact>("contact", dimension::length, positive,
-                                        "rest distance contact point to contact plane; not where a [contact.NAME] has its own")},
-      .about = "rest distances",
-      .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
-      .check = check_gap};
+  return {.name = "gap",
+          .required = true,
+          .may_vary = true,
+          .keys = {OfGap::number<&Gap::electrode>("electrode", dimension::length, positive, "rest distance beam to electrode")
+                       .needed(),
+                   OfGap::number<&Gap::contact>(
+                       "contact", dimension::length, positive,
+                       "rest distance contact point to contact plane; not where a [contact.NAME] has its own, nor where a "
+                       "dielectric has a landing")},
+          .about = "rest distances",
+          .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
+          .check = check_gap};
 }
 
 }  // namespace softland::internal

@@ -18,7 +18,7 @@ ElectricalRecord::Instant ElectricalRecord::instant(std::size_t c, const Contact
   const ContactLaw& law = model_.contact(c);
   const TipMotion tip(contact.motion, contact.from, contact.to);
   Instant now{.interference = tip.position(time) - model_.contact_gap(c)};
-  if (model_.has_pad_contact()) {
+  if (model_.has_spread_contact()) {
     const double length = contact.to.time - contact.from.time, share = length > 0 ? (time - contact.from.time) / length : 1;
     now.force = std::lerp(contact.from.contact_force, contact.to.contact_force, share);
   } else {
@@ -56,7 +56,7 @@ double ElectricalRecord::margin(const Instant& now) const {
 
 void ElectricalRecord::take(double begin, double end, std::span<const ContactInStep> contacts) {
   if (!(end > begin)) return;
-  const bool can_close = model_.has_pad_contact() || std::ranges::any_of(contacts, [](const ContactInStep& one) {
+  const bool can_close = model_.has_spread_contact() || std::ranges::any_of(contacts, [](const ContactInStep& one) {
                            return one.is_in_contact || one.law.active;
                          });
   if (!can_close) {

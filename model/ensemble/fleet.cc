@@ -71,7 +71,7 @@ struct ElasticContact {
   double unloading = 0;  // stiffness of a contact with a memory; 0: has none [N/m]
 };
 std::optional<ElasticContact> lane_contact(const Switch& model) {
-  if (model.contacts() != 1 || model.has_pad_contact()) return std::nullopt;
+  if (model.contacts() != 1 || model.has_spread_contact()) return std::nullopt;
   // When a contact is electrically closed is located on the motion of a single closing.
   if (model.device().electrical.is_asked()) return std::nullopt;
   using Lane = fleet::LaneContact;

@@ -34,8 +34,17 @@ double squeeze_number(const FilmState& gas, double width, double gap, double rat
   return 12 * viscosity(gas) * width * width * rate / (gas.pressure * gap * gap);
 }
 
+namespace {
+
+// The gap at which a film's law is taken: on the face of a dielectric it is continued from the least one on.
+double gap_of_film(const Device& device, double gap) {
+  return device.lands_on_dielectric() ? std::max(gap, device.gap.electrode / 100) : gap;
+}
+
+}  // namespace
+
 double squeeze_number(const Device& device, double rest_gap, const TrajectoryPoint& point) {
-  const double h = rest_gap - point.position;
+  const double h = gap_of_film(device, rest_gap - point.position);
   if (!device.gas || !std::isfinite(limits_of(*device.gas).most_squeeze) || !(h > 0)) return 0;
   return squeeze_number(*film_of(*device.gas), width_at(device.structure, device.contact_position()), h,
                         std::abs(point.velocity) / h);
@@ -52,7 +61,7 @@ std::vector<std::string> gas_warnings(const Device& device, double smallest_gap,
     warnings.push_back(
         fmt::format("gas law {}: {} number {} {} {}{}", name_of(*device.gas), what, number(value), beyond, number(limit), why));
   };
-  if (const double kn = lambda / smallest_gap; kn > limits.most_knudsen) warn("Knudsen", kn, "exceeds", limits.most_knudsen);
+  if (const double kn = lambda / gap_of_film(device, smallest_gap); kn > limits.most_knudsen) warn("Knudsen", kn, "exceeds", limits.most_knudsen);
   if (const double kn = lambda / device.gap.electrode; kn < limits.least_knudsen)
     warn("Knudsen", kn, "is below", limits.least_knudsen);
   if (largest_squeeze > limits.most_squeeze)

@@ -9,6 +9,7 @@
 #include "base/engineering.h"
 #include "model/closing.h"
 #include "model/constants.h"
+#include "model/contact/face.h"
 #include "model/timoshenko.h"
 
 namespace softland {
@@ -232,6 +233,25 @@ void load_sources(PreparedScene& p) {
   }
 }
 
+/// A landing that is so soft that the field pulls the beam through it.
+void check_landing(const PreparedScene& p) {
+  const Landing* landing = p.scene.device.landing();
+  if (landing == nullptr || landing->is_wall()) return;
+  for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
+    const Electrode& e = p.scene.device.electrodes[k];
+    if (!e.dielectric) continue;
+    const std::optional<DriverLimits>& limits = p.drives[k].limits;
+    const double most =
+        limits ? std::max(std::abs(limits->min_voltage), std::abs(limits->max_voltage)) : std::abs(p.drives[k].hold_level());
+    const double least = least_face_stiffness(most, e.dielectric->depth() + landing->from);
+    if (landing->stiffness > least) continue;
+    p.scene.file.refuse(
+        "electrode." + e.name + ".dielectric.landing.stiffness",
+        fmt::format("must be greater than {}, below which {} pulls the beam through the face{}", engineering(least, "Pa/m", 3),
+                    engineering(most, "V", 4), limits ? ", the limit of driver." + e.name : ", its hold level"));
+  }
+}
+
 /// Sources that take more samples than a run can follow.
 void check_sources(const PreparedScene& p) {
   constexpr double most_samples = 1e5;
@@ -350,6 +370,7 @@ PreparedScene prepare(const SceneFile& file, bool default_limits, const Watch& w
                                            : default_window(p.model, without_sources(p));
   check_window(p);
   check_sources(p);
+  check_landing(p);
   p.tolerance =
       scene.simulate.tolerance > 0 ? scene.simulate.tolerance : tolerance_for(scene.simulate.accuracy, p.model.film_states() > 0);
   return p;

@@ -325,9 +325,8 @@ TEST_F(BadInput, Results) {
       {{"report", "bare.json"}, "bare.json: \"metrics\" is missing"},
       {{"report", "foreign.json"}, "foreign.json: is a result of softland 9.1, of which softland 0.1.0 makes no report"},
       {{"new", "magnet"},
-       "new magnet: must be one of cantilever, cantilever-pzt, clamped-clamped, hinged-plate, nem-cantilever, nem-casimir, "
-       "plate, "
-       "two-contacts, two-electrodes"},
+       "new magnet: must be one of cantilever, cantilever-pzt, hinged-plate, clamped-clamped, plate, two-contacts, "
+       "two-electrodes, capacitive-bridge, nem-cantilever, nem-casimir"},
   });
 }
 

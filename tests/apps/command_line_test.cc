@@ -459,7 +459,7 @@ TEST(EveryVerb, PrintsNumbersThatPeopleRead_slow) {
 TEST(New, WritesScenesThatCheckAccepts_long) {
   const Workplace here;
   for (const char* kind : {"cantilever", "cantilever-pzt", "clamped-clamped", "hinged-plate", "plate", "two-electrodes",
-                           "nem-cantilever", "nem-casimir"}) {
+                           "two-contacts", "capacitive-bridge", "nem-cantilever", "nem-casimir"}) {
     const Outcome fresh = here.run({"new", kind});
     EXPECT_EQ(fresh.status, 0);
     EXPECT_EQ(fresh.err, "");

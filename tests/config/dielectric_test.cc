@@ -85,5 +85,71 @@ TEST(DielectricKeys, AreRefusedByFileLineAndKey) {
               HasSubstr("x.toml:9: gap.contact = \"4 um\": must be less than"));
 }
 
+const std::string capacitive = R"(
+[structure]
+kind = "clamped-clamped"
+length = "280 um"
+width = "120 um"
+thickness = "0.5 um"
+youngs_modulus = "70 GPa"
+density = "2700 kg/m^3"
+[gap]
+electrode = "3 um"
+[electrode.main]
+span = ["90 um", "190 um"]
+fringing = "none"
+dielectric = { thickness = "0.2 um", permittivity = 7, landing = { model = "linear", stiffness = "1e17 Pa/m", from = "30 nm" } }
+[waveform.main]
+family = "step"
+level = "1.2 Vsp"
+[spread]
+"electrode.main.dielectric.landing.stiffness" = { distribution = "normal", cov = "5 %" }
+)";
+
+std::string edited_bridge(const std::string& old, const std::string& replacement) {
+  std::string text = capacitive;
+  const std::size_t at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return text.replace(at, old.size(), replacement);
+}
+
+TEST(LandingKeys, MakeTheFaceTheContact) {
+  SceneFile file = SceneFile::parse(capacitive, "x.toml");
+  const Device linear = read_scene(file).device;
+  ASSERT_TRUE(linear.lands_along_face());
+  EXPECT_DOUBLE_EQ(linear.gap.contact, 2.97e-6);
+  EXPECT_DOUBLE_EQ(linear.contact_position(), 140e-6);
+  EXPECT_DOUBLE_EQ(linear.landing()->stiffness, 1e17);
+  file.set("electrode.main.dielectric.landing.from=\"0.05 um\"");
+  EXPECT_DOUBLE_EQ(read_scene(SceneFile::parse(file.text(), "again.toml")).device.gap.contact, 2.95e-6);
+  std::string text = edited_bridge(R"(model = "linear", stiffness = "1e17 Pa/m", from = "30 nm")", R"(model = "wall")");
+  text.resize(text.find("[spread]"));
+  const Device wall = read_scene(SceneFile::parse(text, "x.toml")).device;
+  EXPECT_TRUE(wall.landing()->is_wall());
+  EXPECT_DOUBLE_EQ(wall.gap.contact, 3e-6);
+}
+
+TEST(LandingKeys, AreRefusedByFileLineAndKey) {
+  EXPECT_THAT(refusal_of(edited_bridge("model = \"linear\"", "model = \"wall\"")),
+              HasSubstr("x.toml:14: electrode.main.dielectric.landing.from = \"30 nm\": belongs to model = \"linear\""));
+  EXPECT_THAT(refusal_of(edited_bridge("model = \"linear\"", "model = \"soft\"")),
+              HasSubstr("x.toml:14: electrode.main.dielectric.landing.model = \"soft\": unknown value (known: wall, linear)"));
+  EXPECT_THAT(refusal_of(edited_bridge("stiffness = \"1e17 Pa/m\", ", "")),
+              HasSubstr("x.toml:14: [electrode.main.dielectric.landing]: missing key 'stiffness'"));
+  EXPECT_THAT(refusal_of(edited_bridge("\"30 nm\"", "\"4 um\"")), HasSubstr("x.toml:14: electrode.main.dielectric"));
+  EXPECT_THAT(refusal_of(edited_bridge("electrode = \"3 um\"", "electrode = \"3 um\"\ncontact = \"2 um\"")),
+              HasSubstr("x.toml:11: gap.contact = \"2 um\": must be 2.97 um, where the landing begins: leave it out"));
+  EXPECT_THAT(refusal_of(edited_bridge("[waveform.main]",
+                                       "[contact]\nmodel = \"linear\"\nstiffness = \"1 N/m\"\n"
+                                       "pad_length = \"1 um\"\n[waveform.main]")),
+              HasSubstr("electrode.main.dielectric = "));
+  EXPECT_THAT(refusal_of(edited_bridge("[waveform.main]", "[dispersion]\nmodel = \"casimir\"\n[waveform.main]")),
+              HasSubstr("has a landing: a beam that lands on a dielectric takes no dispersion force"));
+  EXPECT_THAT(refusal_of(edited_bridge("[waveform.main]",
+                                       "[electrode.other]\nspan = [\"200 um\", \"250 um\"]\nfringing = "
+                                       "\"none\"\n[waveform.main]")),
+              HasSubstr("where a dielectric has a landing, every near electrode has the same one"));
+}
+
 }  // namespace
 }  // namespace softland

@@ -144,8 +144,8 @@ TEST(Dielectric, RefusesWhatItCannotMean) {
   beam.gap.contact = beam.gap.electrode;
   test::expect_refused(
       [&] { validate(beam); },
-      "gap.contact = 3.5 um: must be less than 0.99 times gap.electrode: the landing of a beam along the face of "
-      "its electrode is not simulated");
+      "gap.contact = 3.5 um: must be less than 0.99 times gap.electrode, unless the dielectric of the electrodes has a "
+      "landing");
 }
 
 }  // namespace

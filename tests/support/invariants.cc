@@ -200,7 +200,7 @@ CheckedRun checked_run(const Switch& model, std::span<const Signal> drives, cons
     found.expect(energies.surplus() <= energy * std::max(model.bending_energy(), energies.moved()),
                  "the energy balance is off by {:.3g} of the bending energy", run.surplus);
     found.expect(t.smallest_gap > 0, "smallest gap {} m", t.smallest_gap);
-    if (model.has_contact() && !model.has_pad_contact()) {
+    if (model.has_contact() && !model.has_spread_contact()) {
       constexpr double margin = 1.05;  // for what steps leave between them
       run.largest_penetration =
           rigid ? 1e-9 * t.contact_gap : takes_up(model.contact(), margin * energies.available(), t.contact_gap);

@@ -1,0 +1,227 @@
+// Landing of a beam along the face of the dielectric on its electrode.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/closing.h"
+#include "model/constants.h"
+#include "model/contact/face.h"
+#include "model/pull_in.h"
+#include "objectives/metrics.h"
+#include "tests/model/expect_refused.h"
+#include "tests/support/devices.h"
+
+namespace softland {
+namespace {
+
+using namespace literals;
+
+constexpr double depth_of_nitride = 0.2_um / 7;
+
+// An aluminium bridge of 280 um under 20 MPa, over 3 um of air and 0.2 um of nitride.
+Device capacitive_bridge(Landing landing = {.stiffness = 1e15, .from = 30_nm}) {
+  return {.structure = {.length = 280_um,
+                        .width = 120_um,
+                        .thickness = 0.5_um,
+                        .modes = 8,
+                        .kind = Bridge{{.youngs_modulus = 70e9, .density = 2700}, 20e6}},
+          .gap = {.electrode = 3_um, .contact = 3_um},
+          .electrodes = {{.name = "main",
+                          .begin = 90_um,
+                          .end = 190_um,
+                          .fringing = Fringing::none,
+                          .dielectric = Dielectric{.thickness = 0.2_um, .permittivity = 7, .landing = landing}}}};
+}
+
+Switch fine(const Device& device, int modes) { return Switch(device, {.points_per_length = 400, .modes = modes}); }
+
+void expect_share(double value, double kept, double relative, const std::string& what) {
+  EXPECT_NEAR(value, kept, relative * std::abs(kept)) << what;
+}
+
+// Kept values of an independent program, by 168 and 336 finite elements. Twenty symmetric modes, which know no corner of the
+// shear force at the edge of what is in touch, are off by up to 0.8 % in capacitance and 1.3 % in force.
+TEST(Landing, ABridgeClosesAsElementsSay) {
+  const Switch model = fine(capacitive_bridge(), 40);
+  expect_share(model.basis().angular_frequencies()[0] / (2 * pi), 164430.31735, 1e-6, "first frequency");
+  const StaticPullIn fold = static_pull_in(model, 0);
+  ASSERT_EQ(fold.kind, StaticKind::fold);
+  expect_share(fold.voltage, 46.38412, 1e-4, "static pull-in");
+  Switch::Workspace work = model.workspace();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
+  expect_share(model.capacitance(0, rest.data(), work), 3.508263095637736e-14, 1e-8, "open capacitance");
+  expect_share(release_voltage(model, 0), 7.23182, 1.5e-3, "release");
+  struct Kept {
+    double voltage, capacitance, force;
+  };
+  for (const Kept& kept :
+       {Kept{12, 1.352477534297477e-12, 0.0013525775068787263}, Kept{15, 1.6666464763086419e-12, 0.002901418101712722},
+        Kept{20, 1.7908186349795979e-12, 0.005885374488916186}, Kept{30, 1.8445286494032567e-12, 0.014219900311964365},
+        Kept{40, 1.8833764017721314e-12, 0.026510471730391966}, Kept{50, 1.9344013724711613e-12, 0.043823411473898545}}) {
+    const std::vector<double> volts{kept.voltage};
+    const std::optional<ClosedEquilibrium> closed = closed_equilibrium(model, volts);
+    ASSERT_TRUE(closed) << kept.voltage;
+    const std::string at = " at " + std::to_string(kept.voltage);
+    expect_share(model.capacitance(0, closed->q.data(), work), kept.capacitance, 8e-3, "capacitance" + at);
+    expect_share(closed->contact_force, kept.force, 1.3e-2, "force" + at);
+    EXPECT_GT(closed->smallest_eigenvalue, 0) << at;
+  }
+}
+
+// Kept values with as many symmetric modes: half of these are not.
+TEST(Landing, TouchesAndReleasesAsOtherModesSay) {
+  struct Kept {
+    int modes;
+    double touch_voltage, time, velocity;
+  };
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  for (const Kept& kept :
+       {Kept{8, 6.59556, 2.578983857659438e-06, 13.04662255402393}, Kept{16, 7.04596, 2.57452239539482e-06, 15.00120323311928},
+        Kept{24, 7.1757, none, none}, Kept{40, 7.22587, none, none}}) {
+    const Switch model = fine(capacitive_bridge(), kept.modes);
+    expect_share(release_voltage(model, 0), kept.touch_voltage, 2e-5, std::to_string(kept.modes) + " modes: touch voltage");
+    if (std::isnan(kept.time)) continue;
+    MetricsObserver figures(model.contact_gap());
+    const Trajectory run = observe_closing(model, std::vector<Signal>{Signal::constant(55)},
+                                           {.duration = 4e-6, .tolerance = 1e-9, .after_contact = 0}, figures);
+    ASSERT_EQ(run.status, Status::done) << run.message;
+    const Metrics m = figures.metrics(run);
+    expect_share(m.initial_contact_time, kept.time, 1e-5, std::to_string(kept.modes) + " modes: first touch");
+    expect_share(m.impact_velocity, kept.velocity, 1e-4, std::to_string(kept.modes) + " modes: impact velocity");
+    EXPECT_LT(run.energy_error, 1e-3 * model.bending_energy());
+  }
+}
+
+// Under a wall the gap is never less than a small part of what the dielectric adds to it, at any voltage, and the capacitance of
+// what lies on it is that of the dielectric.
+TEST(Landing, AWallLetsNothingThrough) {
+  const Device device = capacitive_bridge({});
+  const Switch model = fine(device, 16);
+  Switch::Workspace work = model.workspace();
+  const double most = vacuum_permittivity * 120_um * 100_um / depth_of_nitride;
+  double last = 0;
+  for (const double voltage : {12.0, 20.0, 55.0, 90.0}) {
+    const std::vector<double> volts{voltage};
+    const std::optional<ClosedEquilibrium> closed = closed_equilibrium(model, volts);
+    ASSERT_TRUE(closed) << voltage;
+    const double capacitance = model.capacitance(0, closed->q.data(), work);
+    EXPECT_GT(Switch::smallest_gap(work), -depth_of_nitride / 20) << voltage;
+    EXPECT_GT(capacitance, last) << "more of it lies on the face";
+    EXPECT_LT(capacitance, 1.05 * most);
+    last = capacitance;
+  }
+  EXPECT_GT(last, 0.98 * most);
+  EXPECT_GT(std::get<LinearSpring>(model.device().contacts.front().model).stiffness, least_face_stiffness(90, depth_of_nitride));
+}
+
+// A soft bed gives way to the field where plates on springs of that rest length would, and a little before: a beam presses
+// hardest on the edge of what lies on it.
+TEST(Landing, AFieldPullsTheBeamThroughASoftFace) {
+  for (const double from : {0.0, 30e-9}) {
+    const Device device = capacitive_bridge({.stiffness = 1e15, .from = from});
+    const Switch model = fine(device, 8);
+    const double most = std::sqrt(1e15 / least_face_stiffness(1, depth_of_nitride + from));
+    EXPECT_TRUE(closed_equilibrium(model, std::vector<double>{0.85 * most})) << from;
+    EXPECT_FALSE(closed_equilibrium(model, std::vector<double>{1.05 * most})) << from;
+  }
+}
+
+// A plate lands with all of its area at once: the wall gives it the numbers of a rigid stop.
+TEST(Landing, APlateOnAWallClosesAsOnAStop) {
+  Device device = {.structure = {.length = 100_um, .width = 100_um, .kind = Plate{.mass = 1e-10, .stiffness = 10}},
+                   .gap = {.electrode = 4_um, .contact = 4_um},
+                   .electrodes = {{.name = "main",
+                                   .begin = 0,
+                                   .end = 100_um,
+                                   .fringing = Fringing::none,
+                                   .dielectric = Dielectric{.thickness = 0.2_um, .permittivity = 7.6, .landing = Landing{}}}}};
+  const Switch model(device);
+  expect_share(static_pull_in(model, 0).voltage, 46.73588788239068, 1e-8, "static pull-in");
+  expect_share(release_voltage(model, 0), 0.7910192125773502, 1e-8, "release");
+  MetricsObserver figures(model.contact_gap());
+  const Trajectory run = observe_closing(model, std::vector<Signal>{Signal::constant(1.2 * 46.73588788239068)},
+                                         {.duration = 40e-6, .tolerance = 1e-10}, figures);
+  ASSERT_EQ(run.status, Status::done) << run.message;
+  const Metrics m = figures.metrics(run);
+  expect_share(m.initial_contact_time, 9.364403257595555e-06, 1e-7, "first touch");
+  expect_share(m.impact_velocity, 10.175222744232038, 1e-7, "impact velocity");
+  EXPECT_GT(run.smallest_gap, -0.2_um / 7.6);
+  EXPECT_LT(run.energy_error, 1e-4 * model.bending_energy());
+}
+
+// Forces are the slope of the energy, and the Jacobian is that of the forces, where part of the beam lies on the face.
+TEST(Landing, ForcesAreTheSlopeOfTheEnergy) {
+  for (const Landing& landing : {Landing{}, Landing{.stiffness = 3e15, .from = 20_nm}}) {
+    const Switch model = fine(capacitive_bridge(landing), 4);
+    Switch::Workspace work = model.workspace();
+    const std::vector<double> volts{25};
+    const Eigen::Index n = model.modes();
+    const std::optional<ClosedEquilibrium> closed = closed_equilibrium(model, volts);
+    ASSERT_TRUE(closed);
+    Eigen::VectorXd q = 1.002 * closed->q, force(n), above(n), below(n);
+    q[2] += 1e-3 * q[0];
+    const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
+    Eigen::MatrixXd by_q(n, n), by_v(n, n);
+    model.accelerations(q.data(), still.data(), volts, true, work, force.data());
+    model.jacobian(q.data(), still.data(), volts, true, work, by_q, by_v);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Eigen::VectorXd step = 1e-8 * q.norm() * Eigen::VectorXd::Unit(n, i);
+      const double up = model.potential((q + step).eval().data(), volts, true, work),
+                   down = model.potential((q - step).eval().data(), volts, true, work);
+      EXPECT_NEAR(-(up - down) / (2 * step[i]), force[i], 1e-5 * force.norm()) << i;
+      model.accelerations((q + step).eval().data(), still.data(), volts, true, work, above.data());
+      model.accelerations((q - step).eval().data(), still.data(), volts, true, work, below.data());
+      EXPECT_LT(((above - below) / (2 * step[i]) - by_q.col(i)).norm(), 1e-4 * by_q.norm()) << i;
+    }
+    EXPECT_LT(by_v.norm(), 1e-9 * by_q.norm());
+  }
+}
+
+TEST(Landing, TouchesFirstWhereItBendsMost) {
+  const auto place = [](Device device) {
+    set_face_contact(device);
+    EXPECT_TRUE(device.lands_along_face());
+    return device.contact_position();
+  };
+  EXPECT_DOUBLE_EQ(place(capacitive_bridge()), 140_um);
+  Device aside = capacitive_bridge();
+  aside.electrodes.front().end = 120_um;
+  EXPECT_DOUBLE_EQ(place(aside), 120_um);
+  Device cantilever = capacitive_bridge();
+  cantilever.structure.kind = Cantilever{{.youngs_modulus = 70e9, .density = 2700}};
+  EXPECT_DOUBLE_EQ(place(cantilever), 190_um);
+}
+
+TEST(Landing, RefusesWhatItCannotMean) {
+  const auto refused = [](auto change, const std::string& message) {
+    Device device = capacitive_bridge();
+    change(device);
+    expect_refused([&] { Switch{device}; }, message);
+  };
+  const auto landing = [](Device& d) -> Landing& { return *d.electrodes.front().dielectric->landing; };
+  refused([&](Device& d) { landing(d).stiffness = -1; },
+          "electrode.main.dielectric.landing.stiffness = -1 Pa/m: must be greater than 0 and below 1e30");
+  refused([&](Device& d) { landing(d).from = -1e-9; },
+          "electrode.main.dielectric.landing.from = -1 nm: must be from 0 m to below gap.electrode");
+  refused([&](Device& d) { landing(d) = {.from = 1_nm}; }, "electrode.main.dielectric.landing.from: a wall begins at the face");
+  refused([](Device& d) { d.contacts = {Contact{.model = LinearSpring{.stiffness = 1}, .pad_length = 1_um}}; },
+          "gap.contact = 3 um: the face of a dielectric with a landing is the contact: there is no other beside it");
+  refused([](Device& d) { d.dispersion = Dispersion{}; },
+          "gap.contact = 2.97 um: a beam that lands on a dielectric takes no dispersion force");
+  refused(
+      [](Device& d) {
+        d.electrodes.push_back(d.electrodes.front());
+        d.electrodes.back().name = "other";
+        d.electrodes.back().begin = 200_um;
+        d.electrodes.back().end = 250_um;
+        d.electrodes.back().dielectric.reset();
+      },
+      std::string("gap.contact = 2.97 um: ") + unequal_landings);
+}
+
+}  // namespace
+}  // namespace softland
