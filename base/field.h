@@ -47,6 +47,7 @@ struct Field {
   std::string_view such_as = {};     ///< a value for messages, where what is usual of the unit would not do
   std::string_view beyond = {};      ///< advice for a value outside the range, which then binds scenes alone
   std::string_view why_fixed = {};   ///< why devices cannot differ by it; empty: they can
+  std::string_view if_list = {};     ///< advice for a list in the place of the number
   std::vector<std::string_view> (*words)() = nullptr;    ///< of a word: what it may be
   void (*choose)(Owner&, std::string_view) = nullptr;    ///< of a word: sets the enumerator
   std::string_view refused_word = {}, why_refused = {};  ///< of a word: one that people may expect here, and why it is not there

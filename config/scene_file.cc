@@ -574,7 +574,10 @@ void SceneFile::assign(const std::string& path, const Quantity& value, std::size
 void SceneFile::erase(const std::string& path) {
   const std::vector<std::string> parts = internal::split_path(path);
   toml::table* table = &impl_->root;
-  for (std::size_t i = 0; i + 1 < parts.size() && table; ++i) table = (*table)[parts[i]].as_table();
+  for (std::size_t i = 0; i + 1 < parts.size() && table; ++i) {
+    toml::node* const inner = const_cast<toml::node*>(internal::child_of(*table, parts[i]));
+    table = inner != nullptr ? inner->as_table() : nullptr;
+  }
   if (table && table->erase(parts.back()) > 0) impl_->forget(path);
 }
 

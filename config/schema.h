@@ -60,6 +60,7 @@ struct Key {
   std::string_view about = {};                    ///< one line for people
   std::string_view beyond = {};                   ///< what to do where a value must lie outside the range
   std::string_view why_fixed = {};                ///< why devices cannot differ by it; empty: they can
+  std::string_view if_list = {};                  ///< quantity: what to do where a list is wanted
   std::string_view like = {};                     ///< a value that a switch may have; empty: see example_of()
   std::string_view unless = {};                   ///< the key in whose presence it is not required
   const Section* (*part)() = nullptr;             ///< table, tables: the keys of one
@@ -85,6 +86,11 @@ struct Key {
   [[nodiscard]] bool belongs_to(std::string_view choice) const;
 };
 
+/// An answer to an unknown key that has this word in it: the key that describes such a thing.
+struct Advice {
+  std::string_view word, text;
+};
+
 struct Section {
   std::string_view name;         ///< empty: the keys above the first section
   std::string_view entry = {};   ///< of a named section: the one NAME these keys are for; empty: every other one
@@ -97,6 +103,7 @@ struct Section {
   std::string_view selector = {};  ///< the key whose choice decides which other keys there are
   std::vector<Key> keys = {};
   std::string_view about = {};
+  std::vector<Advice> advice = {};  ///< answers to unknown keys; the first that fits counts
   /// Makes the part of the scene that the keys set, [section.NAME] being its name, and tells the number of an electrode. Null
   /// where the keys set no member: waveforms, drivers and spread are read by code of their own.
   std::size_t (*begin)(Scene& scene, const SectionReader& in, std::string_view name) = nullptr;

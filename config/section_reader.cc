@@ -66,7 +66,8 @@ Quantity parse_number(const Key& key, const toml::node& node) {
   } else if (node.is_number()) {
     quantity.value = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
   } else {
-    throw InvalidInput("not a number with a unit" + expected(key));
+    const bool is_advised = node.is_array() && !key.if_list.empty();
+    throw InvalidInput("not a number with a unit" + expected(key) + (is_advised ? fmt::format("; {}", key.if_list) : ""));
   }
   const bool may_be_bare = key.is_bare_number() || (!key.dimensions.empty() && key.dimensions.front() == dimension::none);
   if (!has_unit && !may_be_bare) throw InvalidInput("no unit" + expected(key));
@@ -167,7 +168,11 @@ void SectionReader::check_keys() const {
     if (std::find(known.begin(), known.end(), key.name) == known.end()) known.push_back(key.name);
   }
   for (const auto& [key, node] : *table_) {
-    if (!section_.find(key.str())) file_.fail(path(key.str()), "unknown key" + hint(key.str(), known));
+    if (section_.find(key.str())) continue;
+    const auto fits = [&](const Advice& one) { return key.str().find(one.word) != std::string_view::npos; };
+    const auto advice = std::ranges::find_if(section_.advice, fits);
+    file_.fail(path(key.str()), advice != section_.advice.end() ? fmt::format("unknown key; {}", advice->text)
+                                                                : "unknown key" + hint(key.str(), known));
   }
 }
 

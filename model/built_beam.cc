@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/engineering.h"
+#include "base/straight_lines.h"
 
 namespace softland {
 namespace {
@@ -68,6 +69,35 @@ bool is_mechanism(const Anchor& near, const Anchor& far) {
   const bool turns = holds(near.rotation) || holds(far.rotation);
   if (holds(near.translation)) return !turns && !holds(far.translation);
   return !holds(far.translation) || !turns;
+}
+
+std::optional<PartConflict> rest_shape_conflict(const Device& d) {
+  const Structure& s = d.structure;
+  const Beam& beam = part_of<Beam>(s);
+  const RestShape& shape = *beam.rest_shape;
+  const std::vector<double> places = shape.places(s.length);
+  const auto falls = [](double a, double b) { return !(a < b && b < 1e30); };
+  if (places.size() < 2 || places.front() != 0 || std::ranges::adjacent_find(places, falls) != places.end())
+    return PartConflict{"rest_shape.positions", "must be two at least and rise from 0 m, the near end"};
+  if (shape.heights.size() != places.size())
+    return PartConflict{"rest_shape.heights", fmt::format("must be one per position: there are {} heights and {} positions",
+                                                          shape.heights.size(), places.size())};
+  if (!std::ranges::all_of(shape.heights, [](double height) { return std::abs(height) < 1; }))
+    return PartConflict{"rest_shape.heights", "must be between -1 m and 1 m"};
+  const auto beside = [](const std::string& key) {
+    return PartConflict{"rest_shape", fmt::format("cannot stand beside {}, which curls the beam as well", key)};
+  };
+  const auto* const cantilever = s.find<Cantilever>();
+  if (cantilever != nullptr && cantilever->stress_gradient != 0) return beside("stress_gradient");
+  for (std::size_t i = 0; i < beam.layers.size(); ++i) {
+    if (beam.layers[i].stress != 0) return beside(fmt::format("layers[{}].stress", i + 1));
+  }
+  const auto* const bridge = s.find<Bridge>();
+  if (bridge != nullptr && bridge->stretches && s.has_far_clamp())
+    return PartConflict{"rest_shape",
+                        "needs stretching = false between two anchors: a curved beam stretches there as an arch, which is not "
+                        "simulated"};
+  return std::nullopt;
 }
 
 std::optional<PartConflict> anchor_conflict(const Device& d) {
@@ -144,6 +174,30 @@ std::vector<double> edges_of_parts(const Structure& s) {
   return {edges.begin(), edges.end()};
 }
 
+std::vector<double> kinks_at_rest(const Structure& s) {
+  const Beam* const beam = s.find<Beam>();
+  if (beam == nullptr || !beam->rest_shape) return {};
+  std::vector<double> places = beam->rest_shape->places(s.length);
+  std::erase_if(places, [&](double x) { return x <= 0 || x >= s.length; });
+  return places;
+}
+
+std::vector<double> RestShape::places(double length) const {
+  std::vector<double> all;
+  for (const Place& position : positions) all.push_back(position.on(length));
+  return all;
+}
+
+double RestShape::height(double x, double length) const { return along_lines(places(length), heights, x); }
+
+double RestShape::lowest(double length) const {
+  double least = height(length, length);
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    if (positions[k].on(length) < length) least = std::min(least, heights[k]);
+  }
+  return least;
+}
+
 std::optional<PartConflict> part_conflict(const Device& d) {
   const Structure& s = d.structure;
   const Beam& beam = part_of<Beam>(s);
@@ -164,6 +218,7 @@ std::optional<PartConflict> part_conflict(const Device& d) {
   const Cantilever* const cantilever = s.find<Cantilever>();
   if (cantilever != nullptr && cantilever->stress_gradient != 0 && s.has_far_clamp())
     return PartConflict{"stress_gradient", "needs a free far end: far_anchor would hold the curl"};
+  if (beam.rest_shape) return rest_shape_conflict(d);
   return std::nullopt;
 }
 

@@ -50,6 +50,9 @@ struct LocalSection {
 /// Where sections and layers of a beam begin and end, from 0 to the length [m]: both of these alone for all other structures.
 [[nodiscard]] std::vector<double> edges_of_parts(const Structure& structure);
 
+/// Where the table of a beam's rest shape has kinks, between its ends [m]; empty where it has no such table.
+[[nodiscard]] std::vector<double> kinks_at_rest(const Structure& structure);
+
 /// A part that a device cannot have, and why.
 struct PartConflict {
   std::string key;  ///< "layers[2].span"

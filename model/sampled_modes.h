@@ -37,6 +37,7 @@ struct SampledModes {
       if (d.structure.is_built()) {
         for (const double edge : edges_of_parts(d.structure)) corners.insert(edge);
       }
+      for (const double kink : kinks_at_rest(d.structure)) corners.insert(kink);
       if (d.piezo) corners.insert({piezo_begin, piezo_end});
       if (d.touches_along_pad()) {
         const auto [begin, end] = d.pad();

@@ -36,12 +36,22 @@ void members(A& a, CheckRecord::Line& line) {
 }
 
 template <class A>
+void members(A& a, CheckRecord::Rest& rest) {
+  a("far_end_rise_m", rest.far_end_rise);
+  a("far_end_gap_m", rest.far_end_gap);
+  a("contact_rise_m", rest.contact_rise);
+  a("contact_gap_m", rest.contact_gap);
+  a("least_electrode_gap_m", rest.least_gap);
+}
+
+template <class A>
 void members(A& a, CheckRecord& record) {
   members(a, record.origin);
   a.derived("status", std::string(to_string(Status::done)));
   a("file", record.file);
   a("title", record.title);
   a("natural_frequencies_rad_s", record.frequencies);
+  a("rest_shape", record.rest_shape);
   a.custom("pull_in", record.pull_in, by_electrode, read_by_electrode);
   a("hold_window_V", record.hold_windows);
   a("dynamic_precision", record.dynamic_precision);

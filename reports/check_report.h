@@ -17,10 +17,19 @@ struct CheckRecord {
   struct Line {
     std::string name, value;
   };
+  /// How a structure that is not straight rests. A rise counts from the straight shape, away from the near electrode.
+  struct Rest {
+    double far_end_rise = Metrics::unset;  ///< rise of the far end [m]
+    double far_end_gap = Metrics::unset;   ///< distance of the far end to the plane of the electrode [m]
+    double contact_rise = Metrics::unset;  ///< rise of the first contact's place [m]
+    double contact_gap = Metrics::unset;   ///< distance of that place to the contact's plane [m]
+    double least_gap = Metrics::unset;     ///< smallest gap over the near electrodes [m]
+  };
   Origin origin;
   std::string file;  ///< how the user named it
   std::string title;
   std::vector<double> frequencies;                            ///< [rad/s]
+  std::optional<Rest> rest_shape;                             ///< unset of a straight structure
   std::map<std::string, PullInRecord> pull_in;                ///< by electrode that has one; without a name where it is read
   std::map<std::string, std::array<double, 2>> hold_windows;  ///< release and pulled-through voltage [V]
   double dynamic_precision = Metrics::unset;                  ///< relative, of dynamic pull-in voltages

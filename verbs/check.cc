@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -131,10 +133,46 @@ void add_parts(CheckRecord& record, const Device& device) {
   if (beam->anchor || beam->far_anchor)
     record.lines.push_back(
         {"anchors", fmt::format("near end {}; far end {}", end_words(s.near_hold()), end_words(s.far_hold()))});
-  if (beam->is_built() && device.rest_offset(s.length) != 0)
-    record.lines.push_back(
-        {"rest shape", fmt::format("the far end rests {} {} the near electrode", length(std::abs(device.rest_offset(s.length))),
-                                   device.rest_offset(s.length) > 0 ? "further from" : "nearer to")});
+}
+
+// How far a structure that is not straight rests from the straight shape.
+void add_rest_shape(CheckRecord& record, const Device& device) {
+  constexpr int places = 200;
+  const double length = device.structure.length, gap = device.gap.electrode;
+  const auto place = [](double begin, double end, int k) { return begin + (end - begin) * k / places; };
+  bool is_straight = true;
+  for (int k = 0; k <= places; ++k) is_straight = is_straight && device.rest_offset(place(0, length, k)) == 0;
+  const std::vector<double> kinks = kinks_at_rest(device.structure);
+  for (const double x : kinks) is_straight = is_straight && device.rest_offset(x) == 0;
+  if (is_straight) return;
+  CheckRecord::Rest rest{.far_end_rise = device.rest_offset(length),
+                         .contact_rise = device.rest_offset(device.contact_position()),
+                         .contact_gap = device.contact_gap()};
+  rest.far_end_gap = gap + rest.far_end_rise;
+  std::vector<Stretch> over;
+  for (const Electrode& e : device.electrodes) {
+    if (e.side != Side::far) std::ranges::copy(e.pads(length), std::back_inserter(over));
+  }
+  if (over.empty()) over.push_back({0, length});
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Stretch& pad : over) {
+    for (int k = 0; k <= places; ++k) lowest = std::min(lowest, device.rest_offset(place(pad.begin, pad.end, k)));
+    for (const double x : kinks) {
+      if (pad.holds(x)) lowest = std::min(lowest, device.rest_offset(x));
+    }
+  }
+  rest.least_gap = gap + lowest;
+  const auto words = [](double rise) {
+    if (rise == 0) return std::string("as a straight one");
+    return fmt::format("{} {} the near electrode than a straight one", quantity(std::abs(rise), "m", 4),
+                       rise > 0 ? "further from" : "nearer to");
+  };
+  record.lines.push_back({"rest shape", fmt::format("the far end rests {}, {} from the electrode's plane",
+                                                    words(rest.far_end_rise), quantity(rest.far_end_gap, "m", 4))});
+  record.lines.push_back({"", fmt::format("the contact point rests {}: contact gap {}", words(rest.contact_rise),
+                                          quantity(rest.contact_gap, "m", 4))});
+  record.lines.push_back({"", fmt::format("the least gap over an electrode is {}", quantity(rest.least_gap, "m", 4))});
+  record.rest_shape = rest;
 }
 
 Outcome shown(const CheckRecord& record) { return {.json = json_of(record), .text = text_of(record)}; }
@@ -171,6 +209,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
   }
   add_parts(record, p.scene.device);
+  add_rest_shape(record, p.scene.device);
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   if (p.model.has_contact()) add("in-contact period", quantity(p.model.basis().in_contact_period(), "s", 4));
   std::map<std::string, PullInVoltages> searched_to;  // what a search takes for the limit where the scene has none

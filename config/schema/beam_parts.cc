@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "config/schema/sections.h"
@@ -107,6 +109,39 @@ const Section* layer_keys() {
   return &keys;
 }
 
+RestShape& rest_shape(Scene& scene) {
+  std::optional<RestShape>& shape = beam(scene).rest_shape;
+  if (!shape) shape.emplace();
+  return *shape;
+}
+
+const Section* rest_shape_keys() {
+  static const Section keys = [] {
+    Key positions =
+        numbers("positions", {dimension::length, dimension::none}, not_negative, "along the beam, from 0 m to the tip").needed();
+    positions.words = {tip};
+    positions.bound.place = [](Scene& scene, std::size_t, std::size_t element) -> Place& {
+      return at(rest_shape(scene).positions, element);
+    };
+    Key heights =
+        numbers("heights", {dimension::length}, any, "of the face over the straight shape, away from the near electrode")
+            .needed();
+    heights.bound.element = [](Scene& scene, std::size_t, std::size_t element) -> double& {
+      return at(rest_shape(scene).heights, element);
+    };
+    return Section{.name = "rest_shape",
+                   .keys = {std::move(positions), std::move(heights)},
+                   .about = "the shape of the released beam",
+                   .check = [](Scene&, const SectionReader& in, std::size_t) {
+                     const std::size_t places = in.quantities("positions").size(), heights = in.quantities("heights").size();
+                     in.require(places >= 2, "positions", "must be two at least, from 0 m to the tip");
+                     in.require(heights == places, "heights",
+                                fmt::format("there are {} of them for {} positions: give a height for each", heights, places));
+                   }};
+  }();
+  return &keys;
+}
+
 template <std::optional<Anchor> Beam::*member>
 const Section* anchor_keys() {
   using OfAnchor = Of<anchor<member>>;
@@ -155,7 +190,29 @@ std::vector<Key> beam_part_keys() {
                "\"2200 kg/m^3\" }]",
        .part = layer_keys},
       anchor_key<&Beam::anchor>("anchor", {"clamped"}, "the end at x = 0; absent: clamped"),
-      anchor_key<&Beam::far_anchor>("far_anchor", {"free", "clamped"}, "the far end; absent: what the kind says")};
+      anchor_key<&Beam::far_anchor>("far_anchor", {"free", "clamped"}, "the far end; absent: what the kind says"),
+      {.name = "rest_shape",
+       .type = KeyType::table,
+       .instead_of = {"stress_gradient"},
+       .about = "how the released beam rests: straight lines between heights at places along it",
+       .like = "{ positions = [\"0 um\", \"50 %\", \"tip\"], heights = [\"0 nm\", \"20 nm\", \"80 nm\"] }",
+       .part = rest_shape_keys}};
+}
+
+std::vector<Advice> part_advice() {
+  constexpr std::string_view sections =
+      "'sections' describes a beam whose width, thickness or material changes along it, such as a hinge narrower than the "
+      "plate: sections = [{ length = \"60 um\", width = \"10 um\" }, { length = \"190 um\", width = \"40 um\" }]";
+  constexpr std::string_view layers = "'layers' describes films on the faces of a beam, with their stress";
+  constexpr std::string_view holes =
+      "holes stand in a section: sections = [{ length = \"250 um\", holes = { pitch = \"20 um\", size = \"8 um\" } }]";
+  constexpr std::string_view anchor =
+      "'anchor' and 'far_anchor' describe ends that give way: anchor = { rotation = \"1e-7 N m/rad\" }";
+  constexpr std::string_view shape = "'stress_gradient' and 'rest_shape' describe a beam that is not straight at rest";
+  return {{"hinge", sections}, {"taper", sections},  {"plate_w", sections}, {"plate_t", sections}, {"plate_l", sections},
+          {"film", layers},    {"coating", layers},  {"hole", holes},       {"perforat", holes},   {"spring", anchor},
+          {"support", anchor}, {"complian", anchor}, {"curl", shape},       {"curvature", shape},  {"bow", shape},
+          {"warp", shape},     {"height", shape}};
 }
 
 }  // namespace softland::internal

@@ -169,6 +169,8 @@ Section contact_section() {
           .selector = "model",
           .keys = contact_keys(),
           .about = "contact under the tip, or [contact.NAME] of several; absent: the tip meets nothing",
+          .advice = {{"dimple", "'count' stands for equal contacts side by side, [contact.NAME] for several places"},
+                     {"number", "'count' stands for equal contacts side by side, [contact.NAME] for several places"}},
           .begin =
               [](Scene& scene, const SectionReader& in, std::string_view name) {
                 scene.device.contacts.push_back({.model = law_of<ContactModel>(in), .name = std::string(name)});

@@ -168,6 +168,7 @@ Section electrode_section() {
                    .like = "{ thickness = \"0.2 um\", permittivity = 7.6 }",
                    .part = dielectric_keys}},
       .about = "an electrode under the beam",
+      .advice = {{"permittiv", dielectric_advice}, {"nitride", dielectric_advice}, {"oxide", dielectric_advice}},
       .begin = begin_electrode,
       .check = check_electrode};
 }

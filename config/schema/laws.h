@@ -44,6 +44,7 @@ template <class Owner>
           .about = field.about,
           .beyond = field.beyond,
           .why_fixed = field.why_fixed,
+          .if_list = field.if_list,
           .like = field.such_as,
           .unless = field.unless};
   if (!field.instead_of.empty()) key.instead_of.push_back(field.instead_of);

@@ -90,6 +90,10 @@ struct Of {
 
 /// The keys of a beam's sections, layers and anchors.
 [[nodiscard]] std::vector<Key> beam_part_keys();
+inline constexpr std::string_view dielectric_advice =
+    "'dielectric' describes an insulator on the electrode: dielectric = { thickness = \"0.2 um\", permittivity = 7.6 }";
+/// Answers to unknown keys of [structure] that these describe, or a rest shape.
+[[nodiscard]] std::vector<Advice> part_advice();
 
 [[nodiscard]] Section title_section();
 [[nodiscard]] Section structure_section();

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -7,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/engineering.h"
 #include "config/modal_table.h"
 #include "config/schema/laws.h"
 #include "config/schema/sections.h"
@@ -82,6 +85,14 @@ void check(Beam& beam, Structure& s, Scene& scene, const SectionReader& in) {
     for (const SectionPart& part : beam.sections) s.length += part.length;
   }
   if (const auto conflict = part_conflict(scene.device)) in.file().fail(in.path() + "." + conflict->key, conflict->rule);
+  if (beam.rest_shape) {
+    constexpr double rounding = 1e-9;
+    const double end = beam.rest_shape->places(s.length).back();
+    if (!(std::abs(end - s.length) <= rounding * s.length))
+      in.file().fail(in.path("rest_shape") + ".positions",
+                     fmt::format("must end at the tip, and the beam is {} long: \"tip\" and percentages follow its length",
+                                 engineering(s.length, "m")));
+  }
   for (const char* key : {"plate_strain", "biaxial"}) {
     if (!in.has_value(key)) continue;
     in.require(!in.flag(key) || in.is_given("poissons_ratio"), key, "needs structure.poissons_ratio");
@@ -110,6 +121,7 @@ Section structure_section() {
           .selector = "kind",
           .keys = structure_keys(),
           .about = "the moving part",
+          .advice = part_advice(),
           .begin =
               [](Scene& scene, const SectionReader& in, std::string_view) {
                 scene.device.structure.kind = *law_named<StructureKind>(in.text("kind"));

@@ -24,11 +24,15 @@ struct Beam {
   std::vector<LayerPart> layers = {};      ///< on its faces
   std::optional<Anchor> anchor = {};       ///< at x = 0; none: a clamp
   std::optional<Anchor> far_anchor = {};   ///< at the far end; none: what the kind says
+  std::optional<RestShape> rest_shape = {};
 
   /// Whether it is made of more than one even piece.
   [[nodiscard]] bool is_built() const { return !sections.empty() || !layers.empty(); }
 
   static constexpr std::array usual_spread{UsualSpread{"thickness", "2 %"}, UsualSpread{"youngs_modulus", "3 %"}};
+  static constexpr std::string_view why_no_list =
+      "sections describe a beam that changes along it: sections = [{ length = \"60 um\", width = \"10 um\" }, { length = "
+      "\"190 um\", width = [\"40 um\", \"20 um\"] }]";
 
   template <class S>
   static consteval auto fields() {
@@ -36,8 +40,8 @@ struct Beam {
     // clang-format off
     return std::to_array<Field<S>>({
         {.key = "length", .unit = "m", .about = "along the beam", .in = reach<S, &S::length>, .required = true, .instead_of = "sections", .such_as = "250 um"},
-        {.key = "width", .unit = "m", .about = "across the beam", .in = reach<S, &S::width>, .required = true, .unless = "sections", .such_as = "20 um"},
-        {.key = "thickness", .unit = "m", .about = "in the direction of motion", .in = reach<S, &S::thickness>, .required = true, .unless = "sections"},
+        {.key = "width", .unit = "m", .about = "across the beam", .in = reach<S, &S::width>, .required = true, .unless = "sections", .such_as = "20 um", .if_list = Beam::why_no_list},
+        {.key = "thickness", .unit = "m", .about = "in the direction of motion", .in = reach<S, &S::thickness>, .required = true, .unless = "sections", .if_list = Beam::why_no_list},
         {.key = "youngs_modulus", .unit = "Pa", .about = "used as given unless plate_strain is on", .in = within<S, Beam, &Beam::youngs_modulus>, .required = true, .unless = "sections"},
         {.key = "density", .unit = "kg/m^3", .about = "of the beam", .in = within<S, Beam, &Beam::density>, .required = true, .unless = "sections"},
         {.key = "modes", .about = "number of modes kept; auto: until the figures stop moving", .count = reach<S, &S::modes>, .or_word = "auto", .range = {.least = 1, .most = S::most_modes}, .fallback = "4"},
@@ -55,6 +59,14 @@ struct Beam {
   [[nodiscard]] std::string why_invalid(const Device& device) const {
     return why_no_beam(device);
   }
+  template <class Device>
+  [[nodiscard]] double rest_offset(const Device& device, double x) const {
+    return rest_shape ? rest_shape->height(x, device.structure.length) : 0;
+  }
+  template <class Device>
+  [[nodiscard]] double lowest_rest_offset(const Device& device) const {
+    return rest_shape ? rest_shape->lowest(device.structure.length) : 0;
+  }
 };
 
 struct Cantilever : Beam {
@@ -66,20 +78,23 @@ struct Cantilever : Beam {
   static consteval auto fields() {
     // clang-format off
     return joined(Beam::fields<S>(), std::to_array<Field<S>>({
-        {.key = "stress_gradient", .unit = "Pa/m", .about = "of the released film over its thickness; positive: the free end rests further from the electrode", .in = within<S, Cantilever, &Cantilever::stress_gradient>, .range = {}, .such_as = "0.5 MPa/um"},
+        {.key = "stress_gradient", .unit = "Pa/m", .about = "of the released film over its thickness; positive: the free end rests further from the electrode", .in = within<S, Cantilever, &Cantilever::stress_gradient>, .range = {}, .instead_of = "rest_shape", .such_as = "0.5 MPa/um"},
     }));
     // clang-format on
   }
   template <class Device>
   [[nodiscard]] double rest_offset(const Device& device, double x) const {
+    if (rest_shape) return Beam::rest_offset(device, x);
     return is_straight() ? 0 : curl(device, stress_gradient, x);
   }
   template <class Device>
   [[nodiscard]] double lowest_rest_offset(const Device& device) const {
+    if (rest_shape) return Beam::lowest_rest_offset(device);
     if (is_built()) return is_straight() ? 0 : lowest_curl(device, stress_gradient);
     return stress_gradient < 0 ? rest_offset(device, device.structure.length) : 0;
   }
 
+  /// No stress curls it.
   [[nodiscard]] bool is_straight() const {
     return stress_gradient == 0 &&
            std::none_of(layers.begin(), layers.end(), [](const LayerPart& layer) { return layer.stress != 0; });

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "base/field.h"
 #include "model/place.h"
@@ -38,6 +39,19 @@ struct LayerPart {
   double density = 0;                 ///< [kg/m^3]
   double stress = 0;                  ///< along the beam before its release, positive in tension [Pa]
   double poissons_ratio = not_given;  ///< needed by plate_strain
+};
+
+/// How a released beam rests, as a table: straight lines between heights at places along it.
+struct RestShape {
+  std::vector<Place> positions;  ///< rise from 0 to the far end
+  std::vector<double> heights;   ///< over the straight shape, away from the near electrode, one per position [m]
+
+  /// The positions on a beam of this length [m].
+  [[nodiscard]] std::vector<double> places(double length) const;
+  /// The height at x [m]; the last line goes on beyond the last position.
+  [[nodiscard]] double height(double x, double length) const;
+  /// The least height of a beam of this length [m].
+  [[nodiscard]] double lowest(double length) const;
 };
 
 /// How an end is held in the direction of motion: stiffnesses, infinite where it is rigid.

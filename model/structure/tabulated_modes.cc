@@ -8,6 +8,7 @@
 
 #include "base/engineering.h"
 #include "base/require.h"
+#include "base/straight_lines.h"
 #include "model/constants.h"
 #include "model/structure/structure.h"
 
@@ -56,12 +57,7 @@ ModalTable::ModalTable(std::vector<double> positions, std::vector<double> freque
 }
 
 double ModalTable::rest_offset(double x) const {
-  if (rest_offsets_.empty()) return 0;
-  const auto next = std::clamp<std::ptrdiff_t>(std::ranges::upper_bound(positions_, x) - positions_.begin(), 1,
-                                               static_cast<std::ptrdiff_t>(positions_.size()) - 1);
-  const auto k = static_cast<std::size_t>(next);
-  const double share = (x - positions_[k - 1]) / (positions_[k] - positions_[k - 1]);
-  return rest_offsets_.front() - std::lerp(rest_offsets_[k - 1], rest_offsets_[k], share);
+  return rest_offsets_.empty() ? 0 : rest_offsets_.front() - along_lines(positions_, rest_offsets_, x);
 }
 
 double ModalTable::lowest_rest_offset() const {

@@ -39,6 +39,63 @@ Metrics closing(const PreparedScene& p, const Watch& watch, double done = 0, dou
                  p.scene.metrics);
 }
 
+// How far the contact point rests from where it does in `without`.
+OmissibleEffect rest_effect(const std::string& effect, const Device& d, const Device& without,
+                            std::optional<SceneValue> instead) {
+  const double rise = d.contact_gap() - without.contact_gap();
+  return {.effect = effect,
+          .magnitude = {.name = "rise of the contact point", .unit = "m", .value = rise},
+          .group = {.name = "over the contact gap", .value = rise / d.gap.contact},
+          .instead = std::move(instead)};
+}
+
+void add_omissible_rest_shape(const Device& d, std::vector<OmissibleEffect>& list) {
+  Device without = d;
+  const Beam& beam = part_of<Beam>(d.structure);
+  for (std::size_t i = 0; i < beam.layers.size(); ++i) {
+    if (beam.layers[i].stress == 0) continue;
+    Device relaxed = d;
+    part_of<Beam>(relaxed.structure).layers[i].stress = 0;
+    list.push_back(rest_effect(fmt::format("structure.layers[{}].stress", i + 1), d, relaxed, 0.0));
+  }
+  if (const auto* const cantilever = d.structure.find<Cantilever>(); cantilever != nullptr && cantilever->stress_gradient != 0) {
+    part_of<Cantilever>(without.structure).stress_gradient = 0;
+    list.push_back(rest_effect("structure.stress_gradient", d, without, 0.0));
+  }
+  if (beam.rest_shape && std::ranges::any_of(beam.rest_shape->heights, [](double height) { return height != 0; })) {
+    part_of<Beam>(without.structure).rest_shape.reset();
+    list.push_back(rest_effect("structure.rest_shape", d, without, {}));
+  }
+}
+
+// Anchors that give way become clamps; sections with holes become solid.
+void add_omissible_parts(const Device& d, std::vector<OmissibleEffect>& list) {
+  const Beam& beam = part_of<Beam>(d.structure);
+  const auto add_anchor = [&](const char* key, std::optional<Anchor> Beam::*end) {
+    const std::optional<Anchor>& anchor = beam.*end;
+    if (!anchor || anchor->is_clamp() || anchor->is_free()) return;
+    Device clamped = d;
+    part_of<Beam>(clamped.structure).*end = Anchor{};
+    const bool turns = !std::isinf(anchor->rotation);
+    list.push_back({.effect = fmt::format("structure.{}", key),
+                    .magnitude = {.name = turns ? "stiffness of rotation" : "stiffness",
+                                  .unit = turns ? "N m/rad" : "N/m",
+                                  .value = turns ? anchor->rotation : anchor->translation},
+                    .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(clamped) - 1},
+                    .instead = std::string("clamped")});
+  };
+  add_anchor("anchor", &Beam::anchor);
+  add_anchor("far_anchor", &Beam::far_anchor);
+  for (std::size_t i = 0; i < beam.sections.size(); ++i) {
+    const Holes& holes = beam.sections[i].holes;
+    if (!holes.exist()) continue;
+    list.push_back({.effect = fmt::format("structure.sections[{}].holes", i + 1),
+                    .magnitude = {.name = "side of a hole", .unit = "m", .value = holes.size},
+                    .group = {.name = "area left", .value = area_left(holes)},
+                    .instead = {}});
+  }
+}
+
 void add_omissible_structure(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
   const Structure& s = d.structure;
@@ -75,11 +132,9 @@ void add_omissible_structure(const PreparedScene& prepared, std::vector<Omissibl
                     .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(without) - 1},
                     .instead = 0.0});
   }
-  if (const auto* const cantilever = s.find<Cantilever>(); cantilever != nullptr && cantilever->stress_gradient != 0) {
-    list.push_back({.effect = "structure.stress_gradient",
-                    .magnitude = {.name = "rise of the contact point", .unit = "m", .value = d.contact_gap() - d.gap.contact},
-                    .group = {.name = "over the contact gap", .value = d.contact_gap() / d.gap.contact - 1},
-                    .instead = 0.0});
+  if (s.find<Beam>() != nullptr) {
+    add_omissible_parts(d, list);
+    add_omissible_rest_shape(d, list);
   }
   if (d.surface) {
     Device without = d;

@@ -423,6 +423,31 @@ TEST(Modes, PrintsTheAgreedJson) {
   EXPECT_TRUE(std::is_sorted(omega.begin(), omega.end()));
 }
 
+TEST(Check, TellsHowASwitchRestsThatIsNotStraight) {
+  const Workplace here;
+  const auto check = [&](const std::string& setting) {
+    const Outcome o = here.run({"check", "gold.toml", "--json", "-", "--quiet", "--set", setting});
+    EXPECT_EQ(o.status, 0) << o.err;
+    return nlohmann::json::parse(o.out);
+  };
+  const std::string table =
+      "structure.rest_shape={positions=[\"0 um\", \"80 um\", \"tip\"], heights=[\"0 nm\", \"-40 nm\", \"300 nm\"]}";
+  const nlohmann::json bent = check(table)["rest_shape"];
+  constexpr double rounding = 1e-15;
+  EXPECT_NEAR(bent["far_end_rise_m"].get<double>(), 300e-9, rounding);
+  EXPECT_NEAR(bent["far_end_gap_m"].get<double>(), 3.8e-6, rounding);
+  EXPECT_NEAR(bent["contact_rise_m"].get<double>(), 295e-9, rounding);
+  EXPECT_NEAR(bent["contact_gap_m"].get<double>(), 2.295e-6, rounding);
+  EXPECT_NEAR(bent["least_electrode_gap_m"].get<double>(), 3.46e-6, rounding);
+  const Outcome text = here.run({"check", "gold.toml", "--set", table});
+  EXPECT_THAT(
+      text.out,
+      testing::AllOf(HasSubstr("the far end rests 300.0\u00a0nm further from the near electrode than a straight one"),
+                     HasSubstr("contact gap 2.295\u00a0µm"), HasSubstr("the least gap over an electrode is 3.460\u00a0µm")));
+  EXPECT_GT(check("structure.stress_gradient=0.1 MPa/um")["rest_shape"]["contact_rise_m"].get<double>(), 0);
+  EXPECT_FALSE(check("structure.stress_gradient=0 Pa/m").contains("rest_shape"));
+}
+
 TEST(EveryVerb, PrintsNumbersThatPeopleRead_slow) {
   const Workplace here;
   for (const char* scene : {"nem-tin.toml", "nem-casimir.toml", "two-electrodes.toml", "hung-senturia.toml"})

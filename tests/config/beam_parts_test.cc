@@ -232,5 +232,100 @@ TEST(BeamParts, ThatCannotBeAreRefusedWithTheirPlace) {
               HasSubstr("gas.model = reynolds: not over holes"));
 }
 
+// Lines are cited by the expected messages.
+constexpr std::string_view bent_scene = R"([structure]
+kind = "cantilever"
+length = "250 um"
+width = "20 um"
+rest_shape = { positions = ["0 um", "100 um", "tip"], heights = ["0 nm", "30 nm", "-200 nm"] }
+thickness = "2 um"
+youngs_modulus = "78 GPa"
+density = "19300 kg/m^3"
+[gap]
+electrode = "3.5 um"
+contact = "2 um"
+[electrode.main]
+span = ["40 um", "240 um"]
+[contact]
+model = "linear"
+pad_length = "5 um"
+stiffness = "100 N/m"
+[waveform.main]
+family = "step"
+level = "5 V"
+)";
+std::string bent_refusal(const std::string& from, const std::string& to) { return message(edited(bent_scene, from, to)); }
+
+TEST(RestShapeOfAScene, IsATableOfHeightsAlongTheBeam) {
+  const Device d = read_built(std::string(bent_scene)).device;
+  EXPECT_EQ(d.rest_offset(0), 0);
+  EXPECT_DOUBLE_EQ(d.rest_offset(50e-6), 15e-9);
+  EXPECT_DOUBLE_EQ(d.rest_offset(100e-6), 30e-9);
+  EXPECT_DOUBLE_EQ(d.rest_offset(175e-6), -85e-9);
+  EXPECT_DOUBLE_EQ(d.contact_gap(), 2e-6 + d.rest_offset(247.5e-6));
+  const Scene scene = read_built(std::string(bent_scene));
+  for (const Scene& again : {read_scene(canonical(scene.file, "again")), read_scene(resolved(scene, {}))})
+    EXPECT_EQ(again.device.rest_offset(175e-6), d.rest_offset(175e-6));
+}
+
+TEST(RestShapeOfAScene, MayBeSetAndMayVary) {
+  const auto with = [](const std::string& option) { return read_built(std::string(bent_scene), {option}).device; };
+  EXPECT_DOUBLE_EQ(with("structure.rest_shape.heights[2]=50 nm").rest_offset(100e-6), 50e-9);
+  EXPECT_DOUBLE_EQ(with("structure.stress_gradient=0.1 MPa/um").rest_offset(100e-6), 0.1e12 / 78e9 * 1e-8 / 2)
+      << "it takes the place of the table";
+  const std::string spread =
+      "[spread]\n"
+      "\"structure.rest_shape.heights[2]\" = { distribution = \"normal\", standard_deviation = \"5 nm\" }\n"
+      "\"structure.rest_shape.heights[3]\" = { distribution = \"normal\", cov = \"10 %\" }\n";
+  Scene scene = read_built(std::string(bent_scene) + spread);
+  for (const SpreadVariable& v : scene.spread.variables) {
+    ASSERT_NE(v.keys.front().member, nullptr);
+    v.keys.front().member(scene) *= 2;
+  }
+  EXPECT_DOUBLE_EQ(scene.device.rest_offset(100e-6), 60e-9);
+  EXPECT_DOUBLE_EQ(scene.device.rest_offset(250e-6), -400e-9);
+  const std::string together =
+      "[spread]\nbow = { keys = [\"structure.rest_shape.heights[2]\", \"structure.rest_shape.heights[3]\"], distribution = "
+      "\"normal\", cov = \"10 %\" }\n";
+  EXPECT_EQ(read_built(std::string(bent_scene) + together).spread.variables.front().keys.size(), 2u);
+  PlanRequest request{.scene = SceneFile::parse(std::string(bent_scene), "x.toml"),
+                      .place = [](std::string_view key, std::size_t) { return std::string(key); }};
+  request.vary = {"structure.rest_shape.heights[3]=-100 nm:100 nm:3"};
+  EXPECT_EQ(Plan(request).points(), 3u);
+}
+
+TEST(RestShapeOfAScene, ThatCannotBeIsRefusedWithItsPlace) {
+  EXPECT_EQ(message(std::string(bent_scene)), "");
+  const std::string table = "x.toml:5: structure.rest_shape.";
+  EXPECT_THAT(bent_refusal("\"-200 nm\"]", "\"-200 nm\", \"0 nm\"]"),
+              AllOf(StartsWith(table + "heights = ["), HasSubstr("there are 4 of them for 3 positions")));
+  EXPECT_THAT(bent_refusal("\"0 um\", \"100 um\"", "\"1 um\", \"100 um\""),
+              AllOf(StartsWith(table + "positions = ["), HasSubstr("rise from 0 m")));
+  EXPECT_THAT(bent_refusal("\"100 um\", \"tip\"", "\"250 um\", \"tip\""),
+              AllOf(StartsWith(table + "positions = ["), HasSubstr("rise from 0 m")));
+  EXPECT_THAT(bent_refusal("\"tip\"", "\"240 um\""),
+              AllOf(StartsWith(table + "positions = ["), HasSubstr("must end at the tip, and the beam is 250 um long")));
+  EXPECT_EQ(bent_refusal("\"tip\"", "\"100 %\""), "");
+  EXPECT_THAT(bent_refusal("\"30 nm\"", "\"30 V\""),
+              AllOf(StartsWith(table + "heights = ["), HasSubstr("value 2: expected a length [m], got a voltage [V]")));
+  EXPECT_THAT(bent_refusal(", heights = [\"0 nm\", \"30 nm\", \"-200 nm\"]", ""),
+              HasSubstr("x.toml:5: [structure.rest_shape]: missing key 'heights'"));
+  EXPECT_THAT(
+      bent_refusal("thickness", "stress_gradient = \"0 Pa/m\"\nthickness"),
+      AllOf(StartsWith("x.toml:5: structure.rest_shape = {"), HasSubstr("cannot stand beside structure.stress_gradient")));
+  EXPECT_THAT(
+      bent_refusal("thickness",
+                   "layers = [{ face = \"far\", span = [\"0 um\", \"tip\"], thickness = \"0.1 um\", youngs_modulus = \"70 "
+                   "GPa\", density = \"2200 kg/m^3\", stress = \"1 MPa\" }]\nthickness"),
+      AllOf(StartsWith("x.toml:5: structure.rest_shape = {"), HasSubstr("cannot stand beside layers[1].stress")));
+  EXPECT_THAT(bent_refusal("\"cantilever\"", "\"clamped-clamped\""),
+              AllOf(StartsWith("x.toml:5: structure.rest_shape = {"), HasSubstr("needs stretching = false")));
+  EXPECT_EQ(bent_refusal("\"cantilever\"", "\"clamped-clamped\"\nstretching = false"), "");
+  EXPECT_THAT(bent_refusal("\"-200 nm\"", "\"-2.1 um\""), HasSubstr("it would be closed at rest"));
+  EXPECT_THAT(bent_refusal("\"30 nm\"", "\"-3.49 um\""), HasSubstr("it would touch it at rest"));
+  EXPECT_THAT(message("[structure]\nkind = \"plate\"\nrest_shape = { positions = [], heights = [] }\n"),
+              HasSubstr("belongs to kind = \"cantilever\" or \"clamped-clamped\", not to \"plate\""));
+}
+
 }  // namespace
 }  // namespace softland

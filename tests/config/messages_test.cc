@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Quantities, BadFile, testing::Values(
     Edit{R"("4 um")", R"(4)", R"(x.toml:6: structure.thickness = 4: no unit (expected a length such as "2 um"))"},
     Edit{R"("4 um")", R"(4e-6)", R"(x.toml:6: structure.thickness = 4e-06: no unit (expected a length such as "2 um"))"},
     Edit{R"("4 um")", R"(true)", R"(x.toml:6: structure.thickness = true: not a number with a unit (expected a length such as "2 um"))"},
-    Edit{R"("4 um")", R"(["4 um"])", R"(x.toml:6: structure.thickness = ["4 um"]: not a number with a unit (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"(["4 um"])", R"(x.toml:6: structure.thickness = ["4 um"]: not a number with a unit (expected a length such as "2 um"); sections describe a beam that changes along it: sections = [{ length = "60 um", width = "10 um" }, { length = "190 um", width = ["40 um", "20 um"] }])"},
     Edit{R"("4 um")", R"("")", R"(x.toml:6: structure.thickness = "": not a number and a unit (expected a length such as "2 um"))"},
     Edit{R"("4 um")", R"("4 GPa")", R"(x.toml:6: structure.thickness = "4 GPa": expected a length [m], got a pressure [Pa])"},
     Edit{R"("4 um")", R"("4 um s/V")", R"(x.toml:6: structure.thickness = "4 um s/V": expected a length [m], got a quantity [m^-1 kg^-1 s^4 A])"},
@@ -82,7 +82,10 @@ INSTANTIATE_TEST_SUITE_P(Examples, BadFile, testing::Values(
 
 INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
     Edit{"thickness =", "thicknes =", R"(x.toml:6: structure.thicknes = "4 um": unknown key (did you mean 'thickness'?))"},
-    Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, sections, layers, anchor, far_anchor, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio, stress_gradient, residual_stress, biaxial, stretching, mass, stiffness, area, file, axis, direction, length_unit, mass_unit, mass_normalised, clamp, positions, frequencies, shapes, rest_offsets, widths, frequency_factor))"},
+    Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, sections, layers, anchor, far_anchor, rest_shape, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio, stress_gradient, residual_stress, biaxial, stretching, mass, stiffness, area, file, axis, direction, length_unit, mass_unit, mass_normalised, clamp, positions, frequencies, shapes, rest_offsets, widths, frequency_factor))"},
+    Edit{"thickness =", "hinge_width =", R"(x.toml:6: structure.hinge_width = "4 um": unknown key; 'sections' describes a beam whose width, thickness or material changes along it, such as a hinge narrower than the plate: sections = [{ length = "60 um", width = "10 um" }, { length = "190 um", width = "40 um" }])"},
+    Edit{"thickness =", "springs =", R"(x.toml:6: structure.springs = "4 um": unknown key; 'anchor' and 'far_anchor' describe ends that give way: anchor = { rotation = "1e-7 N m/rad" })"},
+    Edit{"pad_length", "dimples", R"(x.toml:19: contact.dimples = "5 um": unknown key; 'count' stands for equal contacts side by side, [contact.NAME] for several places)"},
     Edit{"title =", "titel =", R"(x.toml:1: titel = "small": unknown key (did you mean 'title'?))"},
     Edit{"[gas]", "[gass]", "x.toml:14: [gass]: unknown section (did you mean 'gas'?)"},
     Edit{"[gas]", "[weather]", "x.toml:14: [weather]: unknown section (known: structure, gap, electrode, gas, contact, dispersion, surface, piezo, waveform, driver, simulate, metrics, spread, calibration)"},

@@ -57,10 +57,10 @@ TEST(Schema, EveryKeySetsAMemberOrIsKnownToSetNone) {
   EXPECT_THAT(without_member,
               UnorderedElementsAre("structure.area", "electrode.area", "electrode.dielectric", "contact.model", "contact.side",
                                    "metrics.closed", "gas.model", "structure.kind", "structure.sections", "structure.layers",
-                                   "structure.file", "structure.axis", "structure.direction", "structure.length_unit",
-                                   "structure.mass_unit", "structure.mass", "structure.mass_normalised", "structure.clamp",
-                                   "structure.positions", "structure.frequencies", "structure.shapes", "structure.rest_offsets",
-                                   "structure.widths"));
+                                   "structure.rest_shape", "structure.file", "structure.axis", "structure.direction",
+                                   "structure.length_unit", "structure.mass_unit", "structure.mass", "structure.mass_normalised",
+                                   "structure.clamp", "structure.positions", "structure.frequencies", "structure.shapes",
+                                   "structure.rest_offsets", "structure.widths"));
 }
 
 TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {

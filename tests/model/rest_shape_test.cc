@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "model/beam.h"
+#include "model/built_beam.h"
 #include "model/closing.h"
 #include "model/device.h"
 #include "model/pull_in.h"
@@ -75,6 +77,89 @@ TEST(RestShape, IsRefusedWhereItWouldTouchAtRest) {
   along_pad.contacts.front().distribution = ContactDistribution::pad;
   test::expect_refused(
       [&] { validate(along_pad); },
+      "contact.distribution = pad: not with a structure that is curled at rest, whose pad is tilted before it moves");
+}
+
+// The parabola of a stress gradient as a table with even steps.
+Device sampled(Device device, int steps) {
+  const Device as_curled = curled(device);
+  RestShape shape;
+  for (int k = 0; k <= steps; ++k) {
+    const double share = static_cast<double>(k) / steps;
+    shape.positions.push_back(Place::share(share));
+    shape.heights.push_back(as_curled.rest_offset(share * device.structure.length));
+  }
+  part_of<Beam>(device.structure).rest_shape = shape;
+  return device;
+}
+
+// A line between two places of a parabola lies above it by at most kappa h^2/8.
+TEST(RestShapeTable, HasTheGapsOfTheCurveThatItSamples) {
+  const Device smooth = curled(test::gold_cantilever());
+  const double curvature = gradient / 78_GPa;
+  for (const int steps : {5, 20}) {
+    const Device d = sampled(test::gold_cantilever(), steps);
+    const double step = 250_um / steps, most = curvature * step * step / 8;
+    double worst = 0;
+    for (int k = 0; k <= 1000; ++k) {
+      const double x = 250_um * k / 1000, error = d.rest_offset(x) - smooth.rest_offset(x);
+      EXPECT_GE(error, -1e-20) << x;
+      worst = std::max(worst, error);
+    }
+    EXPECT_NEAR(worst, most, 1e-3 * most);
+    EXPECT_NEAR(d.contact_gap(), smooth.contact_gap(), most);
+  }
+}
+
+// By the table the gap is larger by two thirds of kappa h^2/8 in the mean, and V^2 grows with its cube.
+TEST(RestShapeTable, HasThePullInAndTheFirstTouchOfTheCurveThatItSamples) {
+  const double smooth = static_pull_in(Switch(curled(test::gold_cantilever())), 0).voltage;
+  const auto error = [&](int steps) {
+    return static_pull_in(Switch(sampled(test::gold_cantilever(), steps)), 0).voltage / smooth - 1;
+  };
+  const double coarse = error(25), fine = error(50);  // the electrode ends at points of both tables
+  const double step = 10_um, mean_rise = 2.0 / 3 * gradient / 78_GPa * step * step / 8;
+  EXPECT_NEAR(coarse, 1.5 * mean_rise / 3.6_um, 0.4 * coarse);
+  EXPECT_NEAR(coarse / fine, 4, 0.1) << "second order in the step";
+  const auto first_touch = [](const Device& d) {
+    return simulate_closing(Switch(d), std::vector{Signal::constant(20)}, {.duration = 60e-6, .tolerance = 1e-9}).touches.at(0);
+  };
+  const Touch by_curve = first_touch(curled(test::gold_cantilever())),
+              by_table = first_touch(sampled(test::gold_cantilever(), 20));
+  constexpr double few = 3e-4;  // three times the error of the gap, 0.2 nm of 2 um
+  EXPECT_NEAR(by_table.begin / by_curve.begin, 1, few);
+  EXPECT_NEAR(by_table.impact_velocity / by_curve.impact_velocity, 1, few);
+}
+
+// Points of the quadrature do not lie across a kink: more of them change nothing.
+TEST(RestShapeTable, HasKinksWherePanelsEnd) {
+  Device d = test::gold_cantilever();
+  part_of<Beam>(d.structure).rest_shape =
+      RestShape{.positions = {0, 90_um, 155_um, Place::share(1)}, .heights = {0, 0.4_um, -0.3_um, 0.2_um}};
+  const double usual = static_pull_in(Switch(d, {.points_per_length = 48, .points_per_panel = 8}), 0).voltage,
+               many = static_pull_in(Switch(d, {.points_per_length = 400, .points_per_panel = 40}), 0).voltage;
+  EXPECT_NEAR(usual / many, 1, 1e-9);
+}
+
+TEST(RestShapeTable, GoesOnStraightOverALongerBeam) {
+  Device d = sampled(test::gold_cantilever(), 5);
+  RestShape& shape = *part_of<Beam>(d.structure).rest_shape;
+  for (Place& position : shape.positions) position = position.on(250_um);
+  d.structure.length = 260_um;
+  EXPECT_NEAR(d.rest_offset(260_um), d.rest_offset(250_um) + 0.2 * (d.rest_offset(250_um) - d.rest_offset(200_um)), 1e-18);
+  d.structure.length = 240_um;
+  EXPECT_EQ(kinks_at_rest(d.structure).size(), 4u);
+}
+
+TEST(RestShapeTable, IsRefusedBesideAnotherCurl) {
+  Device d = sampled(test::gold_cantilever(), 5);
+  part_of<Cantilever>(d.structure).stress_gradient = gradient;
+  test::expect_refused([&] { validate(d); },
+                       "structure.rest_shape: cannot stand beside stress_gradient, which curls the beam as well");
+  part_of<Cantilever>(d.structure).stress_gradient = 0;
+  d.contacts.front().distribution = ContactDistribution::pad;
+  test::expect_refused(
+      [&] { validate(d); },
       "contact.distribution = pad: not with a structure that is curled at rest, whose pad is tilted before it moves");
 }
 

@@ -205,6 +205,15 @@ TEST(Derivatives, OfACurledCantilever_optimized) {
                     with(beam, {"structure.stress_gradient", "contact.pad_length"})},
                    1);
 }
+TEST(Derivatives, OfABeamBentByATable_optimized) {
+  expect_agreement(
+      {"mem-gold.toml",
+       Actuator::electrostatic,
+       "pulse",
+       {in_100_us, "structure.rest_shape={positions=[\"0 um\", \"30 %\", \"tip\"], heights=[\"0 nm\", \"60 nm\", \"150 nm\"]}"},
+       {"structure.rest_shape.heights[2]", "structure.rest_shape.heights[3]", "structure.length", "gap.electrode"}},
+      1);
+}
 TEST(Derivatives, OfABeamOfSections_optimized) {
   expect_agreement(
       {"mem-gold.toml",

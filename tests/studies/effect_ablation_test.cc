@@ -89,6 +89,63 @@ TEST(Without, IsTheSceneWithoutTheSectionUnderTheSameVolts) {
   EXPECT_EQ(without(relative, {omissible_effects(relative)[1]}).signals()[0].hold_level(), relative.signals()[0].hold_level());
 }
 
+constexpr std::string_view parts =
+    "structure.sections=[{length=\"60 um\", width=\"15 um\"}, {length=\"190 um\", holes={pitch=\"10 um\", size=\"4 um\"}}]";
+constexpr std::string_view two_layers =
+    "structure.layers=[{face=\"far\", span=[\"0 um\", \"60 um\"], thickness=\"0.1 um\", youngs_modulus=\"250 GPa\", "
+    "density=\"3100 kg/m^3\"}, {face=\"near\", span=[\"0 um\", \"60 um\"], thickness=\"0.1 um\", youngs_modulus=\"250 GPa\", "
+    "density=\"3100 kg/m^3\", stress=\"2 MPa\"}]";
+constexpr std::string_view turning = "structure.anchor={rotation=\"1e-6 N m/rad\"}";
+
+TEST(OmissibleEffect, MayBeAPartOfABeam) {
+  const SceneFile file = gold_at_17_volts({parts, two_layers, turning, "structure.stress_gradient=0.1 MPa/um"});
+  const std::vector<OmissibleEffect> all = omissible_effects(prepare(file));
+  EXPECT_THAT(names(all),
+              ElementsAre("structure.modes", "structure.anchor", "structure.sections[2].holes", "structure.layers[2].stress",
+                          "structure.stress_gradient", "electrode.main.fringing", "gas"));
+  EXPECT_EQ(all[1].magnitude.value, 1e-6);
+  EXPECT_LT(all[1].group.value, 0) << "it lowers the frequency";
+  EXPECT_NEAR(all[2].group.value, 1 - 0.16, 1e-12);
+  EXPECT_EQ(all[3].choice, "2 MPa");
+  EXPECT_LT(all[3].magnitude.value, 0) << "tension on the near face pulls the beam down";
+  EXPECT_GT(all[4].magnitude.value, 0);
+  const char* const table = "structure.rest_shape={positions=[\"0 um\", \"tip\"], heights=[\"0 nm\", \"100 nm\"]}";
+  const std::vector<OmissibleEffect> by_table = omissible_effects(prepare(gold_at_17_volts({table})));
+  ASSERT_EQ(by_table[1].effect, "structure.rest_shape");
+  EXPECT_NEAR(by_table[1].magnitude.value, 99e-9, 1e-15);
+  EXPECT_NEAR(by_table[1].group.value, 99.0 / 2000, 1e-9);
+  EXPECT_THAT(
+      names(omissible_effects(prepare(gold_at_17_volts({"structure.anchor=clamped", "structure.stress_gradient=0 Pa/m"})))),
+      ElementsAre("structure.modes", "electrode.main.fringing", "gas"));
+}
+
+TEST(Without, APartIsTheSceneThatDoesNotHaveIt) {
+  const auto t_i = [](const PreparedScene& p) { return own(p).initial_contact_time; };
+  const auto leave_out = [](const PreparedScene& p, const std::string& effect) {
+    for (const OmissibleEffect& one : omissible_effects(p)) {
+      if (one.effect == effect) return without(p, {one});
+    }
+    throw std::logic_error(effect);
+  };
+  const PreparedScene plain = prepare(gold_at_17_volts());
+  const PreparedScene bowed =
+      prepare(gold_at_17_volts({"structure.rest_shape={positions=[\"0 um\", \"tip\"], heights=[\"0 nm\", \"100 nm\"]}"}));
+  EXPECT_GT(t_i(bowed), 1.01 * t_i(plain));
+  EXPECT_EQ(t_i(leave_out(bowed, "structure.rest_shape")), t_i(plain));
+  const PreparedScene turns = prepare(gold_at_17_volts({turning}));
+  EXPECT_GT(t_i(plain), 1.001 * t_i(turns));
+  // A clamp that is said goes another way through the modes than one that is not.
+  EXPECT_NEAR(t_i(leave_out(turns, "structure.anchor")) / t_i(plain), 1, 1e-6);
+  const PreparedScene whole = prepare(gold_at_17_volts({parts, two_layers}));
+  const PreparedScene relaxed = leave_out(whole, "structure.layers[2].stress"),
+                      solid = leave_out(whole, "structure.sections[2].holes");
+  EXPECT_EQ(part_of<Beam>(relaxed.scene.device.structure).layers[1].stress, 0);
+  EXPECT_NE(t_i(relaxed), t_i(whole));
+  EXPECT_FALSE(part_of<Beam>(solid.scene.device.structure).sections[1].holes.exist());
+  EXPECT_EQ(part_of<Beam>(solid.scene.device.structure).sections.size(), 2u);
+  EXPECT_NE(t_i(solid), t_i(whole));
+}
+
 TEST(Influence, IsTheLargestRelativeChange) {
   Metrics a;
   a.initial_contact_time = 10e-6;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "model/pull_in.h"
 #include "scenes.h"
 #include "studies/fitting/estimate.h"
 #include "studies/fitting/trace_windows.h"
@@ -274,6 +275,58 @@ TEST(Fit, OfAKeyWithoutASpreadHasNoPrior) {
   EXPECT_NEAR(unknown(free, "structure.stiffness").value / 42, 1.1, 1e-4);
   const Fit held = fit(plate(), bench, {.unknowns = {"structure.stiffness"}, .starts = 1});
   EXPECT_LT(unknown(held, "structure.stiffness").value / 42, 1.06);
+}
+// A beam of parts, curled by all that can curl one but a table, and the same beam with a table of heights.
+SceneFile built_gold(bool by_table) {
+  SceneFile file = gold({"structure.modes=2",
+                         "structure.sections=[{length=\"60 um\", width=\"15 um\", thickness=\"1.8 um\"}, {length=\"190 um\", "
+                         "width=[\"15 um\", \"30 um\"], holes={pitch=\"10 um\", size=\"4 um\"}}]",
+                         "structure.anchor={rotation=\"2e-8 N m/rad\"}", "waveform.main.level=5 V"});
+  file.erase("spread");
+  if (by_table) {
+    file.set("structure.rest_shape={positions=[\"0 um\", \"40 %\", \"tip\"], heights=[\"0 nm\", \"50 nm\", \"300 nm\"]}");
+  } else {
+    file.set("structure.stress_gradient=0.1 MPa/um");
+    file.set(
+        "structure.layers=[{face=\"far\", span=[\"0 um\", \"60 um\"], thickness=\"0.1 um\", youngs_modulus=\"250 GPa\", "
+        "density=\"3100 kg/m^3\", stress=\"5 MPa\"}]");
+  }
+  return file;
+}
+
+TEST(Fit, FindsAnyKeyOfABeamOfParts) {
+  SKIP_WITHOUT_CERES();
+  const std::vector<Measured> readings{{"pull_in", {.what = Measurable::pull_in}, 0},
+                                       {"frequency", {.what = Measurable::frequency}, 0},
+                                       {"capacitance", {.what = Measurable::capacitance}, 0}};
+  constexpr double truth = 1.06, sharp = 1e-7, tolerance = 1e-4;  // over the scene's value
+  for (const char* const key :
+       {"structure.sections[1].thickness", "structure.sections[1].length", "structure.sections[2].width[2]",
+        "structure.sections[2].holes.size", "structure.anchor.rotation", "structure.layers[1].stress",
+        "structure.layers[1].thickness", "structure.stress_gradient", "structure.rest_shape.heights[3]"}) {
+    const SceneFile file = built_gold(std::string_view(key).find("rest_shape") != std::string_view::npos);
+    SceneFile varied = file;
+    varied.set(fmt::format("spread.\"{}\"={{distribution=\"normal\",cov=\"10 %\"}}", key));
+    const PreparedScene p = prepare(varied);
+    DeviceReader reader(p);
+    ASSERT_TRUE(reader.move_to({truth})) << key;
+    Bench bench{.name = "bench.toml", .measurements = {}, .changes = {}};
+    for (const Measured& one : readings) {
+      const double value = reader.read(one.instrument, false).values[0];
+      bench.measurements.push_back(
+          {.quantity = one.quantity, .values = {value}, .errors = {sharp * value}, .place = "bench.toml:1"});
+    }
+    const Fit found = fit(file, bench, {.unknowns = {key}, .starts = 1, .suggest = false});
+    ASSERT_TRUE(found.found) << key;
+    const double nominal = p.scene.spread.variables.front().keys.front().nominal;
+    EXPECT_NEAR(unknown(found, key).value / nominal, truth, tolerance) << key;
+    EXPECT_GT(std::abs(found.residuals.front().normalized_before()), 100) << key << " does not move what is measured";
+    // The fitted scene says so.
+    SceneFile fitted = file;
+    for (const Fit::FittedKey& one : found.keys("")) fitted.assign(one.path, one.value, one.element);
+    EXPECT_NEAR(static_pull_in(prepare(fitted).model, 0).voltage / bench.measurements.front().values.front(), 1, tolerance)
+        << key;
+  }
 }
 TEST(Fit, WeighsDownADatumThatDoesNotAgree) {
   SKIP_WITHOUT_CERES();

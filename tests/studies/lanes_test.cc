@@ -177,6 +177,9 @@ std::vector<Case> cases() {
   all.push_back({"curled up", gold_at_17_volts({"structure.stress_gradient=0.2 MPa/um"})});
   all.push_back({"curled down over a film on either side",
                  gold_at_17_volts({"structure.stress_gradient=-0.2 MPa/um", "gas.far_gap=2 um"})});
+  all.push_back({"bent by a table",
+                 gold_at_17_volts({"structure.rest_shape={positions=[\"0 um\", \"30 %\", \"tip\"], heights=[\"0 nm\", \"60 nm\", "
+                                   "\"-150 nm\"]}"})});
   const std::string stepped =
       "structure.sections=[{length=\"60 um\", width=\"15 um\"}, {length=\"190 um\", thickness=\"2.2 um\"}]";
   const std::string tapered = "structure.sections=[{length=\"100 um\", width=[\"12 um\", \"20 um\"]}, {length=\"150 um\"}]";

@@ -252,6 +252,11 @@ void vary_rest_shape(SceneFile& file, Dice dice) {
   const Device d = device_of(file);
   if (d.structure.find<Cantilever>() == nullptr || d.touches_along_pad() || !dice.chance(0.3)) return;
   const double curvature = dice.between(-0.6, 0.6) * d.gap.contact / (d.structure.length * d.structure.length);
+  const double end = curvature * d.structure.length * d.structure.length / 2;
+  if (dice.chance(0.3))  // the same as a table
+    return file.set(
+        fmt::format(R"(structure.rest_shape={{positions=["0 m", "40 %", "tip"], heights=["0 m", "{:.6g} m", "{:.6g} m"]}})",
+                    0.16 * end, end));
   put(file, "structure.stress_gradient", curvature * part_of<Beam>(d.structure).youngs_modulus, "Pa/m");
 }
 
