@@ -360,7 +360,8 @@ SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const st
     if (scale.is_factor() && varied.nominal == 0) {
       in.fail(varied.drive ? fmt::format("{} is nominally 0, and stays 0 by any factor: give it a distribution in {}",
                                          varied.name(), varied.unit)
-                           : fmt::format("{} is 0 in this scene, and stays 0 by any factor", varied.name()));
+                           : fmt::format("{} is 0 in this scene, and stays 0 by any factor{}", varied.name(),
+                                         varied.unit.empty() ? "" : ": give it a standard_deviation in " + varied.unit));
     }
     if (varied.drive && varied.drive->error == DriveError::jitter) {
       // Its value is no time, but what the times of the edges are drawn from.

@@ -179,6 +179,26 @@ std::vector<BeamSection> built_sections(const Device& device, double gradient) {
   return sections;
 }
 
+// Whether both have the same modes. A general beam is searched for in full, so that it may differ by rounding: ratios of its
+// sections do, when all of them become thicker by one factor.
+bool is_known(const NormalisedModes::Beam& beam, const NormalisedModes::Beam& known) {
+  if (beam == known) return true;
+  if (!beam.is_general() || !known.is_general() || beam.modes != known.modes || beam.far_clamp != known.far_clamp ||
+      beam.sections.size() != known.sections.size())
+    return false;
+  const auto same = [](double a, double b) {
+    constexpr double rounding = 1e-13;
+    return a == b || std::abs(a - b) <= rounding * std::abs(b);
+  };
+  const auto alike = [&](const NormalisedModes::Beam::Section& a, const NormalisedModes::Beam::Section& b) {
+    return same(a.begin, b.begin) && same(a.end, b.end) && same(a.rigidity, b.rigidity) && same(a.mass, b.mass) &&
+           same(a.taper, b.taper);
+  };
+  return same(beam.axial_force, known.axial_force) && same(beam.near_rotation, known.near_rotation) &&
+         same(beam.near_translation, known.near_translation) && same(beam.far_rotation, known.far_rotation) &&
+         same(beam.far_translation, known.far_translation) && std::ranges::equal(beam.sections, known.sections, alike);
+}
+
 }  // namespace
 
 double bending_modulus(const Structure& s) {
@@ -548,8 +568,8 @@ BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const 
   for (const BeamSection& s : sections)
     beam.sections.push_back({s.begin / length_, s.end / length_, s.rigidity / ei, s.mass_per_length / mu, s.taper});
   try {
-    normalised_ =
-        known && known->beam() == beam ? std::move(known) : std::make_shared<const NormalisedModes>(std::move(beam), known.get());
+    normalised_ = known && is_known(beam, known->beam()) ? std::move(known)
+                                                         : std::make_shared<const NormalisedModes>(std::move(beam), known.get());
   } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("axial force {}: {}", engineering(support.axial_force, "N"), error.what()));
   }

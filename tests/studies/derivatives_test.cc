@@ -53,7 +53,11 @@ SceneFile random_switch(const Scenes& of, std::mt19937_64& random) {
     for (const VariedKey& key : v.keys) {
       if (key.drive) continue;
       const double drawn_factor = key.path == "structure.length" ? 1 + std::abs(factor(random) - 1) : factor(random);
-      file.assign(key.path, key.nominal * drawn_factor);
+      if (key.element > 0) {
+        file.assign(key.path, Quantity{.value = key.nominal * drawn_factor, .dimension = key.measured_in}, key.element);
+      } else {
+        file.assign(key.path, key.nominal * drawn_factor);
+      }
     }
   }
   return file;
