@@ -179,7 +179,7 @@ std::vector<BeamSection> built_sections(const Device& device, double gradient) {
   return sections;
 }
 
-// Whether both have the same modes. A general beam is searched for in full, so that it may differ by rounding: ratios of its
+// Says whether both have the same modes. A general beam is searched for in full, so that it may differ by rounding: ratios of its
 // sections do, when all of them become thicker by one factor.
 bool is_known(const NormalisedModes::Beam& beam, const NormalisedModes::Beam& known) {
   if (beam == known) return true;
