@@ -855,6 +855,7 @@ bool is_linear(const Stage& stage) {
 Fit fit(const SceneFile& given, const Bench& bench, const FitOptions& options, const Watch& watch) {
   require(options.starts >= 1 && options.starts <= most_starts,
           [&] { return fmt::format("{} starts: there must be from 1 to {}", options.starts, most_starts); });
+  require(!bench.measurements.empty(), [&] { return fmt::format("{}: there is no measurement to fit", bench.name); });
   SceneFile file = given;
   const bool assumed = options.unknowns.empty() && assume_spread(file);
   const std::size_t measurements = bench.measurements.size();

@@ -328,6 +328,32 @@ TEST(Fit, FindsAnyKeyOfABeamOfParts) {
         << key;
   }
 }
+
+TEST(Fit, FindsACurlAboutAStraightBeamByItsSpread) {
+  SKIP_WITHOUT_CERES();
+  SceneFile straight = gold({"structure.modes=2", "structure.stress_gradient=0 Pa/m", "waveform.main.level=5 V"});
+  straight.erase("spread");
+  SceneFile file = straight;
+  file.set(R"(spread={"structure.stress_gradient"={distribution="normal",standard_deviation="0.1 MPa/um"}})");
+  constexpr double truth = 0.03e12, sharp = 1e-7;  // [Pa/m]; over the value
+  const PreparedScene p = prepare(file);
+  DeviceReader reader(p);
+  ASSERT_TRUE(reader.move_to({truth}));
+  const double value = reader.read({.what = Measurable::pull_in}, false).values[0];
+  Bench bench{.name = "bench.toml", .measurements = {}, .changes = {}};
+  EXPECT_THROW(static_cast<void>(fit(file, bench, {.starts = 1})), InvalidInput) << "there is nothing to fit";
+  bench.measurements.push_back({.quantity = "pull_in", .values = {value}, .errors = {sharp * value}, .place = "bench.toml:1"});
+  const Fit found = fit(file, bench, {.starts = 1, .suggest = false});
+  ASSERT_TRUE(found.found);
+  EXPECT_NEAR(unknown(found, "structure.stress_gradient").value / truth, 1, 1e-3);
+  try {
+    static_cast<void>(fit(straight, bench, {.unknowns = {"structure.stress_gradient"}, .starts = 1}));
+    ADD_FAILURE() << "a factor of 0 is 0";
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("give it a standard_deviation in Pa/m"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Fit, WeighsDownADatumThatDoesNotAgree) {
   SKIP_WITHOUT_CERES();
   Bench bench = bench_of(all_kinds, {});
