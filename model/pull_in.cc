@@ -193,7 +193,7 @@ class EquilibriumBranch {
   // Near the face of a thin dielectric the field grows so fast that Newton's method needs short steps.
   bool walks(double s) {
     constexpr int most_steps = 100;
-    constexpr double shortest = 1e-6;  // of the way
+    constexpr double shortest = 1e-6;  // over the way
     const double least = shortest * std::abs(s - here_);
     double step = (s - here_) / 2;
     for (int k = 0; k < most_steps && std::abs(step) > least; ++k) {
@@ -525,14 +525,15 @@ double static_push(const Switch& model, const Eigen::VectorXd& q) {
   return model.contact_push(q.data(), still.data(), true);
 }
 
-// On the face of a dielectric, where a beam may stand on its first spot, or lie on it with most of its length. From the beam that
-// a force holds at the plane it goes down the potential by Newton's method, whose step leads downhill along every direction. A
-// step shortens no gap of the field by more than a share of it, so that it does not leap over the ridge that a soft face is.
+// Finds how a beam rests on the face of a dielectric: it may stand on its first spot, or lie with most of its length. Newton's
+// method begins at the beam that a force holds at the plane, and goes down the potential: its step leads downhill along every
+// direction. A step shortens no gap of the field by more than a share, so that it does not leap over the ridge of a soft face.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts) {
   constexpr int most_steps = 1000;
-  constexpr double longest = 0.05, shortest = 1e-9, least_gap = 0.25;  // the last of the depth of the dielectric
-  constexpr double rounding = 1e-12;                                   // of the bending energy
-  constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;           // of that of the modes, of the longest step
+  constexpr double longest = 0.05, shortest = 1e-9;           // steps, in shares of the gaps of the field
+  constexpr double least_gap = 0.25;                          // over the depth of the dielectric
+  constexpr double rounding = 1e-12;                          // over the bending energy
+  constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;  // over the stiffness of a mode, and over the longest step
   Statics statics(model);
   Switch::Workspace work = model.workspace();
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
@@ -552,7 +553,7 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
                                       .cwiseQuotient(along.values.cwiseAbs().cwiseMax(least_stiffness));
     Eigen::VectorXd step = (along.vectors * parts).cwiseProduct(compliance);
     double reach = reach_of(step);
-    if (along.values[0] < 0 && reach < at_saddle * radius) {  // where no force shows the way down
+    if (along.values[0] < 0 && reach < at_saddle * radius) {  // no force shows the way down there
       step = along.vectors.col(0).cwiseProduct(compliance);
       step *= radius / reach_of(step);
       reach = radius;

@@ -6,12 +6,12 @@
 // pressure acts, k stiffness per area [Pa/m], U energy per length [J/m], a local width [m]. Lossless. Source: textbook, a bed of
 // springs (Winkler).
 //
-// Where the scene asks for a wall, the field does not grow below the face and k is the stiffness at which the field of twice the
-// voltage V1 that closes parallel plates, V1^2 = 8 K g^3 / (27 eps0 A), sinks the beam in by a fiftieth of its smallest gap H:
-// own choice. K stiffness of the beam at the contact point [N/m], g rest gap of the field, A area of the faces [m^2], H = t /
-// eps_r
-// + roughness. Under a linear law the field grows on below the face, and a bed softer than 27 eps0 V^2 / (8 (H + b)^3) lets it
-// pull the beam through, like parallel plates whose springs are at rest where the pressure begins.
+// A wall has no growing field below its face. Its k is that at which the field of the voltage 2 V1 sinks the beam in by a
+// fiftieth of H = t / eps_r + roughness, the smallest gap of the field: own choice. V1^2 = 8 K g^3 / (27 eps0 A) closes parallel
+// plates. K stiffness of the beam at the contact point [N/m], g rest gap of the field, A area of the faces [m^2].
+//
+// A linear bed lets the field grow on below the face. One that is softer than 27 eps0 V^2 / (8 (H + b)^3) lets it pull the beam
+// through, like parallel plates whose springs are at rest where the pressure begins.
 #pragma once
 
 #include <algorithm>
