@@ -10,6 +10,7 @@
 #include "base/decompositions.h"
 #include "base/require.h"
 #include "model/built_beam.h"
+#include "model/constants.h"
 #include "model/contact/face.h"
 #include "model/far_side.h"
 #include "model/forces/dispersion.h"
@@ -79,6 +80,16 @@ std::shared_ptr<const DistributedLaw> one_law(std::vector<std::shared_ptr<const 
   return pads.size() == 1 ? pads.front() : std::make_shared<const LawOnPads>(std::move(pads));
 }
 
+// Points over a beam's length that resolve the field of its first touch on a face; 0 where it does not land on one. The beam
+// bends over the face like (g / 2) (1 - cos(2 pi x / L)), so that the gap H of the field has doubled at L sqrt(H / g) / pi from
+// there: six points lie on the way, which is own choice. With half as many the release voltage is off by 7e-4, measured on one
+// bridge.
+double points_to_land(const Device& device) {
+  if (!device.lands_along_face()) return 0;
+  constexpr double points = 6;
+  return points * pi * std::sqrt(device.gap.electrode / (device.dielectric_depth() + device.landing()->from));
+}
+
 // Calls `make` with the force law of an electrode.
 template <class Make>
 std::shared_ptr<const DistributedLaw> electrostatic(Fringing fringing, const EvenRange& range, Make&& make) {
@@ -144,7 +155,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
         if constexpr (requires { Kind::is_rigid; }) {
           set_modes(modes, 0, 1, nullptr);  // the gap is the same everywhere: one point each says it all
         } else {
-          set_modes(modes, options.points_per_length, options.points_per_panel, like);
+          set_modes(modes, std::max(options.points_per_length, points_to_land(device_)), options.points_per_panel, like);
         }
         if constexpr (requires { kind.stretching(modes, s); }) stretching_ = kind.stretching(modes, s);
       },
