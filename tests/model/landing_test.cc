@@ -10,6 +10,7 @@
 #include "model/closing.h"
 #include "model/constants.h"
 #include "model/contact/face.h"
+#include "model/linearized_closing.h"
 #include "model/pull_in.h"
 #include "objectives/metrics.h"
 #include "tests/model/expect_refused.h"
@@ -179,6 +180,11 @@ TEST(Landing, ForcesAreTheSlopeOfTheEnergy) {
     }
     EXPECT_LT(by_v.norm(), 1e-9 * by_q.norm());
   }
+}
+
+TEST(Landing, HasNoDerivatives) {
+  EXPECT_EQ(LinearizedClosing::refusal(fine(capacitive_bridge({}), 4)),
+            "a landing along the face of a dielectric has no derivatives here");
 }
 
 TEST(Landing, TouchesFirstWhereItBendsMost) {
