@@ -250,8 +250,8 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     if (const std::optional<Dielectric>& dielectric = p.scene.device.electrodes[k].dielectric)
       add("", fmt::format("its dielectric adds {} to the gap of the field{}", given_quantity(dielectric->depth(), "m"),
                           !p.scene.device.lands_on_dielectric() ? std::string()
-                          : p.scene.device.structure.is_rigid()     ? "; the plate lands on it"
-                                                                    : "; the beam lands on it"));
+                          : p.scene.device.structure.is_rigid() ? "; the plate lands on it"
+                                                                : "; the beam lands on it"));
   }
   if (p.scene.device.dispersion) {
     add("dispersion force", dispersion_words(p, watch));

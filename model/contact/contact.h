@@ -57,10 +57,10 @@ struct Contact {
   std::optional<Place> at = {};                                 ///< the centre of its pad; none: see Device::contact_position()
   /// Rest distance of its place to its plane [m]; that of the first contact stands in Device::gap.
   double gap = std::numeric_limits<double>::quiet_NaN();
-  Side side = Side::near;  ///< far: a back stop
+  Side side = Side::near;   ///< far: a back stop
   bool along_face = false;  ///< the face of a dielectric, wherever the beam is beyond the plane; its law is per area
-  double count = 1;        ///< how many such contacts stand side by side across the beam
-  bool connects = true;    ///< whether it is one of those that make the connection
+  double count = 1;         ///< how many such contacts stand side by side across the beam
+  bool connects = true;     ///< whether it is one of those that make the connection
   Conduction conduction = {};
 };
 

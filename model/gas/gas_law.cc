@@ -61,7 +61,8 @@ std::vector<std::string> gas_warnings(const Device& device, double smallest_gap,
     warnings.push_back(
         fmt::format("gas law {}: {} number {} {} {}{}", name_of(*device.gas), what, number(value), beyond, number(limit), why));
   };
-  if (const double kn = lambda / gap_of_film(device, smallest_gap); kn > limits.most_knudsen) warn("Knudsen", kn, "exceeds", limits.most_knudsen);
+  if (const double kn = lambda / gap_of_film(device, smallest_gap); kn > limits.most_knudsen)
+    warn("Knudsen", kn, "exceeds", limits.most_knudsen);
   if (const double kn = lambda / device.gap.electrode; kn < limits.least_knudsen)
     warn("Knudsen", kn, "is below", limits.least_knudsen);
   if (largest_squeeze > limits.most_squeeze)
