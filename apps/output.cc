@@ -11,7 +11,7 @@
 #include "base/companion.h"
 #include "base/require.h"
 #include "reports/files.h"
-#include "reports/result_json.h"
+#include "reports/record_file.h"
 #include "reports/text.h"
 
 namespace softland::apps {

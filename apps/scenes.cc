@@ -10,7 +10,7 @@
 
 #include "base/read_file.h"
 #include "base/require.h"
-#include "reports/result_reader.h"
+#include "reports/closing_record.h"
 
 namespace softland::apps {
 
@@ -27,7 +27,7 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(path, ignored);
 }
 
-nlohmann::json load_result(const fs::path& path) { return parse_result(read_file(path), path.string()); }
+nlohmann::json load_result(const fs::path& path) { return parse_closing(read_file(path), path.string()); }
 
 SceneFile scene_of_result(const std::string& result) {
   fs::path path = result;

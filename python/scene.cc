@@ -14,8 +14,8 @@
 #include "config/units.h"
 #include "model/mode_shapes.h"
 #include "model/recorded_motion.h"
-#include "reports/result_json.h"
-#include "reports/result_maker.h"
+#include "reports/closing_record.h"
+#include "reports/record_file.h"
 #include "studies/closing/auto_settings.h"
 #include "verbs/report_outcome.h"
 #include "waveforms/export.h"
@@ -150,7 +150,7 @@ py::tuple shapes_of(const PreparedScene& p, int places) {
   return py::make_tuple(all.places, all.shapes);
 }
 
-Result result_of(const PyClosing& c) { return softland::result_of(*c.prepared, c.closing, c.command); }
+ClosingRecord record_of(const PyClosing& c) { return softland::record_of(*c.prepared, c.closing, c.command); }
 
 // quantity -> (value, error, unit), in the order of the table; yes or no without error and unit.
 py::dict figures_of(const Closing& closing) {
@@ -201,7 +201,7 @@ void bind_scene(py::module_& m) {
       .def_property_readonly("contact_gap", [](const PyClosing& c) { return c.prepared->scene.device.gap.contact; })
       .def_property_readonly("points", [](const PyClosing& c) { return points_of(c.closing.trajectory); })
       .def_property_readonly("rebounds", [](const PyClosing& c) { return rebounds_of(c.closing.rebounds); })
-      .def_property_readonly("json", [](const PyClosing& c) { return json_text(result_json(result_of(c))); })
+      .def_property_readonly("json", [](const PyClosing& c) { return json_text(json_of(record_of(c))); })
       .def_property_readonly("drives", [](const PyClosing& c) { return c.prepared->drive_names(); })
       .def("voltage",
            [](const PyClosing& c, const std::string& drive, const std::vector<double>& times) {
@@ -220,8 +220,8 @@ void bind_scene(py::module_& m) {
            })
       .def("shapes", [](const PyClosing& c, int places) { return shapes_of(*c.prepared, places); })
       .def("outcome", [](const PyClosing& c) {
-        const auto result = std::make_shared<const Result>(result_of(c));
-        return python_outcome(result_json(*result), verbs::files_of_report(result));
+        const auto result = std::make_shared<const ClosingRecord>(record_of(c));
+        return python_outcome(json_of(*result), verbs::files_of_report(result));
       });
   py::class_<PyScene>(m, "Scene")
       .def_static("load",

@@ -10,7 +10,7 @@
 
 #include "python/own.h"
 #include "python/scene.h"
-#include "reports/result_json.h"
+#include "reports/record_file.h"
 #include "reports/search_report.h"
 #include "reports/search_session.h"
 #include "verbs/optimize.h"
@@ -159,7 +159,7 @@ Outcome run_search(PlannedSearch& search, const Request& request, Run& running, 
       session->add_log(report->result, *report);
       session->leave(*report);
     }
-    return python_outcome(result_json(report->result), verbs::files_of_report<SearchReport>(report));
+    return python_outcome(json_of(report->result), verbs::files_of_report<SearchReport>(report));
   });
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "python/scene.h"
-#include "reports/result_json.h"
+#include "reports/record_file.h"
 #include "studies/closing/auto_settings.h"
 #include "verbs/study.h"
 

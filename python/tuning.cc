@@ -8,7 +8,7 @@
 
 #include "base/require.h"
 #include "python/scene.h"
-#include "reports/result_json.h"
+#include "reports/record_file.h"
 #include "reports/tuning_lines.h"
 #include "reports/tuning_session.h"
 #include "verbs/device.h"

@@ -13,9 +13,9 @@
 #include "reports/accuracy_report.h"
 #include "reports/accuracy_words.h"
 #include "reports/chart.h"
+#include "reports/closing_captions.h"
 #include "reports/origin.h"
 #include "reports/quantity.h"
-#include "reports/result_words.h"
 #include "reports/svg.h"
 
 namespace softland {

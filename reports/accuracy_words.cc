@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "reports/closing_captions.h"
 #include "reports/quantity.h"
-#include "reports/result_words.h"
 
 namespace softland::internal {
 

@@ -1,9 +1,26 @@
 #include "reports/axis.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace softland::internal {
+
+double drawable(double value) {
+  constexpr double most = 1e100;
+  if (!(std::abs(value) <= most)) return std::numeric_limits<double>::quiet_NaN();
+  return std::abs(value) < 1 / most ? 0 : value;
+}
+
+Points drawable(const Points& points) {
+  Points all;
+  for (const auto& [x, y] : points) {
+    const std::array point{drawable(x), drawable(y)};
+    if (std::isfinite(point[0]) && std::isfinite(point[1])) all.push_back(point);
+  }
+  return all;
+}
 
 double Axis::transformed(double value) const { return scale == Scale::linear ? value : std::log10(value); }
 

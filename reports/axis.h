@@ -10,6 +10,12 @@ namespace softland::internal {
 inline constexpr const char* ink = "#1b1f24";    // of text and of what counts
 inline constexpr const char* muted = "#5f6b76";  // of ticks and frames
 
+/// A number as a chart takes it: NaN beyond 1e100 and 0 within 1e-100 of 0. Nothing of a switch is like that, and what a damaged
+/// file holds would overflow on its way to the picture.
+[[nodiscard]] double drawable(double value);
+/// The points whose coordinates can be drawn.
+[[nodiscard]] Points drawable(const Points& points);
+
 /// Data to pixels along one axis.
 struct Axis {
   Scale scale = Scale::linear;

@@ -8,25 +8,29 @@
 #include <set>
 #include <utility>
 
+#include "reports/axis.h"
+#include "reports/closing_captions.h"
 #include "reports/closing_words.h"
+#include "reports/drive_demand.h"
 #include "reports/quantity.h"
-#include "reports/result_view.h"
-#include "reports/result_words.h"
 
 namespace softland::internal {
 namespace {
 
-// A run of a result, and the name of its table.
+// A run of a record by the name of its table.
 struct Drawn {
   const char* name;
   Role role;
-  ResultRun Result::*run;
 };
-constexpr std::array runs{Drawn{"baseline", Role::baseline, &Result::baseline}, Drawn{"best", Role::best, &Result::best}};
+constexpr std::array runs{Drawn{"baseline", Role::baseline}, Drawn{"best", Role::best}};
+
+const RunRecord& run_of(const ClosingRecord& result, const Drawn& drawn) {
+  return drawn.role == Role::best ? result.best : result.baseline();
+}
 
 /// The rows of a curve whose time is finite and does not run backwards; columns that are missing or of another length are left
 /// out.
-CurveTable curve_table(const ResultCurve& curve) {
+CurveTable curve_table(const CurveRecord& curve) {
   std::vector<std::size_t> sound;
   double latest = -std::numeric_limits<double>::infinity();
   for (std::size_t row = 0; row < curve.time.size(); ++row) {
@@ -78,12 +82,12 @@ void add_columns(CurveTable& table, const char* x, const char* y, const Points& 
   }
 }
 
-std::vector<Mark> rebound_marks(const Result& result) {
+std::vector<Mark> rebound_marks(const ClosingRecord& result) {
   std::vector<Mark> marks;
   for (const Drawn& drawn : runs) {
     std::size_t highest = 0;
     std::vector<Mark> own;
-    for (const Rebound& rebound : (result.*drawn.run).curve.rebounds) {
+    for (const Rebound& rebound : run_of(result, drawn).curve.rebounds) {
       const Mark mark{drawable(rebound.time_of_height), drawable(rebound.height), drawn.role, ""};
       if (!std::isfinite(mark.x) || !(mark.y > result.scene.significant_rebound)) continue;
       if (own.empty() || mark.y > own[highest].y) highest = own.size();
@@ -96,7 +100,7 @@ std::vector<Mark> rebound_marks(const Result& result) {
 }
 
 /// The end of the part worth enlarging: the winner's landing, what its drives do, and the baseline's highest rebound.
-double landing_end(const Result& result, const CurveTables& tables, double window) {
+double landing_end(const ClosingRecord& result, const CurveTables& tables, double window) {
   double end = std::numeric_limits<double>::quiet_NaN();
   const auto cover = [&](double time) {
     if (time < window) end = std::fmax(end, time);
@@ -109,7 +113,7 @@ double landing_end(const Result& result, const CurveTables& tables, double windo
       points.push_back({table.at("time_s")[row], table.at("level")[row]});
     if (last_move(points) < 0.5 * window) cover(last_move(points));
   }
-  for (const ResultRun* run : {&result.baseline, &result.best}) {
+  for (const RunRecord* run : {&result.baseline(), &result.best}) {
     double highest = -1;
     double until = std::numeric_limits<double>::quiet_NaN();
     for (const Rebound& rebound : run->curve.rebounds) {
@@ -143,7 +147,7 @@ double largest(const CurveTables& tables, const char* name) {
 
 /// Gaps around the contact plane worth enlarging [m]: as deep as any contact is pressed before `end`, and above the plane the
 /// winner's rebounds or twice that depth. Not set when nothing touches.
-std::optional<std::array<double, 2>> plane_band(const Result& result, const CurveTables& tables, double end) {
+std::optional<std::array<double, 2>> plane_band(const ClosingRecord& result, const CurveTables& tables, double end) {
   double lowest = 0;
   for (const Drawn& drawn : runs) {
     const std::vector<double>& gaps = column_of(tables, drawn.name, "tip_gap_m");
@@ -157,10 +161,10 @@ std::optional<std::array<double, 2>> plane_band(const Result& result, const Curv
 }
 
 /// Adds the tables of runs and drives to a picture; the names of the drives.
-std::set<std::string> add_time_tables(const Result& result, double window, Picture& out) {
+std::set<std::string> add_time_tables(const ClosingRecord& result, double window, Picture& out) {
   std::set<std::string> drives;
   for (const Drawn& drawn : runs) {
-    const ResultRun& run = result.*drawn.run;
+    const RunRecord& run = run_of(result, drawn);
     CurveTable table = curve_table(run.curve);
     if (!table.empty()) out.tables[drawn.name] = std::move(table);
     for (const auto& [drive, waveform] : run.waveforms) {
@@ -176,7 +180,7 @@ std::set<std::string> add_time_tables(const Result& result, double window, Pictu
 /// Draws the charts over time of a picture that has their tables.
 class TimeCharts {
  public:
-  TimeCharts(const Result& result, double window, Picture& out)
+  TimeCharts(const ClosingRecord& result, double window, Picture& out)
       : result_(result), window_(window), landing_(landing_end(result, out.tables, window)), out_(out) {}
 
   void add_gaps() {
@@ -280,12 +284,12 @@ class TimeCharts {
     if (!chart.series.empty()) out_.charts.push_back(std::move(chart));
   }
 
-  const Result& result_;
+  const ClosingRecord& result_;
   double window_, landing_;  // ends of what is drawn [s]
   Picture& out_;
 };
 
-void add_time_charts(const Result& result, Picture& out) {
+void add_time_charts(const ClosingRecord& result, Picture& out) {
   const double window = window_end(result);
   if (!(window > 0)) return;
   const std::set<std::string> drives = add_time_tables(result, window, out);
@@ -298,16 +302,16 @@ void add_time_charts(const Result& result, Picture& out) {
   charts.add_resistance();
 }
 
-void add_search_chart(const Result& result, Picture& out) {
-  Points tried = drawable(result.search.evaluations);
-  Points best = drawable(result.search.best_so_far);
+void add_search_chart(const ClosingRecord& result, const SearchRecord& search, Picture& out) {
+  Points tried = drawable(search.course.evaluations);
+  Points best = drawable(search.course.best_so_far);
   if (tried.empty() && best.empty()) return;
-  const std::vector<double> indices = evaluation_indices(result.search);
+  const std::vector<double> indices = evaluation_indices(search.course);
   for (Points* points : {&tried, &best}) {
     for (auto& [index, value] : *points) index = evaluations_until(indices, index);
   }
   double last = std::max(tried.empty() ? 0.0 : tried.back()[0], best.empty() ? 0.0 : best.back()[0]);
-  last = std::fmax(last, drawable(result.evaluations));
+  last = std::fmax(last, drawable(search.evaluations));
   bool positive = true;
   for (const Points* points : {&tried, &best}) {
     positive = positive && std::all_of(points->begin(), points->end(), [](const auto& point) { return point[1] > 0; });
@@ -315,11 +319,11 @@ void add_search_chart(const Result& result, Picture& out) {
   Chart chart;
   chart.id = "search";
   chart.title = "Convergence";
-  chart.caption = search_caption(result);
+  chart.caption = search_caption(result, search);
   chart.x_column = "evaluation";
   chart.x_label = "Evaluations";
   chart.x_home = chart.x_whole = {0, std::max(1.0, last)};
-  chart.y_label = capitalised(result.search.value_name.empty() ? "cost" : result.search.value_name);
+  chart.y_label = capitalised(search.course.value_name.empty() ? "cost" : search.course.value_name);
   chart.scale = positive ? Scale::logarithmic : Scale::linear;
   chart.height = 260;
   if (!tried.empty()) {
@@ -341,10 +345,10 @@ void add_search_chart(const Result& result, Picture& out) {
 
 }  // namespace
 
-Picture picture(const Result& result) {
+Picture picture(const ClosingRecord& result) {
   Picture out;
   add_time_charts(result, out);
-  add_search_chart(result, out);
+  if (result.search) add_search_chart(result, *result.search, out);
   return out;
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/result.h"
+#include "reports/closing_record.h"
 
 namespace softland::internal {
 
@@ -74,7 +74,7 @@ struct Picture {
 
 /// All charts of a result, in the order of the page: gap, landing, drives, velocity, force, resistance, search. What has no data
 /// is left out.
-[[nodiscard]] Picture picture(const Result& result);
+[[nodiscard]] Picture picture(const ClosingRecord& result);
 
 /// CurveTables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as integer steps
 /// of a unit fine enough to be invisible (one part in ten million of the largest value).

@@ -43,7 +43,7 @@ std::string first_touch(const FigureValues& figures) { return quantity(figures[&
 std::string impact_speed(const FigureValues& figures) { return quantity(figures[&Metrics::impact_velocity], "m/s"); }
 
 /// The smallest distance to the contact plane [m] of a run that never touched; NaN without its curve.
-double closest(const ResultCurve& curve) {
+double closest(const CurveRecord& curve) {
   double least = std::numeric_limits<double>::quiet_NaN();
   for (const double gap : curve.gap) least = std::fmin(least, gap);
   return least;
@@ -59,9 +59,9 @@ bool settles(const FigureValues& figures) {
 
 bool ends_at_touch(const FigureValues& figures) { return touches(figures) && !std::isfinite(figures[&Metrics::bounce_count]); }
 
-bool touches_in_part(const ResultRun& run) { return run.figures && run.status == "not_settled" && ends_at_touch(*run.figures); }
+bool touches_in_part(const RunRecord& run) { return run.figures && run.status == "not_settled" && ends_at_touch(*run.figures); }
 
-bool began_closed(const ResultRun& run) {
+bool began_closed(const RunRecord& run) {
   if (!run.figures || touches(*run.figures)) return false;
   return run.status == "not_settled" || (run.status == "done" && std::isfinite((*run.figures)[&Metrics::open_settling_time]));
 }
@@ -75,7 +75,7 @@ double rebound_height(const FigureValues& figures) {
   return height < resolution("m") ? 0 : height;
 }
 
-double figure_of_run(const ResultRun& run, Figure::Member member) {
+double figure_of_run(const RunRecord& run, Figure::Member member) {
   return run.figures ? (*run.figures)[member] : Metrics::unset;
 }
 
@@ -101,7 +101,7 @@ std::string opening_clause(const Actor& actor, const FigureValues& figures, cons
 
 }  // namespace
 
-std::string closing_clause(const Actor& actor, const ResultRun& run, double window) {
+std::string closing_clause(const Actor& actor, const RunRecord& run, double window) {
   if (run.status == "collapsed_at_rest")
     return actor.subject +
            " has no stable equilibrium to begin in under what its drives stand at before t = 0 (an open one, unless before_state "
@@ -147,7 +147,7 @@ std::string closing_clause(const Actor& actor, const ResultRun& run, double wind
          " (what follows is not counted)";
 }
 
-std::string landing_clause(const std::string& subject, const ResultRun& run) {
+std::string landing_clause(const std::string& subject, const RunRecord& run) {
   if (!run.figures) return {};
   const FigureValues& figures = *run.figures;
   if (!touches(figures)) {

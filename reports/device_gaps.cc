@@ -96,14 +96,14 @@ std::string internal::gaps_html(const DevicesFindings& d) {
                      escaped(drawn.charts.front().caption));
 }
 
-std::string svg_devices(const Result& result) {
-  Picture drawn = gaps_picture(*result.devices);
+std::string svg_devices(const ClosingRecord& result) {
+  Picture drawn = gaps_picture(*result.devices());
   const std::string words = drawn.charts.empty() ? result.title : result.title + ". " + drawn.charts.front().caption;
   // The drives stand below the gaps.
   Picture others = gap_and_drives(result);
   for (Chart& chart : others.charts) {
     if (!chart.id.starts_with("drive")) continue;
-    if (result.devices->courses) chart.x_home = {0, result.devices->courses->end};
+    if (result.devices()->courses) chart.x_home = {0, result.devices()->courses->end};
     for (Series& one : chart.series) {
       if (one.role == Role::limit) one.label.clear();  // half a page is too narrow for it
     }

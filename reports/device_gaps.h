@@ -4,12 +4,12 @@
 #include <string>
 
 #include "reports/chart.h"
-#include "reports/result.h"
+#include "reports/closing_record.h"
 
 namespace softland {
 
 /// A static SVG document of a search over devices: its first words, the gaps of devices, and below them what the drives do.
-[[nodiscard]] std::string svg_devices(const Result& result);
+[[nodiscard]] std::string svg_devices(const ClosingRecord& result);
 
 namespace internal {
 

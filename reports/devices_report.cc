@@ -214,8 +214,8 @@ std::string internal::drawing_words(const DevicesFindings& d) {
   return fmt::format("The nominal design alone rebounds by up to {}: drawing.toml.", quantity(height, "m"));
 }
 
-std::string internal::devices_headline(const Result& result) {
-  const DevicesFindings& d = *result.devices;
+std::string internal::devices_headline(const ClosingRecord& result) {
+  const DevicesFindings& d = *result.devices();
   const DevicesFindings::Row *step = d.row(plain_step_row), *own = d.row(for_the_devices);
   if (step == nullptr || own == nullptr) return {};
   const std::string assumed = d.spread_assumed ? " (assumed, the scene has no [spread]: " + d.spread + ")" : "";

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "reports/closing_record.h"
 #include "reports/document.h"
-#include "reports/result.h"
 #include "studies/search/devices_findings.h"
 
 namespace softland {
@@ -16,7 +16,7 @@ namespace internal {
 /// Says how the waveform for the nominal design closes it.
 [[nodiscard]] std::string drawing_words(const DevicesFindings& devices);
 /// Says in a sentence how the waveform of best.toml closes the devices.
-[[nodiscard]] std::string devices_headline(const Result& result);
+[[nodiscard]] std::string devices_headline(const ClosingRecord& result);
 /// What stands above all else on a page: shares and 95 % quantiles of the devices, from plain step to winner.
 [[nodiscard]] std::vector<KeyNumber> devices_keys(const DevicesFindings& devices);
 /// A terminal shows the choices beside the plain step, what measuring wins, and the nominal design.

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "base/require.h"
+#include "reports/closing_captions.h"
 #include "reports/document.h"
 #include "reports/json_number.h"
 #include "reports/quantity.h"
-#include "reports/result_words.h"
 #include "reports/study_members.h"
 
 namespace softland {
@@ -172,7 +172,7 @@ std::string text_of(const EffectsRecord& record) {
   const Effect& own = effects.own("gas");
   Document document{.doubt = effects.interrupted ? "Interrupted: what follows is not all." : ""};
   if (!std::isfinite(own.metrics.initial_contact_time)) {
-    Result closing{.status = std::string(to_string(own.metrics.status))};
+    ClosingRecord closing{.status = std::string(to_string(own.metrics.status))};
     closing.best = {.status = closing.status, .figures = FigureValues(own.metrics)};
     closing.best.curve.time = {effects.window};
     document.headline = internal::headline(closing).main;

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "reports/closing_record.h"
 #include "reports/document.h"
-#include "reports/result.h"
 #include "studies/exploration/aims.h"
 
 namespace softland {

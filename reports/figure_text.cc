@@ -33,7 +33,7 @@ Change change(double before, double after, bool lower_is_better, Kind kind) {
   return {times(ratio) + " " + word, verdict};
 }
 
-Change figure_change(const ResultRun& before, const ResultRun& after, const Figure& figure) {
+Change figure_change(const RunRecord& before, const RunRecord& after, const Figure& figure) {
   if (figure.is_yes_or_no()) return {};
   const Kind kind = figure.unit == "s" ? Kind::time : figure.is_count() ? Kind::count : Kind::size;
   return change(figure_of_run(before, figure.member), figure_of_run(after, figure.member), figure.better == Better::lower, kind);
@@ -49,14 +49,14 @@ std::string error_text(const Figure& figure, double value, double error) {
   return error_of(value, error, figure.unit, figure_digits);
 }
 
-std::string missing_reason(const ResultRun& run, const Figure& figure) {
+std::string missing_reason(const RunRecord& run, const Figure& figure) {
   if (!run.figures || std::isfinite((*run.figures)[figure])) return {};
   if (!touches(*run.figures)) return run.status == "open" ? "open" : began_closed(run) ? "an opening" : "no contact";
   if (ends_at_touch(*run.figures)) return "not known";
   return figure.conditioning == Conditioning::last_rebound && !settles(*run.figures) ? "not settled" : "";
 }
 
-std::string cloud_text(const Result& result, const Figure& figure) {
+std::string cloud_text(const ClosingRecord& result, const Figure& figure) {
   if (!result.certificate) return {};
   const std::vector<IllConditioned>& all = result.certificate->ill_conditioned;
   const auto found =
@@ -67,9 +67,9 @@ std::string cloud_text(const Result& result, const Figure& figure) {
                      value(found->spread.high), found->spread.runs);
 }
 
-std::string error_heading(const Result& result) { return result.certificate ? "± certified" : "± integration only"; }
+std::string error_heading(const ClosingRecord& result) { return result.certificate ? "± certified" : "± integration only"; }
 
-std::string certificate_caption(const Result& result) {
+std::string certificate_caption(const ClosingRecord& result) {
   if (!result.certificate) {
     return figure_of_run(result.best, &Metrics::bounce_count) > 0
                ? "The settling time and the number of rebounds have no error here: past the first large rebound a closing is "
@@ -91,15 +91,15 @@ std::string certificate_caption(const Result& result) {
                       : fmt::format(", after the gentlest touch until then, {}.", quantity(grazing->impact_velocity, "m/s")));
 }
 
-std::string goal_text(const Result& result, const Figure& figure) {
-  if (result.target.empty()) return {};
+std::string goal_text(const ClosingRecord& result, const Figure& figure) {
+  if (!result.search || result.search->target.empty()) return {};
   if (figure.is_yes_or_no()) return "yes";
-  const TargetRow* target = find_named(targets, result.target);
+  const TargetRow* target = find_named(targets, result.search->target);
   if (!target) return {};
   if (figure.is_count()) return target->has_own_cost ? "" : "0";
-  const double step = figure_of_run(result.baseline, figure.member);
+  const double step = figure_of_run(result.baseline(), figure.member);
   if (target->value == Target::settling && figure.member == Figure::Member(&Metrics::permanent_contact_time)) {
-    const double touch = figure_of_run(result.baseline, &Metrics::initial_contact_time);
+    const double touch = figure_of_run(result.baseline(), &Metrics::initial_contact_time);
     if (std::isfinite(touch)) return "at most " + quantity(settling_goal * touch, figure.unit, 4);
   }
   const bool wanted = target->has_own_cost && figure_of(target->value).member == figure.member && std::isfinite(step);

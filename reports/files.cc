@@ -148,7 +148,7 @@ void write_whole(const std::filesystem::path& path,
   written(synced, "sync its folder");
 }
 
-std::string trajectory_csv(const ResultCurve& curve) {
+std::string trajectory_csv(const CurveRecord& curve) {
   std::vector<const std::vector<double>*> columns;
   std::string out;
   for (const auto& [name, column] : {std::pair{"time_s", &curve.time},

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "reports/result.h"
+#include "reports/closing_record.h"
 
 namespace softland {
 
@@ -30,6 +30,6 @@ void write_whole(const std::filesystem::path& path,
 
 /// The curve of a run as CSV: header time_s,tip_gap_m,tip_velocity_m_s,contact_force_N,contact_resistance_ohm (those that exist);
 /// one line per row, shortest text that reads back to the same number, an empty field for what is not finite.
-[[nodiscard]] std::string trajectory_csv(const ResultCurve& curve);
+[[nodiscard]] std::string trajectory_csv(const CurveRecord& curve);
 
 }  // namespace softland

@@ -9,9 +9,9 @@
 #include "base/choice.h"
 #include "base/require.h"
 #include "config/told_quantity.h"
+#include "reports/closing_record.h"
 #include "reports/closing_words.h"
 #include "reports/quantity.h"
-#include "reports/result_maker.h"
 #include "studies/closing/simulate.h"
 
 namespace softland {
@@ -27,7 +27,7 @@ std::string words(const DriverModel& source) {
 }
 
 std::string clause(const PreparedScene& p, const Closing& closing) {
-  return internal::closing_clause({.subject = "the switch"}, result_of(p, closing, {}).best, p.duration);
+  return internal::closing_clause({.subject = "the switch"}, record_of(p, closing, {}).best, p.duration);
 }
 
 // A rebound that has a height, and one of the drawing that is not as high.

@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "reports/chart.h"
+#include "reports/closing_record.h"
 #include "reports/document.h"
 #include "reports/quantity.h"
-#include "reports/result_json.h"
-#include "reports/result_maker.h"
-#include "reports/result_reader.h"
+#include "reports/record_file.h"
 #include "reports/study_members.h"
 #include "reports/svg.h"
 #include "studies/closing/summits_at_hold.h"
@@ -59,7 +58,7 @@ ReportTable list_table(const char* title, const std::vector<LeastTime>& all, Nam
 
 // The model for which a least time is a bound: a beam with more modes may touch earlier. Empty for a plate, which has one mode.
 std::string model_of(const LimitRecord& limit) {
-  if (read_result_scene(limit.origin.scene).structure == "plate") return {};
+  if (read_drawn_scene(limit.origin.scene).structure == "plate") return {};
   return fmt::format("{} mode{}", limit.modes, limit.modes == 1 ? "" : "s");
 }
 
@@ -203,8 +202,8 @@ void members(A& a, LimitRecord& limit) {
   if (!a.has(limit.landed.has_value())) return;
   a.object("curves", [&](auto& curves) {
     curves.custom(
-        "landing", limit.landed, [](const auto& run) { return result_json(*run); },
-        [](const json& run) { return std::optional(read_result(run)); });
+        "landing", limit.landed, [](const auto& run) { return json_of(*run); },
+        [](const json& run) { return std::optional(read_closing(run)); });
   });
 }
 
@@ -233,7 +232,7 @@ LimitRecord record_of(const Limit& limit, const std::string& command) {
   if (std::string few = few_summits_warning(limit.given.model, limit.given.signals()); !few.empty())
     record.warnings.push_back(std::move(few));
   if (const auto& found = limit.landing) {
-    record.landed = result_of(found->scene, found->closing, {});
+    record.landed = record_of(found->scene, found->closing, {});
     record.landing = {found->way,
                       std::isfinite(found->way.room),
                       found->catch_delay,

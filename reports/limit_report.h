@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "reports/closing_record.h"
 #include "reports/origin.h"
-#include "reports/result.h"
 #include "studies/search/limit.h"
 
 namespace softland {
@@ -45,7 +45,7 @@ struct LimitRecord {
   std::vector<std::string> warnings;  ///< of the scene, of its hold levels, and of few summits that carry the force
   std::optional<Landing> landing;
   std::vector<LeastTime> over_velocity, over_peak;
-  std::optional<Result> landed;  ///< the run of the landing; only files have it
+  std::optional<ClosingRecord> landed;  ///< the run of the landing; only files have it
 };
 [[nodiscard]] LimitRecord record_of(const Limit& limit, const std::string& command);
 

@@ -13,7 +13,7 @@
 #include "base/read_file.h"
 #include "base/require.h"
 #include "model/ensemble/fleet.h"
-#include "reports/result_members.h"
+#include "reports/closing_members.h"
 #include "version.h"
 
 namespace softland {

@@ -11,9 +11,9 @@
 #include "base/require.h"
 #include "model/pull_in.h"
 #include "reports/chart.h"
+#include "reports/closing_record.h"
 #include "reports/pull_in_members.h"
 #include "reports/quantity.h"
-#include "reports/result_reader.h"
 #include "reports/svg.h"
 #include "reports/text.h"
 #include "studies/closing/closed_state.h"
@@ -245,7 +245,7 @@ PullInsRecord read_pull_ins(const json& from) {
 
 std::string text_of(const PullInsRecord& record) {
   const bool has_contact = record.origin.scene.contains("contact");
-  const std::vector<ResultScene::Electrode> all = read_result_scene(record.origin.scene).electrodes;
+  const std::vector<DrawnScene::Electrode> all = read_drawn_scene(record.origin.scene).electrodes;
   std::string text;
   for (const auto& [name, electrode] : record.electrodes) {
     const bool is_far = std::ranges::any_of(all, [&](const auto& one) { return one.name == name && one.far_side; });

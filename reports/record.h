@@ -206,6 +206,8 @@ class JsonReader {
     take(from, value);
     return value;
   }
+  /// All that is read.
+  [[nodiscard]] const json& whole() const { return *json_; }
   /// A null value where there is none.
   [[nodiscard]] const json& at(std::string_view key) const {
     static const json nothing;

@@ -10,9 +10,9 @@
 
 #include "base/require.h"
 #include "reports/chart.h"
+#include "reports/closing_record.h"
 #include "reports/document.h"
 #include "reports/quantity.h"
-#include "reports/result_maker.h"
 #include "reports/robustness_words.h"
 #include "reports/study_members.h"
 #include "reports/svg.h"
@@ -67,7 +67,7 @@ ReleaseRecord::Run run_of(const OpeningResult& r, const Opening& o) {
 }
 
 ReleaseRecord::Gap gap_of(const OpeningResult& r, const Opening& o) {
-  ResultCurve curve = curve_of(o.trajectory, r.given.scene.metrics);
+  CurveRecord curve = curve_of(o.trajectory, r.given.scene.metrics);
   return {.time = std::move(curve.time), .gap = std::move(curve.gap)};
 }
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "reports/closing_record.h"
 #include "reports/origin.h"
-#include "reports/result.h"
 #include "studies/search/opening.h"
 
 namespace softland {

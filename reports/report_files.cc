@@ -2,10 +2,10 @@
 
 #include <utility>
 
+#include "reports/closing_document.h"
 #include "reports/device_gaps.h"
 #include "reports/files.h"
-#include "reports/result_document.h"
-#include "reports/result_json.h"
+#include "reports/record_file.h"
 #include "reports/svg.h"
 #include "studies/closing/sent_signals.h"
 #include "waveforms/export.h"
@@ -37,12 +37,14 @@ std::string scene_text(const PreparedScene& scene) { return scene.scene.file.tex
 
 }  // namespace
 
-std::vector<ReportFile<Result>> files_of(const Result& result) {
-  std::vector<ReportFile<Result>> files{{"report.html", [](const Result& r) { return page_html(result_document(r)); }},
-                                        {"gap.svg", svg_gap_chart},
-                                        {"result.json", [](const Result& r) { return json_text(result_json(r)); }}};
-  if (result.devices && result.devices->courses) files.push_back({"devices.svg", svg_devices});
-  if (result.best.figures) files.push_back({"trajectory.csv", [](const Result& r) { return trajectory_csv(r.best.curve); }});
+std::vector<ReportFile<ClosingRecord>> files_of(const ClosingRecord& result) {
+  std::vector<ReportFile<ClosingRecord>> files{
+      {"report.html", [](const ClosingRecord& r) { return page_html(closing_document(r)); }},
+      {"gap.svg", svg_gap_chart},
+      {"result.json", [](const ClosingRecord& r) { return json_text(json_of(r)); }}};
+  if (result.devices() != nullptr && result.devices()->courses) files.push_back({"devices.svg", svg_devices});
+  if (result.best.figures)
+    files.push_back({"trajectory.csv", [](const ClosingRecord& r) { return trajectory_csv(r.best.curve); }});
   return files;
 }
 
@@ -54,7 +56,7 @@ std::vector<ReportFile<RobustnessReport>> files_of(const RobustnessReport&) {
 
 std::vector<ReportFile<SearchReport>> files_of(const SearchReport& report) {
   std::vector<ReportFile<SearchReport>> files;
-  add<Result>(files, report.result, [](const SearchReport& r) -> const Result& { return r.result; });
+  add<ClosingRecord>(files, report.result, [](const SearchReport& r) -> const ClosingRecord& { return r.result; });
   if (report.found.best().best_scene) {
     files.push_back({"best.toml", [](const SearchReport& r) { return scene_text(*r.found.best().best_scene); }});
     files.push_back({"best.csv", [](const SearchReport& r) { return told_csv(*r.found.best().best_scene); }});

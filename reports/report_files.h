@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/result.h"
+#include "reports/closing_record.h"
 #include "reports/robustness_report.h"
 #include "reports/search_report.h"
 
@@ -19,7 +19,7 @@ struct ReportFile {
 };
 
 /// report.html, gap.svg, result.json, and trajectory.csv where there is a trajectory.
-[[nodiscard]] std::vector<ReportFile<Result>> files_of(const Result& result);
+[[nodiscard]] std::vector<ReportFile<ClosingRecord>> files_of(const ClosingRecord& result);
 
 /// Those of a judgement of drives on devices, by `robustness` or at the end of a search for devices.
 inline constexpr std::array robustness_files{"robustness.html", "robustness.json", "devices.csv"};

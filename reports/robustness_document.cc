@@ -173,7 +173,7 @@ internal::Chart course_chart(const RobustnessReport& report, internal::CurveTabl
   for (std::size_t i = 0; i < report.courses.size(); ++i) {
     const DeviceCourse& course = report.courses[i];
     const std::string name = fmt::format("course-{}", i);
-    const ResultCurve curve = curve_of(course.trajectory, report.nominal.scene.metrics);
+    const CurveRecord curve = curve_of(course.trajectory, report.nominal.scene.metrics);
     if (curve.time.size() < 2) continue;
     tables[name] = {{"time_s", curve.time}, {"gap", curve.gap}};
     if (!course.trajectory.touches.empty()) touch = std::max(touch, course.trajectory.touches.front().begin);

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "base/watch.h"
+#include "reports/closing_record.h"
 #include "reports/document.h"
 #include "reports/origin.h"
-#include "reports/result_maker.h"
 #include "studies/devices/box_and_chaos.h"
 #include "studies/devices/derivatives.h"
 #include "studies/devices/hold_window.h"

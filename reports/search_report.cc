@@ -49,12 +49,12 @@ void add_result(SearchReport& report, const PlannedSearch& search, const std::fi
                 const std::string& command) {
   const auto& found = report.found.result;
   if (const auto* nominal = std::get_if<OptimizeResult>(&found)) {
-    report.result = result_of(*nominal, search.options, command);
+    report.result = record_of(*nominal, search.options, command);
   } else if (const auto* robust = std::get_if<RobustResult>(&found)) {
-    report.result = result_of(*robust, search.options, command);
+    report.result = record_of(*robust, search.options, command);
   } else {
     const auto& raced = std::get<ForDevicesResult>(found);
-    report.result = result_of(raced, search.options, next_command(raced, folder), command);
+    report.result = record_of(raced, search.options, next_command(raced, folder), command);
   }
 }
 

@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "base/watch.h"
-#include "reports/result.h"
-#include "reports/result_maker.h"
+#include "reports/closing_record.h"
 #include "reports/robustness_report.h"
 #include "studies/search/found_search.h"
 
@@ -22,7 +21,7 @@ struct SearchReport {
 
   FoundSearch found;
   std::optional<RobustnessReport> devices = {};  ///< none where none were judged
-  Result result = {};
+  ClosingRecord result = {};
 };
 
 /// What is known of the devices that were judged. It is further work for a search by one measure, of which `watch` is told; where

@@ -81,19 +81,19 @@ fs::path SearchSession::destination(const SearchReport& report) const {
   return places_->folder().destination(report.found.interrupted());
 }
 
-void SearchSession::add_log(Result& result, const SearchReport& report) const {
-  for (const auto& [index, e] : log_->evaluations()) result.search.evaluations.push_back({static_cast<double>(index), e.value});
-  result.search.evaluations = drawn_evaluations(std::move(result.search.evaluations));
-  if (known_ && known_->command != output_.command) result.reproduce.push_back(known_->command);
-  result.reproduce.push_back(output_.command);
-  result.reproduce.push_back("softland simulate " + shell_word((destination(report) / "best.toml").string()));
+void SearchSession::add_log(SearchRecord& search, const SearchReport& report) const {
+  for (const auto& [index, e] : log_->evaluations()) search.course.evaluations.push_back({static_cast<double>(index), e.value});
+  search.course.evaluations = drawn_evaluations(std::move(search.course.evaluations));
+  if (known_ && known_->command != output_.command) search.reproduce.push_back(known_->command);
+  search.reproduce.push_back(output_.command);
+  search.reproduce.push_back("softland simulate " + shell_word((destination(report) / "best.toml").string()));
 }
 
 std::vector<std::string> SearchSession::leave(const SearchReport& report) {
   std::vector<std::string> left, kept{"evaluations.csv"};
   if (places_->stores_go_to(destination(report))) {
     kept.emplace_back(evaluations_file);
-    if (report.result.seeds) kept.emplace_back(seeds_file);
+    if (report.result.search->seeds) kept.emplace_back(seeds_file);
   }
   const std::string last = report.found.best().best_scene ? "best.csv" : "result.json";
   for (const ReportFile<SearchReport>& file : softland::files_of(report)) {

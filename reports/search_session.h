@@ -8,7 +8,7 @@
 //   SearchReport report(run(search));
 //   session.close();
 //   add_result(report, search, session.destination(report), {.command = command});
-//   session.add_log(report.result, report);
+//   session.add_log(*report.result.search, report);
 //   session.leave(report);
 #pragma once
 
@@ -73,7 +73,7 @@ class SearchSession {
   /// Where the files will be.
   [[nodiscard]] std::filesystem::path destination(const SearchReport& report) const;
   /// The costs of the evaluations, and the command lines that make the result again.
-  void add_log(Result& result, const SearchReport& report) const;
+  void add_log(SearchRecord& search, const SearchReport& report) const;
   /// Writes the files, puts them where they belong, and names them with those that were kept on the way.
   std::vector<std::string> leave(const SearchReport& report);
 

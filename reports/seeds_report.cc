@@ -36,13 +36,13 @@ FiveNumbers five_numbers(const std::vector<double>& sample) {
   return all;
 }
 
-FiveNumbers spread_of_cost(const ResultSeeds& seeds) {
+FiveNumbers spread_of_cost(const SeedsFindings& seeds) {
   std::vector<double> costs;
   for (const SearchOfSeed& one : seeds.searches) costs.push_back(or_none(one.cost));
   return five_numbers(costs);
 }
 
-FiveNumbers spread_of(const ResultSeeds& seeds, const Figure& figure) {
+FiveNumbers spread_of(const SeedsFindings& seeds, const Figure& figure) {
   std::vector<double> values;
   for (const SearchOfSeed& one : seeds.searches) {
     if (const double value = one.figures[figure]; std::isfinite(value)) values.push_back(value);
@@ -89,7 +89,7 @@ std::vector<std::string> heads() {
 
 }  // namespace
 
-void rank(ResultSeeds& seeds, const Aim& target, double significant, bool over_devices) {
+void rank(SeedsFindings& seeds, const Aim& target, double significant, bool over_devices) {
   const bool by_figure = !over_devices && !target.is_sum();
   const Figure& own = figure_of(target.parts()[0].target);
   const bool is_height = target.is_about(Target::bounce) || target.is_about(Target::rebound);
@@ -105,7 +105,7 @@ void rank(ResultSeeds& seeds, const Aim& target, double significant, bool over_d
   seeds.best = static_cast<std::size_t>(best - seeds.searches.begin());
 }
 
-json internal::seeds_summary(const ResultSeeds& seeds) {
+json internal::seeds_summary(const SeedsFindings& seeds) {
   json failed = json::array(), figures = json::object();
   for (const SearchOfSeed& one : seeds.searches) {
     if (const std::string why = failure(one); !why.empty()) failed.push_back({{"seed", one.seed}, {"reason", why}});
@@ -133,7 +133,7 @@ std::string text_of(const SeedsRecord& record) { return terminal_text({.sections
 
 namespace internal {
 
-std::string seeds_caption(const ResultSeeds& seeds) {
+std::string seeds_caption(const SeedsFindings& seeds) {
   const std::size_t count = seeds.searches.size();
   if (count == 0) return fmt::format("None of {} searches is done.", seeds.planned);
   std::string words = count < seeds.planned ? fmt::format("{} of {} searches are done.", count, seeds.planned)
@@ -158,7 +158,7 @@ std::string seeds_caption(const ResultSeeds& seeds) {
   return words + fmt::format(" {} of {} fail: {}.", failures, count, failed);
 }
 
-ReportSection seeds_section(const ResultSeeds& seeds) {
+ReportSection seeds_section(const SeedsFindings& seeds) {
   ReportTable table;
   for (const std::string& name : heads()) table.head.emplace_back(name);
   table.head[1].style = table.head.back().style = "words";

@@ -7,21 +7,21 @@
 #include <string>
 
 #include "objectives/cost.h"
+#include "reports/closing_record.h"
 #include "reports/document.h"
 #include "reports/origin.h"
-#include "reports/result.h"
 
 namespace softland {
 
 /// Orders the searches and sets which is the best. On the nominal device goes first what is confirmed, then what meets the goal,
 /// then what settles, each by the target's own figure, a rebound below `significant` [m] counting as one, and then by cost, a sum
 /// of targets by cost alone; over devices that differ what fulfils its conditions, by cost. Of equals the first seed.
-void rank(ResultSeeds& seeds, const Aim& target, double significant, bool over_devices);
+void rank(SeedsFindings& seeds, const Aim& target, double significant, bool over_devices);
 
 /// The record that an interrupted study of several seeds leaves.
 struct SeedsRecord {
   Origin origin;
-  ResultSeeds seeds;
+  SeedsFindings seeds;
 };
 [[nodiscard]] nlohmann::json json_of(const SeedsRecord& record);
 [[nodiscard]] SeedsRecord read_seeds(const nlohmann::json& from);
@@ -30,9 +30,9 @@ struct SeedsRecord {
 namespace internal {
 
 /// What the searches came to together, in sentences.
-[[nodiscard]] std::string seeds_caption(const ResultSeeds& seeds);
+[[nodiscard]] std::string seeds_caption(const SeedsFindings& seeds);
 /// The caption and a table.
-[[nodiscard]] ReportSection seeds_section(const ResultSeeds& seeds);
+[[nodiscard]] ReportSection seeds_section(const SeedsFindings& seeds);
 
 }  // namespace internal
 

@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
+#include "reports/drive_demand.h"
 #include "reports/escape.h"
 #include "reports/quantity.h"
-#include "reports/result_view.h"
 
 namespace softland::internal {
 namespace {
@@ -45,7 +45,7 @@ std::string spring(double left, double right, double y) {
 }
 
 /// Begin and end of a span as shares of the length; the whole length where none is given.
-std::array<double, 2> shares(const ResultScene::Span& span, double length) {
+std::array<double, 2> shares(const DrawnScene::Span& span, double length) {
   if (!span) return {0, 1};
   const std::array<double, 2> share{(*span)[0] / length, (*span)[1] / length};
   return share[0] >= 0 && share[1] <= 1.000001 && share[0] < share[1] ? share : std::array<double, 2>{0, 1};
@@ -62,13 +62,13 @@ struct Described {
 };
 
 /// The parameters of a drive of a result, which moves until `moves`; empty where its family or its times are not known.
-Described described_parameters(const Result& result, const std::string& drive, double moves) {
+Described described_parameters(const ClosingRecord& result, const std::string& drive, double moves) {
   const auto parameter = [&](const std::string& name) {
-    const auto found = result.parameters.find(drive + "." + name);
-    return found == result.parameters.end() ? Metrics::unset : found->second;
+    const auto found = result.search->parameters.find(drive + "." + name);
+    return found == result.search->parameters.end() ? Metrics::unset : found->second;
   };
   const auto found = result.scene.waveforms.find(drive);
-  const ResultScene::Waveform scene = found == result.scene.waveforms.end() ? ResultScene::Waveform{} : found->second;
+  const DrawnScene::Waveform scene = found == result.scene.waveforms.end() ? DrawnScene::Waveform{} : found->second;
   Described d;
   if (scene.family == "pulse" && scene.times.size() == 2 && std::isfinite(parameter("level_1_V"))) {
     const double first = scene.times[0], second = scene.times[1];
@@ -95,7 +95,7 @@ struct SideView {
 };
 
 /// The beam or plate, what holds it, and its layer.
-std::string drawn_beam(const ResultScene& scene, const SideView& view) {
+std::string drawn_beam(const DrawnScene& scene, const SideView& view) {
   constexpr double left = SideView::left, right = SideView::right, thick = SideView::thick, layer = SideView::layer;
   const double top = view.top;
   std::string out;
@@ -122,11 +122,11 @@ std::string drawn_beam(const ResultScene& scene, const SideView& view) {
   return out;
 }
 
-std::string drawn_electrodes(const ResultScene& scene, const SideView& view) {
+std::string drawn_electrodes(const DrawnScene& scene, const SideView& view) {
   constexpr double left = SideView::left, right = SideView::right, electrode = SideView::electrode;
   const double floor = view.floor;
   std::string out;
-  for (const ResultScene::Electrode& one : scene.electrodes) {
+  for (const DrawnScene::Electrode& one : scene.electrodes) {
     const auto [begin, end] = shares(one.span, view.length);
     const double y = one.far_side ? view.top - SideView::gap * 0.75 - electrode : floor;
     out += rectangle(view.x_at(begin), y, view.x_at(end) - view.x_at(begin), electrode, "electrode");
@@ -141,17 +141,17 @@ std::string drawn_electrodes(const ResultScene& scene, const SideView& view) {
   return out;
 }
 
-double plane_of(const SideView& view, const ResultScene& scene, double gap) {
+double plane_of(const SideView& view, const DrawnScene& scene, double gap) {
   return view.bottom + SideView::gap * std::min(1.0, gap / scene.electrode_gap);
 }
 
 /// Contacts that have names stand at their places, those of the far side hang above the beam; gaps beside them.
-std::string drawn_contacts(const ResultScene& scene, const SideView& view) {
+std::string drawn_contacts(const DrawnScene& scene, const SideView& view) {
   constexpr double wide = 12, foot = SideView::electrode;
   const double usual = view.plate || view.both_ends ? 0.5 : 1;
   std::string out;
   double below = view.floor + foot + 14, above = view.top - SideView::gap * 0.75 - foot - 5;
-  for (const ResultScene::Contact& one : scene.contacts) {
+  for (const DrawnScene::Contact& one : scene.contacts) {
     if (!(one.gap > 0)) continue;
     const double share = std::isfinite(one.at) ? std::clamp(one.at / view.length, 0.0, 1.0) : usual;
     const double x = std::min(view.x_at(share) - wide / 2, SideView::right - wide);
@@ -174,7 +174,7 @@ std::string drawn_contacts(const ResultScene& scene, const SideView& view) {
 
 }  // namespace
 
-std::string sketch(const ResultScene& scene) {
+std::string sketch(const DrawnScene& scene) {
   const bool plate = scene.structure == "plate", both_ends = scene.structure == "clamped-clamped";
   const bool is_known = plate || both_ends || scene.structure == "cantilever";
   if (!is_known || !(scene.electrode_gap > 0) || !(scene.contact_gap > 0 || !scene.contacts.empty())) return {};
@@ -209,7 +209,7 @@ std::string sketch(const ResultScene& scene) {
       width, height, out);
 }
 
-std::string parameter_drawing(const Result& result, const std::string& drive) {
+std::string parameter_drawing(const ClosingRecord& result, const std::string& drive) {
   const Points points = drawable(waveform(result.best, drive));
   double lowest = 0, highest = 0, moves = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {

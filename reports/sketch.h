@@ -3,16 +3,16 @@
 
 #include <string>
 
-#include "reports/result.h"
+#include "reports/closing_record.h"
 
 namespace softland::internal {
 
 /// The switch at rest as an <svg> element: anchor, beam or plate, piezo layer, electrodes, contact, and the gaps. To scale along
 /// the beam, heights exaggerated. Empty where the scene does not say what the switch is like. Its colours are the page's.
-[[nodiscard]] std::string sketch(const ResultScene& scene);
+[[nodiscard]] std::string sketch(const DrawnScene& scene);
 
 /// The waveform of a drive from 0 to where it holds, with the searched parameters written where they act; empty for a drive
 /// without searched parameters.
-[[nodiscard]] std::string parameter_drawing(const Result& result, const std::string& drive);
+[[nodiscard]] std::string parameter_drawing(const ClosingRecord& result, const std::string& drive);
 
 }  // namespace softland::internal

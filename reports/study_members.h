@@ -4,9 +4,9 @@
 #include <string>
 #include <variant>
 
+#include "reports/closing_members.h"
 #include "reports/origin.h"
 #include "reports/record.h"
-#include "reports/result_members.h"
 #include "sampling/interval.h"
 #include "studies/closing/effect_ablation.h"
 #include "studies/devices/robustness.h"

@@ -8,9 +8,9 @@
 #include "base/printable.h"
 #include "base/require.h"
 #include "reports/chart.h"
+#include "reports/closing_captions.h"
+#include "reports/drive_demand.h"
 #include "reports/escape.h"
-#include "reports/result_view.h"
-#include "reports/result_words.h"
 
 namespace softland {
 namespace {
@@ -86,7 +86,7 @@ std::string svg_page(const std::string& headline, const std::string& words, cons
   });
 }
 
-internal::Picture gap_and_drives(const Result& result) {
+internal::Picture gap_and_drives(const ClosingRecord& result) {
   using namespace internal;
   Picture drawn = picture(result);
   std::erase_if(drawn.charts,
@@ -95,7 +95,7 @@ internal::Picture gap_and_drives(const Result& result) {
   return drawn;
 }
 
-std::string svg_gap_chart(const Result& result) {
+std::string svg_gap_chart(const ClosingRecord& result) {
   return svg_page(internal::headline(result).whole(), result.title, gap_and_drives(result));
 }
 

@@ -11,9 +11,9 @@ namespace softland {
 
 /// A static SVG document, 900 px wide: the finding in words, gap against time of baseline and winner (the whole closing and the
 /// landing enlarged) and the drive waveforms below. What the result lacks is left out.
-[[nodiscard]] std::string svg_gap_chart(const Result& result);
+[[nodiscard]] std::string svg_gap_chart(const ClosingRecord& result);
 /// Its charts.
-[[nodiscard]] internal::Picture gap_and_drives(const Result& result);
+[[nodiscard]] internal::Picture gap_and_drives(const ClosingRecord& result);
 
 /// The frame around any picture: a headline, smaller words below it, and what draw(width, top) gives: elements, and where they
 /// end.

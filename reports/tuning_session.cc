@@ -11,7 +11,7 @@
 #include "base/read_file.h"
 #include "base/require.h"
 #include "config/scene.h"
-#include "reports/result_json.h"
+#include "reports/record_file.h"
 #include "reports/tuning_log.h"
 #include "studies/closing/sent_signals.h"
 #include "studies/search/search_setting.h"

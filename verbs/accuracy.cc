@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "reports/accuracy_report.h"
-#include "reports/result_json.h"
+#include "reports/record_file.h"
 #include "verbs/study.h"
 
 namespace softland::verbs {

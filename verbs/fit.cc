@@ -10,7 +10,7 @@
 
 #include "config/assumed_spread.h"
 #include "reports/fit_report.h"
-#include "reports/result_json.h"
+#include "reports/record_file.h"
 #include "verbs/study.h"
 
 namespace softland::verbs {

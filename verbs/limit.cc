@@ -6,7 +6,7 @@
 #include <string>
 
 #include "reports/limit_report.h"
-#include "reports/result_json.h"
+#include "reports/record_file.h"
 #include "studies/closing/sent_signals.h"
 #include "verbs/study.h"
 #include "waveforms/export.h"

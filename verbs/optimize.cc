@@ -46,7 +46,7 @@ struct OptimizeVerb : Usual, OptimizeRequest {
       "optimizers.";
   static constexpr Takes takes{.scene = false};
   static Outcome shown_again(const nlohmann::json& json) {
-    if (json.contains("baseline") || !json.contains("seeds")) return result_shown_again(json);
+    if (json.contains("baseline") || !json.contains("seeds")) return closing_shown_again(json);
     const SeedsRecord record = read_seeds(json);  // a study of several seeds was interrupted
     return {.json = json_of(record), .text = text_of(record)};
   }

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "reports/record_file.h"
 #include "reports/release_report.h"
-#include "reports/result_json.h"
 #include "studies/search/opening.h"
 #include "verbs/study.h"
 

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "reports/closing_document.h"
+#include "reports/closing_record.h"
+#include "reports/record_file.h"
 #include "reports/report_files.h"
-#include "reports/result_document.h"
-#include "reports/result_json.h"
-#include "reports/result_reader.h"
 #include "verbs/study.h"
 
 namespace softland::verbs {
@@ -21,16 +21,15 @@ template <class Report>
   return files;
 }
 
-[[nodiscard]] inline Outcome result_shown(const std::shared_ptr<const Result>& result) {
-  return {.json = summary_json(result_json(*result)),
-          .text = terminal_text(result_document(*result)),
-          .files = files_of_report(result)};
+[[nodiscard]] inline Outcome closing_shown(const std::shared_ptr<const ClosingRecord>& result) {
+  return {
+      .json = summary_json(json_of(*result)), .text = terminal_text(closing_document(*result)), .files = files_of_report(result)};
 }
 
 /// The result of simulate or optimize from its JSON; that of --json has no curves, which all of its files show.
-[[nodiscard]] inline Outcome result_shown_again(const nlohmann::json& json) {
+[[nodiscard]] inline Outcome closing_shown_again(const nlohmann::json& json) {
   require_reportable(json);
-  Outcome outcome = result_shown(std::make_shared<const Result>(read_result(json)));
+  Outcome outcome = closing_shown(std::make_shared<const ClosingRecord>(read_closing(json)));
   if (!json.contains("curves")) outcome.files.clear();
   return outcome;
 }

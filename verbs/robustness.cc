@@ -12,8 +12,8 @@
 
 #include "config/assumed_spread.h"
 #include "config/calibration_words.h"
+#include "reports/record_file.h"
 #include "reports/report_files.h"
-#include "reports/result_json.h"
 #include "reports/robustness_report.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/devices/box_and_chaos.h"

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "reports/closing_document.h"
+#include "reports/closing_record.h"
 #include "reports/quantity.h"
-#include "reports/result_document.h"
-#include "reports/result_json.h"
-#include "reports/result_maker.h"
+#include "reports/record_file.h"
 #include "reports/text.h"
 #include "studies/closing/certify.h"
 #include "studies/closing/timing.h"
@@ -27,7 +27,7 @@ struct SimulateVerb : Usual, SimulateRequest {
   static constexpr auto remarks =
       "Example:\n  softland simulate scenes/mem-gold.toml --set waveform.main.level=\"1.1 Vdp\" --json -";
   static std::vector<std::string> files() { return {"report.html", "gap.svg", "result.json", "trajectory.csv"}; }
-  static Outcome shown_again(const nlohmann::json& json) { return result_shown_again(json); }
+  static Outcome shown_again(const nlohmann::json& json) { return closing_shown_again(json); }
 };
 
 template <class Archive>
@@ -54,9 +54,9 @@ std::string time_saved(const PreparedScene& chosen) {
 
 Outcome run(const Setting& setting, const SimulateVerb& request) {
   const auto [prepared, closing] = simulated(setting.prepared(false), request, setting.watch);
-  const auto result = std::make_shared<const Result>(result_of(*prepared, closing, setting.command));
+  const auto result = std::make_shared<const ClosingRecord>(record_of(*prepared, closing, setting.command));
   const Status status = closing.metrics.status;
-  Outcome outcome = result_shown(result);
+  Outcome outcome = closing_shown(result);
   outcome.fault =
       closing.trajectory.message.empty() ? std::string() : fmt::format("{} ({})", closing.trajectory.message, to_string(status));
   if (status != Status::interrupted && prepared->effects && !prepared->effects->choice.left_out.empty() && setting.note)

@@ -26,12 +26,12 @@
 #include "base/shell_word.h"
 #include "config/assumed_spread.h"
 #include "optimizers/problem.h"
+#include "reports/closing_document.h"
+#include "reports/closing_record.h"
 #include "reports/origin.h"
 #include "reports/quantity.h"
+#include "reports/record_file.h"
 #include "reports/report_files.h"
-#include "reports/result_document.h"
-#include "reports/result_json.h"
-#include "reports/result_maker.h"
 #include "reports/robustness_words.h"
 #include "reports/search_report.h"
 #include "reports/seeds_report.h"
@@ -92,9 +92,9 @@ struct Asked {
   StoredSearch& search;
   const std::optional<KnownSearch>& known;
   const SearchOutput& output;
-  SearchPlaces* places = nullptr;         // of a study of seeds
-  std::optional<ResultSeeds> seeds = {};  // that are done
-  bool limit = false;                     // the least time is told however long it takes
+  SearchPlaces* places = nullptr;           // of a study of seeds
+  std::optional<SeedsFindings> seeds = {};  // that are done
+  bool limit = false;                       // the least time is told however long it takes
 };
 
 // Whether the least time takes a small part of the search's own time: a second or two, but many times that with a slew limit, and
@@ -109,7 +109,7 @@ bool takes_little(const Asked& asked, const OptimizeResult& result) {
 }
 
 // The least time of any waveform of the winner's drives at its impact speed; none where the scene does not fit the question.
-std::optional<ResultLimit> limit_of(const Asked& asked, const OptimizeResult& result) {
+std::optional<TouchLimit> limit_of(const Asked& asked, const OptimizeResult& result) {
   if (!result.best || result.search.termination == Termination::interrupted) return std::nullopt;
   if (!asked.limit && !takes_little(asked, result)) return std::nullopt;
   constexpr double softest = 1e-3;  // of the plain step's impact speed
@@ -122,7 +122,7 @@ std::optional<ResultLimit> limit_of(const Asked& asked, const OptimizeResult& re
     const LeastTime least = least_time(
         *result.best_scene, {.actuator = asked.search.options.actuator, .impact_velocity = velocity, .watch = work.watch()});
     if (least.status != Status::done) return std::nullopt;
-    return ResultLimit{.least_time = least.time, .impact_velocity = velocity};
+    return TouchLimit{.least_time = least.time, .impact_velocity = velocity};
   } catch (const InvalidInput& error) {
     if (asked.limit) say(fmt::format("--limit: {}", error.what()));
     return std::nullopt;
@@ -161,10 +161,10 @@ int run_search(const Asked& asked) {
   SearchSession& session = searching.session();
   const fs::path place = session.destination(report);
   add_result(report, search, place, {.command = c.command});
-  Result& result = report.result;
-  result.limit = limit_of(asked, best);
-  result.seeds = asked.seeds;
-  session.add_log(result, report);
+  ClosingRecord& result = report.result;
+  result.search->limit = limit_of(asked, best);
+  result.search->seeds = asked.seeds;
+  session.add_log(*result.search, report);
   std::vector<std::string> left = session.leave(report);
   if (search.for_devices && !report.found.interrupted()) {
     left = foremost(std::move(left));
@@ -174,20 +174,20 @@ int run_search(const Asked& asked) {
   if (search.devices() == 0 && !c.quiet) {
     for (const std::string& broken : best.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
   }
-  print_json_or(c, summary_json(result_json(result)),
-                terminal_text(result_document(result)) + words_on_devices(asked, report, place) + left_in(place, left));
+  print_json_or(c, summary_json(json_of(result)),
+                terminal_text(closing_document(result)) + words_on_devices(asked, report, place) + left_in(place, left));
   return status_of(report.found);
 }
 
 // The searches that are done, ranked.
-ResultSeeds ranked(const SeedStudy& study, const StoredSearch& search, double significant) {
-  ResultSeeds seeds{.planned = search.seeds, .searches = study.searches()};
+SeedsFindings ranked(const SeedStudy& study, const StoredSearch& search, double significant) {
+  SeedsFindings seeds{.planned = search.seeds, .searches = study.searches()};
   if (!seeds.searches.empty()) rank(seeds, search.options.target, significant, search.robust.has_value());
   return seeds;
 }
 
 // Reports a study of several seeds that was interrupted; --resume goes on with it.
-int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, const ResultSeeds& seeds) {
+int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, const SeedsFindings& seeds) {
   const fs::path stores = places.store(evaluations_file).parent_path();
   std::string left = left_in(stores, {evaluations_file, seeds_file});
   const std::string best = seeds.searches.empty() ? std::string() : study.scene_of(seeds.searches[seeds.best].seed);
@@ -239,7 +239,7 @@ int run_seeds(const Common& c, StoredSearch& search, const std::optional<KnownSe
   }
   SeedStudy study(search, places.evaluations(), places.store(seeds_file), searched.columns.names(), stored_origin(c.command));
   run_shown(study, c, search, places, searched.columns);
-  const ResultSeeds seeds = ranked(study, search, searched.significant_rebound);
+  const SeedsFindings seeds = ranked(study, search, searched.significant_rebound);
   if (study.missing() > 0) {
     places.evaluations().close();
     return tell_of_part(c, places, study, seeds);

@@ -1,5 +1,5 @@
 // What a search for devices came to, as its reports are made from it: what its waveforms do on fresh devices, and what led to
-// them. The JSON of a search holds it whole (reports/result_members.h), so that a report can be made again.
+// them. The JSON of a search holds it whole (reports/closing_members.h), so that a report can be made again.
 #pragma once
 
 #include <array>

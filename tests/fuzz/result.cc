@@ -1,6 +1,6 @@
+#include "reports/closing_document.h"
+#include "reports/closing_record.h"
 #include "reports/mode_table_report.h"
-#include "reports/result_document.h"
-#include "reports/result_reader.h"
 #include "reports/svg.h"
 #include "reports/text.h"
 #include "tests/fuzz/scene_checks.h"
@@ -34,15 +34,15 @@ void result(std::string_view input) {
   json read;
   if (!accepted([&] { read = parse_record(input, "fuzz.json"); })) return;
   accepted([&] { check(!told(read["kind"].get<std::string>(), read).empty(), "a record without words"); });
-  if (!accepted([&] { read = parse_result(input, "fuzz.json"); })) return;
-  check(parse_result(read.dump(), "written.json") == read, "a result changes when it is read again");
+  if (!accepted([&] { read = parse_closing(input, "fuzz.json"); })) return;
+  check(parse_closing(read.dump(), "written.json") == read, "a result changes when it is read again");
 
-  const Result shown = read_result(read);
-  static const std::size_t own_scripts = scripts(page_html(result_document({})));
-  check(scripts(page_html(result_document(shown))) <= own_scripts, "a result brings a script into its page");
+  const ClosingRecord shown = read_closing(read);
+  static const std::size_t own_scripts = scripts(page_html(closing_document({})));
+  check(scripts(page_html(closing_document(shown))) <= own_scripts, "a result brings a script into its page");
   const std::string fault = test::xml_fault(svg_gap_chart(shown));
   check(fault.empty(), "the picture of a result is not XML: " + fault);
-  static_cast<void>(terminal_text(result_document(shown)));
+  static_cast<void>(terminal_text(closing_document(shown)));
 
   const auto scene = read.find("scene_toml");
   if (scene == read.end() || !scene->is_string()) return;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/result_reader.h"
+#include "reports/closing_record.h"
 #include "sample_result.h"
 
 namespace softland::internal {
@@ -35,17 +35,17 @@ std::vector<double> unpacked(const json& column) {
 
 TEST(Charts, FollowTheParts) {
   json result = softland::test::sample_optimize_result(600);
-  EXPECT_EQ(ids(picture(read_result(result))),
+  EXPECT_EQ(ids(picture(read_closing(result))),
             (std::vector<std::string>{"gap", "landing", "drive-0", "drive-1", "velocity", "force", "search"}));
   result.erase("search");
   result["curves"]["best"].erase("contact_force_N");
   result["curves"]["baseline"]["contact_force_N"] = {1, 2, 3};  // of another length than its times
-  EXPECT_EQ(ids(picture(read_result(result))), (std::vector<std::string>{"gap", "landing", "drive-0", "drive-1", "velocity"}));
-  EXPECT_TRUE(picture(read_result(json::object())).charts.empty());
+  EXPECT_EQ(ids(picture(read_closing(result))), (std::vector<std::string>{"gap", "landing", "drive-0", "drive-1", "velocity"}));
+  EXPECT_TRUE(picture(read_closing(json::object())).charts.empty());
 }
 
 TEST(Charts, EnlargeTheLandingAndTheHighestRebound) {
-  const Picture drawn = picture(read_result(softland::test::sample_optimize_result(6000)));
+  const Picture drawn = picture(read_closing(softland::test::sample_optimize_result(6000)));
   EXPECT_EQ(drawn.charts[0].x_home[1], 600e-6);
   EXPECT_GT(drawn.charts[1].x_home[1], 60e-6);
   EXPECT_LT(drawn.charts[1].x_home[1], 150e-6);
@@ -55,12 +55,12 @@ TEST(Charts, EnlargeNoLandingWhereThereIsNone) {
   json result = softland::test::sample_simulate_result(600);
   for (json& gap : result["curves"]["best"]["tip_gap_m"]) gap = 1e-6 + std::abs(gap.get<double>());
   for (json& force : result["curves"]["best"]["contact_force_N"]) force = 0;
-  EXPECT_EQ(ids(picture(read_result(result))), (std::vector<std::string>{"gap", "drive-0", "drive-1", "velocity"}));
+  EXPECT_EQ(ids(picture(read_closing(result))), (std::vector<std::string>{"gap", "drive-0", "drive-1", "velocity"}));
 }
 
 TEST(Charts, ShowNanometresAroundThePlane) {
   json result = softland::test::sample_optimize_result(6000);
-  const auto band = [&] { return picture(read_result(result)).charts.at(1).y_home.value(); };
+  const auto band = [&] { return picture(read_closing(result)).charts.at(1).y_home.value(); };
   const std::vector<double> gaps = result["curves"]["baseline"]["tip_gap_m"];
   const double deepest = *std::min_element(gaps.begin(), gaps.end());
   EXPECT_LT(band()[0], deepest);
@@ -76,7 +76,7 @@ TEST(Charts, WriteNoWordsOnReboundsTooSmallToSee) {
   json result = softland::test::sample_optimize_result(6000);
   result["curves"]["best"]["rebounds"] = {{50e-6, 52e-6, 20e-9, 51e-6}};
   const auto words = [&](std::size_t chart) {
-    const Picture drawn = picture(read_result(result));
+    const Picture drawn = picture(read_closing(result));
     std::string all;
     for (const Mark& mark : drawn.charts.at(chart).marks) all += mark.text;
     return all;
@@ -89,14 +89,14 @@ TEST(Charts, DropRowsWithoutATimeAndTimesThatRunBackwards) {
   const json result{
       {"kind", "simulate"},
       {"curves", {{"best", {{"time_s", {0, 1e-6, nullptr, 0.5e-6, 2e-6}}, {"tip_gap_m", {2e-6, 1e-6, 7, 8, nullptr}}}}}}};
-  const CurveTable table = picture(read_result(result)).tables.at("best");
+  const CurveTable table = picture(read_closing(result)).tables.at("best");
   EXPECT_EQ(table.at("time_s"), (std::vector<double>{0, 1e-6, 2e-6}));
   EXPECT_EQ(table.at("tip_gap_m")[1], 1e-6);
   EXPECT_TRUE(std::isnan(table.at("tip_gap_m")[2]));
 }
 
 TEST(Charts, DrawADriveFromRestToTheEndOfTheWindow) {
-  const Picture drawn = picture(read_result(softland::test::sample_optimize_result(600)));
+  const Picture drawn = picture(read_closing(softland::test::sample_optimize_result(600)));
   const CurveTable& main = drawn.tables.at("best/main");
   EXPECT_EQ(main.at("time_s"), (std::vector<double>{0, 0, 600e-6}));
   EXPECT_EQ(main.at("level"), (std::vector<double>{0, 28.087, 28.087}));
@@ -105,7 +105,7 @@ TEST(Charts, DrawADriveFromRestToTheEndOfTheWindow) {
 TEST(Charts, DrawAForceFactorFromOneWithoutAUnit) {
   json result = softland::test::sample_optimize_result(600);
   for (const char* run : {"best", "baseline"}) result[run]["waveforms"] = {{"dispersion", {{0, 1.25}}}};
-  const Picture drawn = picture(read_result(result));
+  const Picture drawn = picture(read_closing(result));
   EXPECT_EQ(drawn.tables.at("best/dispersion").at("level"), (std::vector<double>{1, 1.25, 1.25}));
   const auto chart =
       std::find_if(drawn.charts.begin(), drawn.charts.end(), [](const Chart& c) { return c.title == "Drive: dispersion"; });
@@ -116,7 +116,7 @@ TEST(Charts, DrawAForceFactorFromOneWithoutAUnit) {
 }
 
 TEST(Charts, SurvivePackingToOnePartInTenMillion) {
-  const Picture drawn = picture(read_result(softland::test::sample_optimize_result(5000)));
+  const Picture drawn = picture(read_closing(softland::test::sample_optimize_result(5000)));
   const json packed = chart_json(drawn, 6000);
   const std::vector<double>& gap = drawn.tables.at("best").at("tip_gap_m");
   const std::vector<double> back = unpacked(packed.at("tables").at("best").at("tip_gap_m"));
@@ -126,7 +126,7 @@ TEST(Charts, SurvivePackingToOnePartInTenMillion) {
 }
 
 TEST(Charts, KeepExtremesWhenThinned) {
-  const Picture drawn = picture(read_result(softland::test::sample_optimize_result(20000)));
+  const Picture drawn = picture(read_closing(softland::test::sample_optimize_result(20000)));
   const json packed = chart_json(drawn, 6000);
   for (const char* column : {"tip_gap_m", "contact_force_N", "tip_velocity_m_s"}) {
     const std::vector<double>& before = drawn.tables.at("baseline").at(column);
@@ -142,17 +142,18 @@ TEST(Charts, KeepExtremesWhenThinned) {
 
 TEST(Charts, CountEvaluationsWhoseIndicesHaveGaps) {
   const json result{
+      {"kind", "optimize"},
       {"search", {{"evaluations", {{0, 4.0}, {3, 2.0}, {90, nullptr}, {100, 3.0}}}, {"best_so_far", {{0, 4.0}, {3, 2.0}}}}}};
-  const Picture drawn = picture(read_result(result));
+  const Picture drawn = picture(read_closing(result));
   EXPECT_EQ(drawn.tables.at("tried").at("evaluation"), (std::vector<double>{1, 2, 4}));
   EXPECT_EQ(drawn.tables.at("search").at("evaluation"), (std::vector<double>{1, 2, 2, 4}));
 }
 
 TEST(Charts, OfCostsThatReachZeroAreLinear) {
-  json result{{"search", {{"best_so_far", {{1, 3.0}, {9, 0.0}}}}}};
-  EXPECT_EQ(picture(read_result(result)).charts.at(0).scale, Scale::linear);
+  json result{{"kind", "optimize"}, {"search", {{"best_so_far", {{1, 3.0}, {9, 0.0}}}}}};
+  EXPECT_EQ(picture(read_closing(result)).charts.at(0).scale, Scale::linear);
   result["search"]["best_so_far"][1][1] = 0.1;
-  EXPECT_EQ(picture(read_result(result)).charts.at(0).scale, Scale::logarithmic);
+  EXPECT_EQ(picture(read_closing(result)).charts.at(0).scale, Scale::logarithmic);
 }
 
 TEST(ChartSvg, SpacesDecadesEvenlyOnALogarithmicAxis) {

@@ -8,11 +8,11 @@
 #include <limits>
 #include <string>
 
+#include "reports/closing_captions.h"
+#include "reports/closing_document.h"
+#include "reports/closing_record.h"
 #include "reports/device_gaps.h"
-#include "reports/result_document.h"
-#include "reports/result_json.h"
-#include "reports/result_reader.h"
-#include "reports/result_words.h"
+#include "reports/record_file.h"
 #include "reports/text.h"
 #include "sample_result.h"
 
@@ -22,7 +22,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-Result search_alone() { return read_result(test::sample_optimize_result(100)); }
+ClosingRecord search_alone() { return read_closing(test::sample_optimize_result(100)); }
 
 DevicesFindings::Row row(const std::string& name, double bounce_free, double speed, double height) {
   return {.name = name,
@@ -38,8 +38,8 @@ DevicesFindings::Row row(const std::string& name, double bounce_free, double spe
           .yield = {{"1e-9", 0}, {"1e-8", 0.25}, {"1e-7", 1}}};
 }
 
-Result devices_result() {
-  Result r = search_alone();
+ClosingRecord devices_result() {
+  ClosingRecord r = search_alone();
   DevicesFindings d{.spread = "gaps ± 2 %",
                     .count = 2000,
                     .seed = 7,
@@ -75,7 +75,7 @@ Result devices_result() {
   d.goal_met = false;
   d.missed_by = 89e-9;
   d.next_command = "softland export out/calibrated.toml --device-vdp \"14.2 V\"";
-  r.devices = d;
+  r.search->devices = d;
   return r;
 }
 
@@ -84,8 +84,8 @@ TEST(DevicesReport, SaysFirstWhatDevicesDo) {
   EXPECT_EQ(words,
             "Of 2000 simulated devices, 95 % touch at no more than 33.0\u00a0mm/s instead of 107\u00a0mm/s, and carry a steady "
             "force from 480\u00a0µs on instead of 500\u00a0µs: best.toml.");
-  const Result result = devices_result();
-  const std::string text = terminal_text(result_document(result)), page = page_html(result_document(result));
+  const ClosingRecord result = devices_result();
+  const std::string text = terminal_text(closing_document(result)), page = page_html(closing_document(result));
   EXPECT_EQ(text.find("Of 2000 simulated devices"), 0U);
   for (const char* part : {"plain step", "fast: fast.toml", "default: best.toml", "Vdp to 1 %", "107 (118)\u00a0mm/s", "732 (",
                            "∞", "0.0 / 25 / 100 %", "500\u00a0µs"})
@@ -99,23 +99,23 @@ TEST(DevicesReport, SaysFirstWhatDevicesDo) {
 }
 
 TEST(DevicesReport, SaysThatTheStepIsDelayedAndWhatMeasuringWins) {
-  Result r = devices_result();
+  ClosingRecord r = devices_result();
   const auto text = [&] {
-    std::string words = terminal_text(result_document(r));
+    std::string words = terminal_text(closing_document(r));
     std::ranges::replace(words, '\n', ' ');
     return words;
   };
   EXPECT_THAT(text(), HasSubstr("The plain step of the electrode comes at 463\u00a0µs"));
   EXPECT_THAT(text(), HasSubstr("--hold-step fixed"));
   EXPECT_THAT(text(), HasSubstr("With Vdp measured to 1 % on each, 95 % touch at no more than 16.6\u00a0mm/s: calibrated.toml."));
-  r.devices->measured.clear();
-  r.devices->next_command.clear();
+  r.search->devices->measured.clear();
+  r.search->devices->next_command.clear();
   EXPECT_THAT(text(), HasSubstr("Measuring Vdp or a closing time on each device wins nothing."));
 }
 
 TEST(DevicesReport, DrawsDevicesUnderTheStepAndTheWaveformSideBySide) {
-  Result r = devices_result();
-  const internal::Picture drawn = internal::gaps_picture(*r.devices);
+  ClosingRecord r = devices_result();
+  const internal::Picture drawn = internal::gaps_picture(*r.search->devices);
   ASSERT_EQ(drawn.charts.size(), 2U);
   EXPECT_EQ(drawn.charts[0].series.size(), 3U) << "a curve for each device, and their median";
   EXPECT_EQ(drawn.charts[0].y_home, drawn.charts[1].y_home) << "they are compared";
@@ -124,31 +124,31 @@ TEST(DevicesReport, DrawsDevicesUnderTheStepAndTheWaveformSideBySide) {
   EXPECT_DOUBLE_EQ(step.at("0")[2], 800e-9);
   EXPECT_GE(step.at("low")[2], 700e-9);
   EXPECT_LE(step.at("high")[2], 800e-9);
-  for (const std::string& text : {page_html(result_document(r)), svg_devices(r)}) {
+  for (const std::string& text : {page_html(closing_document(r)), svg_devices(r)}) {
     EXPECT_THAT(text, HasSubstr("band of 5 to 95 %"));
     EXPECT_THAT(text, HasSubstr("clip-devices-best"));
   }
-  DevicesFindings changed = *r.devices;  // a file that somebody has edited
+  DevicesFindings changed = *r.search->devices;  // a file that somebody has edited
   changed.courses->own.front().pop_back();
   EXPECT_TRUE(internal::gaps_picture(changed).charts.empty());
   changed.courses->step = changed.courses->own = {{1}};
   EXPECT_TRUE(internal::gaps_picture(changed).charts.empty());
-  r.devices->courses.reset();
-  EXPECT_TRUE(internal::gaps_picture(*r.devices).charts.empty());
-  EXPECT_THAT(page_html(result_document(r)), Not(HasSubstr("clip-devices-best")));
+  r.search->devices->courses.reset();
+  EXPECT_TRUE(internal::gaps_picture(*r.search->devices).charts.empty());
+  EXPECT_THAT(page_html(closing_document(r)), Not(HasSubstr("clip-devices-best")));
 }
 
 TEST(DevicesReport, SaysHowManyLandWhereHalfOfThemDo) {
-  Result r = devices_result();
-  r.devices->rows[2].bounce_free = 0.77;
+  ClosingRecord r = devices_result();
+  r.search->devices->rows[2].bounce_free = 0.77;
   EXPECT_THAT(internal::headline(r).whole(), HasSubstr("77.0 % close without a rebound (plain step 0.0 %), and 95 % touch"));
 }
 
 TEST(DevicesReport, SaysInWhichFigureNothingIsAsGoodAsThePlainStep) {
-  Result r = devices_result();
-  r.devices->better_than_plain_step = false;
-  r.devices->worse_in = {"largest_impact_velocity_m_s"};
-  r.devices->spread_assumed = true;
+  ClosingRecord r = devices_result();
+  r.search->devices->better_than_plain_step = false;
+  r.search->devices->worse_in = {"largest_impact_velocity_m_s"};
+  r.search->devices->spread_assumed = true;
   const std::string words = internal::headline(r).whole();
   EXPECT_THAT(
       words,
@@ -157,29 +157,29 @@ TEST(DevicesReport, SaysInWhichFigureNothingIsAsGoodAsThePlainStep) {
 }
 
 TEST(DevicesReport, ComesBackFromJsonAsItWas) {
-  const nlohmann::json written = result_json(devices_result());
-  const Result read = read_result(written);
-  ASSERT_TRUE(read.devices);
-  EXPECT_EQ(result_json(read), written);
-  EXPECT_EQ(read.devices->drawing_goal_met, true);
+  const nlohmann::json written = json_of(devices_result());
+  const ClosingRecord read = read_closing(written);
+  ASSERT_NE(read.devices(), nullptr);
+  EXPECT_EQ(json_of(read), written);
+  EXPECT_EQ(read.devices()->drawing_goal_met, true);
   EXPECT_EQ(internal::headline(read).whole(), internal::headline(devices_result()).whole());
   EXPECT_EQ(written["devices"]["rows"][4]["knowledge"]["piezo"], 0.01);
   EXPECT_TRUE(written["devices"]["rows"][3]["knowledge"]["piezo"].is_null()) << "not measured";
-  EXPECT_EQ(read.devices->rows[4].piezo_error, 0.01);
+  EXPECT_EQ(read.devices()->rows[4].piezo_error, 0.01);
   EXPECT_TRUE(written.at("drawing").at("goal_met"));
   EXPECT_TRUE(written["devices"]["rows"][0]["quantile_95"]["peak_contact_force_N"].is_null()) << "infinite";
-  EXPECT_FALSE(read_result(result_json(search_alone())).devices);
+  EXPECT_EQ(read_closing(json_of(search_alone())).devices(), nullptr);
 }
 
 TEST(DevicesReport, StandsFirstOnThePage) {
-  const std::string page = page_html(result_document(devices_result()));
+  const std::string page = page_html(closing_document(devices_result()));
   const std::size_t table = page.find("id=\"devices\""), figures = page.find("id=\"figures\"");
   ASSERT_NE(table, std::string::npos);
   EXPECT_LT(table, figures);
   EXPECT_THAT(page, HasSubstr("<dt>Impact velocity, 95th percentile</dt>"));
   EXPECT_THAT(page, HasSubstr("<td class=\"own\">33.0 (36.3)\u00a0mm/s</td>"));
   EXPECT_THAT(page, HasSubstr("aria-label=\"Without a rebound, by the error of Vdp"));
-  EXPECT_THAT(page_html(result_document(search_alone())), Not(HasSubstr("id=\"devices\"")));
+  EXPECT_THAT(page_html(closing_document(search_alone())), Not(HasSubstr("id=\"devices\"")));
 }
 
 }  // namespace

@@ -166,7 +166,7 @@ TEST(NameToBe, IsThatOfAFileWhoseWriterWasKilled) {
 }
 
 TEST(TrajectoryCsv, HasOneLinePerRowAndReadsBackExactly) {
-  const ResultCurve curve{
+  const CurveRecord curve{
       .time = {0, 1.0 / 3.0}, .gap = {2e-6, Metrics::unset}, .velocity = {0.1, 0.2}, .force = {}, .rebounds = {}};
   EXPECT_EQ(trajectory_csv(curve), "time_s,tip_gap_m,tip_velocity_m_s\n0,2e-06,0.1\n0.3333333333333333,,0.2\n");
 }

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "browser.h"
-#include "reports/result_document.h"
-#include "reports/result_reader.h"
+#include "reports/closing_document.h"
+#include "reports/closing_record.h"
 #include "sample_result.h"
 
 namespace softland {
@@ -27,24 +27,24 @@ std::size_t canvases(const std::string& dom) {
 }
 
 TEST_F(PageInBrowser, DrawsEveryChartOfASearchInSilence_browser) {
-  const Visit seen = visit(program, page_html(result_document(read_result(test::sample_optimize_result(20000)))));
+  const Visit seen = visit(program, page_html(closing_document(read_closing(test::sample_optimize_result(20000)))));
   EXPECT_EQ(seen.console, "");
   EXPECT_EQ(canvases(seen.dom), 7u);
   EXPECT_THAT(seen.dom, HasSubstr("class=\"drawn\""));
 }
 
 TEST_F(PageInBrowser, DrawsASingleRunInSilence_browser) {
-  const Visit seen = visit(program, page_html(result_document(read_result(test::sample_simulate_result(3000)))));
+  const Visit seen = visit(program, page_html(closing_document(read_closing(test::sample_simulate_result(3000)))));
   EXPECT_EQ(seen.console, "");
   EXPECT_EQ(canvases(seen.dom), 6u);
 }
 
 TEST_F(PageInBrowser, BearsAResultWithoutCurvesAndOneFullOfNulls_browser) {
-  EXPECT_EQ(visit(program, page_html(result_document(read_result(json::object())))).console, "");
+  EXPECT_EQ(visit(program, page_html(closing_document(read_closing(json::object())))).console, "");
   json result = test::sample_optimize_result(300);
   for (json& value : result["curves"]["best"]["tip_gap_m"]) value = nullptr;
   for (std::size_t row = 100; row < 200; ++row) result["curves"]["baseline"]["contact_force_N"][row] = nullptr;
-  const Visit seen = visit(program, page_html(result_document(read_result(result))));
+  const Visit seen = visit(program, page_html(closing_document(read_closing(result))));
   EXPECT_EQ(seen.console, "");
   EXPECT_EQ(canvases(seen.dom), 7u);
 }
@@ -56,7 +56,7 @@ TEST_F(PageInBrowser, RunsNoScriptOfAHostileTitle_browser) {
   result["title"] = hostile;
   result["best"]["waveforms"][hostile] = {{0, 0}, {1e-6, 1}};
   result["search"]["value_name"] = hostile;
-  const Visit seen = visit(program, page_html(result_document(read_result(result))));
+  const Visit seen = visit(program, page_html(closing_document(read_closing(result))));
   EXPECT_EQ(seen.console, "");
   EXPECT_THAT(seen.dom, Not(HasSubstr("class=\"owned\"")));
   EXPECT_THAT(seen.dom, HasSubstr("class=\"drawn\""));
@@ -79,7 +79,7 @@ json searched() {
 
 TEST_F(PageInBrowser, CutsNothingOnANarrowScreen_browser) {
   for (const int width : {420, 1280}) {
-    const std::string dom = in_frame(program, page_html(result_document(read_result(searched()))), width,
+    const std::string dom = in_frame(program, page_html(closing_document(read_closing(searched()))), width,
                                      "for (const one of page.querySelectorAll('html, main, .scroll, .keys, figure')) if "
                                      "(one.scrollWidth > one.clientWidth + 1) say(one.className || one.tagName);");
     EXPECT_EQ(said(dom), "end;") << width;
@@ -88,7 +88,7 @@ TEST_F(PageInBrowser, CutsNothingOnANarrowScreen_browser) {
 
 TEST_F(PageInBrowser, ReadsTheSameInBothGapChartsAtOneCursor_browser) {
   const std::string dom = in_frame(
-      program, page_html(result_document(read_result(searched()))), 1280,
+      program, page_html(closing_document(read_closing(searched()))), 1280,
       "const over = page.querySelector('#figure-landing .u-over'); const read = (id) => [...page.querySelectorAll('#figure-' + "
       "id + "
       "' .u-value')].map((one) => one.textContent).join(' '); let read_any = false; for (let i = 0; i < 40; ++i) { "
@@ -105,7 +105,7 @@ TEST_F(PageInBrowser, LeavesRoomForTheNumbersAtItsAxes_browser) {
     for (json& one : result["search"][list]) one[1] = 12345.0 + 100 * one[1].get<double>();
   }
   const std::string dom =
-      in_frame(program, page_html(result_document(read_result(result))), 420,
+      in_frame(program, page_html(closing_document(read_closing(result))), 420,
                "for (const canvas of page.querySelectorAll('canvas')) { const {width, height} = canvas; const edge = (x) => "
                "canvas.getContext('2d').getImageData(x, 0, 1, height).data.some((value) => value); if (edge(0) || edge(width - "
                "1)) say('cut: ' + canvas.closest('figure').id); }");

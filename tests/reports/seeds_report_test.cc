@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "reports/result_document.h"
-#include "reports/result_json.h"
-#include "reports/result_reader.h"
+#include "reports/closing_document.h"
+#include "reports/closing_record.h"
+#include "reports/record_file.h"
 #include "sample_result.h"
 
 namespace softland {
@@ -27,7 +27,7 @@ SearchOfSeed search(std::uint64_t seed, double cost, bool goal_met = true, bool 
 }
 
 std::uint64_t best_seed(std::vector<SearchOfSeed> searches, Target target = Target::bounce, bool over_devices = false) {
-  ResultSeeds seeds{.planned = searches.size(), .searches = std::move(searches)};
+  SeedsFindings seeds{.planned = searches.size(), .searches = std::move(searches)};
   rank(seeds, target, 1e-9, over_devices);
   return seeds.searches.at(seeds.best).seed;
 }
@@ -48,7 +48,7 @@ TEST(SeedsReport, PrefersWhatIsConfirmedThenWhatMeetsTheGoalThenTheFigureThenThe
 }
 
 TEST(SeedsReport, TellsTheSpreadAndWhatFails) {
-  ResultSeeds seeds{.planned = 5, .searches = {search(1, 0.1), search(2, 0.2), search(3, 0.4, false), search(4, 0.3)}};
+  SeedsFindings seeds{.planned = 5, .searches = {search(1, 0.1), search(2, 0.2), search(3, 0.4, false), search(4, 0.3)}};
   seeds.searches.front().better_than_baseline = false;  // a goal that is met is a success
   seeds.searches.back().better_than_baseline = seeds.searches.back().goal_met = false;
   rank(seeds, Target::bounce, 1e-9, false);
@@ -65,20 +65,20 @@ TEST(SeedsReport, TellsTheSpreadAndWhatFails) {
   // One that found nothing is worse than all.
   seeds.searches[2].cost = Metrics::unset;
   EXPECT_TRUE(json_of(SeedsRecord{.origin = {}, .seeds = seeds})["seeds"]["cost"]["most"].is_null());
-  EXPECT_EQ(internal::seeds_caption(ResultSeeds{.planned = 3}), "None of 3 searches is done.");
+  EXPECT_EQ(internal::seeds_caption(SeedsFindings{.planned = 3}), "None of 3 searches is done.");
 }
 
 TEST(SeedsReport, OfAResultIsReadBackAndStandsInEveryReport) {
-  Result result = read_result(test::sample_optimize_result(10));
-  EXPECT_EQ(page_html(result_document(result)).find("id=\"seeds\""), std::string::npos);
-  result.seeds = ResultSeeds{.planned = 2, .searches = {search(1, 0.1), search(2, 0.2)}, .best = 1};
-  const Result again = read_result(result_json(result));
-  ASSERT_TRUE(again.seeds);
-  EXPECT_EQ(result_json(again)["seeds"], result_json(result)["seeds"]);
-  EXPECT_EQ(again.seeds->best, 1U);
-  EXPECT_NE(page_html(result_document(again)).find("Searches from other seeds"), std::string::npos);
-  EXPECT_NE(terminal_text(result_document(again)).find("\n2     goal met, confirmed"), std::string::npos)
-      << terminal_text(result_document(again));
+  ClosingRecord result = read_closing(test::sample_optimize_result(10));
+  EXPECT_EQ(page_html(closing_document(result)).find("id=\"seeds\""), std::string::npos);
+  result.search->seeds = SeedsFindings{.planned = 2, .searches = {search(1, 0.1), search(2, 0.2)}, .best = 1};
+  const ClosingRecord again = read_closing(json_of(result));
+  ASSERT_TRUE(again.search->seeds);
+  EXPECT_EQ(json_of(again)["seeds"], json_of(result)["seeds"]);
+  EXPECT_EQ(again.search->seeds->best, 1U);
+  EXPECT_NE(page_html(closing_document(again)).find("Searches from other seeds"), std::string::npos);
+  EXPECT_NE(terminal_text(closing_document(again)).find("\n2     goal met, confirmed"), std::string::npos)
+      << terminal_text(closing_document(again));
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "base/require.h"
-#include "reports/result_reader.h"
+#include "reports/closing_record.h"
 #include "sample_result.h"
 #include "xml.h"
 
@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 TEST(SvgPicture, IsWellFormedAndTellsTheFinding) {
-  const std::string svg = svg_gap_chart(read_result(test::sample_optimize_result(6000)));
+  const std::string svg = svg_gap_chart(read_closing(test::sample_optimize_result(6000)));
   EXPECT_EQ(test::xml_fault(svg), "");
   EXPECT_THAT(svg, HasSubstr("<title>Softland&#39;s waveform closes the switch at 44.5\u00a0µs with no rebound; the plain step"));
   EXPECT_THAT(svg, HasSubstr("Time (µs)"));
@@ -32,16 +32,16 @@ TEST(SvgPicture, IsWellFormedForHostileAndForEmptyResults) {
   json result = test::sample_simulate_result(600);
   result["title"] = "a <b> & \"c\" \x01 <script>";
   result["best"]["waveforms"]["]]> <x>"] = {{0, 1}};
-  EXPECT_EQ(test::xml_fault(svg_gap_chart(read_result(result))), "");
-  EXPECT_EQ(test::xml_fault(svg_gap_chart(read_result(json::object()))), "");
-  EXPECT_THROW((void)svg_gap_chart(read_result(json::array())), InvalidInput);
+  EXPECT_EQ(test::xml_fault(svg_gap_chart(read_closing(result))), "");
+  EXPECT_EQ(test::xml_fault(svg_gap_chart(read_closing(json::object()))), "");
+  EXPECT_THROW((void)svg_gap_chart(read_closing(json::array())), InvalidInput);
 }
 
 TEST(SvgPicture, OfACurveThatStandsStillHasFiniteCoordinates) {
   const json still{
       {"kind", "simulate"},
       {"curves", {{"best", {{"time_s", {0, 1e-6, 2e-6}}, {"tip_gap_m", {0, 0, 0}}, {"contact_force_N", {0, 0, 0}}}}}}};
-  const std::string svg = svg_gap_chart(read_result(still));
+  const std::string svg = svg_gap_chart(read_closing(still));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   EXPECT_THAT(svg, Not(HasSubstr("inf")));
 }

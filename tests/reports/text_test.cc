@@ -7,8 +7,8 @@
 #include <regex>
 #include <sstream>
 
-#include "reports/result_document.h"
-#include "reports/result_reader.h"
+#include "reports/closing_document.h"
+#include "reports/closing_record.h"
 #include "reports/svg.h"
 #include "sample_result.h"
 #include "tests/support/printed.h"
@@ -51,7 +51,7 @@ std::string read_aloud(const std::string& page) {
 
 TEST(EveryReport, SaysNoMoreThanIsKnown) {
   for (json result : {sample_optimize_result(few_rows), softland::test::sample_simulate_result(few_rows)}) {
-    EXPECT_EQ(absurd_number(terminal_text(result_document(read_result(result)))), "");
+    EXPECT_EQ(absurd_number(terminal_text(closing_document(read_closing(result)))), "");
     // Figures of a landing so soft that its remainders are those of arithmetic, and errors of a run judged by one like it.
     for (const char* part : {"metrics", "errors"}) {
       for (auto& [key, value] : result[part].items()) {
@@ -62,9 +62,9 @@ TEST(EveryReport, SaysNoMoreThanIsKnown) {
     result["metrics"]["major_bounce_height_m"] = 35.3e-15;
     result["best"]["metrics"] = result["metrics"];
     result["best"]["parameters"]["piezo.phase_rad"] = -1.23456789012;
-    EXPECT_EQ(absurd_number(terminal_text(result_document(read_result(result)))), "")
-        << terminal_text(result_document(read_result(result)));
-    EXPECT_EQ(absurd_number(read_aloud(page_html(result_document(read_result(result))))), "");
+    EXPECT_EQ(absurd_number(terminal_text(closing_document(read_closing(result)))), "")
+        << terminal_text(closing_document(read_closing(result)));
+    EXPECT_EQ(absurd_number(read_aloud(page_html(closing_document(read_closing(result))))), "");
   }
 }
 
@@ -99,8 +99,8 @@ TEST(EveryReport, DrawsAndPrintsWhatNoSwitchHas_slow) {
         json result = whole;
         int turn = 0;
         damage(result, absurd, period, turn);
-        for (const std::string& report : {terminal_text(result_document(read_result(result))), svg_gap_chart(read_result(result)),
-                                          page_html(result_document(read_result(result)))})
+        for (const std::string& report : {terminal_text(closing_document(read_closing(result))),
+                                          svg_gap_chart(read_closing(result)), page_html(closing_document(read_closing(result)))})
           EXPECT_EQ(misshapen(report), "") << absurd << ", every " << period << "th number of a result of " << whole["kind"];
       }
     }
@@ -108,51 +108,51 @@ TEST(EveryReport, DrawsAndPrintsWhatNoSwitchHas_slow) {
 }
 
 TEST(TextReport, KeepsItsSentencesWithinAHundredColumns) {
-  std::istringstream lines(terminal_text(result_document(read_result(sample_optimize_result(few_rows)))));
+  std::istringstream lines(terminal_text(closing_document(read_closing(sample_optimize_result(few_rows)))));
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 110U) << line;  // bytes
 }
 
 TEST(TextReport, ConfirmsOnlyAWinnerThatLandsSoftly) {
   json result = sample_optimize_result(few_rows);
   ASSERT_EQ(result["best"]["metrics"]["bounce_count"], 0);
-  EXPECT_THAT(terminal_text(result_document(read_result(result))), HasSubstr("in 1 of 2"));
+  EXPECT_THAT(terminal_text(closing_document(read_closing(result))), HasSubstr("in 1 of 2"));
   result["best"]["metrics"]["bounce_count"] = 7;
-  EXPECT_THAT(terminal_text(result_document(read_result(result))), Not(HasSubstr("Simulated again")));
+  EXPECT_THAT(terminal_text(closing_document(read_closing(result))), Not(HasSubstr("Simulated again")));
 }
 
 TEST(TextReport, PassesOverWhatIsNotThere) {
   for (const char* text : {"{}", R"({"kind": "optimize"})", R"({"kind": "simulate", "warnings": [1, "so"], "checks": 2})"})
-    EXPECT_NO_THROW((void)terminal_text(result_document(read_result(json::parse(text))))) << text;
+    EXPECT_NO_THROW((void)terminal_text(closing_document(read_closing(json::parse(text))))) << text;
 }
 
 TEST(TextReport, SaysWhoGivesTheRangeOfTheSettlingTimeAndTheCount) {
   json result = softland::test::sample_simulate_result(few_rows);
-  EXPECT_THAT(terminal_text(result_document(read_result(result))), HasSubstr("softland simulate --certify"));
+  EXPECT_THAT(terminal_text(closing_document(read_closing(result))), HasSubstr("softland simulate --certify"));
   result["certified"] = json::object();
-  EXPECT_THAT(terminal_text(result_document(read_result(result))), Not(HasSubstr("--certify")));
+  EXPECT_THAT(terminal_text(closing_document(read_closing(result))), Not(HasSubstr("--certify")));
   result.erase("certified");
   result["metrics"]["bounce_count"] = 0;
-  EXPECT_THAT(terminal_text(result_document(read_result(result))), Not(HasSubstr("--certify")))
+  EXPECT_THAT(terminal_text(closing_document(read_closing(result))), Not(HasSubstr("--certify")))
       << "a landing without rebounds is not chaotic";
 }
 
 TEST(TextReport, GivesIllConditionedFiguresAsMedianAndRange) {
   json result = softland::test::sample_simulate_result(few_rows);
-  EXPECT_THAT(terminal_text(result_document(read_result(result))), Not(HasSubstr("Certified")));
+  EXPECT_THAT(terminal_text(closing_document(read_closing(result))), Not(HasSubstr("Certified")));
   result["certified"] = json::object();
-  EXPECT_THAT(terminal_text(result_document(read_result(result))), HasSubstr("no figure is ill-conditioned"));
+  EXPECT_THAT(terminal_text(closing_document(read_closing(result))), HasSubstr("no figure is ill-conditioned"));
   result["certified"]["bounce_count"] = {{"median", 54.5}, {"low", 44}, {"high", 60}, {"runs", 16}};
   result["certified"]["permanent_contact_time_s"] = {{"median", 305e-6}, {"low", 280e-6}, {"high", 336e-6}, {"runs", 16}};
   result["cloud"] = {{"runs", 16}, {"grazing_rebound", nullptr}};
-  EXPECT_THAT(terminal_text(result_document(read_result(result))),
+  EXPECT_THAT(terminal_text(closing_document(read_closing(result))),
               ::testing::ContainsRegex("Rebounds .* median 54.5, 44 to 60 in 16 runs\n"));
-  EXPECT_THAT(terminal_text(result_document(read_result(result))),
+  EXPECT_THAT(terminal_text(closing_document(read_closing(result))),
               HasSubstr("median 305.0\u00a0µs, 280.0\u00a0µs to 336.0\u00a0µs in 16 runs\n"));
-  EXPECT_THAT(terminal_text(result_document(read_result(result))), Not(HasSubstr("The runs part")));
+  EXPECT_THAT(terminal_text(closing_document(read_closing(result))), Not(HasSubstr("The runs part")));
   result["cloud"]["grazing_rebound"] = {
       {"rebound", 7}, {"time_s", 85.2e-6}, {"height_m", 1.01e-9}, {"impact_velocity_m_s", 2e-3}, {"at_significant_height", true}};
   const auto words = [&] {
-    std::string text = terminal_text(result_document(read_result(result)));
+    std::string text = terminal_text(closing_document(read_closing(result)));
     std::replace(text.begin(), text.end(), '\n', ' ');
     return text;
   };

@@ -1,13 +1,13 @@
-// The members of a result and of its parts, as its JSON names them, for writing and for reading: see reports/record.h.
+// The members of the record of a closing and of its parts, as its JSON names them, for writing and for reading: see
+// reports/record.h.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "reports/closing_record.h"
 #include "reports/record.h"
-#include "reports/result.h"
-#include "reports/result_json.h"
 #include "reports/robustness_report.h"
 
 namespace softland {
@@ -45,12 +45,14 @@ void figure_errors(A& a, FigureValues& errors) {
   a.object("errors", [&](auto& inside) { inside.figures(errors, figure_of_number); });
 }
 
+/// Whether the JSON of a closing holds a search too.
+[[nodiscard]] bool is_of_search(const nlohmann::json& record);
 [[nodiscard]] nlohmann::json rebounds_json(const std::vector<Rebound>& rebounds);
 [[nodiscard]] std::vector<Rebound> read_rebounds(const nlohmann::json& rows);
 [[nodiscard]] nlohmann::json counted_json(const Points& points);
 [[nodiscard]] Points read_points(const nlohmann::json& points);
-[[nodiscard]] nlohmann::json pull_in_json(const std::map<std::string, ResultPullIn>& pull_in);
-[[nodiscard]] std::map<std::string, ResultPullIn> read_pull_in(const nlohmann::json& pull_in);
+[[nodiscard]] nlohmann::json pull_in_json(const std::map<std::string, PullInOfElectrode>& pull_in);
+[[nodiscard]] std::map<std::string, PullInOfElectrode> read_pull_in(const nlohmann::json& pull_in);
 [[nodiscard]] nlohmann::json static_by_modes_json(const std::optional<ByModes>& found);
 [[nodiscard]] std::optional<ByModes> read_static_by_modes(const nlohmann::json& found);
 [[nodiscard]] nlohmann::json certified_json(const std::vector<IllConditioned>& figures);
@@ -65,7 +67,7 @@ void figure_errors(A& a, FigureValues& errors) {
 /// Each with the quantiles of its row.
 [[nodiscard]] nlohmann::json choices_json(const DevicesFindings& devices);
 /// The outcome of all searches together.
-[[nodiscard]] nlohmann::json seeds_summary(const ResultSeeds& seeds);
+[[nodiscard]] nlohmann::json seeds_summary(const SeedsFindings& seeds);
 
 }  // namespace internal
 
@@ -93,7 +95,7 @@ void members(A& a, Origin& origin) {
 }
 
 template <class A>
-void members(A& a, ResultCurve& curve) {
+void members(A& a, CurveRecord& curve) {
   a("time_s", curve.time);
   a("tip_gap_m", curve.gap);
   a("tip_velocity_m_s", curve.velocity);
@@ -103,31 +105,31 @@ void members(A& a, ResultCurve& curve) {
 }
 
 template <class A>
-void members(A& a, ResultRun& run) {
+void members(A& a, RunRecord& run) {
   internal::figures_and_status(a, run.figures, run.status, internal::every_figure);
   a("collapse_time_s", run.collapse_time);
   a("waveforms", run.waveforms);
 }
 
 template <class A>
-void members(A& a, ResultContact& contact) {
+void members(A& a, ContactFigures& contact) {
   a("gap_m", contact.gap);
   a.figures(contact.figures, internal::figure_of_contact);
 }
 
 template <class A>
-void members(A& a, ResultCheck& check) {
+void members(A& a, ConfirmationRecord& check) {
   a("name", check.name);
   internal::figures_and_status(a, check.figures, check.status, internal::figure_of_no_drive);
 }
 
 template <class A>
-void members(A& a, ResultEffects::LeftOut& one) {
+void members(A& a, EffectsLeftOut::LeftOut& one) {
   a("effect", one.effect);
   a("influence", one.influence);
 }
 template <class A>
-void members(A& a, ResultEffects& effects) {
+void members(A& a, EffectsLeftOut& effects) {
   a("left_out", effects.left_out);
   a("influence", effects.influence);
 }
@@ -160,7 +162,7 @@ void members(A& a, ClosedState& state) {
 }
 
 template <class A>
-void members(A& a, ResultPullIn& volts) {
+void members(A& a, PullInOfElectrode& volts) {
   a("static_V", volts.static_pull_in);
   a("dynamic_V", volts.dynamic_pull_in);
   a.custom("by_modes", volts.static_by_modes, internal::static_by_modes_json, internal::read_static_by_modes);
@@ -175,7 +177,7 @@ void members(A& a, Work& work) {
 }
 
 template <class A>
-void members(A& a, ResultLimit& limit) {
+void members(A& a, TouchLimit& limit) {
   a("least_time_s", limit.least_time);
   a(key_of(&Metrics::impact_velocity), limit.impact_velocity);
 }
@@ -323,7 +325,7 @@ void members(A& a, SearchOfSeed& search) {
 }
 
 template <class A>
-void members(A& a, ResultSeeds& seeds) {
+void members(A& a, SeedsFindings& seeds) {
   a("planned", seeds.planned);
   a("searches", seeds.searches);
   const auto seed_of = [&](std::size_t k) {
@@ -341,88 +343,91 @@ void members(A& a, ResultSeeds& seeds) {
   }
 }
 
-/// Of a search alone.
+/// Those of a search stand among those of the closing that it found.
 template <class A>
-void members_of_search(A& a, Result& result) {
-  a("target", result.target);
-  a("actuator", result.actuator);
-  a("waveform", result.waveform);
-  if (a.has(!result.families.empty())) a("families", result.families);
-  a("seed", result.seed);
-  a("optimizer", result.optimizer);
-  a("evaluations", internal::Count{result.evaluations});
-  a("termination", result.termination);
-  a("termination_message", result.termination_message);
-  a("goal_met", result.goal_met);
-  a("better_than_baseline", result.better_than_baseline);
-  a("plain_step_wins", result.plain_step_wins);
-  a("harder_than_step", result.harder_than_step);
+void members_of_search(A& a, SearchRecord& search, ClosingRecord& closing) {
+  a("target", search.target);
+  a("actuator", search.actuator);
+  a("waveform", search.waveform);
+  if (a.has(!search.families.empty())) a("families", search.families);
+  a("seed", search.seed);
+  a("optimizer", search.optimizer);
+  a("evaluations", internal::Count{search.evaluations});
+  a("termination", search.termination);
+  a("termination_message", search.termination_message);
+  a("goal_met", search.goal_met);
+  a("better_than_baseline", search.better_than_baseline);
+  a("plain_step_wins", search.plain_step_wins);
+  a("harder_than_step", search.harder_than_step);
   a.object("baseline", [&](auto& baseline) {
-    members(baseline, result.baseline);
-    internal::figure_errors(baseline, result.baseline.errors);
-    baseline("cost", result.baseline.cost);
+    members(baseline, search.baseline);
+    internal::figure_errors(baseline, search.baseline.errors);
+    baseline("cost", search.baseline.cost);
   });
-  a.object("search", [&](auto& search) {
-    search("value_name", result.search.value_name);
-    search.custom("best_so_far", result.search.best_so_far, internal::counted_json, internal::read_points);
-    if (search.has(!result.search.evaluations.empty()))
-      search.custom("evaluations", result.search.evaluations, internal::counted_json, internal::read_points);
+  a.object("curves", [&](auto& curves) { curves("baseline", search.baseline.curve); });
+  a.object("search", [&](auto& course) {
+    course("value_name", search.course.value_name);
+    course.custom("best_so_far", search.course.best_so_far, internal::counted_json, internal::read_points);
+    if (course.has(!search.course.evaluations.empty()))
+      course.custom("evaluations", search.course.evaluations, internal::counted_json, internal::read_points);
   });
-  a("reproduce", result.reproduce);
-  a("robust", result.robust);
-  a("devices", result.devices);
-  a("seeds", result.seeds);
-  if (result.devices) {
+  a("reproduce", search.reproduce);
+  a("robust", search.robust);
+  a("devices", search.devices);
+  a("seeds", search.seeds);
+  if (search.devices) {
     a.object("drawing", [&](auto& drawing) {
-      internal::figures_and_status(drawing, result.devices->drawing, result.devices->drawing_status, internal::every_figure);
-      drawing("goal_met", result.devices->drawing_goal_met);
+      internal::figures_and_status(drawing, search.devices->drawing, search.devices->drawing_status, internal::every_figure);
+      drawing("goal_met", search.devices->drawing_goal_met);
     });
   }
-  a("limit", result.limit);
-  if (!a.has(result.best.figures.has_value())) return;
+  a("limit", search.limit);
+  if (!a.has(closing.best.figures.has_value())) return;
   a.object("best", [&](auto& best) {
-    best("parameters", result.parameters);
-    best("bounds", result.bounds);
-    best("cost", result.best.cost);
+    best("parameters", search.parameters);
+    best("bounds", search.bounds);
+    best("cost", closing.best.cost);
   });
-  a("checks", result.checks);
-  if (a.has(!result.checks.empty())) a("evaluations_with_more_modes", internal::Count{result.evaluations_of_modes});
+  a("checks", search.checks);
+  if (a.has(!search.checks.empty())) a("evaluations_with_more_modes", internal::Count{search.evaluations_of_modes});
 }
 
 /// But for what is worked out from others.
 template <class A>
-void members(A& a, Result& result) {
-  members(a, result.origin);
-  a("status", result.status);
-  a.custom("pull_in", result.pull_in, internal::pull_in_json, internal::read_pull_in);
-  a("warnings", result.warnings);
-  a("title", result.title);
-  a("natural_frequencies_rad_s", result.natural_frequencies);
-  a("tolerance", result.tolerance);
-  if (a.has(!result.message.empty())) a("message", result.message);
-  a("effects", result.effects);
+void members(A& a, ClosingRecord& record) {
+  members(a, record.origin);
+  a("status", record.status);
+  a.custom("pull_in", record.pull_in, internal::pull_in_json, internal::read_pull_in);
+  a("warnings", record.warnings);
+  a("title", record.title);
+  a("natural_frequencies_rad_s", record.natural_frequencies);
+  a("tolerance", record.tolerance);
+  if (a.has(!record.message.empty())) a("message", record.message);
+  a("effects", record.effects);
   a.object("curves", [&](auto& curves) {
-    if (curves.has(result.best.figures.has_value())) curves("best", result.best.curve);
-    if (curves.has(result.is_search())) curves("baseline", result.baseline.curve);
+    if (curves.has(record.best.figures.has_value())) curves("best", record.best.curve);
   });
-  if (a.has(result.best.figures.has_value())) {
+  if (a.has(record.best.figures.has_value())) {
     a.object("metrics", [&](auto& metrics) {
-      if (metrics.reads) result.best.figures.emplace();
-      metrics.figures(*result.best.figures, internal::every_figure);
+      if (metrics.reads) record.best.figures.emplace();
+      metrics.figures(*record.best.figures, internal::every_figure);
     });
-    a.object("best", [&](auto& best) { members(best, result.best); });
-    internal::figure_errors(a, result.best.errors);
+    a.object("best", [&](auto& best) { members(best, record.best); });
+    internal::figure_errors(a, record.best.errors);
   }
-  if (a.has(!result.contacts.empty())) a("contacts", result.contacts);
-  a("closed_state", result.closed_state);
-  a("work", result.work);
-  if (a.has(result.is_search())) members_of_search(a, result);
-  if (a.reads) a.object("certified", [&](auto&) { result.certificate.emplace(); });
-  if (!result.certificate) return;
-  a.custom("certified", result.certificate->ill_conditioned, internal::certified_json, internal::read_certified);
+  if (a.has(!record.contacts.empty())) a("contacts", record.contacts);
+  a("closed_state", record.closed_state);
+  a("work", record.work);
+  if constexpr (A::reads) {
+    if (internal::is_of_search(a.whole())) record.search.emplace();
+    a.object("certified", [&](auto&) { record.certificate.emplace(); });
+  }
+  if (record.search) members_of_search(a, *record.search, record);
+  if (!record.certificate) return;
+  a.custom("certified", record.certificate->ill_conditioned, internal::certified_json, internal::read_certified);
   a.object("cloud", [&](auto& cloud) {
-    cloud("runs", result.certificate->runs);
-    cloud("grazing_rebound", internal::OrNull{result.certificate->grazing});
+    cloud("runs", record.certificate->runs);
+    cloud("grazing_rebound", internal::OrNull{record.certificate->grazing});
   });
 }
 

@@ -1,9 +1,9 @@
-#include "reports/result_words.h"
+#include "reports/closing_captions.h"
 
 #include <gtest/gtest.h>
 
+#include "reports/closing_record.h"
 #include "reports/figure_text.h"
-#include "reports/result_reader.h"
 #include "sample_result.h"
 
 namespace softland::internal {
@@ -22,7 +22,7 @@ std::string plain(std::string words) {
   return words;
 }
 
-std::string sentence(const json& result) { return plain(headline(read_result(result)).whole()); }
+std::string sentence(const json& result) { return plain(headline(read_closing(result)).whole()); }
 
 TEST(Headline, OfASoftLandingNamesBothClosings) {
   json result = sample_optimize_result(few_rows);
@@ -82,7 +82,7 @@ TEST(Headline, QuotesIllConditionedFiguresWithAbout) {
 TEST(Headline, NamesTheReboundsThatAreTooSmallToCount) {
   json result = sample_optimize_result(few_rows);
   result["best"]["metrics"]["major_bounce_height_m"] = 0.42e-9;
-  EXPECT_EQ(plain(headline(read_result(result)).main),
+  EXPECT_EQ(plain(headline(read_closing(result)).main),
             "Softland's waveform closes the switch at 44.5 µs with no rebound above 420 pm");
 }
 
@@ -118,29 +118,29 @@ TEST(Headline, OfAnInterruptedSearchIsAboutItsBestSoFar) {
 
 TEST(Captions, StateWhatTheNumbersSay) {
   const json result = sample_optimize_result(few_rows);
-  EXPECT_EQ(plain(gap_caption(read_result(result))),
+  EXPECT_EQ(plain(gap_caption(read_closing(result))),
             "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The plain step "
             "bounces about 57 times, up to 803 nm, until about 374 µs; softland's waveform lands at 44.5 µs with 900 µm/s and "
             "stays closed.");
-  EXPECT_EQ(plain(landing_caption(read_result(result))),
+  EXPECT_EQ(plain(landing_caption(read_closing(result))),
             "The same gap in a narrow band around the contact plane; below it the contact is pressed. The plain step reaches the "
             "plane with 133 mm/s and rises 803 nm above it again; softland's waveform reaches the plane with 900 µm/s and does "
             "not rise above it again.");
-  EXPECT_EQ(plain(velocity_caption(read_result(result))),
+  EXPECT_EQ(plain(velocity_caption(read_closing(result))),
             "Velocity of the contact point, positive towards the contact. The plain step lands at 133 mm/s, softland's "
             "waveform at 900 µm/s (148 times lower).");
-  EXPECT_EQ(plain(force_caption(read_result(result))),
+  EXPECT_EQ(plain(force_caption(read_closing(result))),
             "Force of the contact on the beam. The plain step peaks at 290 µN, softland's waveform at 2.70 µN (107 times lower). "
             "Closed and at rest, the contact "
             "carries 2.10 µN.");
-  EXPECT_EQ(plain(waveform_caption(read_result(result), "piezo")),
+  EXPECT_EQ(plain(waveform_caption(read_closing(result), "piezo")),
             "Voltage of the drive “piezo”. Softland's waveform runs between 0 mV and 603 mV, at most 121 mV/µs; the plain step "
             "stays at 0 V.");
-  EXPECT_EQ(plain(waveform_caption(read_result(result), "main")), "Voltage of the drive “main”. Both waveforms stay at 28.1 V.");
-  EXPECT_EQ(plain(checks_caption(read_result(result))),
+  EXPECT_EQ(plain(waveform_caption(read_closing(result), "main")), "Voltage of the drive “main”. Both waveforms stay at 28.1 V.");
+  EXPECT_EQ(plain(checks_caption(*read_closing(result).search)),
             "Simulated again with a tolerance of 1e-9 and with 6 modes, it closes without a rebound in 1 of 2 ways; at worst it "
             "rebounds by up to 3.20 nm and touches at 2.30 mm/s (modes 6).");
-  EXPECT_FALSE(checks_agree(read_result(result)));
+  EXPECT_FALSE(checks_agree(read_closing(result)));
 }
 
 TEST(Captions, OfWhatConfirmsAWinnerTellGasLawsFromModes) {
@@ -151,75 +151,76 @@ TEST(Captions, OfWhatConfirmsAWinnerTellGasLawsFromModes) {
                       {{"name", "modes 8"}, {"metrics", clean}},
                       {{"name", "modes 10"}, {"metrics", clean}},
                       {{"name", "gas veijola"}, {"metrics", bounces}}};
-  EXPECT_EQ(plain(checks_caption(read_result(result))),
+  EXPECT_EQ(plain(checks_caption(*read_closing(result).search)),
             "Simulated again with a tolerance of 1e-9 and with 6, 8 and 10 modes, it closes without a rebound, at 880 µm/s at "
             "most. Under other gas laws that hold here (veijola) this waveform may not land: it rebounds by up to 3.20 nm and "
             "touches at 2.30 mm/s (veijola).");
-  EXPECT_TRUE(checks_agree(read_result(result)));
-  EXPECT_FALSE(all_checks_land(read_result(result)));
-  EXPECT_EQ(headline(read_result(result)).whole().find("modes"), std::string::npos);
+  EXPECT_TRUE(checks_agree(read_closing(result)));
+  EXPECT_FALSE(all_checks_land(*read_closing(result).search));
+  EXPECT_EQ(headline(read_closing(result)).whole().find("modes"), std::string::npos);
   result["checks"][4]["metrics"] = clean;
-  EXPECT_TRUE(all_checks_land(read_result(result)));
+  EXPECT_TRUE(all_checks_land(*read_closing(result).search));
   result["checks"][2]["metrics"] = bounces;
-  EXPECT_FALSE(checks_agree(read_result(result)));
+  EXPECT_FALSE(checks_agree(read_closing(result)));
   EXPECT_TRUE(sentence(result).ends_with(
       "This landing belongs to the modes that the scene keeps: with 8 of them it rebounds by up to 3.20 nm and "
       "touches at 2.30 mm/s."));
-  EXPECT_EQ(worst_figure(*worst_check(read_result(result).checks)), "major_bounce_height_m");
+  EXPECT_EQ(worst_figure(*worst_check(read_closing(result).search->checks)), "major_bounce_height_m");
   result["checks"][2]["metrics"] = {{"initial_contact_time_s", nullptr}};
-  EXPECT_EQ(worst_figure(*worst_check(read_result(result).checks)), "initial_contact_time_s");
+  EXPECT_EQ(worst_figure(*worst_check(read_closing(result).search->checks)), "initial_contact_time_s");
 }
 
 TEST(Captions, OfALandingNeverCallItCleanerThanItIs) {
   json result = sample_optimize_result(few_rows);
   result["best"]["metrics"]["major_bounce_height_m"] = 0.42e-9;
-  EXPECT_TRUE(plain(gap_caption(read_result(result))).ends_with("and stays closed but for rebounds of 420 pm at most."));
-  EXPECT_TRUE(plain(landing_caption(read_result(result))).ends_with("with 900 µm/s and rises 420 pm above it again."));
+  EXPECT_TRUE(plain(gap_caption(read_closing(result))).ends_with("and stays closed but for rebounds of 420 pm at most."));
+  EXPECT_TRUE(plain(landing_caption(read_closing(result))).ends_with("with 900 µm/s and rises 420 pm above it again."));
   result["best"]["metrics"]["settled"] = false;
   EXPECT_TRUE(
-      plain(gap_caption(read_result(result))).ends_with("rebounds, up to 420 pm, and is still open when the window ends."));
+      plain(gap_caption(read_closing(result))).ends_with("rebounds, up to 420 pm, and is still open when the window ends."));
   result["best"]["metrics"] = {{"initial_contact_time_s", nullptr}};
   result["curves"]["best"]["tip_gap_m"] = {2e-6, 1.25e-6, nullptr, 1.5e-6};
-  EXPECT_TRUE(plain(gap_caption(read_result(result))).ends_with("softland's waveform never touches (no nearer than 1.25 µm)."));
+  EXPECT_TRUE(plain(gap_caption(read_closing(result))).ends_with("softland's waveform never touches (no nearer than 1.25 µm)."));
 }
 
 TEST(Captions, OfASearchNameTheWinner) {
-  json result{{"evaluations", 300},
+  json result{{"kind", "optimize"},
+              {"evaluations", 300},
               {"search", {{"value_name", "cost"}, {"best_so_far", {{1, 2.0}, {17, nullptr}, {120, 0.5}, {240, 0.5}}}}}};
-  EXPECT_EQ(search_caption(read_result(result)),
+  EXPECT_EQ(search_caption(read_closing(result), *read_closing(result).search),
             "Cost of every waveform tried (dots) and of the best so far (line). In 300 evaluations the cost fell from 2 to 0.5 "
             "(4.0 times lower); the winner is "
             "number 120 of them.");
   result["search"]["best_so_far"] = {{1, 2.0}, {40, 1.0}, {120, 0.5}};
   result["best"]["cost"] = 1.0;  // the lowest missed the goal
   result["baseline"]["cost"] = 0.97;
-  EXPECT_EQ(search_caption(read_result(result)),
+  EXPECT_EQ(search_caption(read_closing(result), *read_closing(result).search),
             "Cost of every waveform tried (dots) and of the best so far (line); the plain step's is 0.97. In 300 evaluations "
             "the cost fell from 2 to 0.5 (4.0 times lower); the winner is number 40 of them.");
   result["search"]["best_so_far"] = {{0, 2.0}};
   result["best"]["cost"] = 2.0;
   result["search"]["evaluations"] = {{0, 2.0}, {7, 3.0}};
-  EXPECT_TRUE(
-      search_caption(read_result(result)).ends_with("In 300 evaluations the cost stayed at 2; the winner is number 1 of them."));
+  EXPECT_TRUE(search_caption(read_closing(result), *read_closing(result).search)
+                  .ends_with("In 300 evaluations the cost stayed at 2; the winner is number 1 of them."));
 }
 
 TEST(Goal, IsOfTheFiguresThatTheTargetIsAbout) {
   json result = sample_optimize_result(few_rows);
-  EXPECT_EQ(goal_text(read_result(result), figure_of(&Metrics::bounce_count)), "0");
-  EXPECT_EQ(goal_text(read_result(result), figure_of(&Metrics::settled)), "yes");
-  EXPECT_EQ(goal_text(read_result(result), figure_of(&Metrics::impact_velocity)), "");
+  EXPECT_EQ(goal_text(read_closing(result), figure_of(&Metrics::bounce_count)), "0");
+  EXPECT_EQ(goal_text(read_closing(result), figure_of(&Metrics::settled)), "yes");
+  EXPECT_EQ(goal_text(read_closing(result), figure_of(&Metrics::impact_velocity)), "");
   result["target"] = "impact";
-  EXPECT_EQ(plain(goal_text(read_result(result), figure_of(&Metrics::impact_velocity))), "below 132.8 mm/s");
-  EXPECT_EQ(goal_text(read_result(result), figure_of(&Metrics::bounce_count)), "");
-  EXPECT_EQ(goal_text(read_result(sample_simulate_result(few_rows)), figure_of(&Metrics::settled)), "");
+  EXPECT_EQ(plain(goal_text(read_closing(result), figure_of(&Metrics::impact_velocity))), "below 132.8 mm/s");
+  EXPECT_EQ(goal_text(read_closing(result), figure_of(&Metrics::bounce_count)), "");
+  EXPECT_EQ(goal_text(read_closing(sample_simulate_result(few_rows)), figure_of(&Metrics::settled)), "");
 }
 
 TEST(Captions, OfASingleRunSpeakOfTheSwitch) {
   const json result = sample_simulate_result(few_rows);
-  EXPECT_EQ(plain(gap_caption(read_result(result))),
+  EXPECT_EQ(plain(gap_caption(read_closing(result))),
             "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The switch "
             "bounces about 57 times, up to 803 nm, until about 370 µs.");
-  EXPECT_EQ(plain(force_caption(read_result(result))),
+  EXPECT_EQ(plain(force_caption(read_closing(result))),
             "Force of the contact on the beam. It peaks at 290 µN. Closed and at rest, the contact carries 2.10 µN.");
 }
 

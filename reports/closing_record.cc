@@ -1,4 +1,4 @@
-#include "reports/result_maker.h"
+#include "reports/closing_record.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,8 @@
 
 #include "base/require.h"
 #include "integrators/quintic.h"
+#include "reports/closing_record.h"
 #include "reports/downsample.h"
-#include "reports/result_reader.h"
 #include "reports/robustness_words.h"
 #include "studies/closing/effect_ablation.h"
 #include "studies/closing/resistance_course.h"
@@ -55,10 +55,10 @@ std::map<std::string, Points> waveforms(const PreparedScene& p) {
   return all;
 }
 
-ResultRun run(const PreparedScene& p, const Closing& closing, const MetricsOptions& options) {
+RunRecord run(const PreparedScene& p, const Closing& closing, const MetricsOptions& options) {
   FigureValues figures(closing.metrics), errors = closing.errors;
   figures.asked = errors.asked = options.asked;
-  ResultCurve curve = curve_of(closing.trajectory, closing.rebounds, closing.is_thinned, options);
+  CurveRecord curve = curve_of(closing.trajectory, closing.rebounds, closing.is_thinned, options);
   curve.resistance = resistance_course(p.scene.device, closing.trajectory, curve.time);
   return {.status = std::string(to_string(closing.metrics.status)),
           .figures = finite(figures),
@@ -68,8 +68,8 @@ ResultRun run(const PreparedScene& p, const Closing& closing, const MetricsOptio
           .collapse_time = closing.trajectory.collapse_time};
 }
 
-std::map<std::string, ResultContact> contacts(const Closing& closing) {
-  std::map<std::string, ResultContact> all;
+std::map<std::string, ContactFigures> contacts(const Closing& closing) {
+  std::map<std::string, ContactFigures> all;
   for (std::size_t c = 0; c < closing.contacts.size(); ++c) {
     const ContactOutcome& own = closing.trajectory.contacts[c];
     all[own.name] = {.gap = own.gap, .figures = finite(FigureValues(closing.contacts[c].metrics))};
@@ -77,13 +77,13 @@ std::map<std::string, ResultContact> contacts(const Closing& closing) {
   return all;
 }
 
-std::map<std::string, ResultPullIn> pull_in(const PreparedScene& p) {
-  std::map<std::string, ResultPullIn> all;
+std::map<std::string, PullInOfElectrode> pull_in(const PreparedScene& p) {
+  std::map<std::string, PullInOfElectrode> all;
   const ModeLadder ladder(p);
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     const auto found = p.pull_in.find(p.scene.device.electrodes[k].name);
     if (found == p.pull_in.end()) continue;
-    ResultPullIn& one = all[found->first];
+    PullInOfElectrode& one = all[found->first];
     one = {.static_pull_in = found->second.statically.voltage, .dynamic_pull_in = found->second.dynamically.voltage};
     if (ladder.exists()) one.static_by_modes = static_pull_in_by_modes(ladder, p.scene, k);
   }
@@ -91,18 +91,18 @@ std::map<std::string, ResultPullIn> pull_in(const PreparedScene& p) {
 }
 
 // What is the same for every study: of its scene, and of this program.
-Result started(const char* kind, const PreparedScene& p, const std::string& command) {
+ClosingRecord begun(const char* kind, const PreparedScene& p, const std::string& command) {
   for (const auto& [drive, waveform] : p.drives.waveforms()) {
     if (const Own* own = std::get_if<Own>(&waveform))
       throw InvalidInput(fmt::format("waveform.{}: {} cannot be written into a result", drive, described(*own)));
   }
-  Result r{.origin = whole_origin_of(kind, p, command), .title = p.scene.title, .tolerance = p.tolerance};
-  r.scene = read_result_scene(r.origin.scene);
+  ClosingRecord r{.origin = whole_origin_of(kind, p, command), .title = p.scene.title, .tolerance = p.tolerance};
+  r.scene = read_drawn_scene(r.origin.scene);
   const Eigen::VectorXd& frequencies = p.model.basis().angular_frequencies();
   r.natural_frequencies.assign(frequencies.begin(), frequencies.end());
   if (p.model.has_contact()) r.closed_state = closed_state(p, p.signals());
   if (p.effects) {
-    r.effects = ResultEffects{.left_out = {}, .influence = p.effects->choice.influence};
+    r.effects = EffectsLeftOut{.left_out = {}, .influence = p.effects->choice.influence};
     for (const EffectAblation& o : p.effects->choice.left_out)
       r.effects->left_out.push_back({.effect = o.what.effect, .influence = o.influence});
   }
@@ -110,7 +110,7 @@ Result started(const char* kind, const PreparedScene& p, const std::string& comm
 }
 
 // Of a long run the rows that draw the same picture: files stay readable however long it was.
-void keep_most_rows(ResultCurve& c) {
+void keep_most_rows(CurveRecord& c) {
   const std::vector<std::size_t> rows = internal::downsampled({&c.gap, &c.velocity, &c.force}, most_curve_rows);
   if (rows.size() == c.time.size()) return;
   for (std::vector<double>* column : {&c.time, &c.gap, &c.velocity, &c.force}) {
@@ -130,11 +130,16 @@ void keep_highest(std::vector<Rebound>& all) {
 
 }  // namespace
 
-ResultCurve curve_of(const Trajectory& t, const MetricsOptions& options) { return curve_of(t, rebounds(t), false, options); }
+const RunRecord& ClosingRecord::baseline() const {
+  static const RunRecord none;
+  return search ? search->baseline : none;
+}
 
-ResultCurve curve_of(const Trajectory& t, const std::vector<Rebound>& all_rebounds, bool is_thinned,
+CurveRecord curve_of(const Trajectory& t, const MetricsOptions& options) { return curve_of(t, rebounds(t), false, options); }
+
+CurveRecord curve_of(const Trajectory& t, const std::vector<Rebound>& all_rebounds, bool is_thinned,
                      const MetricsOptions& options) {
-  ResultCurve c;
+  CurveRecord c;
   const auto add = [&](double at, double position, double velocity, double contact) {
     c.time.push_back(at);
     c.gap.push_back(t.contact_gap - position);
@@ -172,8 +177,8 @@ Points drawn_evaluations(Points all) {
   return kept;
 }
 
-Result result_of(const PreparedScene& prepared, const Closing& closing, const std::string& command) {
-  Result r = started("simulate", prepared, command);
+ClosingRecord record_of(const PreparedScene& prepared, const Closing& closing, const std::string& command) {
+  ClosingRecord r = begun("simulate", prepared, command);
   r.status = to_string(closing.metrics.status);
   r.message = closing.trajectory.message;
   r.best = run(prepared, closing, prepared.scene.metrics);
@@ -186,31 +191,32 @@ Result result_of(const PreparedScene& prepared, const Closing& closing, const st
   return r;
 }
 
-Result result_of(const OptimizeResult& found, const OptimizeOptions& options, const std::string& command) {
-  Result r = started("optimize", found.best ? *found.best_scene : found.scene, command);
+ClosingRecord record_of(const OptimizeResult& found, const OptimizeOptions& options, const std::string& command) {
+  ClosingRecord r = begun("optimize", found.best ? *found.best_scene : found.scene, command);
+  SearchRecord& s = r.search.emplace();
   const MetricsOptions& metrics_options = found.scene.scene.metrics;
   const bool interrupted = found.search.termination == Termination::interrupted;
   r.status = interrupted  ? std::string_view("interrupted")
              : found.best ? to_string(found.best->metrics.status)
                           : to_string(Status::no_contact);
-  r.target = options.target.text();
-  r.actuator = name_of(actuators, options.actuator);
-  r.waveform = found.plain_step_wins ? "step" : found.family;
-  if (found.families.size() > 1) r.families = found.families;
-  r.seed = options.seed;
-  r.optimizer = options.optimizer;
-  r.evaluations = static_cast<double>(found.search.evaluations);
-  r.termination = to_string(found.search.termination);
-  r.termination_message = found.search.message;
-  r.goal_met = found.goal_met;
-  r.better_than_baseline = found.better_than_baseline;
-  r.plain_step_wins = found.plain_step_wins;
-  r.harder_than_step = found.harder_than_step;
+  s.target = options.target.text();
+  s.actuator = name_of(actuators, options.actuator);
+  s.waveform = found.plain_step_wins ? "step" : found.family;
+  if (found.families.size() > 1) s.families = found.families;
+  s.seed = options.seed;
+  s.optimizer = options.optimizer;
+  s.evaluations = static_cast<double>(found.search.evaluations);
+  s.termination = to_string(found.search.termination);
+  s.termination_message = found.search.message;
+  s.goal_met = found.goal_met;
+  s.better_than_baseline = found.better_than_baseline;
+  s.plain_step_wins = found.plain_step_wins;
+  s.harder_than_step = found.harder_than_step;
   r.pull_in = pull_in(found.scene);
-  r.baseline = run(found.baseline_scene, found.baseline, metrics_options);
-  r.baseline.cost = found.baseline_cost;
-  r.search.value_name = "cost";
-  for (const Evaluation& e : found.search.improvements) r.search.best_so_far.push_back({static_cast<double>(e.index), e.value});
+  s.baseline = run(found.baseline_scene, found.baseline, metrics_options);
+  s.baseline.cost = found.baseline_cost;
+  s.course.value_name = "cost";
+  for (const Evaluation& e : found.search.improvements) s.course.best_so_far.push_back({static_cast<double>(e.index), e.value});
   // Warnings of the scene come with every closing: once is enough.
   r.warnings = found.best ? found.best->warnings : found.baseline.warnings;
   if (!found.best) return r;
@@ -218,34 +224,36 @@ Result result_of(const OptimizeResult& found, const OptimizeOptions& options, co
   r.contacts = contacts(*found.best);
   r.best.cost = found.best_cost;
   r.work = found.best->trajectory.work;
-  r.parameters = found.parameters;
-  for (const Variable& v : found.variables) r.bounds[v.name] = {v.lower, v.upper};
-  r.evaluations_of_modes = static_cast<double>(found.evaluations_of_modes);
+  s.parameters = found.parameters;
+  for (const Variable& v : found.variables) s.bounds[v.name] = {v.lower, v.upper};
+  s.evaluations_of_modes = static_cast<double>(found.evaluations_of_modes);
   for (const ConfirmingRun& c : found.checks) {
-    r.checks.push_back(
+    s.checks.push_back(
         {.name = c.name, .status = std::string(to_string(c.metrics.status)), .figures = finite(FigureValues(c.metrics))});
   }
   return r;
 }
 
-Result result_of(const RobustResult& found, const OptimizeOptions& options, const std::string& command) {
-  Result r = result_of(found.found, options, command);
-  r.optimizer = "race of CMA-ES";
-  r.search.value_name = "cost over devices";
-  r.robust = found.findings;
+ClosingRecord record_of(const RobustResult& found, const OptimizeOptions& options, const std::string& command) {
+  ClosingRecord r = record_of(found.found, options, command);
+  SearchRecord& s = *r.search;
+  s.optimizer = "race of CMA-ES";
+  s.course.value_name = "cost over devices";
+  s.robust = found.findings;
   return r;
 }
 
-Result result_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command,
-                 const std::string& command) {
-  Result r = result_of(found.best, options, command);
+ClosingRecord record_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command,
+                        const std::string& command) {
+  ClosingRecord r = record_of(found.best, options, command);
+  SearchRecord& s = *r.search;
   if (!found.rows.empty()) {
-    r.devices = found.findings;
-    r.devices->spread = spread_words(found.varied.scene.spread);
-    r.devices->next_command = std::move(next_command);
+    s.devices = found.findings;
+    s.devices->spread = spread_words(found.varied.scene.spread);
+    s.devices->next_command = std::move(next_command);
   }
   if (found.interrupted) r.status = "interrupted";
-  r.search.value_name = "cost, on the nominal device";
+  s.course.value_name = "cost, on the nominal device";
   return r;
 }
 

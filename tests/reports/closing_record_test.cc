@@ -1,15 +1,15 @@
 // A result is reported alike whether it comes from a study or from the JSON that was written of it.
-#include "reports/result_maker.h"
+#include "reports/closing_record.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
+#include "reports/closing_document.h"
+#include "reports/closing_record.h"
 #include "reports/files.h"
-#include "reports/result_document.h"
-#include "reports/result_json.h"
-#include "reports/result_reader.h"
+#include "reports/record_file.h"
 #include "reports/svg.h"
 #include "reports/text.h"
 
@@ -26,12 +26,12 @@ SceneFile shipped(const char* name, std::initializer_list<const char*> settings)
   return file;
 }
 
-void expect_the_same_reports(const Result& made) {
-  const json written = result_json(made);
-  const Result again = read_result(parse_result(written.dump(), "result.json"));
-  EXPECT_EQ(result_json(again), json::parse(written.dump())) << "a member is written and not read";
-  EXPECT_EQ(terminal_text(result_document(again)), terminal_text(result_document(made)));
-  EXPECT_EQ(page_html(result_document(again)), page_html(result_document(made)));
+void expect_the_same_reports(const ClosingRecord& made) {
+  const json written = json_of(made);
+  const ClosingRecord again = read_closing(parse_closing(written.dump(), "result.json"));
+  EXPECT_EQ(json_of(again), json::parse(written.dump())) << "a member is written and not read";
+  EXPECT_EQ(terminal_text(closing_document(again)), terminal_text(closing_document(made)));
+  EXPECT_EQ(page_html(closing_document(again)), page_html(closing_document(made)));
   EXPECT_EQ(svg_gap_chart(again), svg_gap_chart(made));
   EXPECT_EQ(trajectory_csv(again.best.curve), trajectory_csv(made.best.curve));
 }
@@ -40,16 +40,16 @@ TEST(ResultOf, AClosingIsReportedLikeItsJson) {
   for (const char* name : {"mem-gold.toml", "mem-gold-pzt.toml", "two-electrodes.toml", "purdue-nickel.toml"}) {
     SCOPED_TRACE(name);
     const PreparedScene prepared = prepare(shipped(name, {}));
-    expect_the_same_reports(result_of(prepared, simulate(prepared, true), command));
+    expect_the_same_reports(record_of(prepared, simulate(prepared, true), command));
   }
 }
 
 TEST(ResultOf, EachOfSeveralContactsHasItsFigures) {
   const PreparedScene prepared = prepare(shipped("new/two-contacts.toml", {}));
   const Closing closing = simulate(prepared, true);
-  const Result made = result_of(prepared, closing, command);
+  const ClosingRecord made = record_of(prepared, closing, command);
   expect_the_same_reports(made);
-  const json contacts = result_json(made)["contacts"];
+  const json contacts = json_of(made)["contacts"];
   ASSERT_EQ(contacts.size(), 3U);
   const json &left = contacts["left"], &right = contacts["right"], &stop = contacts["stop"];
   EXPECT_LT(left["initial_contact_time_s"], right["initial_contact_time_s"]) << "the right dimple stands lower";
@@ -58,7 +58,7 @@ TEST(ResultOf, EachOfSeveralContactsHasItsFigures) {
   EXPECT_EQ(right["hold_force_N"], closing.metrics.hold_force) << "the connection carries the least of its forces";
   EXPECT_TRUE(stop["initial_contact_time_s"].is_null());
   EXPECT_EQ(stop["gap_m"], 1e-6);
-  const std::string page = page_html(result_document(made));
+  const std::string page = page_html(closing_document(made));
   for (const char* words :
        {"left, gap 1\u00a0µm", "right, gap 1.002\u00a0µm", "stop, gap 1\u00a0µm", "<th scope=\"col\">Contact</th>"})
     EXPECT_THAT(page, testing::HasSubstr(words));
@@ -69,12 +69,12 @@ TEST(ResultOf, AContactThatConductsIsReportedLikeItsJson) {
                               "electrical_bounce_count"};
   const PreparedScene prepared = prepare(
       shipped("mem-gold.toml", {"contact.resistivity=22 nOhm m", "contact.hardness=1 GPa", "metrics.closed_force=0.1 uN"}));
-  const Result made = result_of(prepared, simulate(prepared, true), command);
+  const ClosingRecord made = record_of(prepared, simulate(prepared, true), command);
   expect_the_same_reports(made);
-  const json with = result_json(made);
+  const json with = json_of(made);
   const PreparedScene plain = prepare(shipped("mem-gold.toml", {}));
-  const Result unasked = result_of(plain, simulate(plain, true), command);
-  const json without = result_json(unasked);
+  const ClosingRecord unasked = record_of(plain, simulate(plain, true), command);
+  const json without = json_of(unasked);
   for (const char* key : keys) {
     EXPECT_TRUE(with["metrics"].contains(key)) << key;
     EXPECT_TRUE(with["errors"].contains(key)) << key;
@@ -91,7 +91,7 @@ TEST(ResultOf, AContactThatConductsIsReportedLikeItsJson) {
 
 TEST(ResultOf, ACertifiedClosingIsReportedLikeItsJson) {
   const PreparedScene prepared = prepare(shipped("mem-gold.toml", {}));
-  const Result made = result_of(prepared, certify(prepared), command);
+  const ClosingRecord made = record_of(prepared, certify(prepared), command);
   ASSERT_TRUE(made.certificate);
   EXPECT_FALSE(made.certificate->ill_conditioned.empty());
   expect_the_same_reports(made);
@@ -109,7 +109,7 @@ TEST(ResultOf, AClosingUnderAWaveformThatNoSceneHoldsIsRefusedByItsName) {
   const Closing closing = simulate(prepared, false);
   EXPECT_TRUE(closing.metrics.touched());
   try {
-    (void)result_of(prepared, closing, command);
+    (void)record_of(prepared, closing, command);
     ADD_FAILURE() << "accepted";
   } catch (const InvalidInput& error) {
     EXPECT_STREQ(error.what(), "waveform.main: the own waveform 'mine' cannot be written into a result");
@@ -119,9 +119,9 @@ TEST(ResultOf, AClosingUnderAWaveformThatNoSceneHoldsIsRefusedByItsName) {
 TEST(ResultOf, ARunWithoutContactIsReportedLikeItsJson) {
   const auto made = [](const char* change) {
     const PreparedScene prepared = prepare(shipped("mem-gold.toml", {change}));
-    return result_of(prepared, simulate(prepared, true), command);
+    return record_of(prepared, simulate(prepared, true), command);
   };
-  const Result open = made("waveform.main.level=3 V"), late = made("simulate.duration=5 us");
+  const ClosingRecord open = made("waveform.main.level=3 V"), late = made("simulate.duration=5 us");
   EXPECT_EQ(open.status, "open");
   expect_the_same_reports(open);
   EXPECT_EQ(late.status, "no_contact");
@@ -130,17 +130,17 @@ TEST(ResultOf, ARunWithoutContactIsReportedLikeItsJson) {
 
 TEST(ResultOf, ASearchIsReportedLikeItsJson) {
   const OptimizeOptions options{.target = Target::impact, .max_evaluations = 60};
-  Result made = result_of(optimize(shipped("mem-gold.toml", {}), options), options, command);
-  made.search.evaluations = {{0, 2.0}, {1, Metrics::unset}, {2, 1.5}};
-  made.reproduce = {"softland test", "softland again"};
+  ClosingRecord made = record_of(optimize(shipped("mem-gold.toml", {}), options), options, command);
+  made.search->course.evaluations = {{0, 2.0}, {1, Metrics::unset}, {2, 1.5}};
+  made.search->reproduce = {"softland test", "softland again"};
   EXPECT_TRUE(made.best.figures);
-  EXPECT_FALSE(made.checks.empty());
+  EXPECT_FALSE(made.search->checks.empty());
   expect_the_same_reports(made);
 }
 
 TEST(ResultJson, HasEveryFigureOfTheTableAndNoOther) {
   const PreparedScene prepared = prepare(shipped("mem-gold.toml", {"simulate.duration=60 us"}));
-  const json written = result_json(result_of(prepared, simulate(prepared, true), command));
+  const json written = json_of(record_of(prepared, simulate(prepared, true), command));
   std::set<std::string> keys, errors;
   for (const Figure& figure : asked_among(all_figures, {})) {
     keys.emplace(figure.key);

@@ -1,4 +1,4 @@
-#include "reports/result_document.h"
+#include "reports/closing_document.h"
 
 #include <gmock/gmock.h>
 
@@ -7,9 +7,9 @@
 #include <regex>
 
 #include "base/require.h"
+#include "reports/closing_record.h"
 #include "reports/escape.h"
 #include "reports/page_files.h"
-#include "reports/result_reader.h"
 #include "reports/sketch.h"
 #include "reports/text.h"
 #include "sample_result.h"
@@ -40,12 +40,12 @@ std::vector<std::string> loads(const std::string& page) {
 }
 
 TEST(HtmlReport, LoadsNothing) {
-  EXPECT_THAT(loads(page_html(result_document(read_result(test::sample_optimize_result(2000))))), ::testing::IsEmpty());
+  EXPECT_THAT(loads(page_html(closing_document(read_closing(test::sample_optimize_result(2000))))), ::testing::IsEmpty());
   EXPECT_THAT(loads("<img src=\"https://a\"> <p style='background:url(x.png)'>"), ::testing::ElementsAre("https://a", "x.png"));
 }
 
 TEST(HtmlReport, ForbidsTheBrowserToLoadAnything) {
-  EXPECT_THAT(page_html(result_document(read_result(json::object()))),
+  EXPECT_THAT(page_html(closing_document(read_closing(json::object()))),
               HasSubstr("default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:"));
 }
 
@@ -64,7 +64,7 @@ TEST(HtmlReport, StaysBelowAMegabyteForTwentyThousandRowsPerCurveAndALongScene) 
   std::string scene;
   while (scene.size() < 2 * megabyte) scene += "key = \"a <line> of a long table\"\n";
   result["scene_toml"] = scene;
-  const std::string page = page_html(result_document(read_result(result)));
+  const std::string page = page_html(closing_document(read_closing(result)));
   EXPECT_LT(page.size(), megabyte);
   EXPECT_THAT(page, HasSubstr("bytes are not shown"));
 }
@@ -82,15 +82,15 @@ TEST(HtmlReport, EscapesHostileText) {
   result["best"]["parameters"][hostile] = hostile;
   result["best"]["waveforms"][hostile] = {{0, 0}, {1e-6, 1}};
   result["search"]["value_name"] = hostile;
-  const std::string page = page_html(result_document(read_result(result)));
-  const std::string tame = page_html(result_document(read_result(test::sample_optimize_result(600))));
+  const std::string page = page_html(closing_document(read_closing(result)));
+  const std::string tame = page_html(closing_document(read_closing(test::sample_optimize_result(600))));
   for (const char* tag : {"<script", "</script", "<img", "<title", "</title", "<!--"})
     EXPECT_EQ(occurrences(page, tag), occurrences(tame, tag)) << tag;
   EXPECT_THAT(page, HasSubstr("&lt;/title&gt;&lt;/script&gt;&lt;script&gt;alert(1)"));
 }
 
 TEST(HtmlReport, SaysEverythingWithoutAScript) {
-  const std::string page = page_html(result_document(read_result(test::sample_optimize_result(600))));
+  const std::string page = page_html(closing_document(read_closing(test::sample_optimize_result(600))));
   EXPECT_THAT(
       page,
       HasSubstr(
@@ -113,7 +113,7 @@ TEST(HtmlReport, ListsMoreThanNineLevelsInTheOrderOfTime) {
     parameters["piezo.duration_" + std::to_string(k) + "_s"] = 1e-6;
   }
   result["best"]["parameters"] = parameters;
-  const std::string page = page_html(result_document(read_result(result)));
+  const std::string page = page_html(closing_document(read_closing(result)));
   std::size_t last = 0;
   for (int k = 1; k <= 12; ++k) {
     for (const char* stem : {"level_", "duration_"}) {
@@ -129,7 +129,7 @@ TEST(HtmlReport, ListsParametersInTheOrderOfTimeWithTheirBounds) {
   json result = test::sample_optimize_result(300);
   result["best"]["bounds"] = {
       {"piezo.level_1_V", {-1, 1}}, {"piezo.level_2_V", {-1, 0.603}}, {"piezo.time_1_s", {19.7e-6, 90e-6}}};
-  const std::string page = page_html(result_document(read_result(result)));
+  const std::string page = page_html(closing_document(read_closing(result)));
   std::size_t before = 0;
   for (const char* name : {"piezo.level_1<", "piezo.time_1<", "piezo.level_2<", "piezo.time_2<"}) {
     const std::size_t at = page.find(std::string("<th scope=\"row\">") + name);
@@ -144,19 +144,19 @@ TEST(HtmlReport, ListsParametersInTheOrderOfTimeWithTheirBounds) {
 
 TEST(HtmlReport, DrawsTheSwitchAndWhatEveryDriveDemands) {
   json result = test::sample_optimize_result(300);
-  EXPECT_THAT(page_html(result_document(read_result(result))), Not(HasSubstr("id=\"sketch\"")));
+  EXPECT_THAT(page_html(closing_document(read_closing(result))), Not(HasSubstr("id=\"sketch\"")));
   result["scene"]["structure"] = {{"kind", "cantilever"}, {"length", "250 um"}};
   result["scene"]["gap"] = {{"electrode", "3.5 um"}, {"contact", "2 um"}};
   result["scene"]["electrode"]["main"] = {{"span", {"60 um", "240 um"}}};
   result["scene"]["driver"]["piezo"] = {{"min_voltage", "-1 V"}, {"max_voltage", "1 V"}, {"max_slew", "1e6 V/s"}};
-  const std::string page = page_html(result_document(read_result(result)));
+  const std::string page = page_html(closing_document(read_closing(result)));
   for (const char* words : {"id=\"sketch\"", "length 250\u00a0µm", "to the contact 2\u00a0µm", "to the electrode 3.5\u00a0µm",
                             "electrode main", "Peak voltage, piezo</th>", "121\u00a0mV/µs", "most the driver gives",
                             "least the driver gives", "The driver gives −1\u00a0V to 1\u00a0V, at most 1\u00a0V/µs."})
     EXPECT_THAT(page, HasSubstr(words)) << words;
   EXPECT_THAT(page, HasSubstr("± integration only"));
   result["certified"] = json::object();
-  EXPECT_THAT(page_html(result_document(read_result(result))), HasSubstr("± certified"));
+  EXPECT_THAT(page_html(closing_document(read_closing(result))), HasSubstr("± certified"));
 }
 
 // By the width of letters that no sans serif exceeds on the average.
@@ -181,7 +181,7 @@ TEST(Sketch, HoldsAllOfItsWords) {
 }
 
 TEST(HtmlReport, OfASingleRunHasNoBaselineAndNoSearch) {
-  const std::string page = page_html(result_document(read_result(test::sample_simulate_result(600))));
+  const std::string page = page_html(closing_document(read_closing(test::sample_simulate_result(600))));
   EXPECT_THAT(page, HasSubstr("<h1>The switch first touches at 23.2\u00a0µs"));
   for (const char* words : {"id=\"figure-search\"", "Plain step</th>", "class=\"before\"", "<h2>Confirmations"})
     EXPECT_THAT(page, Not(HasSubstr(words)));
@@ -193,40 +193,40 @@ TEST(HtmlReport, BearsAnyPartMissingNullOrOfAnotherType) {
     for (const json& stand_in : {json(), json("text"), json(3.5), json::array(), json::object(), json{{1, 2}, "x", nullptr}}) {
       json result = whole;
       result[key] = stand_in;
-      EXPECT_NO_THROW((void)page_html(result_document(read_result(result)))) << key << " = " << stand_in;
+      EXPECT_NO_THROW((void)page_html(closing_document(read_closing(result)))) << key << " = " << stand_in;
     }
     json result = whole;
     result.erase(key);
-    EXPECT_NO_THROW((void)page_html(result_document(read_result(result)))) << "without " << key;
+    EXPECT_NO_THROW((void)page_html(closing_document(read_closing(result)))) << "without " << key;
   }
   for (const char* run : {"best", "baseline"}) {
     for (const auto& [key, value] : whole["curves"][run].items()) {
       json result = whole;
       result["curves"][run][key] = json::array({nullptr, "x", 1});
-      EXPECT_NO_THROW((void)page_html(result_document(read_result(result)))) << run << " " << key;
+      EXPECT_NO_THROW((void)page_html(closing_document(read_closing(result)))) << run << " " << key;
     }
   }
-  EXPECT_NO_THROW((void)page_html(result_document(read_result(json::object()))));
-  EXPECT_THROW((void)page_html(result_document(read_result(json::array()))), InvalidInput);
+  EXPECT_NO_THROW((void)page_html(closing_document(read_closing(json::object()))));
+  EXPECT_THROW((void)page_html(closing_document(read_closing(json::array()))), InvalidInput);
 }
 
 TEST(HtmlReport, SaysWhyAFigureIsMissing) {
   json result = test::sample_optimize_result(300);
   result["best"]["metrics"]["permanent_contact_time_s"] = nullptr;
   result["best"]["metrics"]["settled"] = false;
-  EXPECT_THAT(page_html(result_document(read_result(result))), HasSubstr("<span class=\"after words\">not settled</span>"));
+  EXPECT_THAT(page_html(closing_document(read_closing(result))), HasSubstr("<span class=\"after words\">not settled</span>"));
   result["best"]["metrics"]["initial_contact_time_s"] = nullptr;
-  EXPECT_THAT(page_html(result_document(read_result(result))), HasSubstr("<span class=\"after words\">no contact</span>"));
+  EXPECT_THAT(page_html(closing_document(read_closing(result))), HasSubstr("<span class=\"after words\">no contact</span>"));
   result["best"]["metrics"] = json::object();
   result["best"]["metrics"]["initial_contact_time_s"] = 1e-6;
-  EXPECT_THAT(page_html(result_document(read_result(result))), HasSubstr("<span class=\"after words\">not known</span>"));
+  EXPECT_THAT(page_html(closing_document(read_closing(result))), HasSubstr("<span class=\"after words\">not known</span>"));
 }
 
 TEST(HtmlReport, OfARunWithoutContactRepeatsNoFourTimes) {
   json result = test::sample_simulate_result(300);
-  EXPECT_THAT(page_html(result_document(read_result(result))), HasSubstr("<div class=\"key\">"));
+  EXPECT_THAT(page_html(closing_document(read_closing(result))), HasSubstr("<div class=\"key\">"));
   result["metrics"] = {{"initial_contact_time_s", nullptr}, {"settled", false}};
-  EXPECT_THAT(page_html(result_document(read_result(result))), Not(HasSubstr("<div class=\"key\">")));
+  EXPECT_THAT(page_html(closing_document(read_closing(result))), Not(HasSubstr("<div class=\"key\">")));
 }
 
 TEST(HtmlReport, BearsTextThatIsNotUtf8) {
@@ -235,7 +235,7 @@ TEST(HtmlReport, BearsTextThatIsNotUtf8) {
   result["best"]["waveforms"]["\xff"] = {{0, 1}};
   result["scene_toml"] = nullptr;
   result["scene"] = {{"title", "\xff"}};
-  EXPECT_NO_THROW((void)page_html(result_document(read_result(result))));
+  EXPECT_NO_THROW((void)page_html(closing_document(read_closing(result))));
 }
 
 TEST(ScriptJson, CannotEndTheScript) {
@@ -258,7 +258,7 @@ TEST(HtmlReport, CallsNoFigureIllConditionedWhoseErrorIsBelowItsDigits) {
     json result = softland::test::sample_simulate_result(600);
     result["metrics"]["major_bounce_height_m"] = result["best"]["metrics"]["major_bounce_height_m"] = height;
     result["errors"]["major_bounce_height_m"] = error;
-    const std::string page = page_html(result_document(read_result(result)));
+    const std::string page = page_html(closing_document(read_closing(result)));
     const std::size_t row = page.find("Highest rebound", page.find("± integration only"));
     return page.substr(row, page.find("</tr>", row) - row).find("ill-conditioned") != std::string::npos;
   };
@@ -272,7 +272,7 @@ TEST(HtmlReport, GivesIllConditionedFiguresAsMedianAndRange) {
   json result = softland::test::sample_simulate_result(600);
   result["certified"]["bounce_count"] = {{"median", 54.5}, {"low", 44}, {"high", 60}, {"runs", 16}};
   result["cloud"] = {{"runs", 16}, {"grazing_rebound", nullptr}};
-  const std::string page = page_html(result_document(read_result(result)));
+  const std::string page = page_html(closing_document(read_closing(result)));
   EXPECT_NE(page.find("<td>median 54.5, 44 to 60 in 16 runs <span class=\"note\">ill-conditioned</span></td>"),
             std::string::npos);
   EXPECT_NE(page.find("<p>Certified: the figures with a median"), std::string::npos);

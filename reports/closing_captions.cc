@@ -1,4 +1,4 @@
-#include "reports/result_words.h"
+#include "reports/closing_captions.h"
 
 #include <fmt/format.h>
 
@@ -7,20 +7,21 @@
 #include <cmath>
 #include <iterator>
 
+#include "reports/axis.h"
 #include "reports/closing_words.h"
 #include "reports/devices_report.h"
+#include "reports/drive_demand.h"
 #include "reports/figure_text.h"
 #include "reports/quantity.h"
-#include "reports/result_view.h"
 
 namespace softland::internal {
 namespace {
 
 std::string in_brackets(const Change& change) { return change.words.empty() ? std::string() : " (" + change.words + ")"; }
 
-bool bounces(const ResultRun& run) { return figure_of_run(run, &Metrics::bounce_count) > 0; }
+bool bounces(const RunRecord& run) { return figure_of_run(run, &Metrics::bounce_count) > 0; }
 
-bool is_clean_run(const ResultCheck& check) { return check.figures && is_clean(*check.figures); }
+bool is_clean_run(const ConfirmationRecord& check) { return check.figures && is_clean(*check.figures); }
 
 /// What a drive does in a run: "runs between 0 V and 30 V, with a jump"; `both`: of two runs that do the same.
 std::string range_words(const Points& waveform, const DriveScale& scale, bool both) {
@@ -36,27 +37,29 @@ std::string range_words(const Points& waveform, const DriveScale& scale, bool bo
 }
 
 // How much worse a closing is than another: that it stays open, then that it rebounds and how far, then how fast it touches.
-std::array<double, 3> badness(const ResultCheck& check) {
+std::array<double, 3> badness(const ConfirmationRecord& check) {
   if (!check.figures || !touches(*check.figures)) return {2, 0, 0};
   return {is_clean_run(check) ? 0.0 : 1.0, is_clean_run(check) ? 0.0 : rebound_height(*check.figures),
           (*check.figures)[&Metrics::impact_velocity]};
 }
 
-std::string speed_of(const ResultCheck& check) { return quantity((*check.figures)[&Metrics::impact_velocity], "m/s"); }
+std::string touch_speed_of(const ConfirmationRecord& check) {
+  return quantity((*check.figures)[&Metrics::impact_velocity], "m/s");
+}
 
 // "it rebounds by up to 2.16 nm and touches at 32.5 mm/s"
-std::string course_of(const ResultCheck& check) {
+std::string course_of(const ConfirmationRecord& check) {
   if (!check.figures || !touches(*check.figures)) return "it does not close";
   const double height = rebound_height(*check.figures);
   return (height > 0 && !is_clean_run(check) ? fmt::format("it rebounds by up to {} and touches at ", quantity(height, "m"))
                                              : "it touches at ") +
-         speed_of(check);
+         touch_speed_of(check);
 }
 
 // "a tolerance of 1e-9 and with 6, 8 and 10 modes"
-std::string names_of(const std::vector<ResultCheck>& numerics) {
+std::string names_of(const std::vector<ConfirmationRecord>& numerics) {
   std::string tolerance, modes;
-  for (const ResultCheck& check : numerics) {
+  for (const ConfirmationRecord& check : numerics) {
     const std::size_t space = check.name.find(' ');
     const std::string value = check.name.substr(space + 1);
     if (check.name.starts_with("tolerance ")) {
@@ -71,63 +74,84 @@ std::string names_of(const std::vector<ResultCheck>& numerics) {
 }
 
 // Where a landing belongs to the modes of its scene.
-std::string of_modes(const Result& result) {
+std::string of_modes(const ClosingRecord& result) {
   if (!result.best.figures || !is_clean(*result.best.figures)) return {};
-  std::vector<ResultCheck> modes;
-  std::ranges::copy_if(result.checks, std::back_inserter(modes),
-                       [](const ResultCheck& check) { return check.name.starts_with("modes "); });
+  std::vector<ConfirmationRecord> modes;
+  std::ranges::copy_if(result.search->checks, std::back_inserter(modes),
+                       [](const ConfirmationRecord& check) { return check.name.starts_with("modes "); });
   if (std::ranges::all_of(modes, is_clean_run)) return {};
-  const ResultCheck& worst = *worst_check(modes);
+  const ConfirmationRecord& worst = *worst_check(modes);
   return fmt::format(" This landing belongs to the modes that the scene keeps: with {} of them {}.",
                      worst.name.substr(worst.name.find(' ') + 1), course_of(worst));
 }
 
 // Of a search over devices, where some of them fail whatever is done.
-std::string of_devices_that_fail(const Result& result) {
-  if (!result.robust || !(result.robust->failing > 0)) return {};
+std::string of_devices_that_fail(const ClosingRecord& result) {
+  const std::optional<RobustFindings>& robust = result.search->robust;
+  if (!robust || !(robust->failing > 0)) return {};
   std::string words = fmt::format(
       " {} of the fresh devices end open, are not kept closed by their hold levels, or are outside the model; they count as "
       "worst.",
-      percent(result.robust->failing));
-  if (!result.robust->is_told)
+      percent(robust->failing));
+  if (!robust->is_told)
     words += fmt::format(" That is all that {} looks at, so that it tells no waveform from another: nothing is gained.",
-                         result.robust->measure);
+                         robust->measure);
   return words;
 }
 
-std::string laws_caption(const std::vector<ResultCheck>& laws) {
+std::string laws_caption(const std::vector<ConfirmationRecord>& laws) {
   std::string names;
-  for (const ResultCheck& law : laws) names += (names.empty() ? "" : ", ") + law.name.substr(law.name.find(' ') + 1);
+  for (const ConfirmationRecord& law : laws) names += (names.empty() ? "" : ", ") + law.name.substr(law.name.find(' ') + 1);
   if (std::ranges::all_of(laws, is_clean_run))
     return fmt::format(" So it does under other gas laws that hold here ({}), at {} at most.", names,
-                       speed_of(*worst_check(laws)));
-  const ResultCheck& worst = *worst_check(laws);
+                       touch_speed_of(*worst_check(laws)));
+  const ConfirmationRecord& worst = *worst_check(laws);
   return fmt::format(" Under other gas laws that hold here ({}) this waveform may not land: {} ({}).", names, course_of(worst),
                      worst.name.substr(worst.name.find(' ') + 1));
 }
 
 }  // namespace
 
-const ResultCheck* worst_check(const std::vector<ResultCheck>& checks) {
+double window_end(const ClosingRecord& result) {
+  double end = std::numeric_limits<double>::quiet_NaN();
+  for (const RunRecord* run : {&result.best, &result.baseline()}) {
+    if (!run->curve.time.empty()) end = std::fmax(end, drawable(run->curve.time.back()));
+  }
+  return end;
+}
+
+std::vector<double> evaluation_indices(const SearchCourse& search) {
+  std::vector<double> indices;
+  for (const auto& [index, value] : search.evaluations) indices.push_back(index);
+  std::sort(indices.begin(), indices.end());
+  return indices;
+}
+
+double evaluations_until(const std::vector<double>& indices, double index) {
+  if (indices.empty()) return index;
+  return static_cast<double>(std::upper_bound(indices.begin(), indices.end(), index) - indices.begin());
+}
+
+const ConfirmationRecord* worst_check(const std::vector<ConfirmationRecord>& checks) {
   const auto worst = std::ranges::max_element(checks, {}, badness);
   return worst == checks.end() ? nullptr : &*worst;
 }
 
-std::string_view worst_figure(const ResultCheck& check) {
+std::string_view worst_figure(const ConfirmationRecord& check) {
   const std::array<double, 3> bad = badness(check);
   return bad[0] == 2   ? key_of(&Metrics::initial_contact_time)
          : bad[0] == 1 ? key_of(&Metrics::major_bounce_height)
                        : key_of(&Metrics::impact_velocity);
 }
 
-bool all_checks_land(const Result& result) { return std::ranges::all_of(result.checks, is_clean_run); }
+bool all_checks_land(const SearchRecord& search) { return std::ranges::all_of(search.checks, is_clean_run); }
 
-std::string best_label(const Result& result) { return result.is_search() ? own_subject : "closing"; }
+std::string best_label(const ClosingRecord& result) { return result.search ? own_subject : "closing"; }
 
 std::string baseline_label() { return "plain step"; }
 
-Headline headline(const Result& result) {
-  if (result.devices) return {devices_headline(result), ""};
+Headline headline(const ClosingRecord& result) {
+  if (result.devices() != nullptr) return {devices_headline(result), ""};
   const double window = window_end(result);
   const bool leaves = result.closed_state && result.closed_state->stable == false && result.best.figures &&
                       touches(*result.best.figures) && result.best.status != "collapsed_onto_electrode";
@@ -137,7 +161,7 @@ Headline headline(const Result& result) {
           ? " Whether it stays closed depends on the number of modes: with more of them than the scene keeps it "
             "is pulled through the contact."
           : " It does not stay closed: the hold levels pull it through the contact in the end.";
-  if (!result.is_search()) {
+  if (!result.search) {
     if (result.status == "interrupted") return {"The simulation was interrupted.", ""};
     return {capitalised(closing_clause({.subject = "the switch"}, result.best, window)) + "." + rest, ""};
   }
@@ -146,37 +170,38 @@ Headline headline(const Result& result) {
   Headline line;
   if (result.status == "interrupted") line.main = "The search was interrupted; this is its best so far. ";
   const bool ended = result.status != "interrupted";
-  if (ended && result.plain_step_wins == true) {
+  const SearchRecord& search = *result.search;
+  if (ended && search.plain_step_wins == true) {
     return {
         "The plain step does not bounce, and no waveform was found that is better and not harder than it. best.toml is the plain "
         "step.",
-        capitalised(closing_clause({.subject = step_subject, .object = "the switch"}, result.baseline, window)) + "." + rest};
+        capitalised(closing_clause({.subject = step_subject, .object = "the switch"}, result.baseline(), window)) + "." + rest};
   }
-  if (ended && result.goal_met == false) line.main = "The goal was not met. ";
-  if (ended && result.harder_than_step > 0)
+  if (ended && search.goal_met == false) line.main = "The goal was not met. ";
+  if (ended && search.harder_than_step > 0)
     line.main += fmt::format("The best waveform is harder than the plain step, by {} in touch speed, force or energy. ",
-                             percent(result.harder_than_step));
+                             percent(search.harder_than_step));
   line.main += result.best.figures
                    ? capitalised(closing_clause({.subject = own_subject, .object = "the switch"}, result.best, window))
                    : "No feasible waveform was found";
-  if (result.baseline.figures)
-    line.rest = "; " + closing_clause({.subject = step_subject, .object = "it"}, result.baseline, window);
+  if (result.baseline().figures)
+    line.rest = "; " + closing_clause({.subject = step_subject, .object = "it"}, result.baseline(), window);
   (line.rest.empty() ? line.main : line.rest) += "." + rest + of_devices_that_fail(result) + of_modes(result);
   return line;
 }
 
-std::string gap_caption(const Result& result) {
+std::string gap_caption(const ClosingRecord& result) {
   std::string what = "Distance of the contact point to the contact plane (positive: open)";
-  if (bounces(result.best) || bounces(result.baseline))
+  if (bounces(result.best) || bounces(result.baseline()))
     what += fmt::format("; dots mark rebounds above {}", quantity(result.scene.significant_rebound, "m", 1));
   what += ".";
-  const std::string own = landing_clause(result.is_search() ? own_subject : "the switch", result.best);
-  const std::string found = joined(result.is_search() ? landing_clause(step_subject, result.baseline) : "", own);
+  const std::string own = landing_clause(result.search ? own_subject : "the switch", result.best);
+  const std::string found = joined(result.search ? landing_clause(step_subject, result.baseline()) : "", own);
   return found.empty() ? what : what + " " + found;
 }
 
-std::string landing_caption(const Result& result) {
-  const auto reach = [&](const char* subject, const ResultRun& run) -> std::string {
+std::string landing_caption(const ClosingRecord& result) {
+  const auto reach = [&](const char* subject, const RunRecord& run) -> std::string {
     if (!run.figures || !touches(*run.figures)) return {};
     const double height = rebound_height(*run.figures);
     const std::string speed = quantity((*run.figures)[&Metrics::impact_velocity], "m/s");
@@ -184,17 +209,17 @@ std::string landing_caption(const Result& result) {
     const std::string after = height > 0 ? "rises " + quantity(height, "m") + " above it again" : "does not rise above it again";
     return fmt::format("{} reaches the plane with {} and {}", subject, speed, after);
   };
-  const std::string found = result.is_search() ? joined(reach(step_subject, result.baseline), reach(own_subject, result.best))
-                                               : joined(reach("the switch", result.best), "");
+  const std::string found = result.search ? joined(reach(step_subject, result.baseline()), reach(own_subject, result.best))
+                                          : joined(reach("the switch", result.best), "");
   return "The same gap in a narrow band around the contact plane; below it the contact is pressed." +
          (found.empty() ? "" : " " + found);
 }
 
-std::string velocity_caption(const Result& result) {
+std::string velocity_caption(const ClosingRecord& result) {
   const double own = figure_of_run(result.best, &Metrics::impact_velocity);
-  const double step = figure_of_run(result.baseline, &Metrics::impact_velocity);
+  const double step = figure_of_run(result.baseline(), &Metrics::impact_velocity);
   const std::string what = "Velocity of the contact point, positive towards the contact.";
-  if (!result.is_search() || !std::isfinite(step)) {
+  if (!result.search || !std::isfinite(step)) {
     return std::isfinite(own) ? fmt::format("{} It lands at {}.", what, quantity(own, "m/s")) : what;
   }
   if (!std::isfinite(own)) return fmt::format("{} The plain step lands at {}.", what, quantity(step, "m/s"));
@@ -202,12 +227,12 @@ std::string velocity_caption(const Result& result) {
                      quantity(own, "m/s"), in_brackets(change(step, own, true)));
 }
 
-std::string force_caption(const Result& result) {
+std::string force_caption(const ClosingRecord& result) {
   const double own = figure_of_run(result.best, &Metrics::peak_contact_force);
-  const double step = figure_of_run(result.baseline, &Metrics::peak_contact_force);
+  const double step = figure_of_run(result.baseline(), &Metrics::peak_contact_force);
   const double hold = figure_of_run(result.best, &Metrics::hold_force);
   std::string words = "Force of the contact on the beam.";
-  if (result.is_search() && std::isfinite(step) && std::isfinite(own)) {
+  if (result.search && std::isfinite(step) && std::isfinite(own)) {
     words += fmt::format(" The plain step peaks at {}, softland's waveform at {}{}.", quantity(step, "N"), quantity(own, "N"),
                          in_brackets(change(step, own, true)));
   } else if (std::isfinite(own)) {
@@ -217,9 +242,9 @@ std::string force_caption(const Result& result) {
   return words;
 }
 
-std::string waveform_caption(const Result& result, const std::string& drive) {
+std::string waveform_caption(const ClosingRecord& result, const std::string& drive) {
   const Points& shape = waveform(result.best, drive);
-  const bool equal = result.is_search() && !shape.empty() && shape == waveform(result.baseline, drive);
+  const bool equal = result.search && !shape.empty() && shape == waveform(result.baseline(), drive);
   const DriveScale scale = drive_scale(drive);
   const DriveLimits limits = drive_limits(result, drive);
   const std::string driver =
@@ -230,20 +255,20 @@ std::string waveform_caption(const Result& result, const std::string& drive) {
                         std::isfinite(limits.slew) ? ", at most " + given_quantity(limits.slew, "V/s") : "");
   const std::string own = range_words(shape, scale, equal);
   if (equal && !own.empty()) return fmt::format("{} of the drive “{}”. Both waveforms {}.{}", scale.name, drive, own, driver);
-  const std::string step = range_words(waveform(result.baseline, drive), scale, equal);
-  const std::string name = result.is_search() ? own_subject : "the waveform";
+  const std::string step = range_words(waveform(result.baseline(), drive), scale, equal);
+  const std::string name = result.search ? own_subject : "the waveform";
   const std::string found =
       joined(own.empty() ? "" : name + " " + own, step.empty() ? "" : std::string(step_subject) + " " + step);
   return fmt::format("{} of the drive “{}”.{}{}", scale.name, drive, found.empty() ? "" : " " + found, driver);
 }
 
-std::string search_caption(const Result& result) {
-  const std::string name = result.search.value_name.empty() ? "cost" : result.search.value_name;
+std::string search_caption(const ClosingRecord& result, const SearchRecord& search) {
+  const std::string name = search.course.value_name.empty() ? "cost" : search.course.value_name;
   const double own = result.best.cost;
   double first = std::numeric_limits<double>::quiet_NaN();
   double last = first;
   double found_at = first;
-  for (const auto& [index, value] : result.search.best_so_far) {
+  for (const auto& [index, value] : search.course.best_so_far) {
     if (!std::isfinite(value)) continue;
     if (!std::isfinite(first)) first = value;
     if (value >= last) continue;
@@ -252,32 +277,33 @@ std::string search_caption(const Result& result) {
     if (!(last < own)) found_at = index;
   }
   std::string words = capitalised(name) + " of every waveform tried (dots) and of the best so far (line)";
-  const double step = result.baseline.cost;
+  const double step = search.baseline.cost;
   words += std::isfinite(step) ? fmt::format("; the plain step's is {}.", plain_number(step)) : ".";
   if (!std::isfinite(first)) return words;
-  words += std::isfinite(result.evaluations) ? fmt::format(" In {} evaluations the {}", whole(result.evaluations), name)
+  words += std::isfinite(search.evaluations) ? fmt::format(" In {} evaluations the {}", whole(search.evaluations), name)
                                              : " The " + name;
   words += last < first ? fmt::format(" fell from {} to {}{}", plain_number(first), plain_number(last),
                                       in_brackets(change(first, last, true)))
                         : " stayed at " + plain_number(first);
-  const double number = evaluations_until(evaluation_indices(result.search), found_at);
+  const double number = evaluations_until(evaluation_indices(search.course), found_at);
   return words + fmt::format("; the winner is number {} of them.", whole(number));
 }
 
-bool checks_agree(const Result& result) {
-  return figure_of_run(result.best, &Metrics::bounce_count) != 0 ||
-         std::ranges::all_of(result.checks, [](const ResultCheck& check) { return check.is_of_gas() || is_clean_run(check); });
+bool checks_agree(const ClosingRecord& result) {
+  return figure_of_run(result.best, &Metrics::bounce_count) != 0 || !result.search ||
+         std::ranges::all_of(result.search->checks,
+                             [](const ConfirmationRecord& check) { return check.is_of_gas() || is_clean_run(check); });
 }
 
-std::string checks_caption(const Result& result) {
-  std::vector<ResultCheck> numerics, laws;
-  for (const ResultCheck& check : result.checks) (check.is_of_gas() ? laws : numerics).push_back(check);
+std::string checks_caption(const SearchRecord& search) {
+  std::vector<ConfirmationRecord> numerics, laws;
+  for (const ConfirmationRecord& check : search.checks) (check.is_of_gas() ? laws : numerics).push_back(check);
   if (numerics.empty()) return {};
   const auto clean = static_cast<std::size_t>(std::ranges::count_if(numerics, is_clean_run));
   std::string words = fmt::format("Simulated again with {}, ", names_of(numerics));
-  const ResultCheck& worst = *worst_check(numerics);
+  const ConfirmationRecord& worst = *worst_check(numerics);
   if (clean == numerics.size()) {
-    words += fmt::format("it closes without a rebound, at {} at most.", speed_of(worst));
+    words += fmt::format("it closes without a rebound, at {} at most.", touch_speed_of(worst));
   } else {
     words += fmt::format("it closes without a rebound in {} of {} ways; at worst {} ({}).", clean, numerics.size(),
                          course_of(worst), worst.name);
@@ -286,21 +312,21 @@ std::string checks_caption(const Result& result) {
   return words;
 }
 
-std::string families_caption(const Result& result) {
+std::string families_caption(const SearchRecord& search) {
   std::string words;
-  for (const SearchedFamilyResult& one : result.families)
+  for (const SearchedFamilyResult& one : search.families)
     words += fmt::format("{}{} {}", words.empty() ? "" : ", ", one.family,
                          std::isfinite(one.cost) ? plain_number(one.cost) : std::string("no landing"));
   return words;
 }
 
-std::string robust_caption(const Result& result) {
-  if (!result.robust) return {};
-  const RobustFindings& r = *result.robust;
+std::string robust_caption(const ClosingRecord& result) {
+  if (!result.search || !result.search->robust) return {};
+  const RobustFindings& r = *result.search->robust;
   const auto whole = [](double value) { return std::isfinite(value) ? fmt::format("{:.0f}", value) : std::string("?"); };
   std::string words =
       fmt::format("Searched over {} devices of the spread, {} closings, by {}.", whole(r.devices), whole(r.closings), r.measure);
-  const double own = result.best.cost, step = result.baseline.cost;
+  const double own = result.best.cost, step = result.baseline().cost;
   if (std::isfinite(r.fresh_devices) && std::isfinite(own)) {
     words += fmt::format(" Cost {} on {} fresh devices (plain step {})", plain_number(own), whole(r.fresh_devices),
                          plain_number(step));
@@ -323,14 +349,14 @@ std::string robust_caption(const Result& result) {
   return words;
 }
 
-std::string limit_words(const Result& result) {
+std::string limit_words(const ClosingRecord& result) {
   const double touch = figure_of_run(result.best, &Metrics::initial_contact_time);
-  if (!result.limit || !std::isfinite(result.limit->least_time) || !std::isfinite(touch)) return {};
+  const std::optional<TouchLimit> limit = result.search ? result.search->limit : std::nullopt;
+  if (!limit || !std::isfinite(limit->least_time) || !std::isfinite(touch)) return {};
   return fmt::format(
       "Touches in {} times the least time that any waveform of these drives takes, with the modes of the scene, to touch no "
       "faster than {} ({}).",
-      plain_number(touch / result.limit->least_time, 4), quantity(result.limit->impact_velocity, "m/s"),
-      quantity(result.limit->least_time, "s", 4));
+      plain_number(touch / limit->least_time, 4), quantity(limit->impact_velocity, "m/s"), quantity(limit->least_time, "s", 4));
 }
 
 }  // namespace softland::internal

@@ -1,13 +1,13 @@
 // What a closing or a search came to, as a document to show around.
 #pragma once
 
+#include "reports/closing_record.h"
 #include "reports/document.h"
-#include "reports/result.h"
 
 namespace softland {
 
 /// The finding in words, figures before and after, zoomable charts, the search, confirmations, the resolved scene and how to
 /// reproduce it. Scene texts beyond 100 kB are cut, and the page says so.
-[[nodiscard]] Document result_document(const Result& result);
+[[nodiscard]] Document closing_document(const ClosingRecord& result);
 
 }  // namespace softland

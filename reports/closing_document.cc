@@ -1,4 +1,4 @@
-#include "reports/result_document.h"
+#include "reports/closing_document.h"
 
 #include <fmt/format.h>
 
@@ -8,15 +8,15 @@
 #include <span>
 
 #include "reports/chart.h"
+#include "reports/closing_captions.h"
 #include "reports/closing_words.h"
 #include "reports/devices_report.h"
+#include "reports/drive_demand.h"
 #include "reports/escape.h"
 #include "reports/figure_text.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/record.h"
-#include "reports/result_view.h"
-#include "reports/result_words.h"
 #include "reports/seeds_report.h"
 #include "reports/sketch.h"
 #include "studies/closing/summits_at_hold.h"
@@ -46,9 +46,9 @@ constexpr std::array leading_figures{figure_of(&Metrics::initial_contact_time), 
                                      figure_of(&Metrics::bounce_count), figure_of(&Metrics::major_bounce_height),
                                      figure_of(&Metrics::impact_velocity)};
 
-KeyNumber key_number(const Result& result, const Figure& shown) {
-  const ResultRun &own = result.best, &step = result.baseline;
-  const auto words = [&](const ResultRun& run, const ResultRun& beside) {
+KeyNumber key_number(const ClosingRecord& result, const Figure& shown) {
+  const RunRecord &own = result.best, &step = result.baseline();
+  const auto words = [&](const RunRecord& run, const RunRecord& beside) {
     const std::string reason = missing_reason(run, shown);
     return reason.empty() ? quantity_beside(figure_of_run(run, shown.member), figure_of_run(beside, shown.member), shown.unit)
                           : reason;
@@ -57,27 +57,27 @@ KeyNumber key_number(const Result& result, const Figure& shown) {
   return {.name = capitalised(std::string(shown.also.empty() ? shown.name : shown.also)),
           .value = words(own, step),
           .change = changed.words,
-          .before = result.is_search() && step.figures ? words(step, own) : "",
+          .before = result.search && step.figures ? words(step, own) : "",
           .style = verdict_class(changed.verdict),
           .is_words = !missing_reason(own, shown).empty()};
 }
 
-std::vector<KeyNumber> key_numbers(const Result& result) {
-  if (result.devices) return devices_keys(*result.devices);
-  if (!result.baseline.figures && !missing_reason(result.best, leading_figures.front()).empty()) return {};
+std::vector<KeyNumber> key_numbers(const ClosingRecord& result) {
+  if (const DevicesFindings* const devices = result.devices()) return devices_keys(*devices);
+  if (!result.baseline().figures && !missing_reason(result.best, leading_figures.front()).empty()) return {};
   std::vector<KeyNumber> keys;
   for (const Figure& one : std::span(leading_figures).subspan(1)) keys.push_back(key_number(result, one));
   return keys;
 }
 
 /// What every drive demands of its source, where there are several.
-void add_drive_rows(ReportTable& table, const Result& result, bool pair) {
+void add_drive_rows(ReportTable& table, const ClosingRecord& result, bool pair) {
   if (result.best.waveforms.size() < 2) return;
   for (const auto& [drive, found] : result.best.waveforms) {
     const DriveScale scale = drive_scale(drive);
     if (scale.unit.empty()) continue;  // a factor has no source
     const DriveDemand own = drive_demand(found, scale.rest);
-    const DriveDemand step = drive_demand(waveform(result.baseline, drive), scale.rest);
+    const DriveDemand step = drive_demand(waveform(result.baseline(), drive), scale.rest);
     const auto add = [&, name = &drive](const Figure& what, const std::string& value, const std::string& before) {
       TableRow& row = table.rows.emplace_back(TableRow{fmt::format("{}, {}", what.name, *name)});
       if (pair) row.insert(row.end(), {before, ""});
@@ -90,7 +90,7 @@ void add_drive_rows(ReportTable& table, const Result& result, bool pair) {
   }
 }
 
-TableCell error_cell(const Result& result, const Figure& one) {
+TableCell error_cell(const ClosingRecord& result, const Figure& one) {
   constexpr double ill = 0.1;  // an error above a tenth of the figure
   const double own = figure_of_run(result.best, one.member), error = result.best.errors[one];
   const std::string cloud = cloud_text(result, one), stated = error_text(one, own, error);
@@ -101,21 +101,21 @@ TableCell error_cell(const Result& result, const Figure& one) {
   return cell;
 }
 
-TableRow figure_row(const Result& result, const Figure& one, bool pair, bool estimated) {
-  const double own = figure_of_run(result.best, one.member), step = figure_of_run(result.baseline, one.member);
+TableRow figure_row(const ClosingRecord& result, const Figure& one, bool pair, bool estimated) {
+  const double own = figure_of_run(result.best, one.member), step = figure_of_run(result.baseline(), one.member);
   TableRow row{one.label()};
-  if (pair) row.insert(row.end(), {figure_text(one, step, result.baseline.errors[one], own), goal_text(result, one)});
+  if (pair) row.insert(row.end(), {figure_text(one, step, result.baseline().errors[one], own), goal_text(result, one)});
   row.emplace_back(figure_text(one, own, result.best.errors[one], step), "own");
   if (pair) {
-    const Change changed = figure_change(result.baseline, result.best, one);
+    const Change changed = figure_change(result.baseline(), result.best, one);
     row.emplace_back(changed.words, "change " + verdict_class(changed.verdict));
   }
   if (estimated) row.push_back(error_cell(result, one));
   return row;
 }
 
-ReportTable figures_table(const Result& result) {
-  const bool pair = result.is_search() && result.baseline.figures;
+ReportTable figures_table(const ClosingRecord& result) {
+  const bool pair = result.search && result.baseline().figures;
   const bool estimated = std::any_of(all_figures.begin(), all_figures.end(),
                                      [&](const Figure& one) { return std::isfinite(result.best.errors[one]); });
   ReportTable table{.head = {"Figure"}, .rows = {}};
@@ -124,7 +124,7 @@ ReportTable figures_table(const Result& result) {
   if (estimated) table.head.emplace_back(error_heading(result));
   for (const Figure& one : all_figures) {
     const bool known =
-        !std::isnan(figure_of_run(result.best, one.member)) || !std::isnan(figure_of_run(result.baseline, one.member));
+        !std::isnan(figure_of_run(result.best, one.member)) || !std::isnan(figure_of_run(result.baseline(), one.member));
     if (known) table.rows.push_back(figure_row(result, one, pair, estimated));
   }
   add_drive_rows(table, result, pair);
@@ -132,7 +132,7 @@ ReportTable figures_table(const Result& result) {
 }
 
 // Each of several contacts; the figures above are those of the connection that they make.
-ReportTable contacts_table(const Result& result) {
+ReportTable contacts_table(const ClosingRecord& result) {
   constexpr std::array shown{&Metrics::initial_contact_time, &Metrics::impact_velocity, &Metrics::major_bounce_height,
                              &Metrics::peak_contact_force, &Metrics::hold_force};
   ReportTable table{.head = {"Contact"}, .rows = {}};
@@ -148,23 +148,23 @@ ReportTable contacts_table(const Result& result) {
 }
 
 // A scene with a piezo layer whose charging is no part of the drive energy.
-std::string uncounted_layer_caption(const Result& result) {
+std::string uncounted_layer_caption(const ClosingRecord& result) {
   const bool told = std::isfinite(figure_of_run(result.best, &Metrics::drive_energy)) ||
-                    std::isfinite(figure_of_run(result.baseline, &Metrics::drive_energy));
+                    std::isfinite(figure_of_run(result.baseline(), &Metrics::drive_energy));
   const JsonReader piezo(JsonReader(result.origin.scene).at("piezo"));
   if (!told || piezo.at("thickness").is_null() || !piezo.at("relative_permittivity").is_null()) return {};
   return "The drive energy does not count the charging of the piezo layer: the scene has no piezo.relative_permittivity.";
 }
 
-ReportSection figures_section(const Result& result) {
+ReportSection figures_section(const ClosingRecord& result) {
   ReportSection section{.id = "figures", .heading = "Figures", .parts = {}};
-  if (result.devices)
-    section.parts.emplace_back(SubHeading{result.devices->better_than_plain_step ? "best.toml on the nominal design"
-                                                                                 : "The plain step on the nominal design"});
-  if (result.best.figures || result.baseline.figures) section.parts.emplace_back(figures_table(result));
+  if (const DevicesFindings* const devices = result.devices())
+    section.parts.emplace_back(
+        SubHeading{devices->better_than_plain_step ? "best.toml on the nominal design" : "The plain step on the nominal design"});
+  if (result.best.figures || result.baseline().figures) section.parts.emplace_back(figures_table(result));
   if (!result.contacts.empty()) section.parts.emplace_back(contacts_table(result));
-  if (result.goal_met && !result.devices)
-    section.parts.emplace_back(Paragraph{fmt::format("The goal is {}.", *result.goal_met ? "met" : "not met")});
+  if (result.search && result.search->goal_met && !result.search->devices)
+    section.parts.emplace_back(Paragraph{fmt::format("The goal is {}.", *result.search->goal_met ? "met" : "not met")});
   for (const std::string& words :
        {uncounted_layer_caption(result), limit_words(result), certificate_caption(result), robust_caption(result)})
     section.parts.emplace_back(Paragraph{words});
@@ -195,37 +195,38 @@ std::string search_charts(const Picture& drawn) {
   return charts;
 }
 
-ReportSection search_section(const Result& result) {
+ReportSection search_section(const ClosingRecord& result) {
   ReportSection section{.id = "search", .heading = "The search", .parts = {Drawing{search_charts}}};
-  if (const std::string words = families_caption(result); !words.empty())
+  const std::string words = result.search ? families_caption(*result.search) : std::string();
+  if (!words.empty())
     section.parts.emplace_back(Paragraph{fmt::format("Families searched, with the least cost of each: {}.", words)});
   return section;
 }
 
 /// The switch from the side.
-std::string drawn_switch(const Result& result) {
+std::string drawn_switch(const ClosingRecord& result) {
   const std::string drawing = sketch(result.scene);
   if (drawing.empty()) return {};
   return drawing + "<p class=\"below\">From the side: to scale along the beam, heights exaggerated.</p>\n";
 }
 
-ReportSection checks_section(const Result& result) {
+ReportSection checks_section(const ClosingRecord& result) {
   ReportSection section{.id = "checks", .heading = "Confirmations", .parts = {}};
   // Of a winner that bounces there is nothing to confirm.
   if (figure_of_run(result.best, &Metrics::bounce_count) != 0) section.shown = ShownIn::page;
-  if (result.checks.empty()) return section;
+  if (!result.search || result.search->checks.empty()) return section;
   ReportTable table{.head = {"Simulated with"}, .rows = {}};
   for (const Figure& one : leading_figures) table.head.emplace_back(one.name);
   const auto add = [&](const std::string& name, const std::optional<FigureValues>& figures) {
     TableRow& row = table.rows.emplace_back(TableRow{name});
     for (const Figure& one : leading_figures) {
       const double value = figures ? (*figures)[one] : Metrics::unset;
-      row.emplace_back(figure_text(one, value, Metrics::unset, figure_of_run(result.baseline, one.member)));
+      row.emplace_back(figure_text(one, value, Metrics::unset, figure_of_run(result.baseline(), one.member)));
     }
   };
   add("as searched", result.best.figures);
-  for (const ResultCheck& check : result.checks) add(check.name, check.figures);
-  section.parts = {Paragraph{checks_caption(result)}, drawing_of(table_html(table))};
+  for (const ConfirmationRecord& check : result.search->checks) add(check.name, check.figures);
+  section.parts = {Paragraph{checks_caption(*result.search)}, drawing_of(table_html(table))};
   return section;
 }
 
@@ -259,11 +260,11 @@ int place_in_time(const std::string& name) {
 }
 
 /// The box that a parameter was searched in.
-TableCell searched_cell(const Result& result, const std::string& parameter, std::string_view unit) {
-  const auto box = result.bounds.find(parameter);
-  if (box == result.bounds.end()) return "";
+TableCell searched_cell(const ClosingRecord& result, const std::string& parameter, std::string_view unit) {
+  const auto box = result.search->bounds.find(parameter);
+  if (box == result.search->bounds.end()) return "";
   const auto [low, high] = box->second;
-  const double value = result.parameters.at(parameter);
+  const double value = result.search->parameters.at(parameter);
   constexpr double near = 0.01;  // of the box
   const char* bound = value - low <= near * (high - low)    ? "at its lower bound"
                       : high - value <= near * (high - low) ? "at its upper bound"
@@ -274,16 +275,16 @@ TableCell searched_cell(const Result& result, const std::string& parameter, std:
 }
 
 /// The parameters in the order in which they act.
-ReportSection parameters_section(const Result& result) {
+ReportSection parameters_section(const ClosingRecord& result) {
   ReportSection section{.id = "parameters", .heading = "The waveform found", .parts = {}, .shown = ShownIn::page};
-  if (result.parameters.empty()) return section;
+  if (!result.search || result.search->parameters.empty()) return section;
   struct Row {
     std::string key, drive, name;
     std::string_view unit;
     double value;
   };
   std::vector<Row> rows;
-  for (const auto& [key, value] : result.parameters) {
+  for (const auto& [key, value] : result.search->parameters) {
     const auto [plain, unit] = without_unit(key);
     const std::size_t dot = plain.rfind('.');
     rows.push_back({key, plain.substr(0, dot == std::string::npos ? 0 : dot),
@@ -309,7 +310,7 @@ ReportSection parameters_section(const Result& result) {
 }
 
 /// What was asked for, and what the device is like.
-ReportSection facts(const Result& result) {
+ReportSection facts(const ClosingRecord& result) {
   std::string out;
   const auto fact = [&](std::string_view name, std::string value) {
     std::replace(value.begin(), value.end(), '_', ' ');
@@ -319,14 +320,17 @@ ReportSection facts(const Result& result) {
     return std::isfinite(value) ? quantity(value, unit, digits) : std::string();
   };
   fact("Status", result.status);
-  fact("Target", result.target);
-  fact("Actuator", result.actuator);
-  fact("Waveform", result.waveform);
-  fact("Optimizer", result.optimizer);
-  fact("Evaluations", std::isfinite(result.evaluations) ? whole(result.evaluations) : "");
-  fact("Ended by", result.termination);
+  if (result.search) {
+    const SearchRecord& search = *result.search;
+    fact("Target", search.target);
+    fact("Actuator", search.actuator);
+    fact("Waveform", search.waveform);
+    fact("Optimizer", search.optimizer);
+    fact("Evaluations", std::isfinite(search.evaluations) ? whole(search.evaluations) : "");
+    fact("Ended by", search.termination);
+  }
   if (result.pull_in.size() == 1) {  // several do not fit here
-    const ResultPullIn& voltages = result.pull_in.begin()->second;
+    const PullInOfElectrode& voltages = result.pull_in.begin()->second;
     const std::string shift = voltages.static_by_modes ? shift_words(*voltages.static_by_modes) : "";
     fact("Static pull-in",
          measured(voltages.static_pull_in, "V", 5) + (shift.empty() ? shift : fmt::format(" (more modes move it by {})", shift)));
@@ -349,40 +353,42 @@ ReportSection facts(const Result& result) {
 
 }  // namespace
 
-Document result_document(const Result& result) {
+Document closing_document(const ClosingRecord& result) {
   const Headline line = headline(result);
-  Document document{
-      .title = result.title,
-      .origin = result.origin.kind,
-      .headline = line.main,
-      .headline_rest = line.rest,
-      .doubt = checks_agree(result) ? "" : checks_caption(result),
-      .keys = key_numbers(result),
-      .warnings = result.warnings,
-      .draw = [&result] { return picture(result); },
-      .made = {.origin = result.origin, .seed = result.seed, .tolerance = result.tolerance, .reproduce = result.reproduce}};
-  if (result.is_search()) {  // whose terminal has room for what was found alone
+  Document document{.title = result.title,
+                    .origin = result.origin.kind,
+                    .headline = line.main,
+                    .headline_rest = line.rest,
+                    .doubt = checks_agree(result) ? "" : checks_caption(*result.search),
+                    .keys = key_numbers(result),
+                    .warnings = result.warnings,
+                    .draw = [&result] { return picture(result); },
+                    .made = {.origin = result.origin, .tolerance = result.tolerance}};
+  if (result.search) {  // whose terminal has room for what was found alone
     const auto few = std::stable_partition(document.warnings.begin(), document.warnings.end(),
                                            [](const std::string& one) { return !is_few_summits_warning(one); });
     document.page_warnings.assign(few, document.warnings.end());
     document.warnings.erase(few, document.warnings.end());
+    document.made.seed = result.search->seed;
+    document.made.reproduce = result.search->reproduce;
+    for (const std::string& word : {result.search->target, result.search->actuator}) {
+      if (!word.empty()) document.origin += " · " + word;
+    }
   }
-  for (const std::string& word : {result.target, result.actuator}) {
-    if (!word.empty()) document.origin += " · " + word;
-  }
-  if (result.devices) {
-    document.sections.push_back(choices_section(*result.devices));
-    document.sections.push_back(devices_section(*result.devices));
+  const DevicesFindings* const devices = result.devices();
+  if (devices != nullptr) {
+    document.sections.push_back(choices_section(*devices));
+    document.sections.push_back(devices_section(*devices));
   }
   document.sections.push_back({.id = "sketch", .heading = "The switch at rest", .parts = {Drawing{[&result](const Picture&) {
                                                                                   return drawn_switch(result);
                                                                                 }}}});
   document.sections.push_back({.id = "charts", .heading = "The closing", .parts = {Drawing{closing_charts}}});
   for (ReportSection& section : std::array{figures_section(result), checks_section(result), search_section(result)}) {
-    if (result.devices) section.shown = ShownIn::page;
+    if (devices != nullptr) section.shown = ShownIn::page;
     document.sections.push_back(std::move(section));
   }
-  if (result.seeds) document.sections.push_back(seeds_section(*result.seeds));
+  if (result.search && result.search->seeds) document.sections.push_back(seeds_section(*result.search->seeds));
   document.sections.push_back(parameters_section(result));
   document.sections.push_back(facts(result));
   return document;

@@ -1,0 +1,222 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/require.h"
+#include "reports/closing_captions.h"
+#include "reports/closing_members.h"
+#include "reports/record_file.h"
+#include "reports/study_members.h"
+
+namespace softland {
+
+using nlohmann::json;
+
+bool internal::is_of_search(const json& result) {
+  const std::string kind = JsonReader::read<std::string>(JsonReader(result).at("kind"));
+  return kind == "optimize" || (kind.empty() && !JsonReader(result).at("baseline").is_null());
+}
+
+json internal::rebounds_json(const std::vector<Rebound>& rebounds) {
+  json rows = json::array();
+  for (const Rebound& r : rebounds) rows.push_back({r.begin, json_number(r.end), r.height, r.time_of_height});
+  return rows;
+}
+
+std::vector<Rebound> internal::read_rebounds(const json& rows) {
+  std::vector<Rebound> all;
+  for (const json& row : rows.is_array() ? rows : json::array()) {
+    if (row.is_array() && row.size() >= 4)
+      all.push_back({.begin = JsonReader::read<double>(row[0]),
+                     .end = JsonReader::read<double>(row[1]),
+                     .height = JsonReader::read<double>(row[2]),
+                     .time_of_height = JsonReader::read<double>(row[3])});
+  }
+  return all;
+}
+
+// [x, y] with x a whole number.
+json internal::counted_json(const Points& points) {
+  json all = json::array();
+  for (const auto& [index, value] : points) all.push_back({std::llround(index), json_number(value)});
+  return all;
+}
+
+Points internal::read_points(const json& points) { return JsonReader::read<Points>(points); }
+
+// One electrode is the usual case; several are told apart by name.
+json internal::pull_in_json(const std::map<std::string, PullInOfElectrode>& pull_in) {
+  if (pull_in.empty()) return nullptr;
+  if (pull_in.size() == 1) return record_json(pull_in.begin()->second);
+  json all = json::object();
+  for (const auto& [name, voltages] : pull_in) all[name] = record_json(voltages);
+  return all;
+}
+
+// Of one electrode without its name.
+std::map<std::string, PullInOfElectrode> internal::read_pull_in(const json& volts) {
+  if (!volts.is_object()) return {};
+  if (volts.contains("static_V") || volts.contains("dynamic_V")) return {{"", JsonReader::read<PullInOfElectrode>(volts)}};
+  return JsonReader::read<std::map<std::string, PullInOfElectrode>>(volts);
+}
+
+// Of an ill-conditioned figure the cloud it is a property of.
+json internal::certified_json(const std::vector<IllConditioned>& figures) {
+  json all = json::object();
+  for (const IllConditioned& f : figures) all[std::string(f.figure.key)] = record_json(f.spread);
+  return all;
+}
+
+std::vector<IllConditioned> internal::read_certified(const json& certified) {
+  std::vector<IllConditioned> all;
+  for (const Figure& figure : all_figures) {
+    const json& cloud = JsonReader(certified).at(figure.key);
+    if (cloud.is_object()) all.push_back({figure, JsonReader::read<Spread>(cloud)});
+  }
+  return all;
+}
+
+Integrator internal::read_integrator(const json& name) {
+  const auto found =
+      std::ranges::find(all_integrators, JsonReader::read<std::string>(name), [](Integrator one) { return to_string(one); });
+  return found == all_integrators.end() ? Integrator::automatic : *found;
+}
+
+json internal::by_modes_json(const ByModes& found) {
+  json all{{"converged", json_number(found.converged)}};
+  for (const auto& [modes, value] : found.values) all[std::to_string(modes)] = json_number(value);
+  return all;
+}
+
+std::optional<ByModes> internal::read_by_modes(const json& found) {
+  if (!found.is_object()) return std::nullopt;
+  ByModes all;
+  for (const auto& [modes, value] : found.items()) {
+    if (modes == "converged") {
+      all.converged = JsonReader::read<double>(value);
+    } else {
+      int count = 0;
+      const auto [end, error] = std::from_chars(modes.data(), modes.data() + modes.size(), count);
+      if (error == std::errc() && end == modes.data() + modes.size()) all.values[count] = JsonReader::read<double>(value);
+    }
+  }
+  return all.values.empty() ? std::nullopt : std::optional(std::move(all));
+}
+
+json internal::eigenvalues_json(const std::optional<ByModes>& found) {
+  if (!found) return nullptr;
+  json all = by_modes_json(*found);
+  all.erase("converged");
+  return all;
+}
+
+json internal::static_by_modes_json(const std::optional<ByModes>& found) {
+  return found ? json{{"static_V", by_modes_json(*found)}} : json();
+}
+
+std::optional<ByModes> internal::read_static_by_modes(const json& found) {
+  return read_by_modes(JsonReader(found).at("static_V"));
+}
+
+json internal::voltages_json(const std::map<std::string, ByModes>& of_electrodes) {
+  if (of_electrodes.empty()) return nullptr;
+  json all = json::object();
+  for (const auto& [electrode, found] : of_electrodes) all[electrode] = by_modes_json(found);
+  return all;
+}
+
+std::map<std::string, ByModes> internal::read_voltages(const json& of_electrodes) {
+  std::map<std::string, ByModes> all;
+  if (!of_electrodes.is_object()) return all;
+  for (const auto& [electrode, found] : of_electrodes.items()) {
+    if (std::optional<ByModes> one = read_by_modes(found)) all[electrode] = std::move(*one);
+  }
+  return all;
+}
+
+HoldWindows internal::read_windows(const json& ends) {
+  HoldWindows all;
+  if (!ends.is_object()) return all;
+  for (const auto& [electrode, window] : ends.items()) {
+    HoldWindow& one = all.of_electrodes[electrode];
+    if (window.is_array() && window.size() == 2)
+      one = {.lower = JsonReader::read<double>(window[0]),
+             .upper = window[1].is_null() ? std::numeric_limits<double>::infinity() : JsonReader::read<double>(window[1])};
+  }
+  return all;
+}
+
+json internal::choices_json(const DevicesFindings& devices) {
+  json all = json::array();
+  for (const DevicesFindings::Choice& one : devices.choices) {
+    json& choice = all.emplace_back(record_json(one));
+    const DevicesFindings::Row* const row = devices.row(one.row());
+    const json figures = row == nullptr ? json::object() : record_json(*row);
+    for (const char* key : {"quantile_95", "quantile_99"}) choice[key] = figures.value(key, json::object());
+  }
+  return all;
+}
+
+json metrics_json(const Metrics& m) { return internal::record_json(m); }
+
+namespace {
+
+// What the checks come to.
+void add_verdict(json& j, const ClosingRecord& r) {
+  if (!r.best.figures || r.search->checks.empty()) return;
+  j["confirmed"] = internal::all_checks_land(*r.search);
+  const ConfirmationRecord* worst = internal::worst_check(r.search->checks);
+  if (!worst) return;
+  const std::string figure(internal::worst_figure(*worst));
+  j["worst"] = {{"name", worst->name}, {"figure", figure}, {"value", internal::record_json(*worst)["metrics"][figure]}};
+}
+
+}  // namespace
+
+json json_of(const ClosingRecord& r) {
+  json j = internal::record_json(r);
+  if (r.search) {
+    add_verdict(j, r);
+    return j;
+  }
+  j["collapse_time_s"] = internal::json_number(r.best.collapse_time);
+  for (const char* key : {"static_deflection_m", "capacitance_F"})
+    if (j.contains("metrics")) j[key] = j["metrics"][key];
+  return j;
+}
+
+json summary_json(json result) {
+  for (const char* key : {"curves", "scene_toml", "search"}) result.erase(key);
+  if (!result.contains("baseline")) result.erase("best");  // a single run: its figures stand above
+  return result;
+}
+
+json parse_closing(std::string_view content, const std::string& name) {
+  json result = parse_record(content, name);
+  require(result["kind"] == "simulate" || result["kind"] == "optimize",
+          fmt::format("{}: is not a result of simulate or optimize", name));
+  return result;
+}
+
+void require_reportable(const json& result) {
+  for (const char* part : {internal::is_of_search(result) ? "baseline" : "metrics", "scene"}) {
+    require(internal::JsonReader(result).at(part).is_object(), fmt::format("\"{}\" is missing", part));
+  }
+}
+
+ClosingRecord read_closing(const json& result) {
+  require(result.is_object(), "the result is not a JSON object");
+  ClosingRecord r = internal::JsonReader::read<ClosingRecord>(result);
+  r.origin.kind = r.search ? "optimize" : "simulate";
+  if (r.origin.scene_toml.empty() && r.origin.scene.is_object())
+    r.origin.scene_toml = r.origin.scene.dump(2, ' ', false, json::error_handler_t::replace);
+  if (r.best.status.empty()) r.best.status = r.status;
+  r.scene = read_drawn_scene(r.origin.scene);
+  return r;
+}
+
+}  // namespace softland

@@ -1,0 +1,122 @@
+#include "reports/drawn_scene.h"
+
+#include <cmath>
+#include <initializer_list>
+#include <string_view>
+
+#include "base/require.h"
+#include "config/units.h"
+
+namespace softland {
+namespace {
+
+using nlohmann::json;
+
+// The value at this path of keys; a null value when any of them is missing.
+const json& at(const json& value, std::initializer_list<std::string_view> path) {
+  static const json nothing;
+  const json* here = &value;
+  for (const std::string_view key : path) {
+    if (!here->is_object()) return nothing;
+    const auto found = here->find(key);
+    if (found == here->end()) return nothing;
+    here = &*found;
+  }
+  return *here;
+}
+
+double number(const json& value) { return value.is_number() ? value.get<double>() : Metrics::unset; }
+
+std::string text(const json& value) { return value.is_string() ? value.get<std::string>() : std::string(); }
+std::string text(const json& value, std::initializer_list<std::string_view> path) { return text(at(value, path)); }
+
+// A quantity as a resolved scene writes it, "2 um", in SI units; a plain number as it is.
+double quantity(const json& value) {
+  if (!value.is_string()) return number(value);
+  try {
+    return parse_quantity(value.get<std::string>()).value;
+  } catch (const InvalidInput&) {
+    return Metrics::unset;
+  }
+}
+
+std::vector<double> quantities(const json& list) {
+  std::vector<double> all;
+  for (const json& one : list.is_array() ? list : json::array()) all.push_back(quantity(one));
+  return all;
+}
+
+// The members of an object, by name.
+template <class Read>
+auto members_of(const json& object, const Read& read) {
+  std::map<std::string, decltype(read(object))> all;
+  if (!object.is_object()) return all;
+  for (const auto& [name, value] : object.items()) all.emplace(name, read(value));
+  return all;
+}
+
+// A length, a percentage of a beam's length, or its tip.
+double place_on(double length, const json& place) {
+  const std::string written = text(place);
+  if (written == "tip") return length;
+  return written.ends_with('%') ? quantity(place) * length : quantity(place);
+}
+
+std::optional<std::array<double, 2>> span_on(double length, const json& span) {
+  if (!span.is_array() || span.size() != 2) return std::nullopt;
+  const std::array<double, 2> ends{place_on(length, span[0]), place_on(length, span[1])};
+  return std::isfinite(ends[0]) && std::isfinite(ends[1]) ? std::optional(ends) : std::nullopt;
+}
+
+// The length of the structure, which sections have together.
+double length_of(const json& structure) {
+  const double length = quantity(at(structure, {"length"}));
+  const json& sections = at(structure, {"sections"});
+  if (std::isfinite(length) || !sections.is_array() || sections.empty()) return length;
+  double sum = 0;
+  for (const json& section : sections) sum += quantity(at(section, {"length"}));
+  return sum;
+}
+
+}  // namespace
+
+DrawnScene read_drawn_scene(const json& scene) {
+  DrawnScene s{.structure = text(scene, {"structure", "kind"}),
+               .length = length_of(at(scene, {"structure"})),
+               .electrode_gap = quantity(at(scene, {"gap", "electrode"})),
+               .contact_gap = quantity(at(scene, {"gap", "contact"})),
+               .pad_length = quantity(at(scene, {"contact", "pad_length"}))};
+  if (at(scene, {"piezo"}).is_object()) s.piezo = DrawnScene::Piezo{span_on(s.length, at(scene, {"piezo", "span"}))};
+  for (const auto& [name, electrode] : members_of(at(scene, {"electrode"}), [](const json& one) { return &one; })) {
+    const json& spans = at(*electrode, {"span"});
+    const bool is_nested = spans.is_array() && !spans.empty() && spans[0].is_array();
+    for (const json& span : is_nested ? spans : json::array({spans}))
+      s.electrodes.push_back({.name = name,
+                              .span = span_on(s.length, span),
+                              .far_side = text(*electrode, {"side"}) == "far",
+                              .gap = quantity(at(*electrode, {"gap"}))});
+  }
+  for (const auto& [name, contact] : members_of(at(scene, {"contact"}), [](const json& one) { return &one; })) {
+    if (!contact->is_object()) continue;
+    s.contacts.push_back({.name = name,
+                          .at = place_on(s.length, at(*contact, {"at"})),
+                          .gap = quantity(at(*contact, {"gap"})),
+                          .far_side = text(*contact, {"side"}) == "far"});
+  }
+  s.waveforms = members_of(at(scene, {"waveform"}), [](const json& one) {
+    return DrawnScene::Waveform{.family = text(one, {"family"}),
+                                .times = quantities(at(one, {"times"})),
+                                .edge = quantity(at(one, {"edge"})),
+                                .start = quantity(at(one, {"start"})),
+                                .end = quantity(at(one, {"end"}))};
+  });
+  s.drivers = members_of(at(scene, {"driver"}), [](const json& one) {
+    return DriveLimits{.lowest = quantity(at(one, {"min_voltage"})),
+                       .highest = quantity(at(one, {"max_voltage"})),
+                       .slew = quantity(at(one, {"max_slew"}))};
+  });
+  if (const double height = quantity(at(scene, {"metrics", "significant_rebound"})); height > 0) s.significant_rebound = height;
+  return s;
+}
+
+}  // namespace softland

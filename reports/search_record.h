@@ -1,0 +1,67 @@
+// The record of a search, beside that of the closing that it found.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reports/run_record.h"
+#include "studies/search/devices_findings.h"
+#include "studies/search/optimize.h"
+#include "studies/search/robust_optimize.h"
+#include "studies/stored_search/seed_study.h"
+
+namespace softland {
+
+/// Another run of the winner.
+struct ConfirmationRecord {
+  std::string name, status;
+  std::optional<FigureValues> figures;
+  /// Under another gas law: what differs is what is simulated, not how.
+  [[nodiscard]] bool is_of_gas() const { return name.starts_with("gas "); }
+};
+
+struct SearchCourse {
+  std::string value_name;  ///< what the search minimises
+  Points best_so_far;      ///< index of an evaluation, value
+  Points evaluations;      ///< the same of all; a value is NaN where it was infeasible
+};
+
+/// The least time in which any waveform of the same drives and limits touches no faster than the winner.
+struct TouchLimit {
+  double least_time = Metrics::unset, impact_velocity = Metrics::unset;  ///< [s], [m/s]
+};
+
+/// Searches that differ in their seeds alone; the result is that of the best.
+struct SeedsFindings {
+  std::uint64_t planned = 0;           ///< searches, of which those below are done
+  std::vector<SearchOfSeed> searches;  ///< in the order of their seeds
+  std::size_t best = 0;                ///< of them
+};
+
+/// What is not available is NaN, empty or not set.
+struct SearchRecord {
+  std::string target, actuator, waveform, optimizer, termination, termination_message;
+  std::vector<SearchedFamilyResult> families;  ///< where there were several
+  std::optional<std::uint64_t> seed;
+  std::optional<bool> goal_met, better_than_baseline, plain_step_wins;
+  double harder_than_step = Metrics::unset;  ///< see OptimizeResult
+  double evaluations = Metrics::unset;
+  RunRecord baseline;                                   ///< the plain step
+  std::map<std::string, double> parameters;             ///< of the winner, by drive.name
+  std::map<std::string, std::array<double, 2>> bounds;  ///< within which they were searched
+  std::vector<ConfirmationRecord> checks;
+  double evaluations_of_modes = Metrics::unset;  ///< see OptimizeResult
+  SearchCourse course;
+  std::optional<RobustFindings> robust;
+  std::optional<DevicesFindings> devices;
+  std::optional<SeedsFindings> seeds;
+  std::optional<TouchLimit> limit;
+  std::vector<std::string> reproduce;  ///< command lines
+};
+
+}  // namespace softland
