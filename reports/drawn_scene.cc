@@ -3,9 +3,12 @@
 #include <cmath>
 #include <initializer_list>
 #include <string_view>
+#include <type_traits>
+#include <variant>
 
 #include "base/require.h"
 #include "config/units.h"
+#include "model/structure/structure.h"
 
 namespace softland {
 namespace {
@@ -78,10 +81,29 @@ double length_of(const json& structure) {
   return sum;
 }
 
+template <class Kind>
+constexpr SideOfStructure side_of_kind() {
+  if (requires { Kind::is_rigid; }) return SideOfStructure::on_springs;
+  if (!std::is_base_of_v<Beam, Kind>) return SideOfStructure::unknown;
+  return requires { Kind::has_far_clamp; }
+  ? SideOfStructure::held_at_both_ends : SideOfStructure::held_at_one_end;
+}
+
+template <class... Kinds>
+SideOfStructure side_of_named(std::string_view kind, const std::variant<Kinds...>*) {
+  SideOfStructure side = SideOfStructure::unknown;
+  ((side = Kinds::name == kind ? side_of_kind<Kinds>() : side), ...);
+  return side;
+}
+
 }  // namespace
 
+SideOfStructure side_of_structure(std::string_view kind) {
+  return side_of_named(kind, static_cast<const StructureKind*>(nullptr));
+}
+
 DrawnScene read_drawn_scene(const json& scene) {
-  DrawnScene s{.structure = text(scene, {"structure", "kind"}),
+  DrawnScene s{.structure = side_of_structure(text(scene, {"structure", "kind"})),
                .length = length_of(at(scene, {"structure"})),
                .electrode_gap = quantity(at(scene, {"gap", "electrode"})),
                .contact_gap = quantity(at(scene, {"gap", "contact"})),

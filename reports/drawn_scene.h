@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "objectives/metrics.h"
@@ -17,6 +18,16 @@ struct DriveLimits {
   double lowest = Metrics::unset, highest = Metrics::unset;  ///< [V]
   double slew = Metrics::unset;                              ///< [V/s]
 };
+
+/// What a kind of structure looks like from the side.
+enum class SideOfStructure {
+  unknown,            ///< its shape is not described
+  held_at_one_end,    ///< a beam
+  held_at_both_ends,  ///< a beam
+  on_springs,         ///< a plate
+};
+/// By the name of the kind in scenes.
+[[nodiscard]] SideOfStructure side_of_structure(std::string_view kind);
 
 /// What a report shows of the scene.
 struct DrawnScene {
@@ -42,7 +53,7 @@ struct DrawnScene {
     double edge = Metrics::unset, start = Metrics::unset, end = Metrics::unset;  ///< [s]
   };
 
-  std::string structure;                                                ///< "cantilever"; empty: not known
+  SideOfStructure structure = SideOfStructure::unknown;
   double length = Metrics::unset;                                       ///< [m]
   double electrode_gap = Metrics::unset, contact_gap = Metrics::unset;  ///< [m]
   double pad_length = Metrics::unset;                                   ///< [m]

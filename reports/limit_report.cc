@@ -58,7 +58,7 @@ ReportTable list_table(const char* title, const std::vector<LeastTime>& all, Nam
 
 // The model for which a least time is a bound: a beam with more modes may touch earlier. Empty for a plate, which has one mode.
 std::string model_of(const LimitRecord& limit) {
-  if (read_drawn_scene(limit.origin.scene).structure == "plate") return {};
+  if (read_drawn_scene(limit.origin.scene).structure == SideOfStructure::on_springs) return {};
   return fmt::format("{} mode{}", limit.modes, limit.modes == 1 ? "" : "s");
 }
 

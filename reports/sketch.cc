@@ -175,9 +175,11 @@ std::string drawn_contacts(const DrawnScene& scene, const SideView& view) {
 }  // namespace
 
 std::string sketch(const DrawnScene& scene) {
-  const bool plate = scene.structure == "plate", both_ends = scene.structure == "clamped-clamped";
-  const bool is_known = plate || both_ends || scene.structure == "cantilever";
-  if (!is_known || !(scene.electrode_gap > 0) || !(scene.contact_gap > 0 || !scene.contacts.empty())) return {};
+  const bool plate = scene.structure == SideOfStructure::on_springs;
+  const bool both_ends = scene.structure == SideOfStructure::held_at_both_ends;
+  if (scene.structure == SideOfStructure::unknown || !(scene.electrode_gap > 0) ||
+      !(scene.contact_gap > 0 || !scene.contacts.empty()))
+    return {};
   const double length = scene.length > 0 ? scene.length : 1;
 
   constexpr double right = SideView::right, electrode = SideView::electrode;

@@ -163,7 +163,7 @@ TEST(HtmlReport, DrawsTheSwitchAndWhatEveryDriveDemands) {
 TEST(Sketch, HoldsAllOfItsWords) {
   constexpr double letter = 7.5;  // at 12.5 px
   for (const char* structure : {"cantilever", "clamped-clamped", "plate"}) {
-    const std::string drawing = internal::sketch({.structure = structure,
+    const std::string drawing = internal::sketch({.structure = side_of_structure(structure),
                                                   .length = 612.5e-6,
                                                   .electrode_gap = 5.6312e-6,
                                                   .contact_gap = 4.6312e-6,
