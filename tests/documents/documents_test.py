@@ -1,9 +1,13 @@
 """documents_test.py CASE PROGRAM: what the documents say holds.
 
-Cases: first_page, scenes, commands, statuses, results, headlines, links, citation. Prints every finding; exit status 1 when there is one.
+Cases: first_page, scenes, commands, statuses, results, headlines, published, links, citation. Prints every finding; exit status 1 when there is one.
 """
 
+import csv
+import json
+import math
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -248,6 +252,55 @@ def headlines(_):
                 yield f"README.md: {number} should be {true:.{digits + 1}f} in: {said.group(0)}"
 
 
+# Figures of published devices are those that results/published.md gives, and every scene of scenes/published has one.
+
+UNITS = {"V": 1, "us": 1e-6, "kHz": 2e3 * math.pi, "MHz": 2e6 * math.pi}
+
+
+def opened(trajectory, gap):
+    """Time in s at which the contact gap first reaches `gap` in m, by straight lines between the rows of the file."""
+    with open(trajectory, encoding="utf-8") as file:
+        course = [(float(row["time_s"]), float(row["tip_gap_m"])) for row in csv.DictReader(file)]
+    for (before, lower), (after, upper) in zip(course, course[1:]):
+        if upper >= gap:
+            return before + (gap - lower) / (upper - lower) * (after - before)
+    return math.nan
+
+
+def published(program):
+    rows = table("results/published.md", "device", "## Figures")
+    shown = {}
+    for device, figure, said, found, difference, command, where in rows:
+        with tempfile.TemporaryDirectory() as folder:
+            if command not in shown:
+                words = shlex.split(command.strip("`"))[1:]
+                out = ["--out", folder] if where.startswith("first ") else []
+                shown[command] = run(program, *words, *out, "--json", "-", "--quiet", cwd=ROOT)
+            if shown[command].returncode != 0:
+                yield f"results/published.md: {command} fails: {shown[command].stderr}"
+                continue
+            if where.startswith("first "):
+                true = opened(Path(folder) / "trajectory.csv", 1e-6 * float(where.split()[1]))
+            else:
+                true = json.loads(shown[command].stdout)
+                for key in where.strip("`").split("."):
+                    true = true[int(key)] if key.isdigit() else true[key]
+        number, unit = found.split()
+        true /= UNITS[unit]
+        digits = len(number.partition(".")[2])
+        if not abs(true - float(number)) <= 0.6 * 10**-digits:
+            yield f"results/published.md: {device}, {figure}: {found} should be {true:.{digits + 1}f} {unit}"
+        off = 100 * (true / value(said, unit) - 1)
+        if not abs(off - percent(difference)) <= 0.06:
+            yield f"results/published.md: {device}, {figure}: {difference} should be {off:+.2f} %"
+    for scene in sorted((ROOT / "scenes/published").glob("*.toml")):
+        if not any(f"scenes/published/{scene.name}" in row[5] for row in rows):
+            yield f"results/published.md has no figure of {scene.name}"
+        checked = run(program, "check", str(scene))
+        if checked.returncode != 0:
+            yield f"{scene.name} is refused: {checked.stderr}"
+
+
 # What a link in a document leads to is there: files, and headings as GitHub names them.
 
 
@@ -295,7 +348,7 @@ def citation(program):
 
 def main():
     case, program = sys.argv[1:]
-    cases = (first_page, scenes, commands, statuses, results, headlines, links, citation)
+    cases = (first_page, scenes, commands, statuses, results, headlines, published, links, citation)
     findings = list({function.__name__: function for function in cases}[case](program))
     for finding in findings:
         print(finding)
