@@ -294,11 +294,8 @@ def published(program):
         if not abs(off - percent(difference)) <= 0.06:
             yield f"results/published.md: {device}, {figure}: {difference} should be {off:+.2f} %"
     for scene in sorted((ROOT / "scenes/published").glob("*.toml")):
-        if not any(f"scenes/published/{scene.name}" in row[5] for row in rows):
-            yield f"results/published.md has no figure of {scene.name}"
-        checked = run(program, "check", str(scene))
-        if checked.returncode != 0:
-            yield f"{scene.name} is refused: {checked.stderr}"
+        if f"`softland check scenes/published/{scene.name}`" not in shown:
+            yield f"results/published.md has no figure that check prints of {scene.name}"
 
 
 # What a link in a document leads to is there: files, and headings as GitHub names them.
