@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 #include "base/engineering.h"
@@ -19,12 +18,6 @@ namespace {
 
 // Of the energy that bends the beam by the contact gap: see closing.h.
 constexpr double worth_warning = 0.01, not_credible = 0.2;
-
-// The one of two that comes first in an order; NaN where one of them is.
-template <class Order>
-double both_or_none(double a, double b, Order before) {
-  return std::isnan(a) || before(a, b) ? a : b;
-}
 
 class Run {
  public:
@@ -252,12 +245,11 @@ class Run {
 
   // Takes over what the contacts did. Where there are several, it tells of their connection too.
   void gather_contacts() {
-    const bool needs_all = model_.device().connection == Connection::all;
     if (parts_.electrical) {
       parts_.electrical->finish(here().time);
       out_.electrical = parts_.electrical->connection();
     }
-    bool is_first = true;
+    std::vector<ForceOutcome> forces;
     for (const FollowedContact& c : parts_.contacts) {
       const bool touched = c.touches.count() > 0;
       ContactOutcome own{.name = model_.has_contact() ? model_.device().contacts[c.number].name : std::string(),
@@ -267,24 +259,14 @@ class Run {
         own.steady_force_time = c.force.steady_from();
         own.least_force_after_touch = c.force.least();
       }
+      forces.push_back({own.steady_force_time, own.least_force_after_touch});
       if (parts_.electrical) own.electrical = parts_.electrical->contact(c.number);
       out_.deepest_penetration = std::max(out_.deepest_penetration, own.deepest_penetration);
-      if (!parts_.connection || model_.device().contacts[c.number].connects) {
-        double &steady = out_.steady_force_time, &least = out_.least_force_after_touch;
-        if (is_first) {
-          steady = own.steady_force_time;
-          least = own.least_force_after_touch;
-        } else if (needs_all) {
-          steady = both_or_none(steady, own.steady_force_time, std::greater<>());
-          least = both_or_none(least, own.least_force_after_touch, std::less<>());
-        } else {
-          steady = std::fmin(steady, own.steady_force_time);
-          least = std::fmax(least, own.least_force_after_touch);
-        }
-        is_first = false;
-      }
       if (parts_.connection) out_.contacts.push_back(std::move(own));
     }
+    const auto [steady, least] = force_of_connection(model_.device(), forces);
+    out_.steady_force_time = steady;
+    out_.least_force_after_touch = least;
     if (!parts_.connection) return;
     parts_.connection->finish();
     out_.first_touch = parts_.connection->first_touch();

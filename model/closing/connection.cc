@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "integrators/quintic.h"
 #include "integrators/roots.h"
@@ -23,7 +24,7 @@ void ConnectionCourse::Followed::knot(const TrajectoryPoint& point) {
 
 void ConnectionCourse::Followed::touch(const Touch& touch) {
   if (own_ != nullptr) own_->touch(touch);
-  if (connects_) connection_.take(touch);
+  if (connects_) connection_.touches_.take(touch);
 }
 
 // Knots are given as they are. Between them the place is that of the quintic, and the force goes on a line.
@@ -112,17 +113,20 @@ void ConnectionCourse::tell(double time) {
   const bool closed = separation <= on_the_plane * decisive.gap();
   if (closed) {
     if (!is_closed_) {
-      finish();
-      touch_ = Touch{.begin = time, .end = std::numeric_limits<double>::quiet_NaN(), .impact_velocity = std::abs(point.velocity)};
+      if (const std::optional<Touch> before = touches_.close(time, std::abs(point.velocity))) observer_.touch(*before);
     }
     last_closed_ = time;
   } else if (is_closed_) {
-    touch_->end = last_closed_;
+    touches_.open(last_closed_);
   }
   is_closed_ = closed;
 }
 
-void ConnectionCourse::take(const Touch& touch) {
+void ConnectionCourse::finish() {
+  if (const std::optional<Touch> last = touches_.finish()) observer_.touch(*last);
+}
+
+void ConnectionTouches::take(const Touch& touch) {
   if (!(first_touch_ <= touch.begin)) {
     first_touch_ = touch.begin;
     impact_velocity_ = touch.impact_velocity;
@@ -132,14 +136,42 @@ void ConnectionCourse::take(const Touch& touch) {
   pending_.peak_energy += touch.peak_energy;
 }
 
-void ConnectionCourse::finish() {
-  if (!touch_) return;
-  touch_->impact_velocity = std::max(touch_->impact_velocity, pending_.impact_velocity);
-  touch_->peak_force = pending_.peak_force;
-  touch_->peak_energy = pending_.peak_energy;
+std::optional<Touch> ConnectionTouches::close(double time, double speed) {
+  std::optional<Touch> before = finish();
+  touch_ = Touch{.begin = time, .end = std::numeric_limits<double>::quiet_NaN(), .impact_velocity = speed};
+  return before;
+}
+
+std::optional<Touch> ConnectionTouches::finish() {
+  if (!touch_) return std::nullopt;
+  std::optional<Touch> last = std::exchange(touch_, std::nullopt);
+  last->impact_velocity = std::max(last->impact_velocity, pending_.impact_velocity);
+  last->peak_force = pending_.peak_force;
+  last->peak_energy = pending_.peak_energy;
   pending_ = {};
-  observer_.touch(*touch_);
-  touch_.reset();
+  return last;
+}
+
+ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts) {
+  if (contacts.size() == 1) return contacts.front();
+  // The later, or the less, of two; NaN where one of them is.
+  const auto later = [](double a, double b) { return std::isnan(a) || a > b ? a : b; };
+  const auto less = [](double a, double b) { return std::isnan(a) || a < b ? a : b; };
+  std::optional<ForceOutcome> all;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (!device.contacts[c].connects) continue;
+    const auto& [steady, least] = contacts[c];
+    if (!all) {
+      all = contacts[c];
+    } else if (device.connection == Connection::all) {
+      all = {.steady_force_time = later(all->steady_force_time, steady),
+             .least_force_after_touch = less(all->least_force_after_touch, least)};
+    } else {
+      all = {.steady_force_time = std::fmin(all->steady_force_time, steady),
+             .least_force_after_touch = std::fmax(all->least_force_after_touch, least)};
+    }
+  }
+  return *all;
 }
 
 }  // namespace softland

@@ -8,13 +8,45 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "model/closing/observer.h"
 #include "model/switch.h"
 
 namespace softland {
+
+/// The touches of a connection, which hold what those of its contacts have.
+class ConnectionTouches {
+ public:
+  /// Takes a touch of a contact that makes the connection.
+  void take(const Touch& touch);
+  /// The connection closes [s], at this speed [m/s]: returns the touch before, if there was one.
+  [[nodiscard]] std::optional<Touch> close(double time, double speed);
+  /// It opens [s].
+  void open(double time) { touch_->end = time; }
+  /// Returns the last touch, once all touches of contacts have been taken.
+  [[nodiscard]] std::optional<Touch> finish();
+
+  /// First touch of any contact that makes the connection [s], and the speed there [m/s]; NaN before.
+  [[nodiscard]] double first_touch() const { return first_touch_; }
+  [[nodiscard]] double impact_velocity() const { return impact_velocity_; }
+
+ private:
+  std::optional<Touch> touch_;
+  Touch pending_;
+  double first_touch_ = std::numeric_limits<double>::quiet_NaN(), impact_velocity_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// When the contact force is steady from then on [s], and the least after the first touch [N]: as in Trajectory.
+struct ForceOutcome {
+  double steady_force_time = std::numeric_limits<double>::quiet_NaN();
+  double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
+};
+/// That of the connection which contacts with these outcomes make: all contacts of the device, in order.
+[[nodiscard]] ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts);
 
 class ConnectionCourse {
  public:
@@ -31,8 +63,8 @@ class ConnectionCourse {
   void finish();
 
   /// First touch of any contact that makes the connection [s], and the speed there [m/s]; NaN before.
-  [[nodiscard]] double first_touch() const { return first_touch_; }
-  [[nodiscard]] double impact_velocity() const { return impact_velocity_; }
+  [[nodiscard]] double first_touch() const { return touches_.first_touch(); }
+  [[nodiscard]] double impact_velocity() const { return touches_.impact_velocity(); }
 
  private:
   class Followed final : public ClosingObserver {
@@ -61,7 +93,6 @@ class ConnectionCourse {
   [[nodiscard]] std::size_t decides(double time, std::size_t present) const;
   void follow_to(double time);
   void tell(double time);
-  void take(const Touch& touch);
 
   ClosingObserver& observer_;
   bool needs_all_;
@@ -69,11 +100,9 @@ class ConnectionCourse {
   std::vector<Followed> followed_;
   std::size_t deciding_ = 0;
   double here_ = 0;  // [s]
-  std::optional<Touch> touch_;
-  Touch pending_;
+  ConnectionTouches touches_;
   bool is_closed_ = false;
   double last_closed_ = 0;  // [s]
-  double first_touch_ = std::numeric_limits<double>::quiet_NaN(), impact_velocity_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace softland
