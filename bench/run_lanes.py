@@ -28,6 +28,7 @@ SETTINGS = (("1e-4", "1e-5"), ("1e-3", "3e-5"))
 PATHS = ("none", "avx2", "avx512")
 SPLINE = 'waveform.main={family="bspline", levels=["0 V", "12 V", "18 V", "16 V", "19 V", "17 V", "18 V", "17.8 V"], duration="120 us"}'
 DRIVER = ("driver.main.sample_rate=25 MHz", "driver.main.bits=14", "driver.main.bandwidth=1 MHz", "driver.main.max_slew=20 V/us")
+SECTIONS = 'structure.sections=[{length="60 um", width="15 um"}, {length="190 um", thickness="2.2 um"}]'
 KINDS = (("a cantilever of four modes", "mem-gold.toml", ()),
          ("its step from a source of 25 MS/s, 14 bits, 1 MHz, 20 V/us", "mem-gold.toml", ("waveform.main.rise_time=1 us", *DRIVER)),
          ("a spline", "mem-gold.toml", (SPLINE,)),
@@ -37,6 +38,8 @@ KINDS = (("a cantilever of four modes", "mem-gold.toml", ()),
          ("a bridge that stretches, five modes", "new/clamped-clamped.toml", ()),
          ("van der Waals and Casimir force", "nem-tin.toml", ()),
          *((f"film {film}", "mem-gold.toml", (f"gas.model={film}",)) for film in ("veijola", "gallis-torczynski", "near-contact", "guo-alexeenko")),
+         ("a beam of two sections", "mem-gold.toml", (SECTIONS,)),
+         ("two damped contacts and a back stop", "new/two-contacts.toml", ()),
          ("a plate, an electrode on either side, damped contact", "two-electrodes.toml", ()),
          ("a plate, an electrode of two faces, two films over slits", "gap-closing-actuator.toml", ()))
 ONE_THREAD = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}

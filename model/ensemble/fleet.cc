@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 
 #include "base/require.h"
 #include "model/built_beam.h"
+#include "model/closing/connection.h"
 #include "model/closing/tolerances.h"
 #include "model/ensemble/lane_closing.h"
 #include "model/ensemble/lane_drives.h"
@@ -70,12 +73,8 @@ struct ElasticContact {
   double damping = 0;
   double unloading = 0;  // stiffness of a contact with a memory; 0: has none [N/m]
 };
-std::optional<ElasticContact> lane_contact(const Switch& model) {
-  if (model.contacts() != 1 || model.has_spread_contact()) return std::nullopt;
-  // When a contact is electrically closed is located on the motion of a single closing.
-  if (model.device().electrical.is_asked()) return std::nullopt;
+std::optional<ElasticContact> lane_contact(const ContactLaw& law) {
   using Lane = fleet::LaneContact;
-  const ContactLaw& law = model.contact();
   const auto rough = [](const UniformAsperityContact& c, double damping) {
     return ElasticContact{.law = Lane::asperity_uniform, .strength = c.strength, .height = c.height, .damping = damping};
   };
@@ -89,6 +88,14 @@ std::optional<ElasticContact> lane_contact(const Switch& model) {
   return std::nullopt;
 }
 
+/// Whether lanes know every contact, of which there is one at least.
+bool knows_contacts(const Switch& model) {
+  if (!model.has_contact() || model.has_spread_contact()) return false;
+  for (std::size_t c = 0; c < model.contacts(); ++c)
+    if (!lane_contact(model.contact(c))) return false;
+  return true;
+}
+
 /// Whether the laws are those of fleet::UsualLaws.
 bool is_usual(const Switch& model) {
   const Device& device = model.device();
@@ -97,8 +104,8 @@ bool is_usual(const Switch& model) {
   const bool is_plate = device.structure.is_rigid();  // whose electrodes lie over the same points
   const bool film = !device.gas || (std::holds_alternative<StripGas>(*device.gas) && std::isnan(far_gap(*device.gas)));
   return model.modes() <= fleet::usual_modes && !device.structure.is_built() && !device.dispersion && !model.stretching() &&
-         film && std::holds_alternative<UniformAsperityContact>(model.contact()) && std::ranges::all_of(all, alike) &&
-         !(is_plate && all.size() > 1) && !electrode_conflict(device.structure, all);
+         film && model.contacts() == 1 && std::holds_alternative<UniformAsperityContact>(model.contact()) &&
+         std::ranges::all_of(all, alike) && !(is_plate && all.size() > 1) && !electrode_conflict(device.structure, all);
 }
 
 /// The pads, each with the electrode that it is of.
@@ -171,7 +178,6 @@ std::vector<LaneStretch> stretches_of(const Switch& model) {
 
 LaneLayout layout_of(const Switch& model, bool measures_work) {
   const Device& device = model.device();
-  const ElasticContact contact = *lane_contact(model);
   LaneLayout layout{.usual = is_usual(model) && !measures_work,
                     .modes = model.modes(),
                     .points = to_int(model.quadrature().points()),
@@ -182,10 +188,17 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
                     .film = *lane_film(device.gas),
                     .far_film = device.gas && !std::isnan(far_gap(*device.gas)),
                     .dispersion = *lane_dispersion(device.dispersion),
-                    .contact = contact.law,
-                    .damped_contact = contact.damping > 0,
-                    .remembers = contact.unloading > 0,
+                    .contacts = to_int(model.contacts()),
+                    .needs_all = device.connection == Connection::all,
                     .measures_work = measures_work};
+  for (std::size_t c = 0; c < model.contacts(); ++c) {
+    const ElasticContact contact = *lane_contact(model.contact(c));
+    layout.contact[c] = {.law = contact.law,
+                         .damped = contact.damping > 0,
+                         .remembers = contact.unloading > 0,
+                         .near = device.contacts[c].side == Side::near,
+                         .connects = device.contacts[c].connects};
+  }
   if (!device.electrodes.empty()) layout.fringing = *lane_fringing(device.electrodes.front().fringing);
   const std::vector<Segment> segments = layout.usual ? segments_between(model) : faces_of(model);
   layout.segments = to_int(segments.size());
@@ -242,16 +255,17 @@ void set_stretching(LaneSwitch& s, const MidPlaneStretching& stretching) {
 
 LaneSwitch numbers_of(const Switch& model, double tolerance) {
   const Device& device = model.device();
-  const ElasticContact contact = *lane_contact(model);
-  LaneSwitch s{.modes = model.modes(),
-               .open = model.quadrature().rest_gaps().maxCoeff(),
-               .plane = model.contact_gap(),
-               .floor = model.gap_floor(),
-               .strength = contact.strength,
-               .height = contact.height,
-               .contact_damping = contact.damping,
-               .unloading_stiffness = contact.unloading,
-               .negligible_depth = depth_of_energy(contact, tolerance * model.bending_energy())};
+  LaneSwitch s{.modes = model.modes(), .open = model.quadrature().rest_gaps().maxCoeff(), .floor = model.gap_floor()};
+  for (std::size_t c = 0; c < model.contacts(); ++c) {
+    const ElasticContact contact = *lane_contact(model.contact(c));
+    s.contact[c] = {.plane = model.contact_gap(c),
+                    .strength = contact.strength,
+                    .height = contact.height,
+                    .damping = contact.damping,
+                    .unloading_stiffness = contact.unloading,
+                    .negligible_depth = depth_of_energy(contact, tolerance * model.bending_energy())};
+    std::ranges::copy(model.contact_shape(c), s.contact[c].shape);
+  }
   if (model.gas()) set_film(s, *model.gas());
   const std::vector<LaneStretch> stretches = stretches_of(model);
   for (std::size_t k = 0; k < stretches.size(); ++k) {
@@ -272,7 +286,6 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   for (int i = 0; i < s.modes; ++i) {
     const auto k = static_cast<std::size_t>(i), n = static_cast<std::size_t>(s.modes);
     s.omega[i] = model.basis().angular_frequencies()[i];
-    s.at_contact[i] = model.basis().contact_shape()[i];
     s.piezo[i] = model.basis().piezo_shape()[i];
     s.friction[i] = 2 * device.structure.damping_ratio * s.omega[i];
     s.flying[i] = tolerances.in_flight[k], s.touching[i] = tolerances.touching[k], s.speed[i] = tolerances.in_flight[n + k];
@@ -285,32 +298,70 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   return s;
 }
 
-/// Where the contact carries the steady force, but for its damping [m].
-double steady_depth(const FleetClosing& closing) {
+/// Where a contact carries the steady force, but for its damping [m].
+double steady_depth(const FleetClosing& closing, std::size_t c) {
   if (!(closing.steady_force > 0)) return std::numeric_limits<double>::infinity();
-  const ElasticContact contact = *lane_contact(*closing.model);
+  const ElasticContact contact = *lane_contact(closing.model->contact(c));
   if (contact.law == fleet::LaneContact::linear) return closing.steady_force / contact.strength;
   return UniformAsperityContact{.strength = contact.strength, .height = contact.height}.interference(closing.steady_force);
 }
 
-/// Passes on what a lane tells, with force and energy of the contact's law.
+/// Passes on what a lane tells, with force and energy of the contact's law; of several contacts the touches of their connection.
 class Teller final : public fleet::LaneObserver {
  public:
-  explicit Teller(const FleetClosing& closing) : law_(&closing.model->contact()), observer_(closing.observer) {}
-  void touch(double begin, double end, double speed, double depth, double force) override {
-    observer_->touch(
-        {.begin = begin,
-         .end = end,
-         .impact_velocity = speed,
-         .peak_force = std::max(contact_force(*law_, depth), force),
-         .peak_energy = has_memory(*law_) ? stored_energy(*law_, depth, ContactState(true)) : contact_energy(*law_, depth)});
+  explicit Teller(const FleetClosing& closing) : model_(closing.model), observer_(closing.observer) {}
+  void touch(int contact, double begin, double end, double speed, double depth, double force) override {
+    const auto c = static_cast<std::size_t>(contact);
+    const ContactLaw& law = model_->contact(c);
+    const Touch touch{
+        .begin = begin,
+        .end = end,
+        .impact_velocity = speed,
+        .peak_force = std::max(contact_force(law, depth), force),
+        .peak_energy = has_memory(law) ? stored_energy(law, depth, ContactState(true)) : contact_energy(law, depth)};
+    if (model_->contacts() == 1) {
+      observer_->touch(touch);
+    } else if (model_->device().contacts[c].connects) {
+      touches_.take(touch);
+    }
   }
+  void closes(double time, double speed) override { tell(touches_.close(time, speed)); }
+  void opens(double time) override { touches_.open(time); }
   void rebound(double begin, double end, double height) override { observer_->rebound(begin, end, height); }
 
+  /// The end of a lane that was followed.
+  [[nodiscard]] FleetEnd end(const LaneClosing& lane) {
+    tell(touches_.finish());
+    std::array<ForceOutcome, fleet::most_contacts> forces;
+    for (std::size_t c = 0; c < model_->contacts(); ++c) {
+      const double least = lane.least_depth[c];
+      forces[c] = {lane.steady_from[c], std::isnan(least) ? least : contact_force(model_->contact(c), least)};
+    }
+    const auto [steady, least] = force_of_connection(model_->device(), {forces.data(), model_->contacts()});
+    return {.followed = true,
+            .time = lane.end,
+            .steady_force_time = steady,
+            .least_force_after_touch = least,
+            .first_touch = touches_.first_touch(),
+            .first_touch_velocity = touches_.impact_velocity()};
+  }
+
  private:
-  const ContactLaw* law_;
+  void tell(const std::optional<Touch>& touch) {
+    if (touch) observer_->touch(*touch);
+  }
+
+  const Switch* model_;
   LandingObserver* observer_;
+  ConnectionTouches touches_;
 };
+
+/// Whether a switch of several contacts rests on one of them, as a run begins.
+bool rests_on_contact(const Switch& model, const Eigen::VectorXd& rest) {
+  for (std::size_t c = 1; c < model.contacts(); ++c)
+    if (model.contact_deflection(rest.data(), c) > model.contact_gap(c)) return true;
+  return false;
+}
 
 /// Whether the factor of a dispersion force changes, whose work is another's than that of a charge.
 bool drives_dispersion(const FleetClosing& c) {
@@ -395,7 +446,10 @@ std::string why_not_in_lanes(const Switch& model) {
   if (std::ranges::any_of(device.electrodes, [](const Electrode& e) { return e.dielectric.has_value(); }))
     return "a dielectric on an electrode";
   if (!lane_dispersion(device.dispersion)) return "a dispersion force between gold";
-  if (!lane_contact(model)) return "a contact other than linear, hysteretic or asperity-uniform at the contact point";
+  if (!knows_contacts(model)) return "a contact other than linear, hysteretic or asperity-uniform at the contact point";
+  if (model.contacts() > fleet::most_contacts) return fmt::format("more than {} contacts", fleet::most_contacts);
+  // That is located on the motion of a single closing.
+  if (device.electrical.is_asked()) return "a key that says when the connection is electrically closed";
   if (!lane_film(device.gas))
     return model.film_states() > 0 ? "a compressible gas film" : fmt::format("the gas film {}", name_of(*device.gas));
   for (const Electrode& e : device.electrodes) {
@@ -417,7 +471,7 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
   for (std::size_t i = 0; i < closings.size(); ++i) {
     if (!why_not_in_lanes(*closings[i].model).empty() || !drives.go_in_lanes(closings[i].drives)) continue;
     const std::optional<Eigen::VectorXd> rest = closings[i].model->open_equilibrium(values_before(closings[i].drives));
-    if (!rest) continue;
+    if (!rest || rests_on_contact(*closings[i].model, *rest)) continue;
     if (closings[i].measures_drive_energy && drives_dispersion(closings[i])) continue;
     const LaneLayout own = layout_of(*closings[i].model, closings[i].measures_drive_energy);
     if (!layout) layout = own;
@@ -441,8 +495,8 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
             .after_contact = c.after_contact,
             .no_end_before = c.no_end_before,
             .no_contact_before = c.no_contact_before,
-            .steady_depth = steady_depth(c),
             .observer = &tellers.back()};
+    for (std::size_t k = 0; k < c.model->contacts(); ++k) lane.steady_depth[k] = steady_depth(c, k);
     std::copy(rests[n].begin(), rests[n].end(), lane.start);
     for (std::size_t k = 0; k < c.drives.size(); ++k) {
       const std::vector<LanePiece>& own = drives.of(c.drives[k], c.model->basis().angular_frequencies().maxCoeff());
@@ -455,12 +509,10 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
   for (std::size_t n = 0; n < places.size(); ++n) {
     const LaneClosing& lane = followed[n];
     const FleetClosing& c = closings[places[n]];
-    ends[places[n]] = {.followed = lane.followed,
-                       .time = lane.end,
-                       .steady_force_time = lane.steady_from,
-                       .least_force_after_touch =
-                           std::isnan(lane.least_depth) ? lane.least_depth : contact_force(c.model->contact(), lane.least_depth)};
-    if (c.measures_drive_energy && lane.followed) ends[places[n]].drive_energy = drive_energy(c, lane);
+    if (!lane.followed) continue;
+    FleetEnd& end = ends[places[n]];
+    end = tellers[n].end(lane);
+    if (c.measures_drive_energy) end.drive_energy = drive_energy(c, lane);
   }
   return ends;
 }

@@ -46,7 +46,8 @@ static_assert(is_complete<vector_instructions>());
 /// Who receives the landing of one lane.
 class LandingObserver {
  public:
-  /// A touch that is over, or at the end of the run the one that holds, whose end is NaN.
+  /// A touch that is over, or at the end of the run the one that holds, whose end is NaN. Of several contacts it is one of the
+  /// connection that they make (model/closing/connection.h), and is told when the next one begins, or at the end.
   virtual void touch(const Touch& touch) = 0;
   /// A separation after the first touch that is over, or under way at the end of the run: its end is NaN then [s], [s], [m].
   virtual void rebound(double begin, double end, double height) = 0;
@@ -81,6 +82,8 @@ struct FleetEnd {
          least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
   double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< EnergyBalance::source_work and Trajectory::layer_energy,
                                                                    ///< where it is measured [J]
+  /// Of several contacts, as in Trajectory [s], [m/s]
+  double first_touch = std::numeric_limits<double>::quiet_NaN(), first_touch_velocity = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Why closings of this switch are not followed in lanes; empty where they are.

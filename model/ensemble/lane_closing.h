@@ -7,6 +7,7 @@
 namespace softland::fleet {
 
 inline constexpr int most_modes = 8, most_points = 48, most_drives = 6, most_segments = most_points;
+inline constexpr int most_contacts = 4;
 inline constexpr int usual_modes = 4;  ///< of the laws of UsualLaws
 
 enum class LaneFringing { none, linear, meijs_fokkema };
@@ -29,6 +30,16 @@ struct PointStretch {
   [[nodiscard]] bool operator==(const PointStretch&) const = default;
 };
 
+/// Of a contact, what the lanes of a run have in common.
+struct LaneContactKind {
+  LaneContact law = LaneContact::asperity_uniform;
+  bool damped = false;
+  bool remembers = false;  ///< it has one stiffness of loading and another of unloading
+  bool near = true;        ///< on the side of the electrode: else it is a back stop
+  bool connects = true;    ///< whether it is one of several that make the connection
+  [[nodiscard]] bool operator==(const LaneContactKind&) const = default;
+};
+
 /// What the lanes of a run have in common.
 struct LaneLayout {
   bool usual = true;  ///< for UsualLaws: segments follow one another; else they are pads, which may lie over the same points
@@ -38,9 +49,9 @@ struct LaneLayout {
   LaneFilm film = LaneFilm::none;
   bool far_film = false;
   LaneDispersion dispersion = LaneDispersion::none;
-  LaneContact contact = LaneContact::asperity_uniform;
-  bool damped_contact = false;
-  bool remembers = false;      // a contact of stiffnesses of loading and of unloading
+  int contacts = 1;  ///< UsualLaws have one
+  LaneContactKind contact[most_contacts];
+  bool needs_all = true;  ///< of several contacts, whether the connection is closed while all that make it are; else while any is
   bool measures_work = false;  ///< of the drives; not by UsualLaws
   Segment segment[most_segments];
   int stretches = 1;  ///< one unless the size changes along the structure; a width that changes all along has one per point
@@ -48,11 +59,21 @@ struct LaneLayout {
   [[nodiscard]] bool operator==(const LaneLayout&) const = default;
 };
 
+/// One contact as numbers.
+struct LaneContactNumbers {
+  double plane = 0;                 // rest distance of its place to its plane [m]
+  double shape[most_modes] = {};    // modes at its place, positive towards its plane [kg^(-1/2)]
+  double strength = 0, height = 0;  // of its law; linear: its stiffness [N/m]
+  double damping = 0;               // [s/m]
+  double unloading_stiffness = 0;   // of a law with a memory, whose other is `strength` [N/m]
+  double negligible_depth = 0;      // [m]
+};
+
 /// One switch as numbers. Modes that it does not have stand still.
 struct LaneSwitch {
   int modes = 0;
-  double open = 0, plane = 0, floor = 0;                                 // the largest rest gap, the contact's, the least [m]
-  double omega[most_modes] = {}, at_contact[most_modes] = {};            // [rad/s], [kg^(-1/2)]
+  double open = 0, floor = 0;                                            // the largest rest gap and the least gap [m]
+  double omega[most_modes] = {};                                         // [rad/s]
   double piezo[most_modes] = {}, friction[most_modes] = {};              // [N kg^(-1/2) / V], [1/s]
   double shape[most_points][most_modes] = {}, weight[most_points] = {};  // [kg^(-1/2)], [m]
   double rest_gap[most_points] = {};                                     // [m]
@@ -68,17 +89,19 @@ struct LaneSwitch {
   double hamaker_constant = 0, equilibrium_distance = 0, crossover = 0;  // [J], [m], [m]
   double tension = 0;                                                    // of mid-plane stretching [N/m]
   double slopes[most_modes][most_modes] = {};                            // and its matrix [1/(kg m)]
-  double strength = 0, height = 0;                                       // of the contact law; linear: its stiffness [N/m]
-  double contact_damping = 0;                                            // [s/m]
-  double unloading_stiffness = 0;  // of a contact with a memory, whose other is `strength` [N/m]
-  double negligible_depth = 0;     // [m]
+  LaneContactNumbers contact[most_contacts];
 };
 
 /// Where a lane tells what it sees.
 class LaneObserver {
  public:
-  /// [s], [s], [m/s], [m]; the largest force [N] of a damped contact
-  virtual void touch(double begin, double end, double speed, double depth, double force) = 0;
+  /// A touch of one contact [s], [s], [m/s], [m]; the largest force [N] of a damped one
+  virtual void touch(int contact, double begin, double end, double speed, double depth, double force) = 0;
+  /// The connection of several contacts closes, at the speed of the contact that closes it [s], [m/s]
+  virtual void closes(double time, double speed) = 0;
+  /// It opens [s].
+  virtual void opens(double time) = 0;
+  /// Of the contact or of the connection of several [s], [s], [m]
   virtual void rebound(double begin, double end, double height) = 0;
 
  protected:
@@ -110,11 +133,12 @@ struct LaneClosing {
   int piece_count[most_drives] = {};
   double gain[most_drives] = {};  // of what the pieces say
   double duration = 0, after_contact = 0, no_end_before = 0, no_contact_before = 0;
-  double steady_depth = 0;  // that carries the steady force; infinite: none was asked for [m]
+  double steady_depth[most_contacts] = {};  // that carries the steady force; infinite: none was asked for [m]
   LaneObserver* observer = nullptr;
   bool followed = false;
   double end = 0;
-  double steady_from = 0, least_depth = 0;  // NaN where nothing touched, or it is not steady at the end [s], [m]
+  /// Of each contact, NaN where it has not touched, or is not steady at the end [s], [m]
+  double steady_from[most_contacts] = {}, least_depth[most_contacts] = {};
 };
 
 using LaneRunner = void (*)(const LaneLayout& layout, LaneClosing* closings, std::size_t count);

@@ -3,6 +3,9 @@
 // The lanes are std::experimental::simd, and the laws of a closing are those that one closing has too, over lanes of parameters.
 // Everything here depends on the type of the lanes or lies in their class, so that its code has names of its own.
 //
+// What is inlined by order, or never, is so because the compiler fuses products and sums as their neighbours have it: the last
+// bits of a closing do not hang on how many callers a function has.
+//
 // Width matters: with two registers to a lane GCC spills and is several times slower; so does a law that is not inlined, which
 // keeps the sums over points in memory.
 #pragma once
@@ -20,7 +23,8 @@
 
 namespace softland::fleet {
 
-template <class V, class Laws>
+/// Of switches with up to `room` contacts. Where that is one, everything that several need is left out when this is compiled.
+template <class V, class Laws, int room = 1>
 class Lanes {
   using M = typename V::mask_type;
   static constexpr std::size_t width = V::size();
@@ -30,11 +34,16 @@ class Lanes {
   static constexpr double infinite = std::numeric_limits<double>::infinity();
   static constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
+  static constexpr bool has_several = room > 1;
+
   using Pair = DormandPrince;
+  using Contact = typename Laws::Contact;
 
  public:
   Lanes(const LaneLayout& layout, LaneClosing* closings, std::size_t count)
-      : layout_(layout), modes(Laws::modes(layout)), laws_(layout_), closings_(closings), count_(count) {}
+      : layout_(layout), modes(Laws::modes(layout)), laws_(layout_), closings_(closings), count_(count) {
+    for_contacts([&](Number c) { connecting_ += layout_.contact[c].connects; });
+  }
 
   void run() {
     for (std::size_t l = 0; l < width; ++l) fill(l);
@@ -42,6 +51,40 @@ class Lanes {
   }
 
  private:
+  // The number of a contact; where there is but one, it is a constant.
+  using Number = std::conditional_t<has_several, int, std::integral_constant<int, 0>>;
+
+  // Calls f(c) for every contact.
+  template <class F>
+  [[gnu::always_inline]] void for_contacts(F&& f) const {
+    if constexpr (has_several) {
+      for (int c = 0; c < layout_.contacts; ++c) f(c);
+    } else {
+      f(Number());
+    }
+  }
+
+  // What a lane knows of a contact.
+  struct Followed {
+    bool touched = false, touching = false;
+    double begin = 0, left = 0, speed = 0;  // of the touch: begin, end [s], speed [m/s]
+    double extreme = 0;                     // deepest or highest since the last event [m]
+    double hardest = 0;                     // force of a damped contact since then [N]
+    // A contact with a memory: see model/closing/contact_phase.h.
+    bool unloading = false, in_dent = false;
+    bool to_turn = false;                   // it aims at its deepest point
+    double level = 0;                       // where another event is that it aims at [m]
+    double low = 0, high = 0, deepest = 0;  // edges of its phase, and the deepest place of this touch [m]
+    double steady = nothing;                // since when it has been at the steady depth [s]
+    double least = infinite;                // depth after the first maximum [m]
+  };
+  // And of the connection of several.
+  struct Connected {
+    int touching = 0;  // of the contacts that make it
+    bool closed = false, was_closed = false;
+    double left = 0, highest = 0;  // since when it has been open [s], and the largest separation since then [m]
+  };
+
   // What a lane is about.
   struct Lane {
     LaneClosing* closing = nullptr;  // null: idle
@@ -53,18 +96,11 @@ class Lanes {
     int corrections = 0;            // of a target on the plane
     double stop = 0;                // the next breakpoint, or the end of the window [s]
     double longest = 0;             // that resolves the drives [s]
-    bool touched = false, touching = false;
-    double begin = 0, left = 0, speed = 0;  // of the touch: begin, end [s], speed [m/s]
-    double extreme = 0;                     // deepest or highest since the last event [m]
-    double hardest = 0;                     // force of a damped contact since then [N]
-    double gain[most_drives] = {};          // factors of its drives
-    // A contact with a memory: see model/closing/contact_phase.h.
-    bool unloading = false, in_dent = false;
-    bool to_turn = false;                   // it aims at its deepest point
-    double level = 0;                       // where another event is that it aims at [m]
-    double low = 0, high = 0, deepest = 0;  // edges of its phase, and the deepest place of this touch [m]
-    double steady = nothing;                // since when it has been at the steady depth [s]
-    double least = infinite;                // depth after the first maximum [m]
+    double gain[most_drives] = {};  // factors of its drives
+    bool landed = false;            // a contact of the near side has touched
+    int at = 0;                     // the contact whose event it aims at
+    Followed contact[room];
+    Connected connected;
   };
 
   // --- the equations -----------------------------------------------------------------------------------------------------------
@@ -132,28 +168,34 @@ class Lanes {
     }
     laws_.add(q, v, volts_, sum, least);
     if (layout_.measures_work) power_ = laws_.power() + piezo_power(v);
-    if (any_of(touching_)) {
-      V d = -plane_;
-      for (int i = 0; i < modes; ++i) d += at_contact_[i] * q[i];
-      V push = laws_.push(d, [&] {
-        V rate = 0;
-        for (int i = 0; i < modes; ++i) rate += at_contact_[i] * v[i];
-        return rate;
-      });
-      if constexpr (Laws::has_memory) {
-        if (layout_.remembers) push = remembered(push, d);
+    for_contacts([&](Number c) __attribute__((always_inline)) {
+      if (any_of(touching_[c])) {
+        V d = -plane_[c];
+        for (int i = 0; i < modes; ++i) d += at_contact_[c][i] * q[i];
+        V push = contact_[c].push(d, [&] {
+          V rate = 0;
+          for (int i = 0; i < modes; ++i) rate += at_contact_[c][i] * v[i];
+          return rate;
+        });
+        if constexpr (Contact::has_memory) {
+          if (remembers(c)) push = remembered(c, push, d);
+        }
+        where(!touching_[c], push) = V(0);
+        for (int i = 0; i < modes; ++i) sum[i] -= push * at_contact_[c][i];
       }
-      where(!touching_, push) = V(0);
-      for (int i = 0; i < modes; ++i) sum[i] -= push * at_contact_[i];
-    }
+    });
     for (int i = 0; i < modes; ++i) a[i] = sum[i];
   }
 
   // The force of a contact with a memory [N]; `loading`: its force where it is loaded.
-  [[nodiscard]] V remembered(V loading, V depth) const {
-    where(unloading_, loading) = laws_.pull_back(depth - shift_);
-    where(in_dent_, loading) = V(0);
+  [[nodiscard]] V remembered(Number c, V loading, V depth) const {
+    where(unloading_[c], loading) = contact_[c].pull_back(depth - shift_[c]);
+    where(in_dent_[c], loading) = V(0);
     return loading;
+  }
+  [[nodiscard]] bool remembers([[maybe_unused]] Number c) const {
+    if constexpr (Contact::has_memory) return layout_.contact[c].remembers;
+    return false;
   }
 
   // --- a step ------------------------------------------------------------------------------------------------------------------
@@ -238,28 +280,35 @@ class Lanes {
       squares += q * q + v * v;
     }
     const V error = h * h * squares * per_unknown_;
-    V position = 0, speed = 0, acceleration = 0;
-    for (int i = 0; i < modes; ++i) {
-      position += at_contact_[i] * trial_q_[i], speed += at_contact_[i] * trial_v_[i];
-      acceleration += at_contact_[i] * trial_a_[i];
-    }
-    knot_p_[0] = position_, knot_s_[0] = speed_, knot_c_[0] = acceleration_;
-    knot_p_[pieces] = position, knot_s_[pieces] = speed, knot_c_[pieces] = acceleration;
-    follow(h);
+    suspect_ = M(false);
+    for_contacts([&](Number c) __attribute__((always_inline)) {
+      V position = 0, speed = 0, acceleration = 0;
+      for (int i = 0; i < modes; ++i) {
+        position += at_contact_[c][i] * trial_q_[i], speed += at_contact_[c][i] * trial_v_[i];
+        acceleration += at_contact_[c][i] * trial_a_[i];
+      }
+      knot_p_[c][0] = position_[c], knot_s_[c][0] = speed_[c], knot_c_[c][0] = acceleration_[c];
+      knot_p_[c][pieces] = position, knot_s_[c][pieces] = speed, knot_c_[c][pieces] = acceleration;
+      follow(c, h);
+    });
     settle(h, end, error);
   }
 
-  // --- the contact point within a step
+  // --- a contact point within a step
   // -------------------------------------------------------------------------------------------
 
-  // Knots of the contact point between the ends of the step, as integrators/modal_motion.h; lanes whose point may pass the plane,
+  // Knots of a contact point between the ends of the step, as integrators/modal_motion.h; lanes whose point may pass the plane,
   // or turns.
-  [[gnu::always_inline]] void follow(V h) {
+  [[gnu::always_inline]] void follow(Number at, V h) {
     constexpr double share = 1.0 / pieces;
+    V* const knot_p = knot_p_[at];
+    V* const knot_s = knot_s_[at];
+    V* const knot_c = knot_c_[at];
+    const V* const at_contact = at_contact_[at];
     V p[pieces + 1], s[pieces + 1], c[pieces + 1];
-    for (int k = 1; k <= pieces; ++k) p[k] = position_, s[k] = 0, c[k] = 0;
+    for (int k = 1; k <= pieces; ++k) p[k] = position_[at], s[k] = 0, c[k] = 0;
     for (int i = 0; i < modes; ++i) {
-      const V pull = at_contact_[i] * a_[i] * inverse_[i] * inverse_[i], push = at_contact_[i] * v_[i] * inverse_[i];
+      const V pull = at_contact[i] * a_[i] * inverse_[i] * inverse_[i], push = at_contact[i] * v_[i] * inverse_[i];
       const Turn piece = turn(omega_[i] * (h * share));
       Turn turned = piece;
       for (int k = 1;; ++k) {
@@ -270,50 +319,50 @@ class Lanes {
         turned = add(turned, piece);
       }
     }
-    const V off_p = knot_p_[pieces] - p[pieces], off_s = h * (knot_s_[pieces] - s[pieces]);
-    const V off_c = h * h * (knot_c_[pieces] - c[pieces]);
+    const V off_p = knot_p[pieces] - p[pieces], off_s = h * (knot_s[pieces] - s[pieces]);
+    const V off_c = h * h * (knot_c[pieces] - c[pieces]);
     const V f0 = 10.0 * off_p - 4.0 * off_s + 0.5 * off_c, f1 = -15.0 * off_p + 7.0 * off_s - off_c;
     const V f2 = 6.0 * off_p - 3.0 * off_s + 0.5 * off_c;
     const V per = 1.0 / max(h, V(std::numeric_limits<double>::min()));
     for (int k = 1; k < pieces; ++k) {
       const double x = k * share;
-      knot_p_[k] = p[k] + x * x * x * (f0 + x * (f1 + x * f2));
-      knot_s_[k] = s[k] + per * (x * x * (3.0 * f0 + x * (4.0 * f1 + x * 5.0 * f2)));
-      knot_c_[k] = c[k] + per * per * (x * (6.0 * f0 + x * (12.0 * f1 + x * 20.0 * f2)));
+      knot_p[k] = p[k] + x * x * x * (f0 + x * (f1 + x * f2));
+      knot_s[k] = s[k] + per * (x * x * (3.0 * f0 + x * (4.0 * f1 + x * 5.0 * f2)));
+      knot_c[k] = c[k] + per * per * (x * (6.0 * f0 + x * (12.0 * f1 + x * 20.0 * f2)));
     }
     M suspect(false), turns(false);
     const V g = h * share;
     for (int k = 0; k < pieces; ++k) {
-      const auto [least, most] = reach(k, g);
-      suspect = suspect || (!touching_ && most > plane_) || (touching_ && least < plane_);
-      turns = turns || (knot_s_[k] * knot_s_[k + 1] < V(0));
+      const auto [nearest, furthest] = reach(at, k, g);
+      suspect = suspect || (!touching_[at] && furthest > plane_[at]) || (touching_[at] && nearest < plane_[at]);
+      turns = turns || (knot_s[k] * knot_s[k + 1] < V(0));
     }
-    if constexpr (Laws::has_memory) {
-      if (layout_.remembers) suspect = leaves_phase(h);
+    if constexpr (Contact::has_memory) {
+      if (remembers(at)) suspect = leaves_phase(at, h);
     }
-    suspect_ = suspect;
-    turns_ = turns;
+    suspect_ = suspect_ || suspect;
+    turns_[at] = turns;
   }
 
   struct Reach {
     V least, most;
   };
   // Places that the curve of a piece stays between: its control points in Bernstein form; `g`: what the piece lasts.
-  [[nodiscard]] [[gnu::always_inline]] Reach reach(int k, V g) const {
-    const V b0 = knot_p_[k], b5 = knot_p_[k + 1], s0 = g * knot_s_[k], s1 = g * knot_s_[k + 1];
-    const V c0 = g * g * knot_c_[k], c1 = g * g * knot_c_[k + 1];
+  [[nodiscard]] [[gnu::always_inline]] Reach reach(Number c, int k, V g) const {
+    const V b0 = knot_p_[c][k], b5 = knot_p_[c][k + 1], s0 = g * knot_s_[c][k], s1 = g * knot_s_[c][k + 1];
+    const V c0 = g * g * knot_c_[c][k], c1 = g * g * knot_c_[c][k + 1];
     const V b1 = b0 + 0.2 * s0, b2 = b0 + 0.4 * s0 + 0.05 * c0, b4 = b5 - 0.2 * s1, b3 = b5 - 0.4 * s1 + 0.05 * c1;
     return {.least = min(min(min(b0, b1), min(b2, b3)), min(b4, b5)), .most = max(max(max(b0, b1), max(b2, b3)), max(b4, b5))};
   }
 
   // Lanes whose point may leave the phase of a contact with a memory; loading ends where it turns.
-  [[nodiscard]] M leaves_phase(V h) const {
+  [[nodiscard]] M leaves_phase(Number c, V h) const {
     constexpr double share = 1.0 / pieces;
     const V g = h * share;
     M suspect(false);
     for (int k = 0; k < pieces; ++k) {
-      const auto [least, most] = reach(k, g);
-      suspect = suspect || most > high_ || least < low_ || (loading_ && knot_s_[k + 1] < V(0));
+      const auto [nearest, furthest] = reach(c, k, g);
+      suspect = suspect || furthest > high_[c] || nearest < low_[c] || (loading_[c] && knot_s_[c][k + 1] < V(0));
     }
     return suspect;
   }
@@ -344,40 +393,43 @@ class Lanes {
     [[nodiscard]] double turn() const {
       return zero([this](double s) { return speed(s); }, [this](double s) { return bend(s); }, 0, 1);
     }
+    [[nodiscard]] double turn_between(double low, double high) const {
+      return zero([this](double s) { return speed(s); }, [this](double s) { return bend(s); }, low, high);
+    }
     [[nodiscard]] double meets(double level, double low, double high) const {
       return zero([&](double s) { return position(s) - level; }, [this](double s) { return speed(s); }, low, high);
     }
   };
 
-  [[nodiscard]] Curve curve(int k, std::size_t l, double length) const {
+  [[nodiscard]] [[gnu::always_inline]] Curve curve(Number c, int k, std::size_t l, double length) const {
     const double h = length / pieces;
-    const double p0 = knot_p_[k][l], p1 = knot_p_[k + 1][l], d = p1 - p0;
-    const double v0 = knot_s_[k][l] * h, v1 = knot_s_[k + 1][l] * h;
-    const double a0 = knot_c_[k][l] * h * h, a1 = knot_c_[k + 1][l] * h * h;
+    const double p0 = knot_p_[c][k][l], p1 = knot_p_[c][k + 1][l], d = p1 - p0;
+    const double v0 = knot_s_[c][k][l] * h, v1 = knot_s_[c][k + 1][l] * h;
+    const double a0 = knot_c_[c][k][l] * h * h, a1 = knot_c_[c][k + 1][l] * h * h;
     return {{p0, v0, a0 / 2, 10 * d - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1, -15 * d + 8 * v0 + 7 * v1 + 1.5 * a0 - a1,
              6 * d - 3 * (v0 + v1) - 0.5 * (a0 - a1)}};
   }
 
   // Share of the step at which a lane leaves its side of the plane; above 1 where it does not.
-  [[nodiscard]] double crossing(std::size_t l, double length) const {
-    return crossing(l, length, lane_[l].touching ? 1 : -1, plane_[l]);
+  [[nodiscard]] double crossing(Number c, std::size_t l, double length) const {
+    return crossing(c, l, length, lane_[l].contact[c].touching ? 1 : -1, plane_[c][l]);
   }
   // The same of a level, inside of which is side * (position - level) > 0.
-  [[nodiscard]] double crossing(std::size_t l, double length, double side, double level) const {
-    bool inside = side * (position_[l] - level) > 0;
+  [[nodiscard]] double crossing(Number c, std::size_t l, double length, double side, double level) const {
+    bool inside = side * (position_[c][l] - level) > 0;
     for (int k = 0; k < pieces; ++k) {
-      const double p1 = knot_p_[k + 1][l], v0 = knot_s_[k][l], v1 = knot_s_[k + 1][l];
+      const double p1 = knot_p_[c][k + 1][l], v0 = knot_s_[c][k][l], v1 = knot_s_[c][k + 1][l];
       const bool ends_inside = side * (p1 - level) >= 0;
       if (side * v0 < 0 && side * v1 > 0 && inside) {  // dips
-        const Curve c = curve(k, l, length);
-        const double turn = c.turn();
-        if (side * (c.position(turn) - level) < 0) return (k + c.meets(level, 0, turn)) / pieces;
+        const Curve path = curve(c, k, l, length);
+        const double turn = path.turn();
+        if (side * (path.position(turn) - level) < 0) return (k + path.meets(level, 0, turn)) / pieces;
       } else if (!ends_inside) {
-        const Curve c = curve(k, l, length);
-        if (inside) return (k + c.meets(level, 0, 1)) / pieces;
+        const Curve path = curve(c, k, l, length);
+        if (inside) return (k + path.meets(level, 0, 1)) / pieces;
         if (side * v0 > 0 && side * v1 < 0) {  // begins on the plane, goes in and comes back
-          const double turn = c.turn();
-          if (side * (c.position(turn) - level) > 0) return (k + c.meets(level, turn, 1)) / pieces;
+          const double turn = path.turn();
+          if (side * (path.position(turn) - level) > 0) return (k + path.meets(level, turn, 1)) / pieces;
         }
         return (k + 1.0) / pieces;
       }
@@ -387,73 +439,153 @@ class Lanes {
   }
 
   // Share of the step at which a lane leaves its phase of a contact with a memory, and where to; above 1 where it does not.
-  [[nodiscard]] double phase_end(std::size_t l, double length) {
-    Lane& lane = lane_[l];
-    const double by_low = lane.low > -infinite ? crossing(l, length, 1, lane.low) : 2;
-    const double by_high = lane.high < infinite ? crossing(l, length, -1, lane.high) : 2;
-    const double by_turn = loading_[l] ? turning(l, length) : 2;
-    lane.to_turn = by_turn < by_low && by_turn < by_high;
-    lane.level = by_low <= by_high ? lane.low : lane.high;
+  [[nodiscard]] double phase_end(Number c, std::size_t l, double length) {
+    Followed& one = lane_[l].contact[c];
+    const double by_low = one.low > -infinite ? crossing(c, l, length, 1, one.low) : 2;
+    const double by_high = one.high < infinite ? crossing(c, l, length, -1, one.high) : 2;
+    const double by_turn = loading_[c][l] ? turning(c, l, length) : 2;
+    one.to_turn = by_turn < by_low && by_turn < by_high;
+    one.level = by_low <= by_high ? one.low : one.high;
     const double edge = by_low < by_high ? by_low : by_high;
     return edge < by_turn ? edge : by_turn;
   }
   // Share of the step at which a lane turns back; above 1 where it does not.
-  [[nodiscard]] double turning(std::size_t l, double length) const {
+  [[nodiscard]] double turning(Number c, std::size_t l, double length) const {
     for (int k = 0; k < pieces; ++k) {
-      if (!(knot_s_[k + 1][l] < 0)) continue;
-      return knot_s_[k][l] > 0 ? (k + curve(k, l, length).turn()) / pieces : static_cast<double>(k) / pieces;
+      if (!(knot_s_[c][k + 1][l] < 0)) continue;
+      return knot_s_[c][k][l] > 0 ? (k + curve(c, k, l, length).turn()) / pieces : static_cast<double>(k) / pieces;
     }
     return 2;
   }
 
   // The deepest, or highest, place of a lane in the step.
-  void deepen(std::size_t l, double length) {
+  [[gnu::noinline]] void deepen(Number c, std::size_t l, double length) {
     Lane& lane = lane_[l];
-    const double side = lane.touching ? 1 : -1;
+    Followed& one = lane.contact[c];
+    const double side = one.touching ? 1 : -1;
     for (int k = 0; k < pieces; ++k) {
-      const double begin = side * knot_s_[k][l], end = side * knot_s_[k + 1][l];
+      const double begin = side * knot_s_[c][k][l], end = side * knot_s_[c][k + 1][l];
       if (begin > 0 && end < 0) {
-        const Curve c = curve(k, l, length);
-        const double far = side * (c.position(c.turn()) - plane_[l]);
-        if (far > lane.extreme) lane.extreme = far;
-      } else if (lane.touching && begin < 0 && end > 0) {
-        const Curve c = curve(k, l, length);
-        const double depth = c.position(c.turn()) - plane_[l], carried = depth_of_force(l, depth);
-        if (carried < lane.least) lane.least = carried;
-        if (depth < steady_[l] - plane_[l]) rise(l, length);
+        const Curve path = curve(c, k, l, length);
+        const double far = side * (path.position(path.turn()) - plane_[c][l]);
+        if (far > one.extreme) one.extreme = far;
+        if constexpr (has_several) {
+          if (!one.touching && layout_.contact[c].connects && layout_.needs_all) rise_to(lane, far);
+        }
+      } else if (one.touching && begin < 0 && end > 0) {
+        const Curve path = curve(c, k, l, length);
+        const double depth = path.position(path.turn()) - plane_[c][l], carried = depth_of_force(c, l, depth);
+        if (carried < one.least) one.least = carried;
+        if (depth < steady_[c][l] - plane_[c][l]) rise(c, l, length);
       }
     }
   }
 
   // The depth at which a contact that is loaded carries what this one carries at its depth.
-  [[nodiscard]] double depth_of_force(std::size_t l, double depth) const {
-    if constexpr (Laws::has_memory) {
-      const Lane& lane = lane_[l];
-      if (!layout_.remembers || !lane.touching) return depth;
-      if (lane.in_dent) return 0;
-      if (lane.unloading) {
-        const LaneSwitch& s = *lane.closing->numbers;
-        return (depth - shift_[l]) * (s.unloading_stiffness / s.strength);
+  [[nodiscard]] double depth_of_force([[maybe_unused]] Number c, [[maybe_unused]] std::size_t l, double depth) const {
+    if constexpr (Contact::has_memory) {
+      const Followed& one = lane_[l].contact[c];
+      if (!remembers(c) || !one.touching) return depth;
+      if (one.in_dent) return 0;
+      if (one.unloading) {
+        const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
+        return (depth - shift_[c][l]) * (numbers.unloading_stiffness / numbers.strength);
       }
     }
     return depth;
   }
 
   // Where a lane has come to the steady depth in the step that ends here, the last time.
-  void rise(std::size_t l, double length) {
-    const double level = steady_[l];
-    const auto reach = [&](int k, double share) { lane_[l].steady = (t_[l] - length) + length * ((k + share) / pieces); };
+  [[gnu::noinline]] void rise(Number c, std::size_t l, double length) {
+    const double level = steady_[c][l];
+    const auto reach = [&](int k, double share) {
+      lane_[l].contact[c].steady = (t_[l] - length) + length * ((k + share) / pieces);
+    };
     for (int k = 0; k < pieces; ++k) {
-      const double p0 = knot_p_[k][l], p1 = knot_p_[k + 1][l];
+      const double p0 = knot_p_[c][k][l], p1 = knot_p_[c][k + 1][l];
       if (!(p1 >= level)) continue;
       if (p0 < level) {
-        reach(k, curve(k, l, length).meets(level, 0, 1));
-      } else if (knot_s_[k][l] < 0 && knot_s_[k + 1][l] > 0) {
-        const Curve c = curve(k, l, length);
-        const double turn = c.turn();
-        if (c.position(turn) < level) reach(k, c.meets(level, turn, 1));
+        reach(k, curve(c, k, l, length).meets(level, 0, 1));
+      } else if (knot_s_[c][k][l] < 0 && knot_s_[c][k + 1][l] > 0) {
+        const Curve path = curve(c, k, l, length);
+        const double turn = path.turn();
+        if (path.position(turn) < level) reach(k, path.meets(level, turn, 1));
       }
     }
+  }
+
+  // --- the connection of several contacts: see model/closing/connection.h
+  // ------------------------------------------------------------------------------------------------
+
+  static void rise_to(Lane& lane, double separation) {
+    if (separation > lane.connected.highest) lane.connected.highest = separation;
+  }
+
+  // The highest place in the step of an open connection that any contact closes: of the one that is nearest to its plane.
+  void climb(std::size_t l, double length) {
+    Lane& lane = lane_[l];
+    for (int k = 0; k < pieces; ++k) {
+      const int first = nearest_contact(k, l), last = nearest_contact(k + 1, l);
+      if (!(knot_s_[first][k][l] < 0 && knot_s_[last][k + 1][l] > 0)) continue;
+      const Curve path = curve(first, k, l, length);
+      double at = 1;
+      if (first != last) {
+        const Curve other = curve(last, k, l, length);
+        Curve ahead = path;
+        for (int i = 0; i < 6; ++i) ahead.c[i] -= other.c[i];
+        at = ahead.meets(plane_[first][l] - plane_[last][l], 0, 1);
+        if (other.speed(at) < 0) {  // still goes up where it takes over
+          rise_to(lane, plane_[last][l] - other.position(other.turn_between(at, 1)));
+          continue;
+        }
+      }
+      if (path.speed(at) > 0) at = path.turn_between(0, at);
+      rise_to(lane, plane_[first][l] - path.position(at));
+    }
+  }
+
+  // Of the contacts that make the connection, the one with the smallest separation at a knot.
+  [[nodiscard]] int nearest_contact(int k, std::size_t l) const {
+    int best = -1;
+    double least = infinite;
+    for (int c = 0; c < layout_.contacts; ++c) {
+      const double separation = plane_[c][l] - knot_p_[c][k][l];
+      if (layout_.contact[c].connects && separation < least) best = c, least = separation;
+    }
+    return best;
+  }
+
+  // A contact that makes the connection touches, or leaves.
+  void connect(std::size_t l, bool touches, double speed) {
+    Lane& lane = lane_[l];
+    Connected& all = lane.connected;
+    all.touching += touches ? 1 : -1;
+    const bool closed = all.touching >= (layout_.needs_all ? connecting_ : 1);
+    if (closed == all.closed) return;
+    const double t = t_[l];
+    all.closed = closed;
+    if (closed) {
+      if (all.was_closed) tell_rebound(lane, all.left, t, all.highest);
+      all.was_closed = true;
+      lane.closing->observer->closes(t, speed < 0 ? -speed : speed);
+    } else {
+      all.left = t, all.highest = 0;
+      lane.closing->observer->opens(t);
+    }
+    apart_[l] = !closed && !layout_.needs_all;
+  }
+
+  // What is under way at the end of a run.
+  void finish_connection(std::size_t l) {
+    Lane& lane = lane_[l];
+    if (!lane.connected.was_closed || lane.connected.closed) return;
+    double now = layout_.needs_all ? -infinite : infinite;
+    for (int c = 0; c < layout_.contacts; ++c) {
+      const double separation = plane_[c][l] - position_[c][l];
+      if (layout_.contact[c].connects && (layout_.needs_all ? separation > now : separation < now)) now = separation;
+    }
+    rise_to(lane, now);
+    tell_rebound(lane, lane.connected.left, nothing, lane.connected.highest);
   }
 
   // --- what follows from a step
@@ -490,7 +622,10 @@ class Lanes {
     // Most lanes just go on; what is more than that is done lane by lane.
     const M plain = error <= V(1) && !special_ && !suspect_ && h < limit_ && end < until_ && smallest_ >= laws_.floor() &&
                     rounds_ < V(most_rounds);
-    const M rises = position_ < steady_ && knot_p_[pieces] >= steady_;
+    M rises[room];
+    for_contacts([&](Number c) __attribute__((always_inline)) {
+      rises[c] = position_[c] < steady_[c] && knot_p_[c][pieces] >= steady_[c];
+    });
     M taken = plain;
     if (!all_of(plain)) {
       for (std::size_t l = 0; l < width; ++l)
@@ -502,20 +637,28 @@ class Lanes {
       where(taken, v_[i]) = trial_v_[i];
       where(taken, a_[i]) = trial_a_[i];
     }
-    if constexpr (Laws::has_damped_contact) {
-      if (layout_.damped_contact && any_of(taken && touching_)) press(taken, h);
-    }
     if (layout_.measures_work) do_work(taken, h);
-    where(taken, position_) = knot_p_[pieces];
-    where(taken, speed_) = knot_s_[pieces];
-    where(taken, acceleration_) = knot_c_[pieces];
-    if (any_of(taken && turns_ && touched_)) {
-      for (std::size_t l = 0; l < width; ++l)
-        if (taken[l] && turns_[l] && touched_[l]) deepen(l, h[l]);
-    }
-    if (any_of(taken && rises)) {
-      for (std::size_t l = 0; l < width; ++l)
-        if (taken[l] && rises[l]) rise(l, h[l]);
+    for_contacts([&](Number c) __attribute__((always_inline)) {
+      if constexpr (Contact::has_damping) {
+        if (layout_.contact[c].damped && any_of(taken && touching_[c])) press(c, taken, h);
+      }
+      where(taken, position_[c]) = knot_p_[c][pieces];
+      where(taken, speed_[c]) = knot_s_[c][pieces];
+      where(taken, acceleration_[c]) = knot_c_[c][pieces];
+      if (any_of(taken && turns_[c] && touched_[c])) {
+        for (std::size_t l = 0; l < width; ++l)
+          if (taken[l] && turns_[c][l] && touched_[c][l]) deepen(c, l, h[l]);
+      }
+      if (any_of(taken && rises[c])) {
+        for (std::size_t l = 0; l < width; ++l)
+          if (taken[l] && rises[c][l]) rise(c, l, h[l]);
+      }
+    });
+    if constexpr (has_several) {
+      if (any_of(taken && apart_)) {
+        for (std::size_t l = 0; l < width; ++l)
+          if (taken[l] && apart_[l]) climb(l, h[l]);
+      }
     }
     where(taken, h_) = h * min(max(growth_, V(Pair::least_growth)), most_growth_);
     where(taken, most_growth_) = V(Pair::most_growth);
@@ -537,22 +680,24 @@ class Lanes {
 
   // The largest force of a damped contact in the step: at the top of the parabola through both ends and the middle, as
   // model/closing/touch_record.h.
-  void press(const M& taken, V h) {
+  void press(Number at, const M& taken, V h) {
     static_assert(pieces % 2 == 1);
     constexpr int half = pieces / 2;
     V depth = 0, speed = 0;
     for (std::size_t l = 0; l < width; ++l) {
-      const Curve c = curve(half, l, h[l]);
+      const Curve c = curve(at, half, l, h[l]);
       depth[l] = c.position(0.5), speed[l] = c.speed(0.5);
     }
     speed *= static_cast<double>(pieces) / max(h, V(std::numeric_limits<double>::min()));
-    const auto push = [&](V position, V rate) { return laws_.push(position - plane_, [&] { return rate; }); };
-    const V begin = push(position_, speed_), middle = push(depth, speed), end = push(knot_p_[pieces], knot_s_[pieces]);
+    const auto push = [&](V position, V rate) { return contact_[at].push(position - plane_[at], [&] { return rate; }); };
+    const V begin = push(position_[at], speed_[at]), middle = push(depth, speed);
+    const V end = push(knot_p_[at][pieces], knot_s_[at][pieces]);
     const V bend = 2.0 * middle - begin - end, rise = end - begin;
     V most_push = max(max(begin, middle), end);
     where(abs(rise) < 2.0 * bend, most_push) = middle + rise * rise / (8.0 * bend);
     for (std::size_t l = 0; l < width; ++l)
-      if (taken[l] && touching_[l] && most_push[l] > lane_[l].hardest) lane_[l].hardest = most_push[l];
+      if (taken[l] && touching_[at][l] && most_push[l] > lane_[l].contact[at].hardest)
+        lane_[l].contact[at].hardest = most_push[l];
   }
 
   // Whether a lane takes its step; where not, what it tries next.
@@ -562,7 +707,7 @@ class Lanes {
     if (rounds_[l] >= most_rounds) return give_up(l);
     if (starting_[l]) {
       for (int i = 0; i < modes; ++i) a_[i][l] = double(trial_a_[i][l]);
-      acceleration_[l] = double(knot_c_[pieces][l]);
+      for_contacts([&](Number c) { acceleration_[c][l] = double(knot_c_[c][pieces][l]); });
       if (layout_.measures_work) powers_[0][l] = double(powers_[6][l]);
       starting_[l] = special_[l] = false;
       set_step(l);
@@ -589,23 +734,34 @@ class Lanes {
     return true;
   }
 
-  // Share of the step at which something changes; above 1 where nothing does.
+  // Share of the step at which something changes, first of all at contact `at`; above 1 where nothing does.
   [[nodiscard]] double event(std::size_t l, double length) {
-    if constexpr (Laws::has_memory) {
-      if (layout_.remembers) return phase_end(l, length);
-    }
-    return crossing(l, length);
+    if constexpr (!has_several) return event(Number(), l, length);
+    double first = infinite;
+    for_contacts([&](Number c) {
+      if (const double at = event(c, l, length); at < first) first = at, lane_[l].at = c;
+    });
+    return first;
   }
-  // Where the event that a lane aims at is [m].
-  [[nodiscard]] double event_level(std::size_t l) const {
-    if constexpr (Laws::has_memory) {
-      if (layout_.remembers) return lane_[l].level;
+  [[nodiscard]] double event(Number c, std::size_t l, double length) {
+    if constexpr (Contact::has_memory) {
+      if (remembers(c)) return phase_end(c, l, length);
     }
-    return plane_[l];
+    return crossing(c, l, length);
+  }
+  // The contact whose event a lane aims at.
+  [[nodiscard]] Number event_contact([[maybe_unused]] std::size_t l) const {
+    if constexpr (has_several) return lane_[l].at;
+    return Number();
+  }
+  // Where that is [m].
+  [[nodiscard]] double event_level(std::size_t l) const {
+    const Number c = event_contact(l);
+    return remembers(c) ? lane_[l].contact[c].level : plane_[c][l];
   }
   [[nodiscard]] bool goes_to_turn(std::size_t l) const {
-    if constexpr (Laws::has_memory) return layout_.remembers && lane_[l].to_turn;
-    return false;
+    const Number c = event_contact(l);
+    return remembers(c) && lane_[l].contact[c].to_turn;
   }
 
   // Whether a step that was to end on the plane does: moves its end there where that is near, else the target.
@@ -614,7 +770,8 @@ class Lanes {
     constexpr int most_corrections = 8;
     Lane& lane = lane_[l];
     if (goes_to_turn(l)) return true;
-    const double off = event_level(l) - knot_p_[pieces][l], speed = knot_s_[pieces][l];
+    const Number at = event_contact(l);
+    const double off = event_level(l) - knot_p_[at][pieces][l], speed = knot_s_[at][pieces][l];
     double later = off / speed;
     const double turned = later * fastest_[l];
     if (turned < short_of_a_radian && turned > -short_of_a_radian) {
@@ -626,10 +783,11 @@ class Lanes {
         trial_a_[i][l] = a - later * square_[i][l] * v;  // what forces change in it is less
       }
       moved_[l] = later;
+      if constexpr (has_several) move_others(at, l);
       return true;
     }
     const double depth = off < 0 ? -off : off;
-    if (lane.corrections == most_corrections || depth <= lane.closing->numbers->negligible_depth) return true;
+    if (lane.corrections == most_corrections || depth <= lane.closing->numbers->contact[at].negligible_depth) return true;
     ++lane.corrections;
     const double target = target_[l] + later;
     if (!(target > t_[l])) return true;
@@ -639,6 +797,19 @@ class Lanes {
       aim(l, target);
     }
     return false;
+  }
+
+  // Where the other contacts of a lane are once the end of its step has been moved.
+  void move_others(int at, std::size_t l) {
+    for (int c = 0; c < layout_.contacts; ++c) {
+      if (c == at) continue;
+      double position = 0, speed = 0, acceleration = 0;
+      for (int i = 0; i < modes; ++i) {
+        const double shape = at_contact_[c][i][l];
+        position += shape * trial_q_[i][l], speed += shape * trial_v_[i][l], acceleration += shape * trial_a_[i][l];
+      }
+      knot_p_[c][pieces][l] = position, knot_s_[c][pieces][l] = speed, knot_c_[c][pieces][l] = acceleration;
+    }
   }
 
   // After a step that was taken and is more than that.
@@ -654,7 +825,7 @@ class Lanes {
     } else if (to_event_[l]) {
       t_[l] = double(t_[l]) + moved_[l];
       moved_[l] = 0;
-      if (!goes_to_turn(l)) position_[l] = event_level(l);
+      if (!goes_to_turn(l)) position_[event_contact(l)][l] = event_level(l);
       pass(l);
     }
     if (t_[l] >= until_[l]) {
@@ -670,84 +841,114 @@ class Lanes {
 
   // An event begins or ends a phase of a touch, or crosses the plane.
   void pass(std::size_t l) {
-    if constexpr (Laws::has_memory) {
-      if (layout_.remembers && pass_within_touch(l)) return go_on_after_event(l);
-    }
-    pass_plane(l);
-    if constexpr (Laws::has_memory) {
-      if (layout_.remembers) enter_phase(l, false, false);
+    const Number at = event_contact(l);
+    pass(at, l);
+    if constexpr (has_several) {
+      for (int c = 0; c < layout_.contacts; ++c)
+        if (c != at && is_beyond(c, l)) pass(c, l);
     }
     go_on_after_event(l);
   }
+  void pass(Number c, std::size_t l) {
+    if constexpr (Contact::has_memory) {
+      if (remembers(c) && pass_within_touch(c, l)) return;
+    }
+    pass_plane(c, l);
+    if constexpr (Contact::has_memory) {
+      if (remembers(c)) enter_phase(c, l, false, false);
+    }
+  }
+  // Whether another contact has left its phase at the same time, which the step has not looked for.
+  bool is_beyond(int c, std::size_t l) {
+    Followed& one = lane_[l].contact[c];
+    const double low = remembers(c) ? one.low : one.touching ? plane_[c][l] : -infinite;
+    const double high = remembers(c) ? one.high : one.touching ? infinite : plane_[c][l];
+    const bool below = position_[c][l] < low && speed_[c][l] < 0;
+    if (!below && !(position_[c][l] > high && speed_[c][l] > 0)) return false;
+    one.to_turn = false;
+    one.level = below ? low : high;
+    position_[c][l] = one.level;
+    return true;
+  }
 
   // The event may lie between two phases of a touch; false: it lies at the plane.
-  bool pass_within_touch(std::size_t l) {
-    Lane& lane = lane_[l];
-    if (!lane.touching) return false;
-    if (lane.to_turn) {
-      const double speed = speed_[l], acceleration = acceleration_[l];
+  bool pass_within_touch(Number c, std::size_t l) {
+    Followed& one = lane_[l].contact[c];
+    if (!one.touching) return false;
+    if (one.to_turn) {
+      const double speed = speed_[c][l], acceleration = acceleration_[c][l];
       const double left = acceleration < 0 ? speed * speed / (2 * acceleration) : 0;  // that the velocity still carries it
-      const LaneSwitch& s = *lane.closing->numbers;
-      const double depth = position_[l] - plane_[l] - left;
-      lane.deepest = depth;
-      if (depth > lane.extreme) lane.extreme = depth;
-      shift_[l] = depth * (1 - s.strength / s.unloading_stiffness);
-      enter_phase(l, true, false);
+      const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
+      const double depth = position_[c][l] - plane_[c][l] - left;
+      one.deepest = depth;
+      if (depth > one.extreme) one.extreme = depth;
+      shift_[c][l] = depth * (1 - numbers.strength / numbers.unloading_stiffness);
+      enter_phase(c, l, true, false);
       return true;
     }
-    if (lane.unloading) {
-      const bool empties = lane.level == lane.low;
-      if (empties) lane.least = 0;
-      enter_phase(l, false, empties);
+    if (one.unloading) {
+      const bool empties = one.level == one.low;
+      if (empties) one.least = 0;
+      enter_phase(c, l, false, empties);
       return true;
     }
-    if (!lane.in_dent || lane.level == lane.low) return false;
-    enter_phase(l, true, false);
+    if (!one.in_dent || one.level == one.low) return false;
+    enter_phase(c, l, true, false);
     return true;
   }
 
   // The edges of a phase, and the depth at which it carries the steady force.
-  void enter_phase(std::size_t l, bool unloading, bool in_dent) {
-    Lane& lane = lane_[l];
-    const LaneSwitch& s = *lane.closing->numbers;
-    const double plane = plane_[l], shifted = plane + shift_[l];
-    lane.unloading = unloading, lane.in_dent = in_dent, lane.to_turn = false;
+  void enter_phase(Number c, std::size_t l, bool unloading, bool in_dent) {
+    Followed& one = lane_[l].contact[c];
+    const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
+    const double plane = plane_[c][l], shifted = plane + shift_[c][l];
+    one.unloading = unloading, one.in_dent = in_dent, one.to_turn = false;
     if (unloading) {
-      lane.low = shifted, lane.high = plane + lane.deepest;
+      one.low = shifted, one.high = plane + one.deepest;
     } else if (in_dent) {
-      lane.low = plane, lane.high = shifted;
+      one.low = plane, one.high = shifted;
     } else {
-      lane.low = lane.touching ? plane : -infinite, lane.high = lane.touching ? infinite : plane;
+      one.low = one.touching ? plane : -infinite, one.high = one.touching ? infinite : plane;
     }
-    low_[l] = lane.low, high_[l] = lane.high;
-    unloading_[l] = unloading, in_dent_[l] = in_dent, loading_[l] = lane.touching && !unloading && !in_dent;
-    const double depth = lane.closing->steady_depth;
-    steady_[l] = unloading || in_dent ? shifted + depth * (s.strength / s.unloading_stiffness) : plane + depth;
+    low_[c][l] = one.low, high_[c][l] = one.high;
+    unloading_[c][l] = unloading, in_dent_[c][l] = in_dent, loading_[c][l] = one.touching && !unloading && !in_dent;
+    const double depth = lane_[l].closing->steady_depth[c];
+    steady_[c][l] = unloading || in_dent ? shifted + depth * (numbers.strength / numbers.unloading_stiffness) : plane + depth;
   }
 
-  // The contact point crosses the plane.
-  void pass_plane(std::size_t l) {
+  // A contact point crosses its plane.
+  void pass_plane(Number c, std::size_t l) {
     Lane& lane = lane_[l];
-    const double t = t_[l], speed = speed_[l];
-    if (!lane.touching) {
-      if (lane.touched) {
-        tell_rebound(lane, t);
-      } else {
+    Followed& one = lane.contact[c];
+    const double t = t_[l], speed = speed_[c][l];
+    if (!one.touching) {
+      if constexpr (!has_several) {
+        if (one.touched) tell_rebound(lane, one.left, t, one.extreme);
+      }
+      if (!lane.landed && is_near(c)) {
         const double over = t + lane.closing->after_contact;
-        lane.touched = true;
-        touched_[l] = true;
+        lane.landed = true;
         until_[l] = over > lane.closing->no_end_before ? over : lane.closing->no_end_before;
       }
-      lane.begin = t;
-      lane.speed = speed < 0 ? -speed : speed;
+      one.touched = true;
+      touched_[c][l] = true;
+      one.begin = t;
+      one.speed = speed < 0 ? -speed : speed;
     } else {
-      lane.closing->observer->touch(lane.begin, t, lane.speed, lane.extreme, lane.hardest);
-      lane.left = t;
-      lane.least = 0;
+      lane.closing->observer->touch(c, one.begin, t, one.speed, one.extreme, one.hardest);
+      one.left = t;
+      one.least = 0;
     }
-    lane.extreme = lane.hardest = 0;
-    lane.touching = !lane.touching;
-    touching_[l] = lane.touching;
+    one.extreme = one.hardest = 0;
+    one.touching = !one.touching;
+    touching_[c][l] = one.touching;
+    if constexpr (has_several) {
+      if (layout_.contact[c].connects) connect(l, one.touching, speed);
+    }
+  }
+  [[nodiscard]] bool is_near([[maybe_unused]] Number c) const {
+    if constexpr (has_several) return layout_.contact[c].near;
+    return true;
   }
 
   void go_on_after_event(std::size_t l) {
@@ -759,9 +960,9 @@ class Lanes {
     aim(l, lane.stop);
   }
 
-  void tell_rebound(const Lane& lane, double end) {
+  static void tell_rebound(const Lane& lane, double begin, double end, double height) {
     constexpr double on_the_plane = 1e-12;  // of the contact gap, as ReboundFinder
-    if (lane.extreme > on_the_plane * lane.closing->numbers->plane) lane.closing->observer->rebound(lane.left, end, lane.extreme);
+    if (height > on_the_plane * lane.closing->numbers->contact[0].plane) lane.closing->observer->rebound(begin, end, height);
   }
 
   void begin_anew(std::size_t l) {
@@ -808,26 +1009,34 @@ class Lanes {
 
   void weigh(std::size_t l) {
     const LaneSwitch& s = *lane_[l].closing->numbers;
+    bool touching = false;
+    for_contacts([&](Number c) { touching = touching || lane_[l].contact[c].touching; });
     for (int i = 0; i < modes; ++i) {
-      q_weight_[i][l] = i < s.modes ? 1 / (lane_[l].touching ? s.touching[i] : s.flying[i]) : 0;
+      q_weight_[i][l] = i < s.modes ? 1 / (touching ? s.touching[i] : s.flying[i]) : 0;
       v_weight_[i][l] = i < s.modes ? 1 / s.speed[i] : 0;
     }
   }
 
   void finish(std::size_t l, bool followed) {
     Lane& lane = lane_[l];
-    const double side = lane.touching ? 1 : -1, far = side * (position_[l] - plane_[l]);
-    if (far > lane.extreme) lane.extreme = far;
-    if (followed && lane.touched) {
-      if (lane.touching) {
-        lane.closing->observer->touch(lane.begin, nothing, lane.speed, lane.extreme, lane.hardest);
-      } else {
-        tell_rebound(lane, nothing);
+    for_contacts([&](Number c) {
+      Followed& one = lane.contact[c];
+      const double side = one.touching ? 1 : -1, far = side * (position_[c][l] - plane_[c][l]);
+      if (far > one.extreme) one.extreme = far;
+      if (followed && one.touched) {
+        if (one.touching) {
+          lane.closing->observer->touch(c, one.begin, nothing, one.speed, one.extreme, one.hardest);
+        } else if constexpr (!has_several) {
+          tell_rebound(lane, one.left, nothing, one.extreme);
+        }
       }
+      const double depth = one.touching ? depth_of_force(c, l, position_[c][l] - plane_[c][l]) : 0;
+      lane.closing->steady_from[c] = position_[c][l] < steady_[c][l] ? nothing : one.steady;
+      lane.closing->least_depth[c] = !one.touched ? nothing : depth < one.least ? depth : one.least;
+    });
+    if constexpr (has_several) {
+      if (followed) finish_connection(l);
     }
-    const double depth = lane.touching ? depth_of_force(l, position_[l] - plane_[l]) : 0;
-    lane.closing->steady_from = position_[l] < steady_[l] ? nothing : lane.steady;
-    lane.closing->least_depth = !lane.touched ? nothing : depth < lane.least ? depth : lane.least;
     for (int i = 0; i < modes; ++i) lane.closing->final[i] = q_[i][l];
     lane.closing->work = work_[l];
     lane.closing->followed = followed;
@@ -856,34 +1065,46 @@ class Lanes {
     }
     if (!idle) ++busy_;
     laws_.take(s, l);
-    plane_[l] = s.plane;
-    steady_[l] = s.plane + closing->steady_depth;
     double fastest = 0;
     for (int i = 0; i < modes; ++i) {
       if (i < s.modes && s.omega[i] > fastest) fastest = s.omega[i];
       omega_[i][l] = s.omega[i], inverse_[i][l] = 1 / s.omega[i], square_[i][l] = s.omega[i] * s.omega[i];
-      at_contact_[i][l] = s.at_contact[i], piezo_[i][l] = s.piezo[i], friction_[i][l] = s.friction[i];
+      piezo_[i][l] = s.piezo[i], friction_[i][l] = s.friction[i];
       q_[i][l] = closing->start[i];
       v_[i][l] = a_[i][l] = 0;
     }
     per_unknown_[l] = 1.0 / (2 * s.modes);
     fastest_[l] = fastest;
     most_turn_[l] = 2 / fastest;
-    touching_[l] = touched_[l] = to_event_[l] = false;
+    to_event_[l] = false;
     weigh(l);
     rounds_[l] = 0;
-    t_[l] = position_[l] = speed_[l] = acceleration_[l] = 0;
-    for (int i = 0; i < modes; ++i) position_[l] = position_[l] + at_contact_[i][l] * q_[i][l];
+    t_[l] = 0;
     moved_[l] = 0;
     work_[l] = 0;
     until_[l] = closing->no_contact_before;
     last_step_[l] = 0.01 / fastest;
-    if constexpr (Laws::has_memory) {
-      shift_[l] = 0;
-      if (layout_.remembers) enter_phase(l, false, false);
-    }
+    for_contacts([&](Number c) { take(s.contact[c], c, l); });
+    apart_[l] = false;
     enter_stretch(l);
     if (idle) lane.closing = nullptr;  // and stays special
+  }
+
+  // The lane has not touched this contact.
+  void take(const LaneContactNumbers& numbers, Number c, std::size_t l) {
+    contact_[c].take(layout_.contact[c], numbers, l);
+    plane_[c][l] = numbers.plane;
+    steady_[c][l] = numbers.plane + lane_[l].closing->steady_depth[c];
+    touching_[c][l] = touched_[c][l] = false;
+    position_[c][l] = speed_[c][l] = acceleration_[c][l] = 0;
+    for (int i = 0; i < modes; ++i) {
+      at_contact_[c][i][l] = numbers.shape[i];
+      position_[c][l] = position_[c][l] + at_contact_[c][i][l] * q_[i][l];
+    }
+    if constexpr (Contact::has_memory) {
+      shift_[c][l] = 0;
+      if (remembers(c)) enter_phase(c, l, false, false);
+    }
   }
 
   [[gnu::always_inline]] static double clamped(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
@@ -891,15 +1112,17 @@ class Lanes {
   const LaneLayout layout_;
   [[no_unique_address]] const typename Laws::Modes modes;  // a constant where the laws know it
   Laws laws_;
+  Contact contact_[room];
+  int connecting_ = 0;  // contacts that make the connection
   LaneClosing* closings_;
   std::size_t count_, next_ = 0;
   int busy_ = 0;
   Lane lane_[width];
 
   // Of the switches.
-  V omega_[capacity], inverse_[capacity], square_[capacity], at_contact_[capacity], piezo_[capacity], friction_[capacity];
+  V omega_[capacity], inverse_[capacity], square_[capacity], piezo_[capacity], friction_[capacity];
   V q_weight_[capacity], v_weight_[capacity], per_unknown_, fastest_, most_turn_;
-  V plane_, steady_;
+  V at_contact_[room][capacity], plane_[room], steady_[room];
   // Of the drives.
   V begin_[most_drives], value_[most_drives], slope_[most_drives], volts_[most_drives];
   V bend_[most_drives], twist_[most_drives];  // coefficients of s^2 and s^3
@@ -907,17 +1130,19 @@ class Lanes {
   // Of the motion.
   V q_[capacity], v_[capacity], a_[capacity], trial_q_[capacity], trial_v_[capacity], trial_a_[capacity];
   V slope_q_[7][capacity], slope_v_[7][capacity];
-  V t_, h_, max_step_, limit_, target_, position_, speed_, acceleration_, smallest_;
-  V knot_p_[pieces + 1], knot_s_[pieces + 1], knot_c_[pieces + 1];
-  M touching_{false}, touched_{false}, suspect_{false}, turns_{false};
+  V t_, h_, max_step_, limit_, target_, smallest_;
+  V position_[room], speed_[room], acceleration_[room];
+  V knot_p_[room][pieces + 1], knot_s_[room][pieces + 1], knot_c_[room][pieces + 1];
+  M touching_[room]{}, touched_[room]{}, turns_[room]{}, suspect_{false};
+  M apart_{false};     // its connection, which any contact closes, has opened
   M starting_{false};  // spends a round to find its accelerations
   M to_event_{false};  // its target is a crossing of the plane
   M special_{false};   // either of both, or idle
   // A contact with a memory has phases.
-  M loading_{false}, unloading_{false}, in_dent_{false};
-  V low_, high_, shift_;  // edges of the phase, and the depth of the dent [m]
-  V until_;               // ends with the first step beyond [s]
-  V last_step_;           // that no stop cut short [s]
+  M loading_[room]{}, unloading_[room]{}, in_dent_[room]{};
+  V low_[room], high_[room], shift_[room];  // edges of the phase, and the depth of the dent [m]
+  V until_;                                 // ends with the first step beyond [s]
+  V last_step_;                             // that no stop cut short [s]
   V growth_, most_growth_, rounds_;
   V power_, powers_[7], work_{0};  // of the drives on the modes [W], at the stages of a step [W], until now [J]
   float log_error_[width] = {}, last_error_[width] = {};  // binary logarithms
@@ -935,6 +1160,7 @@ void run_with(const LaneLayout& layout, LaneClosing* closings, std::size_t count
 
 template <class V>
 void run_in(const LaneLayout& layout, LaneClosing* closings, std::size_t count) {
+  if (layout.contacts > 1) return Lanes<V, AnyLaws<V>, most_contacts>(layout, closings, count).run();
   if (!layout.usual) return Lanes<V, AnyLaws<V>>(layout, closings, count).run();
   switch (layout.fringing) {
     case LaneFringing::none:

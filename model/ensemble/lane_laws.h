@@ -2,7 +2,8 @@
 //
 // UsualLaws: up to four modes, electrodes on the near side that do not overlap, a strip film or none, an undamped contact of
 // asperities. Everything is chosen when this is compiled, each point is gone through once and stays in registers.
-// AnyLaws: more modes and other laws, chosen by the layout. Points are gone through law by law.
+// AnyLaws: more modes, other laws and several contacts, chosen by the layout. Points are gone through law by law.
+// Each of them comes with the law of a contact.
 //
 // Everything here depends on the type of the lanes: see lane_fleet.h.
 #pragma once
@@ -28,19 +29,70 @@
 
 namespace softland::fleet {
 
+template <class V>
+class UsualContact {
+ public:
+  static constexpr bool has_damping = false, has_memory = false;
+
+  /// Lane `l` is of this contact from here on.
+  void take(const LaneContactKind&, const LaneContactNumbers& numbers, std::size_t l) {
+    strength_[l] = numbers.strength, height_[l] = numbers.height;
+    law_ = {.strength = strength_, .height = height_};
+  }
+
+  /// Its force [N]; `rate()` gives the speed into the contact [m/s].
+  template <class Rate>
+  [[gnu::always_inline]] V push(V depth, Rate&&) const {
+    return law_.force(depth);
+  }
+
+ private:
+  V strength_, height_;
+  UniformAsperityContactOf<V> law_;
+};
+
+template <class V>
+class AnyContact {
+ public:
+  static constexpr bool has_damping = true, has_memory = true;  // where its kind says so
+
+  void take(const LaneContactKind& kind, const LaneContactNumbers& numbers, std::size_t l) {
+    kind_ = kind;
+    strength_[l] = numbers.strength, height_[l] = numbers.height, damping_[l] = numbers.damping;
+    unloading_[l] = numbers.unloading_stiffness;
+  }
+
+  template <class Rate>
+  V push(V depth, Rate&& rate) const {
+    if (kind_.law == LaneContact::linear) return push_of(LinearContactOf<V>{.stiffness = strength_}, depth, rate);
+    return push_of(UniformAsperityContactOf<V>{.strength = strength_, .height = height_}, depth, rate);
+  }
+  /// Force of a contact with a memory that is unloaded, this far from where it carries nothing [N]
+  V pull_back(V depth) const { return LinearContactOf<V>{.stiffness = unloading_}.force(depth); }
+
+ private:
+  template <class Law, class Rate>
+  V push_of(const Law& law, V depth, Rate&& rate) const {
+    if (!kind_.damped) return law.force(depth);
+    return HuntCrossley<Law, V>{.elastic = law, .damping = damping_}.force(depth, rate());
+  }
+
+  LaneContactKind kind_;
+  V strength_, height_, damping_, unloading_;
+};
+
 template <class V, template <class> class FringingOf, bool has_film>
 class UsualLaws {
   using Force = ElectrostaticForce<FringingOf<V>>;
   using Film = StripSqueezeFilmOf<V>;
-  using Contact = UniformAsperityContactOf<V>;
   /// The field's law is written in powers of h^(-1/4), which a film beside it need not find again.
   static constexpr bool has_root = requires(const FringingOf<V>& law, V h) { law.factor_over_square(h); };
 
  public:
   using Modes = std::integral_constant<int, usual_modes>;
+  using Contact = UsualContact<V>;
   static Modes modes(const LaneLayout&) { return {}; }
   static constexpr int capacity = usual_modes;
-  static constexpr bool has_damped_contact = false, has_memory = false;
 
   explicit UsualLaws(const LaneLayout& layout) : layout_(layout) {}
 
@@ -52,14 +104,12 @@ class UsualLaws {
     }
     open_[l] = s.open, floor_[l] = s.floor;
     width_[l] = s.width[0], thickness_[l] = s.thickness[0], viscosity_[l] = s.viscosity[0];
-    strength_[l] = s.strength, height_[l] = s.height;
     if constexpr (std::is_same_v<FringingOf<V>, MeijsFokkemaFringingOf<V>>) {
       force_ = Force{{.width = width_, .thickness = thickness_}};
     } else {
       force_ = Force{{.width = width_}};
     }
     film_ = Film{.viscosity = viscosity_, .width = width_};
-    contact_ = Contact{.strength = strength_, .height = height_};
   }
 
   [[nodiscard]] const V& floor() const { return floor_; }
@@ -117,28 +167,21 @@ class UsualLaws {
   /// What the electrodes do to the modes, where it is measured [W]
   [[nodiscard]] V power() const { return 0; }
 
-  /// Force of the contact [N]
-  template <class Rate>
-  [[gnu::always_inline]] V push(V depth, Rate&&) const {
-    return contact_.force(depth);
-  }
-
  private:
   const LaneLayout& layout_;
   V shape_[most_points][capacity], weight_[most_points], rest_gap_[most_points];
-  V open_, floor_, width_, thickness_, viscosity_, strength_, height_;
+  V open_, floor_, width_, thickness_, viscosity_;
   Force force_;
   Film film_;
-  Contact contact_;
 };
 
 template <class V>
 class AnyLaws {
  public:
   using Modes = int;
+  using Contact = AnyContact<V>;
   static Modes modes(const LaneLayout& layout) { return layout.modes; }
   static constexpr int capacity = most_modes;
-  static constexpr bool has_damped_contact = true, has_memory = true;  // where the layout says so
 
   explicit AnyLaws(const LaneLayout& layout) : layout_(layout), modes_(layout.modes) {
     for (int s = 0; s < layout.segments; ++s)
@@ -165,8 +208,6 @@ class AnyLaws {
     tension_[l] = s.tension;
     for (int i = 0; i < modes_; ++i)
       for (int j = 0; j < modes_; ++j) slopes_[i * modes_ + j][l] = s.slopes[i][j];
-    strength_[l] = s.strength, height_[l] = s.height, contact_damping_[l] = s.contact_damping;
-    unloading_[l] = s.unloading_stiffness;
   }
 
   [[nodiscard]] const V& floor() const { return floor_; }
@@ -189,21 +230,7 @@ class AnyLaws {
 
   [[nodiscard]] const V& power() const { return power_; }
 
-  template <class Rate>
-  V push(V depth, Rate&& rate) const {
-    if (layout_.contact == LaneContact::linear) return push_of(LinearContactOf<V>{.stiffness = strength_}, depth, rate);
-    return push_of(UniformAsperityContactOf<V>{.strength = strength_, .height = height_}, depth, rate);
-  }
-  /// Force of a contact with a memory that is unloaded, this far from where it carries nothing [N]
-  V pull_back(V depth) const { return LinearContactOf<V>{.stiffness = unloading_}.force(depth); }
-
  private:
-  template <class Law, class Rate>
-  V push_of(const Law& law, V depth, Rate&& rate) const {
-    if (!layout_.damped_contact) return law.force(depth);
-    return HuntCrossley<Law, V>{.elastic = law, .damping = contact_damping_}.force(depth, rate());
-  }
-
   // Calls f.operator()<n>() with the number of modes, so that what belongs to them stays in registers.
   template <int n = 1, class F>
   [[gnu::always_inline]] void with_modes(F&& f) const {
@@ -373,7 +400,6 @@ class AnyLaws {
   V electrode_gaps_[most_drives], electrode_floor_[most_drives], film_gaps_, film_floor_;
   V hamaker_, distance_, crossover_;
   V tension_, slopes_[capacity * capacity];
-  V strength_, height_, contact_damping_, unloading_;
   V power_;
 };
 

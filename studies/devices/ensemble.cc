@@ -37,12 +37,15 @@ class LaneFigures final : public LandingObserver {
   }
   [[nodiscard]] DeviceOutcome outcome(const Switch& model, const FleetEnd& end) {
     course_.last_time = end.time;
-    const Trajectory run{.status = Status::done,
-                         .contact_gap = model.contact_gap(),
-                         .in_contact_period = model.basis().in_contact_period(),
-                         .steady_force_time = end.steady_force_time,
-                         .least_force_after_touch = end.least_force_after_touch,
-                         .energy = {.source_work = end.drive_energy}};
+    Trajectory run{.status = Status::done,
+                   .contact_gap = model.contact_gap(),
+                   .in_contact_period = model.basis().in_contact_period(),
+                   .steady_force_time = end.steady_force_time,
+                   .least_force_after_touch = end.least_force_after_touch,
+                   .first_touch = end.first_touch,
+                   .first_touch_velocity = end.first_touch_velocity,
+                   .energy = {.source_work = end.drive_energy}};
+    if (model.contacts() > 1) run.contacts.resize(model.contacts());
     return {.metrics = figures_.metrics(run, course_)};
   }
 
