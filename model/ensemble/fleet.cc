@@ -103,9 +103,12 @@ bool is_usual(const Switch& model) {
   const auto alike = [&](const Electrode& e) { return e.side == Side::near && e.fringing == all.front().fringing; };
   const bool is_plate = device.structure.is_rigid();  // whose electrodes lie over the same points
   const bool film = !device.gas || (std::holds_alternative<StripGas>(*device.gas) && std::isnan(far_gap(*device.gas)));
-  return model.modes() <= fleet::usual_modes && !device.structure.is_built() && !device.dispersion && !model.stretching() &&
-         film && model.contacts() == 1 && std::holds_alternative<UniformAsperityContact>(model.contact()) &&
-         std::ranges::all_of(all, alike) && !(is_plate && all.size() > 1) && !electrode_conflict(device.structure, all);
+  const bool usual_field = model.modes() <= fleet::usual_modes && !device.dispersion && !model.stretching() && film &&
+                           std::ranges::all_of(all, alike) && !(is_plate && all.size() > 1) &&
+                           !electrode_conflict(device.structure, all);
+  // Of several contacts those that most switches have.
+  if (model.contacts() > 1) return usual_field && device.gas && !all.empty() && all.front().fringing == Fringing::meijs_fokkema;
+  return usual_field && !device.structure.is_built() && std::holds_alternative<UniformAsperityContact>(model.contact());
 }
 
 /// The pads, each with the electrode that it is of.
@@ -117,17 +120,20 @@ std::vector<std::pair<Stretch, int>> pads_of(const Device& device) {
   return pads;
 }
 
-/// Points up to each end of an electrode, by the electrode that they lie over.
-std::vector<Segment> segments_between(const Switch& model) {
+/// Points up to each end of an electrode or a stretch, by the electrode that they lie over.
+std::vector<Segment> segments_between(const Switch& model, const LaneLayout& layout) {
   const std::vector<std::pair<Stretch, int>> pads = pads_of(model.device());
   const auto over = [&](double x) {
     const auto found = std::ranges::find_if(pads, [&](const auto& one) { return one.first.holds(x); });
     return found == pads.end() ? -1 : found->second;
   };
   std::vector<Segment> segments;
+  int stretch = 0;
   for (int p = 0; p < to_int(model.quadrature().points()); ++p) {
     const int electrode = over(model.quadrature().positions()[p]);
-    if (p == 0 || segments.back().electrode != electrode) segments.push_back({.begin = p, .electrode = electrode});
+    while (layout.stretch[stretch].end <= p) ++stretch;
+    if (p == 0 || segments.back().electrode != electrode || segments.back().stretch != stretch)
+      segments.push_back({.begin = p, .electrode = electrode, .stretch = stretch});
     segments.back().end = p + 1;
   }
   return segments;
@@ -200,12 +206,12 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
                          .connects = device.contacts[c].connects};
   }
   if (!device.electrodes.empty()) layout.fringing = *lane_fringing(device.electrodes.front().fringing);
-  const std::vector<Segment> segments = layout.usual ? segments_between(model) : faces_of(model);
-  layout.segments = to_int(segments.size());
-  std::ranges::copy(segments, layout.segment);
   const std::vector<LaneStretch> stretches = stretches_of(model);
   layout.stretches = to_int(stretches.size());
   for (std::size_t k = 0; k < stretches.size(); ++k) layout.stretch[k] = stretches[k].points;
+  const std::vector<Segment> segments = layout.usual ? segments_between(model, layout) : faces_of(model);
+  layout.segments = to_int(segments.size());
+  std::ranges::copy(segments, layout.segment);
   return layout;
 }
 

@@ -21,6 +21,7 @@ struct Segment {
   int electrode = -1;  ///< -1: over none
   LaneFringing fringing = LaneFringing::none;
   bool far = false;  ///< on the far side
+  int stretch = 0;   ///< under which its points lie; usual laws only
   [[nodiscard]] bool operator==(const Segment&) const = default;
 };
 
@@ -49,9 +50,9 @@ struct LaneLayout {
   LaneFilm film = LaneFilm::none;
   bool far_film = false;
   LaneDispersion dispersion = LaneDispersion::none;
-  int contacts = 1;  ///< UsualLaws have one
+  int contacts = 1;
   LaneContactKind contact[most_contacts];
-  bool needs_all = true;  ///< of several contacts, whether the connection is closed while all that make it are; else while any is
+  bool needs_all = true;       ///< whether the connection is closed while all contacts that make it are; else while any is
   bool measures_work = false;  ///< of the drives; not by UsualLaws
   Segment segment[most_segments];
   int stretches = 1;  ///< one unless the size changes along the structure; a width that changes all along has one per point
@@ -95,13 +96,13 @@ struct LaneSwitch {
 /// Where a lane tells what it sees.
 class LaneObserver {
  public:
-  /// A touch of one contact [s], [s], [m/s], [m]; the largest force [N] of a damped one
+  /// A contact has touched [s], [s], [m/s], [m]; a damped one with this force at the most [N].
   virtual void touch(int contact, double begin, double end, double speed, double depth, double force) = 0;
   /// The connection of several contacts closes, at the speed of the contact that closes it [s], [m/s]
   virtual void closes(double time, double speed) = 0;
   /// It opens [s].
   virtual void opens(double time) = 0;
-  /// Of the contact or of the connection of several [s], [s], [m]
+  /// The contact, or the connection of several, has been open, and this far at the most [s], [s], [m].
   virtual void rebound(double begin, double end, double height) = 0;
 
  protected:
@@ -137,7 +138,7 @@ struct LaneClosing {
   LaneObserver* observer = nullptr;
   bool followed = false;
   double end = 0;
-  /// Of each contact, NaN where it has not touched, or is not steady at the end [s], [m]
+  /// Each contact has its own, which is NaN where it has not touched, or is not steady at the end [s], [m].
   double steady_from[most_contacts] = {}, least_depth[most_contacts] = {};
 };
 

@@ -23,7 +23,7 @@
 
 namespace softland::fleet {
 
-/// Of switches with up to `room` contacts. Where that is one, everything that several need is left out when this is compiled.
+/// The switches have up to `room` contacts. Where that is one, the code for several is left out when this is compiled.
 template <class V, class Laws, int room = 1>
 class Lanes {
   using M = typename V::mask_type;
@@ -64,7 +64,7 @@ class Lanes {
     }
   }
 
-  // What a lane knows of a contact.
+  // A contact, as its lane knows it.
   struct Followed {
     bool touched = false, touching = false;
     double begin = 0, left = 0, speed = 0;  // of the touch: begin, end [s], speed [m/s]
@@ -78,7 +78,7 @@ class Lanes {
     double steady = nothing;                // since when it has been at the steady depth [s]
     double least = infinite;                // depth after the first maximum [m]
   };
-  // And of the connection of several.
+  // The connection that several contacts make.
   struct Connected {
     int touching = 0;  // of the contacts that make it
     bool closed = false, was_closed = false;
@@ -544,7 +544,7 @@ class Lanes {
     }
   }
 
-  // Of the contacts that make the connection, the one with the smallest separation at a knot.
+  // Returns which of the contacts that make the connection has the smallest separation at a knot.
   [[nodiscard]] int nearest_contact(int k, std::size_t l) const {
     int best = -1;
     double least = infinite;
@@ -575,7 +575,7 @@ class Lanes {
     apart_[l] = !closed && !layout_.needs_all;
   }
 
-  // What is under way at the end of a run.
+  // Tells the rebound that is under way at the end of a run.
   void finish_connection(std::size_t l) {
     Lane& lane = lane_[l];
     if (!lane.connected.was_closed || lane.connected.closed) return;
@@ -799,7 +799,7 @@ class Lanes {
     return false;
   }
 
-  // Where the other contacts of a lane are once the end of its step has been moved.
+  // The other contacts of a lane move along where the end of its step has been moved.
   void move_others(int at, std::size_t l) {
     for (int c = 0; c < layout_.contacts; ++c) {
       if (c == at) continue;
@@ -858,7 +858,7 @@ class Lanes {
       if (remembers(c)) enter_phase(c, l, false, false);
     }
   }
-  // Whether another contact has left its phase at the same time, which the step has not looked for.
+  // Returns whether another contact has left its phase at the same time, which the step has not looked for.
   bool is_beyond(int c, std::size_t l) {
     Followed& one = lane_[l].contact[c];
     const double low = remembers(c) ? one.low : one.touching ? plane_[c][l] : -infinite;
@@ -1160,7 +1160,10 @@ void run_with(const LaneLayout& layout, LaneClosing* closings, std::size_t count
 
 template <class V>
 void run_in(const LaneLayout& layout, LaneClosing* closings, std::size_t count) {
-  if (layout.contacts > 1) return Lanes<V, AnyLaws<V>, most_contacts>(layout, closings, count).run();
+  if (layout.contacts > 1) {
+    if (!layout.usual) return Lanes<V, AnyLaws<V>, most_contacts>(layout, closings, count).run();
+    return Lanes<V, UsualLaws<V, MeijsFokkemaFringingOf, true, most_points>, most_contacts>(layout, closings, count).run();
+  }
   if (!layout.usual) return Lanes<V, AnyLaws<V>>(layout, closings, count).run();
   switch (layout.fringing) {
     case LaneFringing::none:

@@ -1,7 +1,8 @@
 // The laws of a closing over lanes: what they make of coordinates and velocities, in two ways.
 //
 // UsualLaws: up to four modes, electrodes on the near side that do not overlap, a strip film or none, an undamped contact of
-// asperities. Everything is chosen when this is compiled, each point is gone through once and stays in registers.
+// asperities. Everything is chosen when this is compiled, each point is gone through once and stays in registers. With room for
+// several stretches they are the laws of a beam of sections with several contacts of any law.
 // AnyLaws: more modes, other laws and several contacts, chosen by the layout. Points are gone through law by law.
 // Each of them comes with the law of a contact.
 //
@@ -81,7 +82,7 @@ class AnyContact {
   V strength_, height_, damping_, unloading_;
 };
 
-template <class V, template <class> class FringingOf, bool has_film>
+template <class V, template <class> class FringingOf, bool has_film, int most_stretches = 1>
 class UsualLaws {
   using Force = ElectrostaticForce<FringingOf<V>>;
   using Film = StripSqueezeFilmOf<V>;
@@ -90,7 +91,7 @@ class UsualLaws {
 
  public:
   using Modes = std::integral_constant<int, usual_modes>;
-  using Contact = UsualContact<V>;
+  using Contact = std::conditional_t<most_stretches == 1, UsualContact<V>, AnyContact<V>>;
   static Modes modes(const LaneLayout&) { return {}; }
   static constexpr int capacity = usual_modes;
 
@@ -103,13 +104,15 @@ class UsualLaws {
       for (int i = 0; i < capacity; ++i) shape_[p][i][l] = s.shape[p][i];
     }
     open_[l] = s.open, floor_[l] = s.floor;
-    width_[l] = s.width[0], thickness_[l] = s.thickness[0], viscosity_[l] = s.viscosity[0];
-    if constexpr (std::is_same_v<FringingOf<V>, MeijsFokkemaFringingOf<V>>) {
-      force_ = Force{{.width = width_, .thickness = thickness_}};
-    } else {
-      force_ = Force{{.width = width_}};
+    for (int k = 0; k < (most_stretches == 1 ? 1 : layout_.stretches); ++k) {
+      width_[k][l] = s.width[k], thickness_[k][l] = s.thickness[k], viscosity_[k][l] = s.viscosity[k];
+      if constexpr (std::is_same_v<FringingOf<V>, MeijsFokkemaFringingOf<V>>) {
+        force_[k] = Force{{.width = width_[k], .thickness = thickness_[k]}};
+      } else {
+        force_[k] = Force{{.width = width_[k]}};
+      }
+      film_[k] = Film{.viscosity = viscosity_[k], .width = width_[k]};
     }
-    film_ = Film{.viscosity = viscosity_, .width = width_};
   }
 
   [[nodiscard]] const V& floor() const { return floor_; }
@@ -128,11 +131,12 @@ class UsualLaws {
       load *= weight_[p];
       for (int i = 0; i < capacity; ++i) sum[i] += load * shape_[p][i];
     };
-    const Film film = film_;
-    const Force force = force_;
+    Film film = film_[0];
+    Force force = force_[0];
     const int segments = layout_.segments;
     for (int s = 0; s < segments; ++s) {
       const Segment segment = layout_.segment[s];
+      if constexpr (most_stretches > 1) film = film_[segment.stretch], force = force_[segment.stretch];
       if (segment.electrode < 0) {
         if constexpr (has_film) {
           for (int p = segment.begin; p < segment.end; ++p) {
@@ -170,9 +174,9 @@ class UsualLaws {
  private:
   const LaneLayout& layout_;
   V shape_[most_points][capacity], weight_[most_points], rest_gap_[most_points];
-  V open_, floor_, width_, thickness_, viscosity_;
-  Force force_;
-  Film film_;
+  V open_, floor_, width_[most_stretches], thickness_[most_stretches], viscosity_[most_stretches];
+  Force force_[most_stretches];
+  Film film_[most_stretches];
 };
 
 template <class V>
