@@ -45,7 +45,7 @@ void figure_errors(A& a, FigureValues& errors) {
   a.object("errors", [&](auto& inside) { inside.figures(errors, figure_of_number); });
 }
 
-/// Whether the JSON of a closing holds a search too.
+/// Tells whether the JSON of a closing holds a search too.
 [[nodiscard]] bool is_of_search(const nlohmann::json& record);
 [[nodiscard]] nlohmann::json rebounds_json(const std::vector<Rebound>& rebounds);
 [[nodiscard]] std::vector<Rebound> read_rebounds(const nlohmann::json& rows);

@@ -22,14 +22,14 @@
 
 namespace softland {
 
-/// What effects = "auto" left out.
+/// The effects that effects = "auto" left out.
 struct EffectsLeftOut {
   struct LeftOut {
     std::string effect;
     double influence = Metrics::unset;
   };
   std::vector<LeftOut> left_out;
-  double influence = Metrics::unset;  ///< of all together
+  double influence = Metrics::unset;  ///< they have together
 };
 
 struct PullInOfElectrode {
@@ -46,7 +46,7 @@ struct ClosingRecord {
   std::optional<ClosedState> closed_state;           ///< under the hold levels; none without a contact
   std::map<std::string, PullInOfElectrode> pull_in;  ///< by electrode
   std::vector<double> natural_frequencies;           ///< [rad/s]
-  std::optional<Work> work;                          ///< of the shown run
+  std::optional<Work> work;                          ///< that the shown run took
   std::vector<std::string> warnings;
   DrawnScene scene;
   std::optional<EffectsLeftOut> effects;
@@ -55,14 +55,14 @@ struct ClosingRecord {
 
   /// The plain step of a search; of a single run one that is not there.
   [[nodiscard]] const RunRecord& baseline() const;
-  /// What was found of devices that differ; null where nothing was.
+  /// The findings about the process variation; null where there are none.
   [[nodiscard]] const DevicesFindings* devices() const { return search && search->devices ? &*search->devices : nullptr; }
 };
 
-/// The motion of a run: knots, and points of the interpolant where knots are far apart; of a long run the most_curve_rows of them
-/// that draw the same picture, with all extremes, and the most_rebounds highest rebounds.
+/// The motion of a run: its knots, and points of the interpolant where knots are far apart. A long run keeps the most_curve_rows
+/// of them that draw the same picture, with all extremes, and its most_rebounds highest rebounds.
 [[nodiscard]] CurveRecord curve_of(const Trajectory& trajectory, const MetricsOptions& options);
-/// Of a course whose rebounds are known. Between the knots of one that is thinned nothing is drawn.
+/// The same of a course whose rebounds are known. Nothing is drawn between the knots of one that is thinned.
 [[nodiscard]] CurveRecord curve_of(const Trajectory& trajectory, const std::vector<Rebound>& rebounds, bool is_thinned,
                                    const MetricsOptions& options);
 
@@ -72,8 +72,8 @@ struct ClosingRecord {
 /// The record of simulate; `command` is the command line. Curves have the resolution of the integration, up to most_curve_rows.
 [[nodiscard]] ClosingRecord record_of(const PreparedScene& prepared, const Closing& closing, const std::string& command);
 
-/// The record of optimize. It is equal for equal seeds but for the time that it took and the command line. Of the evaluations it
-/// holds those that improved.
+/// The record of optimize. It is equal for equal seeds but for the time that it took and the command line. It holds those
+/// evaluations that improved.
 [[nodiscard]] ClosingRecord record_of(const OptimizeResult& found, const OptimizeOptions& options, const std::string& command);
 
 /// The record of a robust search.
@@ -85,7 +85,7 @@ struct ClosingRecord {
 
 /// JSON for programs: SI units in the names, non-finite numbers as null.
 [[nodiscard]] nlohmann::json json_of(const ClosingRecord& record);
-/// What --json gives: without what is large (curves, the text of the scene, the log of the search) or said twice.
+/// The record as --json gives it: without what is large (curves, the text of the scene, the log of the search) or said twice.
 [[nodiscard]] nlohmann::json summary_json(nlohmann::json record);
 /// Status and figures of a run, but for those of the drives.
 [[nodiscard]] nlohmann::json metrics_json(const Metrics& metrics);

@@ -1,4 +1,4 @@
-// What a report shows of the resolved scene that its record holds.
+// The parts of a resolved scene that reports show.
 #pragma once
 
 #include <array>
@@ -13,23 +13,23 @@
 
 namespace softland {
 
-/// What the source of a drive can do; NaN where the scene sets no limit.
+/// The limits of the source of a drive; a limit that the scene does not set is NaN.
 struct DriveLimits {
   double lowest = Metrics::unset, highest = Metrics::unset;  ///< [V]
   double slew = Metrics::unset;                              ///< [V/s]
 };
 
-/// What a kind of structure looks like from the side.
+/// The view of a kind of structure from the side.
 enum class SideOfStructure {
   unknown,            ///< its shape is not described
   held_at_one_end,    ///< a beam
   held_at_both_ends,  ///< a beam
   on_springs,         ///< a plate
 };
-/// By the name of the kind in scenes.
+/// Finds a kind by its name in scenes.
 [[nodiscard]] SideOfStructure side_of_structure(std::string_view kind);
 
-/// What a report shows of the scene.
+/// The parts of a scene that reports show.
 struct DrawnScene {
   using Span = std::optional<std::array<double, 2>>;  ///< from the clamped end [m]
   struct Piezo {
@@ -59,7 +59,7 @@ struct DrawnScene {
   double pad_length = Metrics::unset;                                   ///< [m]
   std::optional<Piezo> piezo;
   std::vector<Electrode> electrodes;
-  std::vector<Contact> contacts;              ///< where they have names
+  std::vector<Contact> contacts;              ///< those that have names
   std::map<std::string, Waveform> waveforms;  ///< by drive
   std::map<std::string, DriveLimits> drivers;
   double significant_rebound = MetricsOptions{}.significant_rebound;  ///< [m]

@@ -10,7 +10,7 @@ namespace softland {
 /// JSON on one line, or with `indent` blanks per level; what is not UTF-8 (a path may not be) becomes U+FFFD.
 [[nodiscard]] std::string json_text(const nlohmann::json& data, int indent = -1);
 
-/// What --json gives of the record of a study.
+/// The record of a study as --json gives it.
 [[nodiscard]] nlohmann::json without_curves(nlohmann::json record);
 
 /// The JSON that the content of a file holds, which says of what kind it is: an object; everything else in it may be missing or

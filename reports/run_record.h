@@ -21,7 +21,7 @@ struct CurveRecord {
   std::vector<double> time;      ///< [s]
   std::vector<double> gap;       ///< distance to the contact plane [m]
   std::vector<double> velocity;  ///< towards the contact [m/s]
-  std::vector<double> force;     ///< of the contact on the beam [N]
+  std::vector<double> force;     ///< contact force on the beam [N]
   /// Of the connection, NaN while it is open [Ohm]; empty where the contacts have no resistivity.
   std::vector<double> resistance = {};
   std::vector<Rebound> rebounds;
@@ -33,9 +33,9 @@ struct RunRecord {
   std::optional<FigureValues> figures;  ///< none: the run is not there
   FigureValues errors;
   CurveRecord curve;
-  std::map<std::string, Points> waveforms;  ///< by drive: time [s] and level [V], of the dispersion force its factor
+  std::map<std::string, Points> waveforms;  ///< time [s] and level [V] by drive; the dispersion force has its factor
   double cost = Metrics::unset;
-  double collapse_time = Metrics::unset;  ///< at which the beam met the electrode [s]
+  double collapse_time = Metrics::unset;  ///< the time at which the beam met the electrode [s]
 };
 
 /// One of several contacts in the winner or the single run.

@@ -21,12 +21,12 @@ namespace softland {
 struct ConfirmationRecord {
   std::string name, status;
   std::optional<FigureValues> figures;
-  /// Under another gas law: what differs is what is simulated, not how.
+  /// Tells whether it is under another gas law: it then differs in what is simulated, not in how.
   [[nodiscard]] bool is_of_gas() const { return name.starts_with("gas "); }
 };
 
 struct SearchCourse {
-  std::string value_name;  ///< what the search minimises
+  std::string value_name;  ///< names the value that the search minimises
   Points best_so_far;      ///< index of an evaluation, value
   Points evaluations;      ///< the same of all; a value is NaN where it was infeasible
 };
@@ -39,21 +39,21 @@ struct TouchLimit {
 /// Searches that differ in their seeds alone; the result is that of the best.
 struct SeedsFindings {
   std::uint64_t planned = 0;           ///< searches, of which those below are done
-  std::vector<SearchOfSeed> searches;  ///< in the order of their seeds
+  std::vector<SearchOfSeed> searches;  ///< ascending by seed
   std::size_t best = 0;                ///< of them
 };
 
 /// What is not available is NaN, empty or not set.
 struct SearchRecord {
   std::string target, actuator, waveform, optimizer, termination, termination_message;
-  std::vector<SearchedFamilyResult> families;  ///< where there were several
+  std::vector<SearchedFamilyResult> families;  ///< empty unless there were several
   std::optional<std::uint64_t> seed;
   std::optional<bool> goal_met, better_than_baseline, plain_step_wins;
   double harder_than_step = Metrics::unset;  ///< see OptimizeResult
   double evaluations = Metrics::unset;
   RunRecord baseline;                                   ///< the plain step
-  std::map<std::string, double> parameters;             ///< of the winner, by drive.name
-  std::map<std::string, std::array<double, 2>> bounds;  ///< within which they were searched
+  std::map<std::string, double> parameters;             ///< the winner's, by drive.name
+  std::map<std::string, std::array<double, 2>> bounds;  ///< the box in which they were searched
   std::vector<ConfirmationRecord> checks;
   double evaluations_of_modes = Metrics::unset;  ///< see OptimizeResult
   SearchCourse course;
