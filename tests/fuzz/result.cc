@@ -1,6 +1,7 @@
 #include "reports/closing_document.h"
 #include "reports/closing_record.h"
 #include "reports/mode_table_report.h"
+#include "reports/record_file.h"
 #include "reports/svg.h"
 #include "reports/text.h"
 #include "tests/fuzz/scene_checks.h"
