@@ -337,7 +337,9 @@ std::string measuring_words(const DevicesFindings& d) {
   const DevicesFindings::Row *own = d.row(for_the_devices), *measured = d.row(d.measured);
   const bool were_judged =
       std::ranges::any_of(d.rows, [](const DevicesFindings::Row& row) { return std::isfinite(row.pull_in_error); });
-  if (measured == nullptr && were_judged) return "Measuring Vdp or a closing time on each device wins nothing.";
+  if (measured == nullptr && were_judged)
+    return fmt::format("Neither Vdp measured to 1 % nor a closing time measured to 50 ns on each device makes {}.",
+                       own != nullptr && own->bounce_free >= half ? "more of them close without a rebound" : "them touch softer");
   if (own == nullptr || measured == nullptr || d.next_command.empty()) return {};
   const char* const what = std::isfinite(measured->time_error) ? "one closing time measured to 50 ns" : "Vdp measured to 1 %";
   const bool lands_more = measured->bounce_free >= half && measured->bounce_free > own->bounce_free;

@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/search/devices_findings.h"
 #include "studies/search/optimize.h"
 #include "studies/search/paced_search.h"
 #include "studies/search/race.h"

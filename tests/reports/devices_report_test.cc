@@ -110,7 +110,7 @@ TEST(DevicesReport, SaysThatTheStepIsDelayedAndWhatMeasuringWins) {
   EXPECT_THAT(text(), HasSubstr("With Vdp measured to 1 % on each, 95 % touch at no more than 16.6\u00a0mm/s: calibrated.toml."));
   r.search->devices->measured.clear();
   r.search->devices->next_command.clear();
-  EXPECT_THAT(text(), HasSubstr("Measuring Vdp or a closing time on each device wins nothing."));
+  EXPECT_THAT(text(), HasSubstr("Neither Vdp measured to 1 % nor a closing time measured to 50 ns on each device makes"));
 }
 
 TEST(DevicesReport, DrawsDevicesUnderTheStepAndTheWaveformSideBySide) {
