@@ -36,9 +36,11 @@ bool assume_spread(SceneFile& file) {
   if (file.written("spread")) return false;
   std::vector<std::string> gaps;
   for (const std::string& key : file.keys("gap")) gaps.push_back(fmt::format("\"gap.{}\"", key));
-  for (const std::string& name : file.keys("electrode")) {
-    const std::string key = fmt::format("electrode.{}.gap", name);
-    if (file.written(key)) gaps.push_back('"' + key + '"');
+  for (const std::string section : {"electrode", "contact"}) {
+    for (const std::string& name : file.keys(section)) {
+      const std::string key = fmt::format("{}.{}.gap", section, name);
+      if (file.written(key)) gaps.push_back('"' + key + '"');
+    }
   }
   if (const auto kind = law_named<StructureKind>(file.written("structure.kind").value_or(""))) {
     std::visit(

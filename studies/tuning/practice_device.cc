@@ -13,6 +13,7 @@
 #include "model/closing.h"
 #include "model/gas/gas_law.h"
 #include "studies/closing/auto_settings.h"
+#include "studies/tuning/tuned_scene.h"
 
 namespace softland {
 namespace {
@@ -49,12 +50,14 @@ void change_gas(SceneFile& file, const Scene& scene, const std::string& name) {
 }
 
 void stiffen(SceneFile& file, const Scene& scene, double factor) {
-  const ContactModel& law = scene.device.contacts.front().model;
   bool is_stiff = false;
-  for (const std::string key : {"stiffness", "unloading_stiffness", "effective_modulus", "asperity_pressure", "wall_pressure"}) {
-    if (!file.written("contact." + key)) continue;
-    file.assign("contact." + key, number_of(law, key, 0) * factor);
-    is_stiff = true;
+  for (const Contact& contact : scene.device.contacts) {
+    for (const char* name : {"stiffness", "unloading_stiffness", "effective_modulus", "asperity_pressure", "wall_pressure"}) {
+      const std::string key = fmt::format("{}.{}", path_of(contact), name);
+      if (!file.written(key)) continue;
+      file.assign(key, number_of(contact.model, name, 0) * factor);
+      is_stiff = true;
+    }
   }
   require(is_stiff,
           [&] { return fmt::format("stiffness={}: {}: its contact has no stiffness", number_text(factor), scene.file.name()); });

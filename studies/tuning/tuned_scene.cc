@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "base/decompositions.h"
@@ -36,6 +37,10 @@ bool varies(const DeviceSpread& spread, const std::string& path) {
   });
 }
 
+bool varies_any(const DeviceSpread& spread, const std::vector<std::string>& paths) {
+  return std::ranges::any_of(paths, [&](const std::string& path) { return varies(spread, path); });
+}
+
 void vary(SceneFile& file, const std::string& name, const std::vector<std::string>& keys, const char* kind, double deviation) {
   file.set(
       fmt::format("spread.\"{}\"={{keys=[\"{}\"],distribution=\"{}\",cov={}}}", name, fmt::join(keys, "\",\""), kind, deviation));
@@ -49,6 +54,25 @@ std::vector<std::string> shaped_drives_of(const PreparedScene& prepared, Actuato
   return names;
 }
 
+// The keys of this name that the contacts which make the connection have: of one contact, contact.KEY.
+std::vector<std::string> contact_keys(const SceneFile& file, const Device& device, std::string_view key) {
+  std::vector<std::string> keys;
+  for (const Contact& contact : device.contacts) {
+    const std::string own = fmt::format("{}.{}", path_of(contact), key);
+    if (contact.connects && contact.side == Side::near && file.written(own)) keys.push_back(own);
+  }
+  return keys;
+}
+
+// The rest distances of these contacts; none where the contact is the face of a dielectric.
+std::vector<std::string> contact_gaps(const PreparedScene& prepared) {
+  if (prepared.scene.file.written("gap.contact")) return {"gap.contact"};
+  return contact_keys(prepared.scene.file, prepared.scene.device, "gap");
+}
+
+// The name of the quantity that these gaps follow.
+std::string gap_name(const std::vector<std::string>& gaps) { return gaps.size() == 1 ? gaps.front() : "contact gaps"; }
+
 // The scene in volts, with every default written out, and what the belief varies beside the spread.
 SceneFile with_nuisances(const PreparedScene& prepared, const TunerOptions& options) {
   SceneFile file = prepared.resolved();
@@ -61,11 +85,14 @@ SceneFile with_nuisances(const PreparedScene& prepared, const TunerOptions& opti
   if (file.written("gas.viscosity") && !varies(spread, "gas.viscosity"))
     vary(file, "gas.viscosity", {"gas.viscosity"}, "lognormal", viscosity_deviation);
   std::vector<std::string> stiffness;
-  for (const char* key : {"contact.stiffness", "contact.unloading_stiffness", "contact.effective_modulus"}) {
-    if (file.written(key) && !varies(spread, key)) stiffness.emplace_back(key);
+  for (const char* name : {"stiffness", "unloading_stiffness", "effective_modulus"}) {
+    for (const std::string& key : contact_keys(file, prepared.scene.device, name)) {
+      if (!varies(spread, key)) stiffness.push_back(key);
+    }
   }
   if (!stiffness.empty()) vary(file, "contact stiffness", stiffness, "lognormal", contact_deviation);
-  if (!varies(spread, "gap.contact")) vary(file, "gap.contact", {"gap.contact"}, "normal", TunedScene::gap_ratio_deviation);
+  const std::vector<std::string> gaps = contact_gaps(prepared);
+  if (!gaps.empty() && !varies_any(spread, gaps)) vary(file, gap_name(gaps), gaps, "normal", TunedScene::gap_ratio_deviation);
   file.assign("simulate.accuracy", belief_accuracy);
   return file;
 }
@@ -110,23 +137,25 @@ class SingleClosing final : public ClosingObserver {
 
 }  // namespace
 
-// The contact gap leaves the factor that it shares with other gaps, and follows it but for a deviation of its own: correlated
+// The contact gaps leave the factor that they share with other gaps, and follow it but for a deviation of their own: correlated
 // normal factors.
-void TunedScene::loosen_contact_gap(DeviceSpread& spread) {
+void TunedScene::loosen_contact_gap(DeviceSpread& spread, const std::vector<std::string>& gaps) {
   for (std::size_t i = 0; i < spread.variables.size(); ++i) {
     SpreadVariable& shared = spread.variables[i];
-    const auto key = std::ranges::find(shared.keys, "gap.contact", &VariedKey::path);
+    const auto is_of_contact = [&](const VariedKey& key) { return std::ranges::find(gaps, key.path) != gaps.end(); };
+    const auto count = std::ranges::count_if(shared.keys, is_of_contact);
     const auto* normal = std::get_if<Normal>(&shared.distribution.parameters());
     const Truncation& truncation = shared.distribution.truncation();
     const bool is_free = !(truncation.low > -std::numeric_limits<double>::infinity()) &&
                          !(truncation.high < std::numeric_limits<double>::infinity());
-    if (key == shared.keys.end() || shared.keys.size() < 2 || !shared.is_factor || normal == nullptr || !is_free) continue;
+    if (count == 0 || std::cmp_equal(count, shared.keys.size()) || !shared.is_factor || normal == nullptr || !is_free) continue;
     const double own = std::hypot(normal->standard_deviation, gap_ratio_deviation);
     const double correlation = normal->standard_deviation / own;
-    SpreadVariable contact{.name = "gap.contact",
-                           .keys = {*key},
+    SpreadVariable contact{.name = gap_name(gaps),
+                           .keys = {},
                            .distribution = Distribution(Normal{.mean = normal->mean, .standard_deviation = own})};
-    shared.keys.erase(key);
+    std::ranges::copy_if(shared.keys, std::back_inserter(contact.keys), is_of_contact);
+    std::erase_if(shared.keys, is_of_contact);
     const Eigen::Index n = spread.correlation.rows();
     Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n + 1, n + 1);
     all.topLeftCorner(n, n) = spread.correlation;
@@ -151,10 +180,11 @@ PreparedScene TunedScene::prepared(const SceneFile& given, const Watch& watch) {
   for (std::size_t i = spread.variables.size(); i-- > 0;) {
     if (spread.variables[i].is_drawn_per_edge) spread.leave_out(i);
   }
-  const auto contact = std::ranges::find(spread.variables, "gap.contact", &SpreadVariable::name);
-  if (contact != spread.variables.end() && !varies(chosen.scene.spread, "gap.contact"))
+  const std::vector<std::string> gaps = contact_gaps(chosen);
+  const auto contact = std::ranges::find(spread.variables, gap_name(gaps), &SpreadVariable::name);
+  if (contact != spread.variables.end() && !varies_any(chosen.scene.spread, gaps))
     gap_ratio_ = {.contact = static_cast<std::size_t>(contact - spread.variables.begin()), .shared = {}};
-  loosen_contact_gap(spread);
+  loosen_contact_gap(spread, gaps);
   spread.correlate(spread.correlation);
   return p;
 }
@@ -169,8 +199,11 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
   drives_ = std::make_unique<const DeviceDrives>(nominal_);
   const std::vector<Signal> signals = nominal_.driven(nominal_.waveforms(plain_step(nominal_, options.actuator)));
   const double longest = periods_to_close * 2 * std::numbers::pi / nominal_.model.basis().angular_frequencies()[0];
+  // The connection of several contacts may close later than the first of them.
+  const double after_contact = nominal_.model.contacts() > 1 ? longest : 0;
   const Trajectory closing = simulate_closing(
-      nominal_.model, signals, {.duration = longest, .tolerance = nominal_.tolerance, .after_contact = 0, .stop = watch.stop});
+      nominal_.model, signals,
+      {.duration = longest, .tolerance = nominal_.tolerance, .after_contact = after_contact, .stop = watch.stop});
   watch.throw_if_stopped();
   require(!closing.touches.empty(),
           [&] { return fmt::format("{}: its hold levels do not close the switch: there is no closing to tune", file.name()); });

@@ -5,9 +5,11 @@
 //
 //   gain of each shaped drive              normal, as told
 //   gas.viscosity                          lognormal, 5 %
-//   stiffness or modulus of the contact    lognormal, 10 %
-//   contact gap over electrode gap         normal, 3 %, beside the factor that both may share
+//   stiffness or modulus of the contacts   lognormal, 10 %
+//   contact gaps over electrode gap        normal, 3 %, beside the factor that they may share
 //   trigger delay                          normal, as told, and beside that 0.3 % of the closing time of the plain step
+//
+// Contacts that make the connection together have one quantity of each kind.
 //
 // Where devices of the same wafer were tuned before, coordinates are those of what they tell of the next (wafer.h).
 //
@@ -31,6 +33,11 @@
 #include "studies/tuning/wafer.h"
 
 namespace softland {
+
+/// The section of a contact: "contact", or "contact.NAME" of several.
+[[nodiscard]] inline std::string path_of(const Contact& contact) {
+  return contact.name.empty() ? "contact" : "contact." + contact.name;
+}
 
 /// What is large and what is small in a scene.
 struct TuningScales {
@@ -113,6 +120,10 @@ class TunedScene {
   /// Contact gap over electrode gap of a device with these values, over that of the scene; none where [spread] has the contact
   /// gap as a quantity of its own.
   [[nodiscard]] std::optional<double> gap_ratio(std::span<const double> values) const;
+  /// "gap.contact / gap.electrode"; for a scene that has such a ratio.
+  [[nodiscard]] std::string gap_ratio_name() const {
+    return nominal_.scene.spread.variables[gap_ratio_->contact].name + " / gap.electrode";
+  }
   /// The deviations that the ratio of z is from the scene's; none as above.
   [[nodiscard]] std::optional<double> gap_ratio_coordinate(const Eigen::VectorXd& z) const;
   /// The nearest point whose ratio is that of the scene; z where there is no such ratio.
@@ -141,7 +152,7 @@ class TunedScene {
 
  private:
   [[nodiscard]] PreparedScene prepared(const SceneFile& given, const Watch& watch);
-  void loosen_contact_gap(DeviceSpread& spread);
+  void loosen_contact_gap(DeviceSpread& spread, const std::vector<std::string>& gaps);
   void find_units(const Watch& watch);
   [[nodiscard]] Eigen::VectorXd spread_point(const Eigen::VectorXd& z) const {
     return prior_ ? Eigen::VectorXd(prior_->mean + prior_factor_ * z) : z;

@@ -61,7 +61,7 @@ std::optional<BelievedQuantity> believed_gap_ratio(const TunedScene& scene, cons
     ratios.push_back(*ratio);
   }
   BelievedQuantity one{
-      .name = "gap.contact / gap.electrode", .unit = {}, .prior_mean = 1, .prior_deviation = TunedScene::gap_ratio_deviation};
+      .name = scene.gap_ratio_name(), .unit = {}, .prior_mean = 1, .prior_deviation = TunedScene::gap_ratio_deviation};
   one.mean = weighted_mean(belief.weights, ratios);
   one.deviation = weighted_deviation(belief.weights, ratios, one.mean);
   return one;

@@ -47,6 +47,13 @@ TEST(AssumedSpread, OfAPlateIsItsStiffnessAndAllItsGaps) {
                   Pair(testing::ElementsAre("structure.stiffness"), DoubleNear(0.067, 1e-12))));
 }
 
+TEST(AssumedSpread, OfSeveralContactsHasAllTheirGaps) {
+  EXPECT_THAT(
+      assumed(SceneFile::load(scenes / "new/two-contacts.toml")),
+      testing::Contains(Pair(UnorderedElementsAre("gap.electrode", "contact.left.gap", "contact.right.gap", "contact.stop.gap"),
+                             DoubleNear(0.02, 1e-12))));
+}
+
 TEST(AssumedSpread, IsReadOfEveryShippedScene) {
   for (const auto& entry : std::filesystem::directory_iterator(scenes)) {
     if (entry.path().extension() != ".toml") continue;

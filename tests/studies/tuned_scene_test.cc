@@ -50,6 +50,31 @@ TEST(TunedScenes, TheGapsShareTheirFactorAndTheContactGapHasOneOfItsOwn) {
   EXPECT_NEAR(alone, 1.03, rounding);
 }
 
+TEST(TunedScenes, TheContactsThatMakeTheConnectionHaveOneFactorTogether) {
+  const TunedScene tuned(scene("new/two-contacts.toml", {"structure.modes=2"}), {}, {});
+  const auto factors = [&](const char* name) {
+    const std::vector<VectorXd> points{VectorXd::Unit(tuned.size(), coordinate(tuned, name))};
+    const Device own = tuned.devices(points)[0].sampled.model->device(), nominal = tuned.nominal().scene.device;
+    std::vector<double> all{own.gap.electrode / nominal.gap.electrode};
+    for (std::size_t c = 0; c < own.contacts.size(); ++c)
+      all.push_back(c == 0 ? own.gap.contact / nominal.gap.contact : own.contacts[c].gap / nominal.contacts[c].gap);
+    for (std::size_t c = 0; c < own.contacts.size(); ++c)
+      all.push_back(number_of(own.contacts[c].model, "stiffness", 0) / number_of(nominal.contacts[c].model, "stiffness", 0));
+    return all;
+  };
+  constexpr double rounding = 1e-9, lognormal = 0.12;
+  const auto near = [](double factor) { return testing::DoubleNear(factor, rounding); };
+  EXPECT_EQ(tuned.gap_ratio_name(), "contact gaps / gap.electrode");
+  const std::vector<double> shared = factors("gaps"), own = factors("contact gaps"), stiffness = factors("contact stiffness");
+  const double soft = shared[4];  // the median of a lognormal factor
+  EXPECT_NEAR(soft, 1, 0.006);
+  EXPECT_THAT(shared, testing::ElementsAre(near(1.02), near(1.02), near(1.02), near(1), near(soft), near(soft), near(1)));
+  EXPECT_THAT(own, testing::ElementsAre(near(1), near(1.03), near(1.03), near(1), near(soft), near(soft), near(1)));
+  EXPECT_GT(stiffness[4], 1 + lognormal / 2);
+  EXPECT_DOUBLE_EQ(stiffness[5], stiffness[4]);
+  EXPECT_EQ(stiffness[6], 1) << "a back stop makes no connection";
+}
+
 TEST(LandingCosts, PriceTheTouchOfAFastApproachAndTheContactOfASlowOne) {
   const ImaginedClosing soft{.followed = true, .touch = 400e-6, .openings = {{.begin = 401e-6, .end = 600e-6}}};
   TuningScales scales{.closing_time = 20e-6, .gap = 2e-6, .rebound = 1e-9};
