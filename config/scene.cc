@@ -1,9 +1,11 @@
 #include "config/scene.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/engineering.h"
 #include "base/require.h"
@@ -162,6 +164,32 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
   return warnings;
 }
 
+/// Sections of a beam keep a number of their own while that of [structure] varies.
+void warn_of_fixed_sections(const SceneFile::Impl& file, const DeviceSpread& spread, std::vector<std::string>& warnings) {
+  const auto* const beam_sections = file.find({"structure", "sections"});
+  if (beam_sections == nullptr || !beam_sections->is_array()) return;
+  std::set<std::string> varied;
+  for (const SpreadVariable& variable : spread.variables) {
+    for (const VariedKey& key : variable.keys) varied.insert(key.path);
+  }
+  for (const SpreadVariable& variable : spread.variables) {
+    for (const std::string key : {"width", "thickness", "youngs_modulus", "density"}) {
+      const std::string whole = "structure." + key;
+      if (std::ranges::find(variable.keys, whole, &VariedKey::path) == variable.keys.end()) continue;
+      std::vector<std::string> fixed;
+      for (std::size_t k = 1; k <= beam_sections->as_array()->size(); ++k) {
+        const std::string section = fmt::format("sections[{}]", k);
+        std::string own = fmt::format("structure.{}.{}", section, key);
+        if (file.find({"structure", section, key}) != nullptr && !varied.contains(own)) fixed.push_back(std::move(own));
+      }
+      if (fixed.empty()) continue;
+      warnings.push_back(fmt::format("{}: {} {} not vary with {}: name all of them in keys of one entry of [spread]",
+                                     file.origin(join_path("spread", variable.name)).text, fmt::join(fixed, ", "),
+                                     fixed.size() == 1 ? "does" : "do", whole));
+    }
+  }
+}
+
 /// Every section that is in force, but [spread] as resolved_spread() gives it; `keys_of` makes the table of one.
 template <class KeysOf>
 toml::table sections_of(const SceneFile::Impl& file, KeysOf&& keys_of) {
@@ -205,6 +233,7 @@ Scene read_scene(const SceneFile& file) {
   internal::read_spread(scene, impl);
   scene.calibration = read_calibration(impl, scene.device);
   scene.warnings = find_warnings(impl, scene.device);
+  warn_of_fixed_sections(impl, scene.spread, scene.warnings);
   scene.warnings.insert(scene.warnings.begin(), scene.file_notes.begin(), scene.file_notes.end());
   try {
     validate(scene.device);

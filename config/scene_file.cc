@@ -409,7 +409,7 @@ void SceneFile::Impl::fail_section(std::string_view path, std::string_view rule)
 
 void SceneFile::Impl::insert(const std::vector<std::string>& path, const toml::node& value, const Origin& place) {
   toml::table* table = &root;
-  std::string parent, path_text;
+  std::string parent, path_text, replaced;
   for (const std::string& key : path) {
     parent = std::exchange(path_text, join_path(path_text, key));
     if (&key == &path.back()) break;
@@ -427,13 +427,23 @@ void SceneFile::Impl::insert(const std::vector<std::string>& path, const toml::n
     for (const internal::Key& key : section->keys) {
       if (key.name != path.back()) continue;
       for (const std::string_view other : key.instead_of) {
-        if (table->erase(other) > 0) forget(join_path(parent, other));
+        if (table->erase(other) == 0) continue;
+        replaced = join_path(parent, other);
+        forget(replaced);
       }
     }
   }
   value.visit([&](const auto& node) { table->insert_or_assign(path.back(), node); });
   forget(path_text);
   origins[path_text] = place;
+  origins[path_text].replaced = replaced;
+}
+
+std::string SceneFile::Impl::replaced_in(std::string_view section) const {
+  for (const auto& [path, place] : origins) {
+    if (!place.replaced.empty() && is_below(path, section)) return fmt::format("; {} took the place of {}", path, place.replaced);
+  }
+  return {};
 }
 
 toml::array SceneFile::Impl::with_element(const std::vector<std::string>& path, std::size_t element, const toml::node& value,

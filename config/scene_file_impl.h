@@ -57,6 +57,7 @@ struct SceneFile::Impl {
   struct Origin {
     std::string text;  ///< "scenes/x.toml:12" or "--set gap.contact=3"
     bool is_option = false;
+    std::string replaced = {};  ///< the path of a value that this one took the place of; empty: none
   };
 
   std::string name;
@@ -75,6 +76,9 @@ struct SceneFile::Impl {
   [[noreturn]] void fail(std::string_view path, std::string_view rule) const;
   /// The same about a section: the value is not shown, and an option that set something in the section is cited first.
   [[noreturn]] void fail_section(std::string_view path, std::string_view rule) const;
+
+  /// "; --set structure.length=1 m took the place of structure.sections" where a value in this section did, for messages.
+  [[nodiscard]] std::string replaced_in(std::string_view section) const;
 
   /// NAME of every [section.NAME], sorted. Throws InvalidInput when something else stands there.
   /// The list there with another value in the place of an element, counted from 1. Throws InvalidInput that begins with `option`

@@ -216,7 +216,7 @@ void SectionReader::read_key(const Key& key) {
       if (section_.find(other, choice_)->belongs_to(choice_)) others += fmt::format(" or '{}'", other);
     }
     const std::string value = others.empty() ? fmt::format(" ({})", wanted(key)) : std::string();
-    file_.fail_section(path_, fmt::format("missing key '{}'{}{}", key.name, others, value));
+    file_.fail_section(path_, fmt::format("missing key '{}'{}{}{}", key.name, others, value, file_.replaced_in(path_)));
   }
   if (!key.fallback.empty()) values_[key.name] = parse(key, *parse_value(key.fallback).get(value_key));
 }
@@ -431,7 +431,9 @@ void SectionReader::set_members(Scene& scene, std::size_t entry) const {
 }
 
 void SectionReader::require_of_structure(std::string_view key, std::string_view needed, const Structure& structure) const {
-  const bool may_lack = structure.is_rigid() || (needed == "thickness" && std::isnan(structure.thickness));
+  // The sections of a beam may have thicknesses of their own.
+  const bool may_lack =
+      structure.is_rigid() || (needed == "thickness" && std::isnan(structure.thickness) && !structure.is_built());
   require(!may_lack || SectionReader(file_, "structure").is_given(needed), key,
           fmt::format("needs structure.{} {}", needed, structure.whose()));
 }
@@ -441,7 +443,9 @@ std::string SectionReader::written_length(const Structure& structure) const {
       [&]<class Kind>(const Kind&) -> std::string {
         if constexpr (requires { Kind::length_is; })
           return fmt::format(fmt::runtime(Kind::length_is), engineering(structure.length, "m"));
-        return file_.written("structure.length");
+        return structure.is_built() && file_.find({"structure", "length"}) == nullptr
+                   ? fmt::format("its sections are {} long", engineering(structure.length, "m"))
+                   : file_.written("structure.length");
       },
       structure.kind);
 }

@@ -97,13 +97,15 @@ void check_extent(const Structure& s, Electrode& e, const SectionReader& in) {
 void check_fringing(const Structure& s, const Electrode& e, const SectionReader& in) {
   const FringingRow& law = row_of(fringing_laws, e.fringing);
   const SectionReader structure(in.file(), "structure");
-  const bool lacks_thickness = law.needs_thickness && std::isnan(s.thickness);
+  // The sections of a beam may have thicknesses of their own: the field takes the local one.
+  const bool lacks_thickness = law.needs_thickness && std::isnan(s.thickness) && !s.is_built();
+  const std::string fringing =
+      fmt::format("fringing = {}{}", toml_string(law.name), in.is_given("fringing") ? "" : ", the default,");
   if (!s.is_rigid()) {
     if (lacks_thickness)
-      in.fail(fmt::format("fringing = {} needs structure.thickness {}; fringing = \"linear\" does not", toml_string(law.name),
-                          s.whose()));
+      in.fail(fmt::format("{} needs structure.thickness {}; fringing = \"linear\" does not", fringing, s.whose()));
   } else if (lacks_thickness || (law.needs_width && !structure.is_given("width"))) {
-    in.fail(fmt::format("fringing = {} needs structure.width{} {}; fringing = \"none\" does not", toml_string(law.name),
+    in.fail(fmt::format("{} needs structure.width{} {}; fringing = \"none\" does not", fringing,
                         law.needs_thickness ? " and structure.thickness" : "", s.whose()));
   }
 }

@@ -19,8 +19,10 @@ namespace softland {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 // Lines are cited by the expected messages.
@@ -230,6 +232,41 @@ TEST(BeamParts, ThatCannotBeAreRefusedWithTheirPlace) {
   EXPECT_THAT(message(std::string(built_scene) + "[surface]\nelastic_modulus = \"1 N/m\"\n"), HasSubstr("sections and layers"));
   EXPECT_THAT(message(std::string(built_scene) + "[gas]\nmodel = \"reynolds\"\n"),
               HasSubstr("gas.model = reynolds: not over holes"));
+}
+
+TEST(BeamParts, NameTheirLengthWhereSomethingLiesBeyondIt) {
+  EXPECT_THAT(refusal("\"240 um\"", "\"251 um\""),
+              HasSubstr("electrode.main.span = [\"40 um\", \"251 um\"]: must end on the beam: its sections are 250 um long"));
+  EXPECT_THAT(refusal("pad_length", "at = \"260 um\"\npad_length"),
+              HasSubstr("contact.at = \"260 um\": must lie on the beam: its sections are 250 um long"));
+  EXPECT_EQ(message(std::string(built_scene), {"structure.length=250 um"}),
+            "--set structure.length=250 um: [structure]: missing key 'width' (a length such as \"20 um\"); structure.length took "
+            "the place of structure.sections");
+}
+
+TEST(BeamParts, NeedNoThicknessOfTheStructureWhereAllHaveTheirOwn) {
+  const std::string own = edited(edited(built_scene, "thickness = \"2 um\"\n", ""), "length = \"190 um\"",
+                                 "length = \"190 um\", thickness = \"2 um\"");
+  for (const char* law : {"meijs-fokkema", "bao-2001"}) {
+    const std::string fringing = std::string("electrode.main.fringing=") + law;
+    EXPECT_EQ(message(own, {fringing}), "") << law;
+  }
+  const std::string gas = "[gas]\nmodel = \"guo-alexeenko\"\n",
+                    solid = edited(own, ", holes = { pitch = \"10 um\", size = \"4 um\" }", "");
+  EXPECT_EQ(message(solid + gas), "");
+}
+
+TEST(BeamParts, AreToldOfWhereTheyKeepANumberThatVaries) {
+  const auto warnings = [](const std::string& entry) {
+    return read_built(std::string(built_scene) + "[spread]\n" + entry + " distribution = \"normal\", cov = \"2 %\" }\n").warnings;
+  };
+  EXPECT_THAT(
+      warnings("\"structure.thickness\" = {"),
+      Contains("x.toml:27: structure.sections[1].thickness does not vary with structure.thickness: name all of them in keys "
+               "of one entry of [spread]"));
+  const auto is_told = Contains(HasSubstr("not vary with"));
+  EXPECT_THAT(warnings("\"structure.youngs_modulus\" = {"), Not(is_told));
+  EXPECT_THAT(warnings("both = { keys = [\"structure.thickness\", \"structure.sections[1].thickness\"],"), Not(is_told));
 }
 
 // Lines are cited by the expected messages.

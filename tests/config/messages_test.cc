@@ -291,7 +291,7 @@ INSTANTIATE_TEST_SUITE_P(Plates, BadPlate, testing::Values(
     Edit{"mass =", "modes = 4\nmass =", R"(x.toml:3: structure.modes = 4: belongs to kind = "cantilever" or "clamped-clamped", not to "plate")"},
     Edit{"area = \"6e3", "span = [\"0 um\", \"9 um\"]\narea = \"6e3", R"(x.toml:12: electrode.main.span = ["0 um", "9 um"]: belongs to a beam; the electrode of a plate has an area)"},
     Edit{"area = \"6e3", "area = \"6e4", R"(x.toml:12: electrode.main.area = "6e4 um^2": must not exceed structure.area = "1e4 um^2")"},
-    Edit{"thickness = \"3 um\"\n", "", R"(x.toml:10: [electrode.main]: fringing = "meijs-fokkema" needs structure.width and structure.thickness on a plate; fringing = "none" does not)"},
+    Edit{"thickness = \"3 um\"\n", "", R"(x.toml:10: [electrode.main]: fringing = "meijs-fokkema", the default, needs structure.width and structure.thickness on a plate; fringing = "none" does not)"},
     Edit{"width = \"100 um\"\nthickness = \"3 um\"\n[gap]\nelectrode = \"3.8 um\"\ncontact = \"2.6 um\"\n[electrode.main]", "[gap]\nelectrode = \"3.8 um\"\ncontact = \"2.6 um\"\n[electrode.main]\nfringing = \"none\"", R"(x.toml:13: gas.model = "strip": needs structure.width on a plate)"},
     Edit{"[gas]", "[piezo]\nspan = [\"0 um\", \"9 um\"]\nthickness = \"1 um\"\nyoungs_modulus = \"61 GPa\"\ndensity = \"7750 kg/m^3\"\nd31 = \"-171 pm/V\"\n[gas]", "x.toml:13: [piezo]: a rigid plate does not bend; a layer needs a beam"},
     Edit{"model = \"strip\"\nviscosity = \"1.86e-5 Pa s\"\n[contact]\nmodel = \"linear\"\nstiffness = \"312 N/m\"", "model = \"reynolds\"\n[contact]\nmodel = \"rigid\"\nrestitution = 0.5", R"(x.toml:16: contact.model = "rigid": not with gas.model = "reynolds", whose film still flows under a plate that rests)"},
