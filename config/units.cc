@@ -182,11 +182,19 @@ int parse_power(std::string_view text, std::string_view factor) {
   return power;
 }
 
-/// Multiplies `scale` by one factor such as "um^2", raised to `sign`.
+/// Whether a digit after this factor is its power: "m3" is a volume, and no symbol ends with a digit.
+bool has_digit_power(std::string_view factor) {
+  if (factor.empty() || factor.back() < '2' || factor.back() > '9') return false;
+  const auto unit = look_up(factor.substr(0, factor.size() - 1));
+  return unit && unit->dimension == dimension::length;
+}
+
+/// Multiplies `scale` by one factor such as "um^2" or "um2", raised to `sign`.
 void apply_factor(Scale& scale, std::string_view factor, int sign) {
   const auto caret = factor.find('^');
-  const std::string_view name = factor.substr(0, caret);
-  const int power = sign * (caret == std::string_view::npos ? 1 : parse_power(factor.substr(caret + 1), factor));
+  const auto end = has_digit_power(factor) ? factor.size() - 1 : caret;
+  const std::string_view name = factor.substr(0, end);
+  const int power = sign * (end == std::string_view::npos ? 1 : parse_power(factor.substr(caret == end ? end + 1 : end), factor));
   if (name == "degC") throw InvalidInput("'degC' has an offset and can only stand alone; use K here");
   const auto unit = look_up(name);
   if (!unit) throw InvalidInput(fmt::format("unknown unit '{}'", shortened(name)));
