@@ -51,6 +51,7 @@ const Section* landing_keys() {
 }
 
 const Section* dielectric_keys() {
+  static constexpr std::string_view relative_permittivity = "'permittivity' is that of the insulator over that of vacuum";
   static const Section keys{
       .name = "dielectric",
       .keys = {OfDielectric::number<&Dielectric::thickness>("thickness", dimension::length, positive, "of the insulator")
@@ -68,7 +69,8 @@ const Section* dielectric_keys() {
                        "how the beam lands on its face, which then is the contact; absent: a beam that reaches it has failed",
                    .like = "{ model = \"wall\" }",
                    .part = landing_keys}},
-      .about = "an insulator on the electrode"};
+      .about = "an insulator on the electrode",
+      .advice = {{"eps", relative_permittivity}, {"relative", relative_permittivity}, {"constant", relative_permittivity}}};
   return &keys;
 }
 

@@ -148,6 +148,11 @@ std::string hint(std::string_view word, const std::vector<std::string_view>& kno
     const auto distance = [&](std::string_view name) { return edit_distance(word, name); };
     const auto nearest = *std::min_element(known.begin(), known.end(), [&](auto a, auto b) { return distance(a) < distance(b); });
     if (distance(nearest) <= std::max<std::size_t>(2, nearest.size() / 3)) return fmt::format(" (did you mean '{}'?)", nearest);
+    // "poisson" of poissons_ratio: a word that only one name begins with.
+    constexpr std::size_t shortest_beginning = 4;
+    const auto is_begun = [&](std::string_view name) { return word.size() >= shortest_beginning && name.starts_with(word); };
+    if (std::ranges::count_if(known, is_begun) == 1)
+      return fmt::format(" (did you mean '{}'?)", *std::ranges::find_if(known, is_begun));
   }
   return fmt::format(" (known: {})", fmt::join(known, ", "));
 }
