@@ -252,6 +252,13 @@ void check_landing(const PreparedScene& p) {
   }
 }
 
+/// The value with three digits, rounded towards 0.
+std::string rounded_down(double value, std::string_view unit) {
+  const double digit = std::pow(10, std::floor(std::log10(value)) - 2);
+  constexpr double rounding = 1e-12;
+  return engineering(std::floor(value / digit * (1 + rounding)) * digit, unit, 3);
+}
+
 /// Sources that take more samples than a run can follow.
 void check_sources(const PreparedScene& p) {
   constexpr double most_samples = 1e5;
@@ -260,8 +267,10 @@ void check_sources(const PreparedScene& p) {
     if (!rate || *rate * p.duration <= most_samples) continue;
     p.scene.file.refuse(
         "driver." + drive.name + ".sample_rate",
-        fmt::format("takes {} samples in the window of {}; there may be {}", engineering(*rate * p.duration, "", 3),
-                    engineering(p.duration, "s"), engineering(most_samples, "")));
+        fmt::format("takes {} samples in the window of {}; there may be {}: give at most {}, a simulate.duration of at most {}, "
+                    "or no sample_rate",
+                    engineering(*rate * p.duration, "", 3), engineering(p.duration, "s"), engineering(most_samples, ""),
+                    rounded_down(most_samples / p.duration, "Hz"), rounded_down(most_samples / *rate, "s")));
   }
 }
 

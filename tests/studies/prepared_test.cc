@@ -147,7 +147,8 @@ TEST(Prepare, RefusesMoreSamplesThanARunCanFollow) {
   EXPECT_EQ(refusal([] {
               (void)prepare(gold({"waveform.main.level=30 V", "driver.main.max_voltage=90 V", "driver.main.sample_rate=1 GHz"}));
             }),
-            "--set driver.main.sample_rate=1 GHz: takes 600000 samples in the window of 600 us; there may be 100000");
+            "--set driver.main.sample_rate=1 GHz: takes 600000 samples in the window of 600 us; there may be 100000: give at "
+            "most 166 MHz, a simulate.duration of at most 100 us, or no sample_rate");
 }
 
 TEST(Prepare, TakesWindowAndToleranceFromTheScene) {
