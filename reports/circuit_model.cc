@@ -75,14 +75,15 @@ class Maker {
 
   Circuit make() {
     const std::string why = why_no_circuit(model_);
-    require(why.empty(), [&] { return "a model of this switch for circuits: it has " + why; });
+    require(why.empty(), [&] { return "a model of this switch for circuits cannot be written: it has " + why; });
     const Eigen::VectorXd omega = model_.basis().angular_frequencies(), phi = model_.basis().contact_shape();
     unit_ = std::abs(phi[0]);
     c_.tau = 1 / omega[0];
     c_.gap = device_.contact_gap();
     c_.force_scale = c_.gap / (c_.tau * c_.tau * unit_ * unit_);
     const std::optional<Eigen::VectorXd> rest = p_.rest();
-    require(rest.has_value(), "a model of this switch for circuits: it has no rest under what its drives stand at before t = 0");
+    require(rest.has_value(),
+            "a model of this switch for circuits cannot be written: it has no rest under what its drives stand at before t = 0");
     for (Eigen::Index i = 0; i < omega.size(); ++i) {
       c_.stiffness.push_back(std::pow(c_.tau * omega[i], 2));
       c_.friction.push_back(2 * device_.structure.damping_ratio * c_.tau * omega[i]);
@@ -355,22 +356,32 @@ std::vector<std::string> renamed_pins(const std::vector<std::string>& drives) {
 
 std::string why_no_circuit(const Switch& model) {
   const Device& device = model.device();
-  if (device.gas && is_compressible(*device.gas)) return "a compressible gas film, which has states of its own";
-  if (device.dispersion && device.dispersion->conductor == Conductor::gold &&
-      device.dispersion->model != DispersionModel::van_der_waals)
-    return "a Casimir force between gold, which is a table";
-  if (device.gas && !std::holds_alternative<LinearGas>(*device.gas) &&
-      std::ranges::any_of(local_sections(device.structure), [](const LocalSection& one) { return one.holes.exist(); }))
-    return "a gas film under holes";
-  for (const Electrode& e : device.electrodes) {
-    if (e.fringing == Fringing::bao_2001) return "fringing by bao-2001, whose charge is an integral";
-    if (e.dielectric) return "a dielectric on an electrode";
-  }
-  if (!model.has_contact()) return {};
-  if (model.contacts() > 1) return "several contacts";
-  if (model.has_spread_contact()) return "a contact along its pad";
-  const bool can = std::visit([](const auto& law) { return only_pushes<std::decay_t<decltype(law)>>; }, model.contact());
-  return can ? "" : "a contact law other than linear or asperity-uniform";
+  std::vector<std::string> reasons;
+  const auto add = [&](bool holds, const char* reason) {
+    if (holds) reasons.emplace_back(reason);
+  };
+  add(device.gas && is_compressible(*device.gas), "a compressible gas film (it has states of its own)");
+  add(device.gas && !std::holds_alternative<LinearGas>(*device.gas) &&
+          std::ranges::any_of(local_sections(device.structure), [](const LocalSection& one) { return one.holes.exist(); }),
+      "a gas film under holes");
+  add(device.dispersion && device.dispersion->conductor == Conductor::gold &&
+          device.dispersion->model != DispersionModel::van_der_waals,
+      "a Casimir force between gold (a table)");
+  add(std::ranges::any_of(device.electrodes, [](const Electrode& e) { return e.fringing == Fringing::bao_2001; }),
+      "fringing by bao-2001 (its charge is an integral)");
+  add(std::ranges::any_of(device.electrodes, [](const Electrode& e) { return e.dielectric.has_value(); }),
+      "a dielectric on an electrode");
+  const auto only_pushes_law = [&](std::size_t c) {
+    return std::visit([](const auto& law) { return only_pushes<std::decay_t<decltype(law)>>; }, model.contact(c));
+  };
+  bool can_push = true;
+  for (std::size_t c = 0; c < model.contacts(); ++c) can_push = can_push && only_pushes_law(c);
+  add(model.contacts() > 1, "several contacts");
+  add(model.has_spread_contact(), "a contact along its pad");
+  add(!can_push, "a contact law other than linear or asperity-uniform");
+  std::string all;
+  for (std::size_t k = 0; k < reasons.size(); ++k) all += (k == 0 ? "" : k + 1 == reasons.size() ? " and " : ", ") + reasons[k];
+  return all;
 }
 
 std::string spice_model(const PreparedScene& p) {

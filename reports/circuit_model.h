@@ -22,7 +22,8 @@ namespace softland {
 /// Says of each drive whose pin has another name what that is: "drive g is the pin drive_g".
 [[nodiscard]] std::vector<std::string> renamed_pins(const std::vector<std::string>& drives);
 
-/// Why this switch cannot be written so: a law that has a memory, states or tables of its own, or that pulls; empty where it can.
+/// Why this switch cannot be written so: "a dielectric on an electrode and several contacts", all that has a memory, states or
+/// tables of its own, or that pulls; empty where it can.
 [[nodiscard]] std::string why_no_circuit(const Switch& model);
 
 /// `.subckt softland_switch` with the drives, their ground g, the contact s and d, and outputs y [um], vel [m/s], force [uN].

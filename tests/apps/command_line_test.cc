@@ -927,6 +927,11 @@ TEST(Export, WritesTheSwitchForACircuit) {
   };
   EXPECT_THAT(refused("hung-senturia.toml"), HasSubstr("compressible gas film"));
   EXPECT_THAT(refused("nem-casimir.toml"), HasSubstr("Casimir force between gold"));
+  write(here.path() / "several.toml",
+        edited(shipped("new/two-contacts.toml"), "[electrode.main]", "[electrode.main]\nfringing = \"bao-2001\""));
+  EXPECT_THAT(here.run({"export", "several.toml", "--format", "spice-model"}).err,
+              HasSubstr("a model of this switch for circuits cannot be written: it has fringing by bao-2001 (its charge is an "
+                        "integral) and several contacts\n"));
 }
 
 // A verb that works on a scene works on the folder of a result as well, and on its result.json.
