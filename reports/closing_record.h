@@ -46,7 +46,7 @@ struct ClosingRecord {
   std::optional<ClosedState> closed_state;           ///< under the hold levels; none without a contact
   std::map<std::string, PullInOfElectrode> pull_in;  ///< by electrode
   std::vector<double> natural_frequencies;           ///< [rad/s]
-  std::optional<Work> work;                          ///< that the shown run took
+  std::optional<Work> work;                          ///< integration work of the shown run
   std::vector<std::string> warnings;
   DrawnScene scene;
   std::optional<EffectsLeftOut> effects;
