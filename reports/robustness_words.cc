@@ -14,8 +14,10 @@ std::string spread_words(const DeviceSpread& spread) {
   for (const SpreadVariable& v : spread.variables) {
     std::string keys;
     for (const VariedKey& key : v.keys) keys += (keys.empty() ? "" : " and ") + key.name();
-    const double size = v.distribution.standard_deviation();
-    words += fmt::format("{}{} {} ({})", words.empty() ? "" : ", ", keys,
+    // People know a uniform distribution by its half width.
+    const bool is_uniform = v.distribution.kind() == DistributionKind::uniform;
+    const double size = v.distribution.standard_deviation() * (is_uniform ? std::sqrt(3.0) : 1);
+    words += fmt::format("{}{} {}{} ({})", words.empty() ? "" : ", ", keys, is_uniform ? "within " : "",
                          v.is_factor ? "± " + percent(size) : "± " + quantity(size, v.keys.front().unit),
                          name_of(distribution_kinds, v.distribution.kind()));
   }
