@@ -34,7 +34,7 @@ std::string command_line(const std::vector<std::string>& words) {
 void describe(CLI::App& app) {
   app.name("softland");
   app.get_formatter()->label("SUBCOMMAND", "VERB");
-  app.get_formatter()->column_width(24);
+  app.get_formatter()->column_width(25);  // two blanks after the longest name of one line
   app.require_subcommand(1);
   app.set_help_flag("-h,--help", "print this help");
   app.set_version_flag("--version", "softland " + std::string(version), "print the version");

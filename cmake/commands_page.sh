@@ -54,7 +54,6 @@ done | awk '
     close_entry()
     sub(/^  /, "")
     if (match($0, /  +/)) { term = substr($0, 1, RSTART - 1); meaning = substr($0, RSTART + RLENGTH) }
-    else if (match($0, /\.\.\. /)) { term = substr($0, 1, RSTART + 2); meaning = substr($0, RSTART + 4) }  # a term as long as its column
     else { term = $0; meaning = "" }
     next
   }
