@@ -152,7 +152,8 @@ TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge_optimized) {
   jittered.found = robustness(jittered.nominal, {}, jittered.options);
   EXPECT_THAT(terminal_text(robustness_document(jittered.report())),
               HasSubstr("The sources of the drives err as the spread says."));
-  EXPECT_THAT(terminal_text(robustness_document(jittered.report())), HasSubstr("driver.main.jitter within ± 50.0\u00a0ns (uniform)"));
+  EXPECT_THAT(terminal_text(robustness_document(jittered.report())),
+              HasSubstr("driver.main.jitter within ± 50.0\u00a0ns (uniform)"));
   for (const bool err : {false, true}) {
     const bool said = page_html(robustness_document((err ? jittered : study()).report())).find("The sources of the drives err") <
                       std::string::npos;
