@@ -83,10 +83,11 @@ double length_of(const json& structure) {
 
 template <class Kind>
 constexpr SideOfStructure side_of_kind() {
-  if (requires { Kind::is_rigid; }) return SideOfStructure::on_springs;
+  constexpr bool is_rigid = requires { Kind::is_rigid; };
+  constexpr bool has_far_clamp = requires { Kind::has_far_clamp; };
+  if (is_rigid) return SideOfStructure::on_springs;
   if (!std::is_base_of_v<Beam, Kind>) return SideOfStructure::unknown;
-  return requires { Kind::has_far_clamp; }
-  ? SideOfStructure::held_at_both_ends : SideOfStructure::held_at_one_end;
+  return has_far_clamp ? SideOfStructure::held_at_both_ends : SideOfStructure::held_at_one_end;
 }
 
 template <class... Kinds>

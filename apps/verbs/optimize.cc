@@ -92,8 +92,8 @@ struct Asked {
   StoredSearch& search;
   const std::optional<KnownSearch>& known;
   const SearchOutput& output;
-  SearchPlaces* places = nullptr;           // of a study of seeds
-  std::optional<SeedsFindings> seeds = {};  // that are done
+  SearchPlaces* places = nullptr;           // those that a study of seeds shares
+  std::optional<SeedsFindings> seeds = {};  // the searches that are done
   bool limit = false;                       // the least time is told however long it takes
 };
 

@@ -45,7 +45,7 @@ struct ForceOutcome {
   double steady_force_time = std::numeric_limits<double>::quiet_NaN();
   double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
 };
-/// That of the connection which contacts with these outcomes make: all contacts of the device, in order.
+/// Finds the outcome of the connection from those of all contacts of the device, in order.
 [[nodiscard]] ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts);
 
 class ConnectionCourse {

@@ -106,7 +106,7 @@ bool is_usual(const Switch& model) {
   const bool usual_field = model.modes() <= fleet::usual_modes && !device.dispersion && !model.stretching() && film &&
                            std::ranges::all_of(all, alike) && !(is_plate && all.size() > 1) &&
                            !electrode_conflict(device.structure, all);
-  // Of several contacts those that most switches have.
+  // Several contacts are usual where their laws are.
   if (model.contacts() > 1) return usual_field && device.gas && !all.empty() && all.front().fringing == Fringing::meijs_fokkema;
   return usual_field && !device.structure.is_built() && std::holds_alternative<UniformAsperityContact>(model.contact());
 }
@@ -304,7 +304,7 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   return s;
 }
 
-/// Where a contact carries the steady force, but for its damping [m].
+/// The depth at which a contact carries the steady force, but for its damping [m].
 double steady_depth(const FleetClosing& closing, std::size_t c) {
   if (!(closing.steady_force > 0)) return std::numeric_limits<double>::infinity();
   const ElasticContact contact = *lane_contact(closing.model->contact(c));
@@ -362,7 +362,7 @@ class Teller final : public fleet::LaneObserver {
   ConnectionTouches touches_;
 };
 
-/// Whether a switch of several contacts rests on one of them, as a run begins.
+/// Tells whether a switch of several contacts rests on one of them as a run begins.
 bool rests_on_contact(const Switch& model, const Eigen::VectorXd& rest) {
   for (std::size_t c = 1; c < model.contacts(); ++c)
     if (model.contact_deflection(rest.data(), c) > model.contact_gap(c)) return true;
@@ -454,7 +454,7 @@ std::string why_not_in_lanes(const Switch& model) {
   if (!lane_dispersion(device.dispersion)) return "a dispersion force between gold";
   if (!knows_contacts(model)) return "a contact other than linear, hysteretic or asperity-uniform at the contact point";
   if (model.contacts() > fleet::most_contacts) return fmt::format("more than {} contacts", fleet::most_contacts);
-  // That is located on the motion of a single closing.
+  // An electrical closing is located on the motion of a single closing.
   if (device.electrical.is_asked()) return "a key that says when the connection is electrically closed";
   if (!lane_film(device.gas))
     return model.film_states() > 0 ? "a compressible gas film" : fmt::format("the gas film {}", name_of(*device.gas));

@@ -31,13 +31,13 @@ struct PointStretch {
   [[nodiscard]] bool operator==(const PointStretch&) const = default;
 };
 
-/// Of a contact, what the lanes of a run have in common.
+/// The numbers of a contact that the lanes of a run have in common.
 struct LaneContactKind {
   LaneContact law = LaneContact::asperity_uniform;
   bool damped = false;
   bool remembers = false;  ///< it has one stiffness of loading and another of unloading
   bool near = true;        ///< on the side of the electrode: else it is a back stop
-  bool connects = true;    ///< whether it is one of several that make the connection
+  bool connects = true;    ///< it is one of several that make the connection
   [[nodiscard]] bool operator==(const LaneContactKind&) const = default;
 };
 
