@@ -10,6 +10,7 @@
 #include "base/engineering.h"
 #include "base/require.h"
 #include "model/closing/stepping.h"
+#include "model/contact/contact_law.h"
 #include "model/gas/gas_law.h"
 #include "model/piezo_layer.h"
 

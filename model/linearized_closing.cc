@@ -10,6 +10,7 @@
 #include "base/decompositions.h"
 #include "base/lanes.h"
 #include "integrators/quintic.h"
+#include "model/contact/contact_law.h"
 
 namespace softland {
 namespace {

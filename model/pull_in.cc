@@ -11,6 +11,7 @@
 #include "integrators/roots.h"
 #include "model/closing.h"
 #include "model/constants.h"
+#include "model/contact/contact_law.h"
 
 namespace softland {
 namespace {

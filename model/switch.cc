@@ -11,12 +11,16 @@
 #include "base/require.h"
 #include "model/built_beam.h"
 #include "model/constants.h"
+#include "model/contact/contact_law.h"
 #include "model/contact/face.h"
+#include "model/contact/pad.h"
 #include "model/far_side.h"
 #include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
 #include "model/forces/gold_casimir.h"
+#include "model/gas/gas_law.h"
 #include "model/gas/perforated_strip.h"
+#include "model/gas/reynolds_film.h"
 #include "model/modal_projection.h"
 #include "model/sampled_modes.h"
 
@@ -135,7 +139,7 @@ void Switch::set_modes(const Modes& structure, double points_per_length, int few
   Eigen::ArrayXd gaps = Eigen::ArrayXd::Constant(sampled_->positions.size(), device_.gap.electrode);
   for (Eigen::Index p = 0; p < gaps.size(); ++p) gaps[p] += device_.rest_offset(sampled_->positions[p]);
   quadrature_ = PointQuadrature(sampled_->positions, sampled_->weights, structure.scale() * sampled_->shapes, gaps);
-  if (device_.touches_along_pad()) pad_.emplace(device_.contacts.front().pad_length);
+  if (device_.touches_along_pad()) pad_ = std::make_shared<const PadQuadrature>(device_.contacts.front().pad_length);
 }
 
 Switch::Switch(const Device& device, const SwitchOptions& options, const Switch* like) : device_(device) {
@@ -204,7 +208,8 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     const double first_mode = (quadrature_.weights() * quadrature_.shapes().col(0).head(n).array().square()).sum();
     const double unit_quality = basis_.angular_frequencies()[0] / first_mode;
     const LocalSection contact = section_at(s, device_.contact_position());
-    gas_ = gas_law(*device_.gas, contact.width_at(device_.contact_position()), contact.thickness, unit_quality);
+    const double width = contact.width_at(device_.contact_position());
+    gas_ = std::make_shared<const GasLaw>(gas_law(*device_.gas, width, contact.thickness, unit_quality));
     // Calls `make` with the law of the film under one range.
     const auto film_on = [&](const EvenRange& even, auto&& make) {
       const GasLaw law = gas_law(*device_.gas, even.full_width, even.thickness, unit_quality);
@@ -213,7 +218,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
       return std::visit(make, law);
     };
     if (is_compressible(*device_.gas)) {
-      film_.emplace(*film_of(*device_.gas), s.width, n, film_floor);
+      film_ = std::make_shared<const ReynoldsFilm>(*film_of(*device_.gas), s.width, n, film_floor);
     } else {
       for (const EvenRange& even : everywhere)
         passive_laws_.push_back(film_on(even, [&](const auto& law) { return erased(law, even.points, film_floor); }));
@@ -241,11 +246,14 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     face_ = face_pressure();
   }
   if (device_.has_contact()) {
-    contact_ = contact_law(device_.contacts.front(), width_at(s, device_.contact_position()));
-    for (std::size_t c = 1; c < device_.contacts.size(); ++c) {
+    const auto law_of = [&](std::size_t c) {
       const Contact& contact = device_.contacts[c];
-      further_.push_back({.law = contact_law(contact, width_at(s, device_.contact_position(c))),
-                          .shape = (contact.side == Side::far ? -1 : 1) * basis_.further_contact_shapes()[c - 1],
+      return std::make_shared<const ContactLaw>(contact_law(contact, width_at(s, device_.contact_position(c))));
+    };
+    contact_ = law_of(0);
+    for (std::size_t c = 1; c < device_.contacts.size(); ++c) {
+      further_.push_back({.law = law_of(c),
+                          .shape = (device_.contacts[c].side == Side::far ? -1 : 1) * basis_.further_contact_shapes()[c - 1],
                           .gap = device_.contact_gap(c)});
     }
     penetration_scale_ = penetration_under(force);
@@ -379,7 +387,7 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
   if (contact.active && pad_) add_pad_force(q, v, result);
   for_further_contacts(q, contacts, [&](const FurtherContact& c, const ContactState& state, double d) {
     const auto rate = [&] { return basis_.at(v).dot(c.shape); };
-    const double force = visit_inline([&](const auto& law) { return force_of(law, d, state, rate); }, c.law);
+    const double force = visit_inline([&](const auto& law) { return force_of(law, d, state, rate); }, *c.law);
     add_modal_force<double>({c.shape.data(), n}, -force, result);
   });
   if (stretching_) stretching_->add_force(q, result);
@@ -421,10 +429,11 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
     const double rate = basis_.at(v).dot(c.shape);
     const auto slope = [&](double by_d, double by_rate) {
       return std::visit(
-          [&](const auto& law) { return force_of(law, Dual(d, by_d), state, [&] { return Dual(rate, by_rate); }).slope; }, c.law);
+          [&](const auto& law) { return force_of(law, Dual(d, by_d), state, [&] { return Dual(rate, by_rate); }).slope; },
+          *c.law);
     };
     by_q.noalias() -= (slope(1, 0) * c.shape) * c.shape.transpose();
-    if (is_rate_dependent(c.law)) by_v.noalias() -= (slope(0, 1) * c.shape) * c.shape.transpose();
+    if (is_rate_dependent(*c.law)) by_v.noalias() -= (slope(0, 1) * c.shape) * c.shape.transpose();
   });
   if (stretching_) stretching_->add_derivative(q, by_q);
 }
@@ -452,6 +461,15 @@ void Switch::add_film_derivatives(const double* state, const Workspace& work, Ei
     derivatives.block(at, n, nodes, n) += d.by_velocity * quadrature_.shapes().row(s);
     derivatives.block(at, at, nodes, nodes) += d.by_film;
   }
+}
+
+std::size_t Switch::film_states() const { return film_ ? film_->states() : 0; }
+
+void Switch::rates(const double* state, std::span<const double> volts, const ContactStates& contacts, Workspace& work,
+                   double* result) const {
+  const double* film = film_ ? state + 2 * modes() : nullptr;
+  accelerations(state, state + modes(), volts, contacts, work, result, film);
+  if (film_) film_->rates(work.field, film, result + modes());
 }
 
 double Switch::film_scale() const {
@@ -506,6 +524,10 @@ double Switch::dissipated_power(const double* v, Workspace& work, const double* 
   return film != nullptr ? squeezed + film_->dissipated_power(work.field, quadrature_.weights(), film) : squeezed;
 }
 
+double Switch::contact_reach(std::size_t c) const { return contact_ ? softland::contact_reach(contact(c)) : 0; }
+
+const RigidContact* Switch::rigid_contact() const { return contact_ ? std::get_if<RigidContact>(contact_.get()) : nullptr; }
+
 template <class F>
 void Switch::for_contact_points(const double* q, F&& f) const {
   const double d = contact_deflection(q) - contact_gap_;
@@ -518,14 +540,15 @@ void Switch::for_further_contacts(const double* q, const ContactStates& contacts
   for (std::size_t k = 0; k < further_.size(); ++k) {
     const FurtherContact& c = further_[k];
     const double d = basis_.at(q).dot(c.shape) - c.gap;
-    const ContactState state = contacts.further.empty() ? ContactState(d > -softland::contact_reach(c.law)) : contacts.further[k];
+    const ContactState state =
+        contacts.further.empty() ? ContactState(d > -softland::contact_reach(*c.law)) : contacts.further[k];
     if (state.active) f(c, state, d);
   }
 }
 
 bool Switch::has_damped_contact() const {
   return (contact_ && is_rate_dependent(*contact_)) ||
-         std::ranges::any_of(further_, [](const FurtherContact& c) { return is_rate_dependent(c.law); });
+         std::ranges::any_of(further_, [](const FurtherContact& c) { return is_rate_dependent(*c.law); });
 }
 
 double Switch::contact_rate(const double* v, double xi) const { return contact_deflection(v) - xi * basis_.pad_tilt(v); }
@@ -593,7 +616,7 @@ double Switch::potential(const double* q, std::span<const double> volts, const C
     });
   }
   for_further_contacts(q, contacts, [&](const FurtherContact& c, const ContactState& state, double d) {
-    energy += state.unloading ? stored_energy(c.law, d, state) : contact_energy(c.law, d);
+    energy += state.unloading ? stored_energy(*c.law, d, state) : contact_energy(*c.law, d);
   });
   return energy;
 }

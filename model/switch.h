@@ -21,18 +21,19 @@
 #include <string>
 #include <vector>
 
-#include "model/beam.h"
-#include "model/contact/contact_law.h"
-#include "model/contact/pad.h"
+#include "model/contact/contact_state.h"
 #include "model/device.h"
 #include "model/distributed_law.h"
-#include "model/gas/gas_law.h"
-#include "model/gas/reynolds_film.h"
 #include "model/modal_basis.h"
 #include "model/point_quadrature.h"
 #include "model/stretching.h"
 
 namespace softland {
+
+struct ContactLaw;    // model/contact/contact_law.h
+struct GasLaw;        // model/gas/gas_law.h
+class PadQuadrature;  // model/contact/pad.h
+class ReynoldsFilm;   // model/gas/reynolds_film.h
 
 struct SwitchOptions {
   double points_per_length = 24;  ///< quadrature points over a beam's length
@@ -80,23 +81,24 @@ class Switch {
     return drive < electrodes_ ? std::sqrt(strength) : strength - 1;
   }
   [[nodiscard]] bool has_piezo() const { return device_.piezo.has_value(); }
-  [[nodiscard]] bool has_contact() const { return contact_.has_value(); }
+  [[nodiscard]] bool has_contact() const { return contact_ != nullptr; }
   /// Number of contacts. What is asked without the number of one is about the first, which closes the switch.
   [[nodiscard]] std::size_t contacts() const { return contact_ ? 1 + further_.size() : 0; }
-  [[nodiscard]] const ContactLaw& contact(std::size_t c = 0) const { return c == 0 ? *contact_ : further_[c - 1].law; }
+  [[nodiscard]] const ContactLaw& contact(std::size_t c = 0) const { return c == 0 ? *contact_ : *further_[c - 1].law; }
   /// How far above the plane of first touch the contact acts [m]; 0 for most laws, and without contact.
-  [[nodiscard]] double contact_reach(std::size_t c = 0) const { return contact_ ? softland::contact_reach(contact(c)) : 0; }
+  [[nodiscard]] double contact_reach(std::size_t c = 0) const;
   /// Whether the contact acts along the pad or the face of a dielectric. It is active then at all times, and acts wherever these
   /// are beyond the plane.
-  [[nodiscard]] bool has_spread_contact() const { return pad_.has_value() || face_ != nullptr; }
+  [[nodiscard]] bool has_spread_contact() const { return pad_ != nullptr || face_ != nullptr; }
   /// State of a contact that has not been touched yet: it acts only within its reach.
   [[nodiscard]] ContactState untouched(const double* q) const {
     const double reach = contact_reach();
     return has_spread_contact() || (reach > 0 && contact_deflection(q) > contact_gap_ - reach);
   }
   /// Null unless the contact is rigid.
-  [[nodiscard]] const RigidContact* rigid_contact() const { return contact_ ? std::get_if<RigidContact>(&*contact_) : nullptr; }
-  [[nodiscard]] const std::optional<GasLaw>& gas() const { return gas_; }
+  [[nodiscard]] const RigidContact* rigid_contact() const;
+  /// Null without gas.
+  [[nodiscard]] const GasLaw* gas() const { return gas_.get(); }
   [[nodiscard]] const std::optional<MidPlaneStretching>& stretching() const { return stretching_; }
   /// Rest distance of the contact point to the contact plane [m].
   [[nodiscard]] double contact_gap(std::size_t c = 0) const { return c == 0 ? contact_gap_ : further_[c - 1].gap; }
@@ -119,7 +121,7 @@ class Switch {
   [[nodiscard]] Workspace workspace() const;
 
   /// States that follow q and v where the gas film is compressible: its pressures (model/gas/reynolds_film.h). 0 at rest.
-  [[nodiscard]] std::size_t film_states() const { return film_ ? film_->states() : 0; }
+  [[nodiscard]] std::size_t film_states() const;
   /// What a uniform film pressure of the size that bends the beam by the contact gap is, over the ambient one: the scale of the
   /// film's states.
   [[nodiscard]] double film_scale() const;
@@ -130,11 +132,7 @@ class Switch {
                      Workspace& work, double* result, const double* film = nullptr) const;
   /// Everything but q' of a state (q, v, film): accelerations, then the rates of the film.
   void rates(const double* state, std::span<const double> volts, const ContactStates& contacts, Workspace& work,
-             double* result) const {
-    const double* film = film_ ? state + 2 * modes() : nullptr;
-    accelerations(state, state + modes(), volts, contacts, work, result, film);
-    if (film_) film_->rates(work.field, film, result + modes());
-  }
+             double* result) const;
   /// Modal forces of the drives at unit strength (of the piezo: per volt) in the field last computed with `work`, whose load they
   /// overwrite: modes x drives.
   void drive_forces(Workspace& work, Eigen::Ref<Eigen::MatrixXd> by_strength) const;
@@ -220,7 +218,7 @@ class Switch {
   [[nodiscard]] double contact_rate(const double* v, double xi) const;
   /// A contact after the first one.
   struct FurtherContact {
-    ContactLaw law;
+    std::shared_ptr<const ContactLaw> law;
     Eigen::VectorXd shape;  // positive towards its plane [kg^(-1/2)]
     double gap = 0;         // [m]
   };
@@ -245,12 +243,12 @@ class Switch {
   std::size_t electrodes_ = 0;
   std::vector<std::shared_ptr<const DistributedLaw>> driven_laws_;   // one per electrode, then the dispersion force
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // these dissipate
-  std::optional<ContactLaw> contact_;
+  std::shared_ptr<const ContactLaw> contact_;
   std::vector<FurtherContact> further_;
-  std::optional<PadQuadrature> pad_;            // of a contact along the pad
+  std::shared_ptr<const PadQuadrature> pad_;    // of a contact along the pad
   std::shared_ptr<const DistributedLaw> face_;  // of a contact along the face of a dielectric; null for others
-  std::optional<GasLaw> gas_;
-  std::optional<ReynoldsFilm> film_;
+  std::shared_ptr<const GasLaw> gas_;
+  std::shared_ptr<const ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;
   std::optional<Eigen::VectorXd> rest_;
   double most_gap_ = std::numeric_limits<double>::infinity();  // to the near electrode, where something is on the far side [m]

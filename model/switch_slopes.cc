@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/require.h"
+#include "model/contact/contact_law.h"
 
 namespace softland {
 

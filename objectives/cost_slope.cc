@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "model/contact/contact_law.h"
+
 namespace softland {
 namespace {
 

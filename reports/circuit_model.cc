@@ -17,10 +17,12 @@
 #include "base/require.h"
 #include "base/select.h"
 #include "model/built_beam.h"
+#include "model/contact/contact_law.h"
 #include "model/far_side.h"
 #include "model/forces/casimir.h"
 #include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
+#include "model/gas/gas_law.h"
 #include "reports/formula.h"
 #include "waveforms/export.h"
 

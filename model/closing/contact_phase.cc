@@ -1,5 +1,7 @@
 #include "model/closing/contact_phase.h"
 
+#include "model/contact/contact_law.h"
+
 namespace softland {
 
 ContactPhase::ContactPhase(const Switch& model, std::size_t contact)

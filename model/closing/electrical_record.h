@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "model/closing/step_motion.h"
-#include "model/contact/memory.h"
+#include "model/contact/contact_state.h"
 #include "model/contact/resistance.h"
 #include "model/switch.h"
 #include "model/trajectory.h"

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "integrators/roots.h"
+#include "model/contact/contact_law.h"
 
 namespace softland {
 namespace {

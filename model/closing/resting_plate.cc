@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "integrators/roots.h"
+#include "model/contact/contact_law.h"
 
 namespace softland {
 

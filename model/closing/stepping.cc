@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "model/contact/contact_law.h"
 #include "model/pull_in.h"
 
 namespace softland {

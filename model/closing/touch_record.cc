@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "model/contact/contact_law.h"
+
 namespace softland {
 namespace {
 

@@ -14,6 +14,7 @@
 #include "model/contact/asperity_gaussian.h"
 #include "model/contact/asperity_uniform.h"
 #include "model/contact/contact.h"
+#include "model/contact/contact_state.h"
 #include "model/contact/hunt_crossley.h"
 #include "model/contact/linear.h"
 #include "model/contact/memory.h"
@@ -46,7 +47,9 @@ struct KernelsOf<std::variant<Models...>>
 }  // namespace internal
 
 /// The force of every law of ContactModel: what its parameters' law(pad) gives, one or one of several.
-using ContactLaw = internal::KernelsOf<ContactModel>::Type;
+struct ContactLaw : internal::KernelsOf<ContactModel>::Type {
+  using variant::variant;
+};
 
 /// The pads of a contact, whose moving part has this width [m].
 [[nodiscard]] inline ContactPad pad_of(const Contact& contact, double width) {
@@ -70,7 +73,7 @@ using ContactLaw = internal::KernelsOf<ContactModel>::Type;
 /// std::visit for the hot path: with more than eleven laws that one calls through a table, which the compiler cannot see through.
 template <std::size_t I = 0, class F>
 decltype(auto) visit_inline(F&& f, const ContactLaw& law) {
-  if constexpr (I + 1 < std::variant_size_v<ContactLaw>) {
+  if constexpr (I + 1 < std::variant_size_v<ContactLaw::variant>) {
     if (law.index() != I) return visit_inline<I + 1>(std::forward<F>(f), law);
   }
   return f(*std::get_if<I>(&law));

@@ -18,30 +18,18 @@
 //                     curve is ours. It leaves the summits as sharp as they were; flattened ones are stiffer and lose more.
 #pragma once
 
-#include <concepts>
 #include <type_traits>
 #include <variant>
 
 #include "base/select.h"
 #include "model/contact/asperity_uniform.h"
+#include "model/contact/contact_state.h"
 #include "model/contact/hysteretic_spring.h"
 #include "model/contact/linear.h"
 #include "model/contact/plastic_asperities.h"
 #include "model/contact/plastic_asperity.h"
 
 namespace softland {
-
-/// Where a contact law stands. Laws without memory know only whether they act. `Yes` is bool, or the mask of a lane of numbers.
-template <class S, class Yes>
-struct ContactStateOf {
-  constexpr ContactStateOf() = default;
-  constexpr ContactStateOf(std::same_as<Yes> auto acts) : active(acts) {}  // NOLINT: for most laws that is all there is
-
-  Yes active = Yes(false);
-  Yes unloading = Yes(false);  ///< along the shifted elastic curve
-  S shift = 0;                 ///< s [m], where unloading
-};
-using ContactState = ContactStateOf<double, bool>;
 
 template <class Loading, class Elastic, bool Heals>
 struct ContactWithMemory {

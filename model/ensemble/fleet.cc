@@ -12,10 +12,12 @@
 #include "model/built_beam.h"
 #include "model/closing/connection.h"
 #include "model/closing/tolerances.h"
+#include "model/contact/contact_law.h"
 #include "model/ensemble/lane_closing.h"
 #include "model/ensemble/lane_drives.h"
 #include "model/forces/casimir.h"
 #include "model/forces/dispersion.h"
+#include "model/gas/gas_law.h"
 #include "model/piezo_layer.h"
 
 namespace softland {

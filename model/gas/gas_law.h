@@ -21,7 +21,9 @@ struct LawsOf<std::variant<Laws...>> {
   using Type = std::variant<decltype(std::declval<const Laws&>().law(std::declval<const Film&>()))...>;
 };
 }  // namespace internal
-using GasLaw = internal::LawsOf<Gas>::Type;
+struct GasLaw : internal::LawsOf<Gas>::Type {
+  using variant::variant;
+};
 
 /// Damping of a rectangular film over that of a strip of the same length, whose ends would be closed; `ratio` is width over
 /// length.

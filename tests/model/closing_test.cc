@@ -12,6 +12,7 @@
 
 #include "base/literals.h"
 #include "integrators/quintic.h"
+#include "model/contact/contact_law.h"
 #include "model/pull_in.h"
 #include "objectives/metrics.h"
 #include "tests/model/expect_refused.h"

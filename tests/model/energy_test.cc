@@ -11,6 +11,7 @@
 #include "base/literals.h"
 #include "model/closing.h"
 #include "model/constants.h"
+#include "model/contact/contact_law.h"
 #include "model/forces/electrostatic.h"
 #include "model/pull_in.h"
 #include "tests/model/gold.h"

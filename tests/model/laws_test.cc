@@ -386,7 +386,7 @@ Law gas_law_of_type(double width, double free_path, double viscosity = 1.86e-5_P
 
 template <class Law>
 class GasLawOfType : public testing::Test {};
-using GasLaws = LawsOf<GasLaw>::Types;
+using GasLaws = LawsOf<GasLaw::variant>::Types;
 TYPED_TEST_SUITE(GasLawOfType, GasLaws);
 
 TYPED_TEST(GasLawOfType, OpposesTheMotionAndTakesItsEnergy) {
@@ -1258,9 +1258,9 @@ template <class... Fringing, class... Gas, class... Others>
 struct AlongTheBeam<std::variant<Fringing...>, std::variant<Gas...>, Others...> {
   using Types = testing::Types<ElectrostaticForce<Fringing>..., Gas..., Others...>;
 };
-using LawsAlongTheBeam =
-    AlongTheBeam<FringingLaw, GasLaw, DispersionForce<IdealCasimir>, DispersionForce<GoldCasimir>, DispersionForce<VanDerWaals>,
-                 DispersionForce<SmallerOfBoth<IdealCasimir>>, DispersionForce<SmallerOfBoth<GoldCasimir>>>::Types;
+using LawsAlongTheBeam = AlongTheBeam<FringingLaw, GasLaw::variant, DispersionForce<IdealCasimir>, DispersionForce<GoldCasimir>,
+                                      DispersionForce<VanDerWaals>, DispersionForce<SmallerOfBoth<IdealCasimir>>,
+                                      DispersionForce<SmallerOfBoth<GoldCasimir>>>::Types;
 TYPED_TEST_SUITE(LawAlongTheBeam, LawsAlongTheBeam);
 
 constexpr double gap_floor = 35_nm;

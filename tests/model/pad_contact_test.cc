@@ -15,6 +15,7 @@
 #include "model/beam.h"
 #include "model/closing.h"
 #include "model/constants.h"
+#include "model/contact/contact_law.h"
 #include "model/contact/pad.h"
 #include "model/pull_in.h"
 #include "model/switch.h"

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/literals.h"
+#include "model/contact/contact_law.h"
 #include "tests/support/devices.h"
 
 namespace softland {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "integrators/quintic.h"
+#include "model/contact/contact_law.h"
 
 namespace softland::test {
 namespace {

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "model/contact/contact_law.h"
 #include "tests/support/devices.h"
 
 namespace softland {

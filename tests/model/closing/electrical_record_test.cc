@@ -14,6 +14,7 @@
 #include "integrators/quintic.h"
 #include "model/closing.h"
 #include "model/constants.h"
+#include "model/contact/contact_law.h"
 #include "model/contact/resistance.h"
 #include "model/pull_in.h"
 #include "tests/support/devices.h"

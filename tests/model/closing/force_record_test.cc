@@ -9,6 +9,7 @@
 #include "base/literals.h"
 #include "integrators/quintic.h"
 #include "model/closing.h"
+#include "model/contact/contact_law.h"
 #include "model/pull_in.h"
 #include "tests/model/gold.h"
 #include "tests/support/devices.h"

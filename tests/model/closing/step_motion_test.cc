@@ -9,6 +9,7 @@
 #include "model/closing/events.h"
 #include "model/closing/pending_knots.h"
 #include "model/closing/touch_record.h"
+#include "model/contact/contact_law.h"
 #include "tests/model/gold.h"
 
 namespace softland {
