@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/engineering.h"
 #include "model/built_beam.h"
 #include "model/constants.h"
 #include "model/gas/gas_law.h"
@@ -72,6 +73,16 @@ std::string closed_state_words(const ClosedState& state) {
       words += fmt::format(" (more modes move it by {})", shift);
   }
   return words;
+}
+
+// Capacitance of the closed state of a switch that lands on a dielectric, and what more modes do to it.
+std::string capacitance_words(const PreparedScene& p) {
+  const ModeLadder ladder(p);
+  const ByModes found = closed_capacitance_by_modes(ladder, hold_levels(p.signals()));
+  const double own = found.values.begin()->second;
+  if (std::isnan(own)) return "its capacitance is not known";
+  return "its capacitance is " + engineering(own, "F", 4) +
+         (ladder.exists() ? "; more modes move it by " + shift_words(found, "F") : "");
 }
 
 // What is to be said of a key, with its place.
@@ -331,6 +342,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     const ClosedState state = closed_state(p, p.signals());
     record.closed_state = state;
     add("closed state", closed_state_words(state));
+    if (p.scene.device.lands_along_face()) add("", capacitance_words(p));
     const Hold hold = hold_of(p.model, p.signals());
     if (const auto summits = hold.closed ? summits_at_hold(p.model, *hold.closed) : std::nullopt)
       add("contact", summits_words(*summits));

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "base/engineering.h"
+#include "studies/closing/actuator.h"
 #include "studies/closing/quadrature.h"
 
 namespace softland {
@@ -32,11 +33,11 @@ double extrapolated(const std::map<int, double>& values) {
 // The statics of many modes end in rounding, which depends on how a program is linked.
 double to_ten_digits(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.9e}", value)) : value; }
 
-// One voltage by modes: find(switch) is asked of one switch after the other, and of the finest one where the others leave much to
+// One value by modes: find(switch) is asked of one switch after the other, and of the finest one where the others leave much to
 // be extrapolated.
 template <class Find>
-ByModes voltage_by_modes(const ModeLadder& ladder, Find&& find) {
-  constexpr double much = 5e-3;  // of the voltage, between the last two
+ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
+  constexpr double much = 5e-3;  // of the value, between the last two
   std::map<int, double> values;
   double change = 0, last = std::nan("");
   const auto add = [&](const Switch& model) {
@@ -81,6 +82,18 @@ std::string mode_warning(const Scene& scene, std::size_t electrode, const ByMode
       "and release are as uncertain",
       scene.device.structure.modes, scene.device.electrodes[electrode].name,
       engineering(voltage.values.begin()->second, "V", digits), shift_words(voltage));
+}
+
+std::string capacitance_warning(const Scene& scene, const ByModes& found) {
+  constexpr int digits = 4;
+  const std::optional<int> needed = modes_needed(found);
+  const std::string enough =
+      needed && *needed <= Structure::most_modes
+          ? fmt::format("{} modes hold it to 1 %", *needed)
+          : fmt::format("the {} modes that a closing takes at most do not hold it to 1 %", Structure::most_modes);
+  return fmt::format("structure.modes = {}: more modes move the capacitance of the closed state, {}, by {}; {}",
+                     scene.device.structure.modes, engineering(found.values.begin()->second, "F", digits),
+                     shift_words(found, "F"), enough);
 }
 
 }  // namespace
@@ -153,15 +166,15 @@ StabilityByModes open_stability(const ModeLadder& ladder, std::span<const double
 }
 
 ByModes static_pull_in_by_modes(const ModeLadder& ladder, const Scene& scene, std::size_t electrode) {
-  return voltage_by_modes(
-      ladder, [&](const Switch& model) { return static_pull_in(model, electrode, bias_of(scene, electrode)).voltage; });
+  return value_by_modes(ladder,
+                        [&](const Switch& model) { return static_pull_in(model, electrode, bias_of(scene, electrode)).voltage; });
 }
 
 ByModes pulled_through_by_modes(const ModeLadder& ladder, std::size_t electrode, std::vector<double> volts, double own) {
   constexpr double below = 0.95;  // of the voltage with fewer modes
   std::optional<ClosedEquilibrium> near;
   double found = own;
-  return voltage_by_modes(ladder, [&](const Switch& model) {
+  return value_by_modes(ladder, [&](const Switch& model) {
     if (&model != ladder.switches().front()) {
       if (std::isfinite(found)) volts[electrode] = below * found;
       near = near ? closed_equilibrium_near(model, volts, with_modes_of(*near, model)) : closed_equilibrium(model, volts);
@@ -176,28 +189,56 @@ VoltagesByModes voltages_by_modes(const ModeLadder& ladder, const Scene& scene, 
   VoltagesByModes found{.static_pull_in = static_pull_in_by_modes(ladder, scene, electrode), .release = {}, .pulled_through = {}};
   if (!ladder.switches().front()->has_contact()) return found;
   std::vector<double> levels = bias_of(scene, electrode);
-  found.release = voltage_by_modes(ladder, [&](const Switch& model) { return release_voltage(model, electrode, levels); });
+  found.release = value_by_modes(ladder, [&](const Switch& model) { return release_voltage(model, electrode, levels); });
   levels[electrode] = found.release.values.begin()->second;
   if (std::isfinite(levels[electrode])) found.pulled_through = pulled_through_by_modes(ladder, electrode, levels, pulled_through);
   return found;
 }
 
-std::string shift_words(const ByModes& voltage) {
+ByModes closed_capacitance_by_modes(const ModeLadder& ladder, std::span<const double> volts) {
+  std::optional<ClosedEquilibrium> near;
+  const auto capacitance = [&](const Switch& model) {
+    near = near ? closed_equilibrium_near(model, volts, with_modes_of(*near, model)) : closed_equilibrium(model, volts);
+    if (!near) return std::nan("");
+    Switch::Workspace work = model.workspace();
+    return model.capacitance(searched_drive(model.device()), near->q.data(), work);
+  };
+  ByModes found = value_by_modes(ladder, capacitance);
+  constexpr int most = Structure::most_modes;
+  if (found.is_worth_telling() && !found.values.contains(most)) {
+    near.reset();
+    found.values[most] = to_ten_digits(capacitance(ladder.with(most)));
+  }
+  return found;
+}
+
+std::optional<int> modes_needed(const ByModes& found) {
+  if (!std::isfinite(found.converged)) return std::nullopt;
+  std::optional<int> fewest;
+  for (const auto& [modes, value] : found.values) {
+    const bool holds = std::abs(value - found.converged) <= mode_shift_worth_telling * std::abs(found.converged);
+    fewest = !holds ? std::nullopt : fewest ? fewest : modes;
+  }
+  return fewest;
+}
+
+std::string shift_words(const ByModes& value, std::string_view unit) {
   constexpr int digits = 5;
   constexpr double least = 1e-5;
-  const double moved = voltage.moved();
+  const double moved = value.moved();
   if (std::isnan(moved)) return {};
   if (std::isinf(moved)) {
-    const auto [modes, last] = *voltage.values.rbegin();
-    return std::isfinite(last) ? fmt::format("so much that there is one, {} with {} modes", engineering(last, "V", digits), modes)
-                               : fmt::format("so much that there is none with {} modes", modes);
+    const auto [modes, last] = *value.values.rbegin();
+    return std::isfinite(last)
+               ? fmt::format("so much that there is one, {} with {} modes", engineering(last, unit, digits), modes)
+               : fmt::format("so much that there is none with {} modes", modes);
   }
   if (std::abs(moved) < least) return "less than 0.001 %";
   const std::string share = (moved < 0 ? "−" : "") + engineering(100 * std::abs(moved), "%", 2);
-  if (!voltage.is_worth_telling()) return share;
-  if (std::isfinite(voltage.converged)) return fmt::format("{}, to {}", share, engineering(voltage.converged, "V", digits));
-  return fmt::format("{} and on, to {} with {} modes", share, engineering(voltage.values.rbegin()->second, "V", digits),
-                     voltage.values.rbegin()->first);
+  if (!value.is_worth_telling()) return share;
+  if (std::isfinite(value.converged)) return fmt::format("{}, to {}", share, engineering(value.converged, unit, digits));
+  return fmt::format("{} and on, to {} with {} modes", share, engineering(value.values.rbegin()->second, unit, digits),
+                     value.values.rbegin()->first);
 }
 
 std::vector<std::string> mode_warnings(const PreparedScene& prepared) {
@@ -208,6 +249,10 @@ std::vector<std::string> mode_warnings(const PreparedScene& prepared) {
     if (!pulls_in(prepared.scene.device, k)) continue;
     const ByModes voltage = static_pull_in_by_modes(ladder, prepared.scene, k);
     if (voltage.is_worth_telling()) warnings.push_back(mode_warning(prepared.scene, k, voltage));
+  }
+  if (prepared.scene.device.lands_along_face()) {
+    const ByModes capacitance = closed_capacitance_by_modes(ladder, hold_levels(prepared.signals()));
+    if (capacitance.is_worth_telling()) warnings.push_back(capacitance_warning(prepared.scene, capacitance));
   }
   return warnings;
 }

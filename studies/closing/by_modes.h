@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "studies/closing/prepared.h"
@@ -47,10 +48,10 @@ class ModeLadder {
   [[nodiscard]] std::vector<const Switch*> switches() const;
   /// That with most_static_modes, built when it is first asked for.
   [[nodiscard]] const Switch& finest() const;
-
- private:
+  /// Builds that with this number of modes, up to most_static_modes.
   [[nodiscard]] Switch with(int modes) const;
 
+ private:
   const Scene* scene_;
   const Switch* own_;
   std::vector<Switch> richer_;
@@ -83,10 +84,17 @@ struct VoltagesByModes {
 [[nodiscard]] ByModes pulled_through_by_modes(const ModeLadder& ladder, std::size_t electrode, std::vector<double> volts,
                                               double own);
 
-/// "−6.1 %, to 142.7 V": by how much more modes move a voltage, and to what where that is worth telling.
-[[nodiscard]] std::string shift_words(const ByModes& voltage);
+/// Capacitance of the searched electrode in the closed state under these voltages [F], of a switch that lands on the face of a
+/// dielectric. Also with the most modes that a closing takes, where more modes move it by what is worth telling.
+[[nodiscard]] ByModes closed_capacitance_by_modes(const ModeLadder& ladder, std::span<const double> volts);
+/// Returns how many of the modes that were tried hold a value to mode_shift_worth_telling of what it converges to; none where no
+/// number does, or it does not converge.
+[[nodiscard]] std::optional<int> modes_needed(const ByModes& found);
 
-/// Sentences for the static pull-in voltages of a scene that are worth telling.
+/// "−6.1 %, to 142.7 V": by how much more modes move a voltage, or another value, and to what where that is worth telling.
+[[nodiscard]] std::string shift_words(const ByModes& value, std::string_view unit = "V");
+
+/// Sentences for the static pull-in voltages of a scene, and for the capacitance of its closed state, that are worth telling.
 [[nodiscard]] std::vector<std::string> mode_warnings(const PreparedScene& prepared);
 
 }  // namespace softland
