@@ -73,7 +73,7 @@ struct Shares {
   }
 };
 
-enum class Target { bounce, settling, rebound, count, impact, energy, force, drive, steady };
+enum class Target { bounce, settling, rebound, count, impact, energy, force, drive, steady, electrical };
 /// What a search can be about. A new one is an enumerator and a row.
 struct TargetRow {
   using Form = double (*)(const Shares&);
@@ -97,6 +97,10 @@ struct TargetRow {
 };
 namespace internal {
 inline double lead(const Shares& s) { return s.lead; }
+/// A time over the first touch of the step, of a switch that comes to it by the end of its window, else the end.
+inline double time_or_end(const Shares& s, double Metrics::*time) {
+  return s.of(std::isfinite(s.own.*time) ? time : &Metrics::end, &Metrics::initial_contact_time);
+}
 inline double largest_speed(const Shares& s) { return s.of(&Metrics::largest_impact_velocity); }
 }  // namespace internal
 inline constexpr auto targets = std::to_array<TargetRow>({
@@ -135,13 +139,16 @@ inline constexpr auto targets = std::to_array<TargetRow>({
     {.value = Target::steady,
      .name = "steady",
      .figure = &Metrics::steady_force_time,
-     .nominal =
-         [](const Shares& s) {
-           const bool is_steady = std::isfinite(s.own.steady_force_time);
-           return s.of(is_steady ? &Metrics::steady_force_time : &Metrics::end, &Metrics::initial_contact_time);
-         },
+     .nominal = [](const Shares& s) { return internal::time_or_end(s, &Metrics::steady_force_time); },
      .robust = [](const Shares& s) { return s.of_time(s.own.steady_force_time); },
      .no_gradient = "the time from which on the contact force is steady has no gradient"},
+    {.value = Target::electrical,
+     .name = "electrical",
+     .figure = &Metrics::electrical_settling,
+     .unit = &Metrics::initial_contact_time,  // the step may not close it
+     .nominal = [](const Shares& s) { return internal::time_or_end(s, &Metrics::electrical_settling); },
+     .robust = [](const Shares& s) { return s.of_time(s.own.electrical_settling); },
+     .no_gradient = "the time from which on the switch is electrically closed has no gradient"},
 });
 static_assert(is_complete<targets>());
 [[nodiscard]] constexpr std::string_view to_string(Target target) { return name_of(targets, target); }

@@ -305,13 +305,21 @@ PreparedScene SearchSetting::within_limits() const {
   return limited;
 }
 
-void require_asked(const Criterion& condition, const AskedFigures& asked) {
-  require_request(condition.figure.is_asked(asked), [&] {
-    return fmt::format("{} \"{}\": the scene has no such figure: it needs {}", requested("constrain"), condition.text,
-                       condition.figure.asked == &AskedFigures::resistance
+namespace {
+
+void require_asked(const Figure& figure, const AskedFigures& asked, const std::string& request) {
+  require_request(figure.is_asked(asked), [&] {
+    return fmt::format("{}: the scene has no such figure: it needs {}", request,
+                       figure.asked == &AskedFigures::resistance
                            ? "the resistivity of its contacts"
                            : "metrics.closed_force, metrics.closed_resistance or metrics.closed_after");
   });
+}
+
+}  // namespace
+
+void require_asked(const Criterion& condition, const AskedFigures& asked) {
+  require_asked(condition.figure, asked, fmt::format("{} \"{}\"", requested("constrain"), condition.text));
 }
 
 SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
@@ -322,6 +330,10 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
     });
   PreparedScene given = prepare_and_choose(file, true, watch);
   for (const Criterion& one : conditions) require_asked(one, given.scene.metrics.asked);
+  for (const Aim::Part& part : target.parts()) {
+    if (!part.own)
+      require_asked(figure_of(part.target), given.scene.metrics.asked, fmt::format("{} {}", requested("target"), part.name()));
+  }
   require_open_start(given.scene, "optimize closes the switch");
   require(given.model.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
   require_request(!(target.is_about(Target::force) && given.model.rigid_contact() != nullptr), [] {

@@ -9,10 +9,12 @@
 
 #include "base/require.h"
 #include "config/criterion.h"
+#include "model/contact/contact_law.h"
 #include "model/contact/resistance.h"
 #include "studies/closing/resistance_course.h"
 #include "studies/closing/simulate.h"
 #include "studies/devices/ensemble.h"
+#include "studies/search/optimize.h"
 #include "studies/search/search_setting.h"
 #include "tests/studies/scenes.h"
 
@@ -178,6 +180,16 @@ TEST(ElectricalStudies, AConditionOnAFigureThatTheSceneLacksIsRefused) {
   EXPECT_THAT(refusal(conducting_gold(), "electrical_bounce_count == 0"), testing::HasSubstr("metrics.closed_force"));
   EXPECT_EQ(refusal(conducting_gold({"metrics.closed_force=0.1 uN"}), "electrical_bounce_count == 0"), "");
   EXPECT_EQ(refusal(conducting_gold(), "resistance_ohm < 1 ohm"), "");
+}
+
+TEST(ElectricalStudies, ASearchForTheElectricalClosingMakesItSooner) {
+  const SceneFile file = conducting_gold({"metrics.closed_force=0.1 uN"});
+  const OptimizeResult found = optimize(file, {.target = Target::electrical, .family = "pulse", .max_evaluations = 150});
+  ASSERT_TRUE(found.best);
+  EXPECT_EQ(found.best->metrics.bounce_count, 0);
+  EXPECT_LT(found.best->metrics.electrical_settling, 0.9 * found.baseline.metrics.electrical_settling);
+  EXPECT_LT(found.best_cost, 1);
+  EXPECT_THROW(optimize(conducting_gold(), {.target = Target::electrical, .max_evaluations = 3}), InvalidInput);
 }
 
 }  // namespace

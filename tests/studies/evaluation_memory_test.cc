@@ -74,7 +74,7 @@ Found searched(OptimizeOptions options, EvaluationMemory* memory) {
   Found found;
   options.memory = memory;
   options.on_evaluation = [&](const Evaluation& e, const OptimizeProgress&) { found.evaluations[e.index] = e; };
-  found.result.emplace(optimize(quick(), options));
+  found.result.emplace(optimize(with_keys_for(options.target.parts()[0].target, quick()), options));
   return found;
 }
 

@@ -148,7 +148,7 @@ TEST(Optimize, MinimisesASumByTheMeanOfItsFigures) {
 
 TEST(Optimize, PricesTheBaselineAtAboutOne) {
   for (const Target target : every_target) {
-    const double cost = search(quick(), {.target = target}, 3).result.baseline_cost;
+    const double cost = search(with_keys_for(target, quick()), {.target = target}, 3).result.baseline_cost;
     EXPECT_GT(cost, 0.5) << to_string(target);
     EXPECT_LT(cost, 4) << to_string(target);
   }
@@ -226,7 +226,7 @@ TEST(Optimize, SearchesForReboundsAndCountAsForBounce) {
 TEST(Optimize, ForAFigureBeginsWithTheSearchForBounce_optimized) {
   for (const Target target : every_target) {
     if (!has_own_cost(target)) continue;
-    const Log log = search(quick(), {.target = target}, 90);
+    const Log log = search(with_keys_for(target, quick()), {.target = target}, 90);
     ASSERT_GT(log.evaluations.size(), reference().evaluations.size()) << to_string(target);
     for (const auto& [index, e] : reference().evaluations) EXPECT_EQ(log.evaluations.at(index).x, e.x) << index;
   }
@@ -351,7 +351,8 @@ TEST(Optimize, IsNoHarderThanAPlainStepThatLands_optimized) {
     for (const TargetRow& target : targets) {
       const bool is_plate = file.text().find("plate") != std::string::npos;
       if (!is_plate && target.value != Target::bounce) continue;  // the bridge takes a second
-      const OptimizeResult r = optimize(file, {.target = target.value, .family = "dual-pulse", .max_evaluations = 40});
+      const OptimizeResult r =
+          optimize(with_keys_for(target.value, file), {.target = target.value, .family = "dual-pulse", .max_evaluations = 40});
       ASSERT_TRUE(r.best) << target.name;
       const Metrics &own = r.best->metrics, &step = r.baseline.metrics;
       EXPECT_TRUE(step.lands() && own.lands()) << target.name;

@@ -55,6 +55,12 @@ inline const std::vector<Target> every_target = [] {
   return all;
 }();
 
+/// A scene with the keys that a search for this target needs.
+inline SceneFile with_keys_for(Target target, SceneFile file) {
+  if (target == Target::electrical) file.set("metrics.closed_force=0.1 uN");
+  return file;
+}
+
 /// A rigid plate on a spring without gas: one degree of freedom.
 inline SceneFile spring_plate(std::initializer_list<std::string_view> changes = {}) {
   SceneFile file = SceneFile::parse(R"(
