@@ -1,11 +1,11 @@
-// What a contact law is told about the past of its contact.
+// A contact law is told this about the past of its contact.
 #pragma once
 
 #include <concepts>
 
 namespace softland {
 
-/// Where a contact law stands. Laws without memory know only whether they act. `Yes` is bool, or the mask of a lane of numbers.
+/// This is where a contact law stands. Laws without memory know only whether they act. `Yes` is bool, or the mask of a lane of numbers.
 template <class S, class Yes>
 struct ContactStateOf {
   constexpr ContactStateOf() = default;

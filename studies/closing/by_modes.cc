@@ -37,7 +37,7 @@ double to_ten_digits(double value) { return std::isfinite(value) ? std::stod(fmt
 // be extrapolated.
 template <class Find>
 ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
-  constexpr double much = 5e-3;  // of the value, between the last two
+  constexpr double much = 5e-3;  // it is relative, between the last two
   std::map<int, double> values;
   double change = 0, last = std::nan("");
   const auto add = [&](const Switch& model) {
