@@ -135,7 +135,7 @@ TEST(RobustCost, OfEveryTargetIsKnownOnEveryScene_optimized) {
     if (!file.written("contact") || file.keys("electrode").empty()) continue;  // nothing to land on, or to shape
     ++scenes;
     for (const Target target : every_target) {
-      const SearchSetting setting = search_setting(file, target, Actuator::electrostatic, "pulse", {});
+      const SearchSetting setting = search_setting(with_keys_for(target, file), target, Actuator::electrostatic, "pulse", {});
       const KnownUnits known;
       for (const char* measure : {"cvar:0.9", "quantile:0.9", "mean+2sigma", "worst"}) {
         const RobustAim aim{.measure = parse_robust_measure(measure, device_figures), .conditions = {}};
