@@ -5,7 +5,8 @@
 
 namespace softland {
 
-/// This is where a contact law stands. Laws without memory know only whether they act. `Yes` is bool, or the mask of a lane of numbers.
+/// This is where a contact law stands. Laws without memory know only whether they act. `Yes` is bool, or the mask of a lane of
+/// numbers.
 template <class S, class Yes>
 struct ContactStateOf {
   constexpr ContactStateOf() = default;
