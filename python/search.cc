@@ -156,7 +156,7 @@ Outcome run_search(PlannedSearch& search, const Request& request, Run& running, 
     if (own) return outcome_of_own(report->found.best());
     add_result(*report, search, session != nullptr ? session->destination(*report) : "", {.command = request.command});
     if (session != nullptr) {
-      session->add_log(report->result, *report);
+      session->add_log(*report->result.search, *report);
       session->leave(*report);
     }
     return python_outcome(json_of(report->result), verbs::files_of_report<SearchReport>(report));
