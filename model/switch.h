@@ -245,7 +245,7 @@ class Switch {
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // these dissipate
   std::shared_ptr<const ContactLaw> contact_;
   std::vector<FurtherContact> further_;
-  std::shared_ptr<const PadQuadrature> pad_;    // of a contact along the pad
+  std::shared_ptr<const PadQuadrature> pad_;    // acts in a contact along the pad
   std::shared_ptr<const DistributedLaw> face_;  // of a contact along the face of a dielectric; null for others
   std::shared_ptr<const GasLaw> gas_;
   std::shared_ptr<const ReynoldsFilm> film_;

@@ -21,6 +21,7 @@ struct LawsOf<std::variant<Laws...>> {
   using Type = std::variant<decltype(std::declval<const Laws&>().law(std::declval<const Film&>()))...>;
 };
 }  // namespace internal
+/// The load of every law of Gas: what its parameters' law(film) gives.
 struct GasLaw : internal::LawsOf<Gas>::Type {
   using variant::variant;
 };

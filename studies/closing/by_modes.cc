@@ -37,7 +37,7 @@ double to_ten_digits(double value) { return std::isfinite(value) ? std::stod(fmt
 // be extrapolated.
 template <class Find>
 ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
-  constexpr double much = 5e-3;  // it is relative, between the last two
+  constexpr double much = 5e-3;  // relative change between the last two
   std::map<int, double> values;
   double change = 0, last = std::nan("");
   const auto add = [&](const Switch& model) {
@@ -252,7 +252,8 @@ std::vector<std::string> mode_warnings(const PreparedScene& prepared) {
   }
   if (prepared.scene.device.lands_along_face()) {
     const ByModes capacitance = closed_capacitance_by_modes(ladder, hold_levels(prepared.signals()));
-    if (capacitance.is_worth_telling()) warnings.push_back(capacitance_warning(prepared.scene, capacitance));
+    const bool closes = std::isfinite(capacitance.values.begin()->second);
+    if (closes && capacitance.is_worth_telling()) warnings.push_back(capacitance_warning(prepared.scene, capacitance));
   }
   return warnings;
 }
