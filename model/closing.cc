@@ -103,7 +103,7 @@ class Run {
     FollowedContact& c = parts_.contacts[event.contact];
     TrajectoryPoint& p = c.course.last_waiting();
     if (event.edge) p.position = event.edge->level;  // to rounding
-    if (p.position == c.plane && !model_.has_spread_contact()) p.contact_force = 0;
+    if (p.position == c.plane && !model_.has_spread_contact(event.contact)) p.contact_force = 0;
     audit_.settle(here());
     if (c.touches.note(event, p)) {
       if (!model_.has_contact()) {

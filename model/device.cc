@@ -180,7 +180,7 @@ void check_place_of_contact(const Device& d, std::size_t i, const std::string& p
   const double gap = d.contact_gap(i);
   require(gap > 0 && gap < 1,
           [&] { return fmt::format("{}.gap: rests {} from its plane, must be positive", path, engineering(gap, "m", 4)); });
-  const bool may_reach = c.side == Side::far || (i == 0 && d.lands_on_dielectric());
+  const bool may_reach = c.side == Side::far || c.along_face || (i == 0 && !d.lands_along_face() && d.lands_on_dielectric());
   require(may_reach || gap < d.gap.electrode + d.rest_offset(x), [&] {
     return fmt::format("{}.gap = {}: must be below gap.electrode = {}", path, engineering(gap, "m"),
                        engineering(d.gap.electrode, "m"));
@@ -271,6 +271,12 @@ double Device::dielectric_depth() const {
   return std::isfinite(least) ? least : 0;
 }
 
+std::optional<std::size_t> Device::face_contact() const {
+  const auto face = std::ranges::find(contacts, true, &Contact::along_face);
+  if (face == contacts.end()) return std::nullopt;
+  return static_cast<std::size_t>(face - contacts.begin());
+}
+
 const Landing* Device::landing() const {
   for (const Electrode& e : electrodes)
     if (e.dielectric && e.dielectric->landing) return &*e.dielectric->landing;
@@ -302,12 +308,26 @@ Place first_touch_on(const Device& d) {
 
 void set_face_contact(Device& d) {
   const Landing* landing = d.landing();
-  if (landing == nullptr || (d.has_contact() && !d.lands_along_face())) return;  // validate() refuses the latter
-  // The stiffness of a wall is that of the switch, which knows it by its modes.
+  if (landing == nullptr) return;
+  const double plane = d.gap.electrode - landing->from;
+  if (const auto known = d.face_contact()) {
+    (*known == 0 ? d.gap.contact : d.contacts[*known].gap) = plane;
+    return;
+  }
+  // The stiffness of a wall is that of the switch, which finds it from its modes.
   Contact face{.model = LinearSpring{.stiffness = landing->is_wall() ? 1 : landing->stiffness}, .along_face = true};
   if (!d.structure.is_rigid()) face.at = first_touch_on(d);
-  d.contacts = {std::move(face)};
-  d.gap.contact = d.gap.electrode - landing->from;
+  const bool has_others = d.has_contact();
+  if (has_others) face.name = face_name;
+  if (std::ranges::find(d.contacts, Side::near, &Contact::side) != d.contacts.end()) {
+    face.connects = false;
+    face.gap = plane;
+    d.contacts.push_back(std::move(face));
+    return;
+  }
+  if (has_others) d.contacts.front().gap = d.gap.contact;
+  d.contacts.insert(d.contacts.begin(), std::move(face));
+  d.gap.contact = plane;
 }
 
 bool have_equal_landings(const Electrode& one, const Electrode& other) {
@@ -319,7 +339,6 @@ bool have_equal_landings(const Electrode& one, const Electrode& other) {
 
 std::string why_no_landing(const Device& d) {
   if (d.landing() != nullptr) {
-    if (!d.lands_along_face()) return "the face of a dielectric with a landing is the contact: there is no other beside it";
     const auto is_near = [](const Electrode& e) { return e.side != Side::far; };
     const auto first = std::ranges::find_if(d.electrodes, is_near);
     const bool all =
@@ -398,13 +417,12 @@ std::optional<ContactConflict> contact_conflict(const Device& d) {
     if (all.size() == 1) break;
     if (std::holds_alternative<RigidStop>(c.model))
       return ContactConflict{i, "model = \"rigid\" stands for a contact that is alone"};
-    if (c.along_face) return ContactConflict{i, "the face of a dielectric stands for a contact that is alone"};
     if (c.distribution == ContactDistribution::pad)
       return ContactConflict{i, "distribution = \"pad\" stands for a contact that is alone"};
-    if (i > 0 && c.side == Side::near && all[i - 1].side == Side::far)
+    if (i > 0 && c.side == Side::near && !c.along_face && all[i - 1].side == Side::far)
       return ContactConflict{i, "the contacts of the near side come first"};
     for (std::size_t k = 0; k < i && !d.structure.is_rigid(); ++k) {
-      if (all[k].side != c.side) continue;
+      if (all[k].side != c.side || all[k].along_face || c.along_face) continue;
       if (std::abs(d.contact_position(k) - d.contact_position(i)) > 1e-9 * d.structure.length) continue;
       if (d.contact_gap(k) == d.contact_gap(i))
         return ContactConflict{i, fmt::format("stands at the place of contact.{}, with the same gap: one contact with count = 2 "

@@ -126,7 +126,7 @@ struct Device {
   Gap gap = {};
   std::vector<Electrode> electrodes = {};
   std::optional<Gas> gas = {};
-  std::vector<Contact> contacts = {};  ///< those of the near side first: the first one closes the switch
+  std::vector<Contact> contacts = {};  ///< the first one, of the near side, closes the switch; back stops come after the others
   Connection connection = Connection::all;
   ElectricalClosing electrical = {};
   std::optional<Piezo> piezo = {};
@@ -149,8 +149,10 @@ struct Device {
   [[nodiscard]] double contact_gap(std::size_t contact = 0) const;
   /// The landing on the dielectric of its electrodes, which is one for all that have any; null where none has.
   [[nodiscard]] const Landing* landing() const;
-  /// Whether its contact is the face of a dielectric, all along its electrodes.
-  [[nodiscard]] bool lands_along_face() const { return has_contact() && contacts.front().along_face; }
+  /// The number of the contact that is the face of a dielectric, all along its electrodes; none where no dielectric has a
+  /// landing.
+  [[nodiscard]] std::optional<std::size_t> face_contact() const;
+  [[nodiscard]] bool lands_along_face() const { return face_contact().has_value(); }
   /// Whether it lands on the dielectric of its electrodes, nearer than a hundredth of the gap to it.
   [[nodiscard]] bool lands_on_dielectric() const { return lands_along_face() || gap.contact > 0.99 * gap.electrode; }
   /// Local gap between a closed switch and the face of its electrode, for the laws of films: at least a hundredth of the rest
@@ -194,8 +196,12 @@ struct ContactConflict {
 [[nodiscard]] bool have_equal_landings(const Electrode& one, const Electrode& other);
 inline constexpr auto unequal_landings = "where a dielectric has a landing, every near electrode has the same one";
 
+/// Name of the contact that is the face of a dielectric, where the device has other contacts beside it.
+inline constexpr std::string_view face_name = "dielectric";
+
 /// Gives a device whose dielectric has a landing the contact that this is, with its plane and its place: where a beam that bends
-/// under its electrodes touches first. Nothing changes without a landing, and when it is called again.
+/// under its electrodes touches first. It comes last, and makes no connection, where the device has a contact on the near side;
+/// else it comes first, and makes it. Nothing changes without a landing, and when it is called again.
 void set_face_contact(Device& device);
 
 /// Why a device whose contact lies at its electrode cannot land there; empty when it can.

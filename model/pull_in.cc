@@ -435,13 +435,14 @@ double release_voltage(const Switch& model, std::size_t drive, Bias bias) { retu
 namespace {
 
 // Of the static forces, by the modes: symmetric but for rounding, for contact and fields have potentials.
-Eigen::MatrixXd stiffness_at(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts, bool in_contact) {
+Eigen::MatrixXd stiffness_at(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts,
+                             const ContactState& contact) {
   const Eigen::Index n = model.modes();
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
   Eigen::MatrixXd by_q(n, n), by_v(n, n), force(n, 1);
   Switch::Workspace work = model.workspace();
-  model.accelerations(q.data(), still.data(), volts, in_contact, work, force.data());  // sets the field
-  model.jacobian(q.data(), still.data(), volts, in_contact, work, by_q, by_v);
+  model.accelerations(q.data(), still.data(), volts, contact, work, force.data());  // sets the field
+  model.jacobian(q.data(), still.data(), volts, contact, work, by_q, by_v);
   return -(by_q + by_q.transpose()) / 2;
 }
 
@@ -527,9 +528,9 @@ double static_push(const Switch& model, const Eigen::VectorXd& q) {
 }
 
 // Finds how a beam rests on the face of a dielectric: it may stand on its first spot, or lie with most of its length. Newton's
-// method begins at the beam that a force holds at the plane, and goes down the potential: its step leads downhill along every
-// direction. A step shortens no gap of the field by more than a share, so that it does not leap over the ridge of a soft face.
-std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts) {
+// method goes down the potential from `q`: its step leads downhill along every direction. A step shortens no gap of the field by
+// more than a share, so that it does not leap over the ridge of a soft face.
+std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts, Eigen::VectorXd q) {
   constexpr int most_steps = 1000;
   constexpr double longest = 0.05, shortest = 1e-9;           // steps, in shares of the gaps of the field
   constexpr double least_gap = 0.25;                          // over the depth of the dielectric
@@ -540,12 +541,16 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
   const Eigen::VectorXd compliance = model.basis().angular_frequencies().cwiseInverse();
   const double depth = model.device().dielectric_depth();
-  Eigen::VectorXd q = statics.pushed(model.contact_gap()), force(model.modes());
-  double radius = longest, energy = model.potential(q.data(), volts, true, work);
+  // A point contact pulls nothing where the beam is not down on it.
+  const auto contact_at = [&](const Eigen::VectorXd& at) -> ContactState {
+    return model.has_spread_contact() || model.contact_deflection(at.data()) > model.contact_gap() - model.contact_reach();
+  };
+  Eigen::VectorXd force(model.modes());
+  double radius = longest, energy = model.potential(q.data(), volts, contact_at(q), work);
   for (int k = 0; k < most_steps && radius > shortest; ++k) {
     const SymmetricEigen along =
-        symmetric_eigen(compliance.asDiagonal() * stiffness_at(model, q, volts, true) * compliance.asDiagonal());
-    model.accelerations(q.data(), still.data(), volts, true, work, force.data());
+        symmetric_eigen(compliance.asDiagonal() * stiffness_at(model, q, volts, contact_at(q)) * compliance.asDiagonal());
+    model.accelerations(q.data(), still.data(), volts, contact_at(q), work, force.data());
     const auto reach_of = [&](const Eigen::VectorXd& step) {
       const Eigen::ArrayXd gaps = (work.field.gap + depth).max(least_gap * depth);
       return ((model.quadrature().shapes() * step).array() / gaps).abs().maxCoeff();
@@ -561,23 +566,38 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
     } else if (reach > radius) {
       step *= radius / reach;
     }
-    const double next = model.potential((q + step).eval().data(), volts, true, work);
+    const Eigen::VectorXd beyond = q + step;
+    const double next = model.potential(beyond.data(), volts, contact_at(beyond), work);
     if (!(next < energy)) {
       radius = std::min(radius, reach) / 4;
       continue;
     }
-    q += step;
+    q = beyond;
     const double gained = energy - next;
     energy = next;
     if (reach < radius && gained < rounding * model.bending_energy() && along.values[0] > 0) break;
     radius = std::min(2 * radius, longest);
   }
+  if (!contact_at(q).active) return std::nullopt;
   // Where the edge of what is in touch lies at a point of the quadrature, Newton's method may go to and fro about it.
   if (const auto found = statics.closed(volts, q)) q = *found;
   const double push = static_push(model, q);
   if (!(push > 0)) return std::nullopt;
   const ClosedEquilibrium found = closed_at(model, q, push, volts);
   return found.smallest_eigenvalue > 0 ? std::optional(found) : std::nullopt;
+}
+
+// The beam begins where a force holds it at the plane of its first contact and, where another contact closes the switch and the
+// beam leaves it from there, on the face.
+std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts) {
+  const Eigen::VectorXd squares = model.basis().angular_frequencies().cwiseAbs2();
+  const auto held_at = [&](std::size_t c) {
+    const Eigen::VectorXd pushed = model.contact_shape(c).cwiseQuotient(squares);
+    return Eigen::VectorXd(pushed * (model.contact_gap(c) / model.contact_shape(c).dot(pushed)));
+  };
+  const std::size_t face = *model.device().face_contact();
+  std::optional<ClosedEquilibrium> found = closed_on_face(model, volts, held_at(0));
+  return found || face == 0 ? found : closed_on_face(model, volts, held_at(face));
 }
 
 }  // namespace
@@ -758,23 +778,47 @@ bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias
   return StepTrial(model, drive, statically, bias, tolerance).reaches(value, watch.stop, [](double) {});
 }
 
+namespace {
+
+// Whether friction at rest keeps the first mode from swinging.
+bool is_overdamped(const Switch& model) {
+  if (!model.rest()) return false;
+  const Eigen::Index n = model.modes();
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
+  const std::vector<double> drives(model.drives(), 0.0);
+  Eigen::MatrixXd by_q(n, n), by_v(n, n);
+  Switch::Workspace work = model.workspace();
+  model.jacobian(model.rest()->data(), still.data(), drives, false, work, by_q, by_v);
+  return by_v(0, 0) * by_v(0, 0) > -4 * by_q(0, 0);
+}
+
+}  // namespace
+
 DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result, Bias bias,
                               const Watch& watch, double tolerance, double precision) {
   if (static_result.status != Status::done) return {.status = static_result.status};
   StepTrial steps(model, drive, static_result, bias, tolerance);
   if (!steps.has_rest()) return {.status = Status::collapsed_at_rest};
   const double halvings = 1 + std::log2(0.5 / precision);  // trials: the first, and those that halve the bracket
-  double done = 0, shown = 0;
+  double trials = halvings, done = 0, shown = 0;
   const auto reaches = [&](double value) {
     return steps.reaches(value, watch.stop, [&](double part) {
       // A bracket that is looked for further down takes more trials than were expected.
-      shown = std::max(shown, std::min(1.0, (done + part) / halvings));
+      shown = std::max(shown, std::min(1.0, (done + part) / trials));
       watch.tell("dynamic pull-in voltage", shown);
     });
   };
 
   double low = 0.5 * static_result.voltage, high = static_result.voltage;
-  while (reaches(low)) {
+  if (is_overdamped(model)) {
+    // Where friction lets no step overshoot, one trial tells that the static voltage is the least.
+    trials = 1;
+    if (!reaches(high * (1 - precision))) low = high;
+    trials = 1 + halvings;
+    ++done;
+  }
+  if (low == high) watch.tell("dynamic pull-in voltage", 1);
+  while (low < high && reaches(low)) {
     if (watch.stopped()) break;
     high = low;
     low /= 2;

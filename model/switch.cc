@@ -233,8 +233,9 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
   const double compliance = basis_.contact_shape().cwiseAbs2().cwiseQuotient(basis_.squares()).sum();
   const double force = contact_gap_ / compliance;
   bending_energy_ = force * contact_gap_ / 2;
-  if (device_.lands_along_face()) {
-    auto& spring = std::get<LinearSpring>(device_.contacts.front().model);
+  if (const auto face = device_.face_contact()) {
+    face_at_ = *face;
+    auto& spring = std::get<LinearSpring>(device_.contacts[face_at_].model);
     if (device_.landing()->is_wall()) {
       double area = 0;
       for_faces(device_, quadrature_.positions(), [&](const EvenRange& even) {
@@ -264,7 +265,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
 
 std::shared_ptr<const DistributedLaw> Switch::face_pressure() const {
   constexpr double no_floor = -std::numeric_limits<double>::infinity();
-  const double stiffness = std::get<LinearSpring>(device_.contacts.front().model).stiffness, from = device_.landing()->from;
+  const double stiffness = std::get<LinearSpring>(device_.contacts[face_at_].model).stiffness, from = device_.landing()->from;
   std::vector<std::shared_ptr<const DistributedLaw>> pads;
   for_faces(device_, quadrature_.positions(), [&](const EvenRange& even) {
     pads.push_back(erased(FacePressure{.stiffness = even.width * stiffness, .from = from}, even.points, no_floor));
@@ -370,7 +371,7 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
     if (const double drive = strength(k, volts[k]); drive != 0) driven_laws_[k]->add_load(work.field, drive, work.load.data());
   }
 
-  if (contact.active && face_) face_->add_load(work.field, 1, work.load.data());
+  if (face_acts(contacts)) face_->add_load(work.field, 1, work.load.data());
 
   double push = 0;
   if (contact.active && !has_spread_contact()) {
@@ -403,7 +404,7 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
     driven_laws_[k]->add_derivatives(work.field, strength(k, volts[k]), work.by_deflection.data(), work.by_velocity.data());
   }
   for (const auto& law : passive_laws_) law->add_derivatives(work.field, 0, work.by_deflection.data(), work.by_velocity.data());
-  if (contact.active && face_) face_->add_derivatives(work.field, 1, work.by_deflection.data(), work.by_velocity.data());
+  if (face_acts(contacts)) face_->add_derivatives(work.field, 1, work.by_deflection.data(), work.by_velocity.data());
   quadrature_.project_slopes(work.by_deflection, work.load, by_q);
   if (passive_laws_.empty()) {
     by_v.setZero();
@@ -412,7 +413,7 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
   }
   by_q.diagonal() -= basis_.squares();
   by_v.diagonal() -= 2 * device_.structure.damping_ratio * basis_.angular_frequencies();
-  if (contact.active && !face_) {
+  if (contact.active && face_at_ != 0) {
     for_contact_points(q, [&](double xi, double share, double d) {
       const Eigen::VectorXd shape = basis_.contact_shape() - xi * basis_.pad_slope();
       const double rate = contact_rate(v, xi);
@@ -538,6 +539,7 @@ void Switch::for_contact_points(const double* q, F&& f) const {
 template <class F>
 void Switch::for_further_contacts(const double* q, const ContactStates& contacts, F&& f) const {
   for (std::size_t k = 0; k < further_.size(); ++k) {
+    if (k + 1 == face_at_) continue;
     const FurtherContact& c = further_[k];
     const double d = basis_.at(q).dot(c.shape) - c.gap;
     const ContactState state =
@@ -567,13 +569,13 @@ void Switch::add_pad_force(const double* q, const double* v, double* result) con
 }
 
 double Switch::contact_push(const double* q, const double* v, const ContactState& contact, std::size_t c) const {
-  if (c > 0) {
-    return contact_force(this->contact(c), contact_deflection(q, c) - contact_gap(c), contact, contact_deflection(v, c));
-  }
-  if (face_) {
+  if (c == face_at_) {
     Eigen::ArrayXd load = Eigen::ArrayXd::Zero(quadrature_.shapes().rows());
     face_->add_load(still_field(q), 1, load.data());
     return -(quadrature_.weights() * load.head(quadrature_.points())).sum();
+  }
+  if (c > 0) {
+    return contact_force(this->contact(c), contact_deflection(q, c) - contact_gap(c), contact, contact_deflection(v, c));
   }
   double sum = 0;
   for_contact_points(
@@ -582,18 +584,18 @@ double Switch::contact_push(const double* q, const double* v, const ContactState
 }
 
 double Switch::contact_stored(const double* q, const ContactState& contact, std::size_t c) const {
+  if (c == face_at_) return face_->potential(still_field(q), quadrature_.weights());
   if (c > 0) return stored_energy(this->contact(c), contact_deflection(q, c) - contact_gap(c), contact);
-  if (face_) return face_->potential(still_field(q), quadrature_.weights());
   double sum = 0;
   for_contact_points(q, [&](double, double share, double d) { sum += share * stored_energy(*contact_, d, contact); });
   return sum;
 }
 
 double Switch::contact_dissipation(const double* q, const double* v, std::size_t c) const {
+  if (c == face_at_) return 0;
   if (c > 0) {
     return softland::contact_dissipation(contact(c), contact_deflection(q, c) - contact_gap(c), contact_deflection(v, c));
   }
-  if (face_) return 0;
   double sum = 0;
   for_contact_points(q, [&](double xi, double share, double d) {
     sum += share * softland::contact_dissipation(*contact_, d, contact_rate(v, xi));
@@ -608,9 +610,8 @@ double Switch::potential(const double* q, std::span<const double> volts, const C
     if (const double drive = strength(k, volts[k]); drive != 0) energy += drive * law_potential(k, q, work);
   }
   if (device_.piezo) energy -= volts.back() * basis_.piezo_charge(q);
-  if (contact.active && face_) {
-    energy += contact_stored(q, contact);
-  } else if (contact.active) {
+  if (face_acts(contacts)) energy += contact_stored(q, contact, face_at_);
+  if (contact.active && face_at_ != 0) {
     for_contact_points(q, [&](double, double share, double d) {
       energy += share * (contact.unloading ? stored_energy(*contact_, d, contact) : contact_energy(*contact_, d));
     });

@@ -89,7 +89,7 @@ class Switch {
   [[nodiscard]] double contact_reach(std::size_t c = 0) const;
   /// Whether the contact acts along the pad or the face of a dielectric. It is active then at all times, and acts wherever these
   /// are beyond the plane.
-  [[nodiscard]] bool has_spread_contact() const { return pad_ != nullptr || face_ != nullptr; }
+  [[nodiscard]] bool has_spread_contact(std::size_t c = 0) const { return c == face_at_ || (c == 0 && pad_ != nullptr); }
   /// State of a contact that has not been touched yet: it acts only within its reach.
   [[nodiscard]] ContactState untouched(const double* q) const {
     const double reach = contact_reach();
@@ -225,6 +225,10 @@ class Switch {
   /// Calls f(contact, state, interference) for every further contact that is active.
   template <class F>
   void for_further_contacts(const double* q, const ContactStates& contacts, F&& f) const;
+  [[nodiscard]] bool face_acts(const ContactStates& contacts) const {
+    if (face_ == nullptr || face_at_ == 0) return face_ != nullptr && contacts.first.active;
+    return contacts.further.empty() || contacts.further[face_at_ - 1].active;
+  }
   void add_pad_force(const double* q, const double* v, double* result) const;
   [[nodiscard]] double penetration_under(double force) const;
   /// The pressure of the faces of the electrodes, whose contact this is.
@@ -245,8 +249,9 @@ class Switch {
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // these dissipate
   std::shared_ptr<const ContactLaw> contact_;
   std::vector<FurtherContact> further_;
-  std::shared_ptr<const PadQuadrature> pad_;    // acts in a contact along the pad
-  std::shared_ptr<const DistributedLaw> face_;  // of a contact along the face of a dielectric; null for others
+  std::shared_ptr<const PadQuadrature> pad_;                       // acts in a contact along the pad
+  std::shared_ptr<const DistributedLaw> face_;                     // of a contact along the face of a dielectric; null for others
+  std::size_t face_at_ = std::numeric_limits<std::size_t>::max();  // number of that contact
   std::shared_ptr<const GasLaw> gas_;
   std::shared_ptr<const ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;

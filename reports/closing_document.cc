@@ -162,7 +162,7 @@ ReportSection figures_section(const ClosingRecord& result) {
     section.parts.emplace_back(
         SubHeading{devices->better_than_plain_step ? "best.toml on the nominal design" : "The plain step on the nominal design"});
   if (result.best.figures || result.baseline().figures) section.parts.emplace_back(figures_table(result));
-  if (!result.contacts.empty()) section.parts.emplace_back(contacts_table(result));
+  if (result.contacts.size() > 1) section.parts.emplace_back(contacts_table(result));
   if (result.search && result.search->goal_met && !result.search->devices)
     section.parts.emplace_back(Paragraph{fmt::format("The goal is {}.", *result.search->goal_met ? "met" : "not met")});
   for (const std::string& words :

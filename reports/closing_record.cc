@@ -68,8 +68,11 @@ RunRecord run(const PreparedScene& p, const Closing& closing, const MetricsOptio
           .collapse_time = closing.trajectory.collapse_time};
 }
 
-std::map<std::string, ContactFigures> contacts(const Closing& closing) {
+// Figures of each of several contacts, and of the face of a dielectric where the beam lands on one, alone or not.
+std::map<std::string, ContactFigures> contacts(const Device& device, const Closing& closing) {
   std::map<std::string, ContactFigures> all;
+  if (closing.contacts.empty() && device.lands_along_face())
+    all[std::string(face_name)] = {.gap = closing.trajectory.contact_gap, .figures = finite(FigureValues(closing.metrics))};
   for (std::size_t c = 0; c < closing.contacts.size(); ++c) {
     const ContactOutcome& own = closing.trajectory.contacts[c];
     all[own.name] = {.gap = own.gap, .figures = finite(FigureValues(closing.contacts[c].metrics))};
@@ -182,7 +185,7 @@ ClosingRecord record_of(const PreparedScene& prepared, const Closing& closing, c
   r.status = to_string(closing.metrics.status);
   r.message = closing.trajectory.message;
   r.best = run(prepared, closing, prepared.scene.metrics);
-  r.contacts = contacts(closing);
+  r.contacts = contacts(prepared.scene.device, closing);
   if (closing.certificate) r.certificate = *closing.certificate;
   r.pull_in = pull_in(prepared);
   r.work = closing.trajectory.work;
@@ -221,7 +224,7 @@ ClosingRecord record_of(const OptimizeResult& found, const OptimizeOptions& opti
   r.warnings = found.best ? found.best->warnings : found.baseline.warnings;
   if (!found.best) return r;
   r.best = run(*found.best_scene, *found.best, metrics_options);
-  r.contacts = contacts(*found.best);
+  r.contacts = contacts(found.best_scene->scene.device, *found.best);
   r.best.cost = found.best_cost;
   r.work = found.best->trajectory.work;
   s.parameters = found.parameters;

@@ -116,8 +116,13 @@ void check_fringing(const Structure& s, const Electrode& e, const SectionReader&
 void check_landing(Device& d, const Electrode& e, const SectionReader& in) {
   if (!e.dielectric || !e.dielectric->landing) return;
   const SectionReader gap(in.file(), "gap");
-  in.require(in.file().find({"contact"}) == nullptr, "dielectric",
-             "has a landing, which is the contact: there is no [contact] beside it");
+  const bool has_contacts = in.file().find({"contact"}) != nullptr;
+  if (has_contacts && !in.file().is_named(*find_section("contact"))) {
+    in.file().fail_section(
+        "contact", "stands beside the face of a dielectric, which is a contact too: give it a name, [contact.tip], and a 'gap'");
+  }
+  in.require(!has_contacts || in.file().find({"contact", std::string(face_name)}) == nullptr, "dielectric",
+             fmt::format("has a landing, whose contact is called {0}: [contact.{0}] needs another name", face_name));
   in.require(in.file().find({"dispersion"}) == nullptr, "dielectric",
              "has a landing: a beam that lands on a dielectric takes no dispersion force");
   const double from = e.dielectric->landing->from, plane = d.gap.electrode - from;
@@ -127,7 +132,7 @@ void check_landing(Device& d, const Electrode& e, const SectionReader& in) {
     gap.require(std::abs(d.gap.contact - plane) <= 1e-9 * d.gap.electrode, "contact",
                 "must be " + engineering(plane, "m") + ", where the landing begins: leave it out");
   }
-  set_face_contact(d);
+  if (!has_contacts) d.gap.contact = plane;  // the contact follows: see check_metrics()
 }
 
 void check_electrode(Scene& scene, const SectionReader& in, std::size_t k) {

@@ -75,6 +75,7 @@ void check_electrical(const Device& d, const SectionReader& in) {
 }
 
 void check_metrics(Scene& scene, const SectionReader& in, std::size_t) {
+  set_face_contact(scene.device);
   set_connection(scene.device, in);
   order_contacts(scene.device);
   check_electrical(scene.device, in);

@@ -10,7 +10,7 @@ ContactPhase::ContactPhase(const Switch& model, std::size_t contact)
       plane_(model.contact_gap(contact)),
       reach_(model.contact_reach(contact)),
       has_contact_(model.has_contact()),
-      acts_along_pad_(model.has_spread_contact()),
+      acts_along_pad_(model.has_spread_contact(contact)),
       remembers_(has_contact_ && has_memory(model.contact(contact))) {
   if (has_contact_) kinks_ = contact_kinks(model.contact(contact));
   enter(Phase::flight);

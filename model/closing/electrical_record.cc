@@ -18,7 +18,7 @@ ElectricalRecord::Instant ElectricalRecord::instant(std::size_t c, const Contact
   const ContactLaw& law = model_.contact(c);
   const TipMotion tip(contact.motion, contact.from, contact.to);
   Instant now{.interference = tip.position(time) - model_.contact_gap(c)};
-  if (model_.has_spread_contact()) {
+  if (model_.has_spread_contact(c)) {
     const double length = contact.to.time - contact.from.time, share = length > 0 ? (time - contact.from.time) / length : 1;
     now.force = std::lerp(contact.from.contact_force, contact.to.contact_force, share);
   } else {
@@ -56,9 +56,8 @@ double ElectricalRecord::margin(const Instant& now) const {
 
 void ElectricalRecord::take(double begin, double end, std::span<const ContactInStep> contacts) {
   if (!(end > begin)) return;
-  const bool can_close = model_.has_spread_contact() || std::ranges::any_of(contacts, [](const ContactInStep& one) {
-                           return one.is_in_contact || one.law.active;
-                         });
+  const bool can_close =
+      std::ranges::any_of(contacts, [](const ContactInStep& one) { return one.is_in_contact || one.law.active; });
   if (!can_close) {
     for (Followed& followed : followed_) set(followed, false, begin);
     return;

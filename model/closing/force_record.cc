@@ -67,7 +67,7 @@ double ForceRecord::least() const {
 }
 
 void ForceRecord::take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law) {
-  if (!law.active || model_.has_spread_contact()) return take_line(from, to);
+  if (!law.active || model_.has_spread_contact(contact_)) return take_line(from, to);
   const double plane = model_.contact_gap(contact_);
   const auto force = [&](double t) {
     return contact_force(model_.contact(contact_), tip.position(t) - plane, law, tip.velocity(t));

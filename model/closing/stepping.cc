@@ -196,7 +196,7 @@ TrajectoryPoint Stepping::knot(FollowedContact& contact, int k) {
                     .velocity = s.velocity,
                     .acceleration = s.acceleration};
   const ContactState& law = contact.phase.law();
-  if (parts_.model.has_spread_contact()) {
+  if (parts_.model.has_spread_contact(contact.number)) {
     p.contact_force = force_on_line(contact, p.time);
   } else if (law.active) {
     p.contact_force = contact_force(parts_.model.contact(contact.number), s.position - contact.plane, law, s.velocity);
@@ -264,7 +264,7 @@ bool Stepping::go_through(FollowedContact& contact, const Event& event, const Ti
                      .position = event.edge->level,
                      .velocity = tip.velocity(event.time),
                      .acceleration = tip.acceleration(event.time)};
-  if (parts_.model.has_spread_contact()) at.contact_force = force_on_line(contact, at.time);
+  if (parts_.model.has_spread_contact(contact.number)) at.contact_force = force_on_line(contact, at.time);
   if (at.time > from.time) parts_.record(contact, TipMotion(contact.motion, from, at), from, at);
   contact.course.push(at);
   contact.touches.note(event, at);

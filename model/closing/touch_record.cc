@@ -48,7 +48,7 @@ void TouchRecord::take(const TipMotion& tip, const TrajectoryPoint& from, const 
   if (!phase_.in_contact()) return;
   const double deepest = from.velocity > 0 && to.velocity < 0 ? tip.position(tip.turn()) : std::max(from.position, to.position);
   const double d = deepest - plane_;
-  if (phase_.law().active && !model_.has_spread_contact()) {
+  if (phase_.law().active && !model_.has_spread_contact(contact_)) {
     touch_.peak_force = std::max(touch_.peak_force, contact_force(model_.contact(contact_), d, phase_.law(), 0));
     touch_.peak_energy = std::max(touch_.peak_energy, stored_energy(model_.contact(contact_), d, phase_.law()));
   }
@@ -56,13 +56,13 @@ void TouchRecord::take(const TipMotion& tip, const TrajectoryPoint& from, const 
 }
 
 void TouchRecord::take(const Knot& begin, const Knot& end, StepMotion& step) {
-  if (!phase_.in_contact() || !(model_.has_damped_contact() || model_.has_spread_contact())) return;
+  if (!phase_.in_contact() || !(model_.has_damped_contact() || model_.has_spread_contact(contact_))) return;
   const std::vector<double>& middle = step.halfway();
   const auto push = [&](const std::vector<double>& y) {
     return model_.contact_push(y.data(), y.data() + model_.modes(), phase_.law(), contact_);
   };
   touch_.peak_force = std::max(touch_.peak_force, peak(push(begin.state), push(middle), push(end.state)));
-  if (!model_.has_spread_contact()) return;
+  if (!model_.has_spread_contact(contact_)) return;
   const auto stored = [&](const std::vector<double>& y) { return model_.contact_stored(y.data(), phase_.law(), contact_); };
   touch_.peak_energy = std::max(touch_.peak_energy, peak(stored(begin.state), stored(middle), stored(end.state)));
 }

@@ -92,10 +92,9 @@ std::optional<ElasticContact> lane_contact(const ContactLaw& law) {
 
 /// Whether lanes know every contact, of which there is one at least.
 bool knows_contacts(const Switch& model) {
-  if (!model.has_contact() || model.has_spread_contact()) return false;
   for (std::size_t c = 0; c < model.contacts(); ++c)
-    if (!lane_contact(model.contact(c))) return false;
-  return true;
+    if (model.has_spread_contact(c) || !lane_contact(model.contact(c))) return false;
+  return model.has_contact();
 }
 
 /// Whether the laws are those of fleet::UsualLaws.

@@ -1,8 +1,10 @@
 // [electrode.NAME] dielectric: what is read, what is refused, and where its keys may vary.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "base/require.h"
 #include "config/scene.h"
@@ -131,6 +133,41 @@ TEST(LandingKeys, MakeTheFaceTheContact) {
   EXPECT_DOUBLE_EQ(wall.gap.contact, 3e-6);
 }
 
+// Dimples of 0.8 um at places of the bridge.
+std::string with_stops(const std::vector<std::string>& names, const std::string& more = "") {
+  std::string text;
+  double at = 60;
+  for (const std::string& name : names) {
+    text += fmt::format(
+        "[contact.{}]\nmodel = \"linear\"\nstiffness = \"1000 N/m\"\npad_length = \"2 um\"\n"
+        "at = \"{} um\"\ngap = \"2.2 um\"\n{}",
+        name, at, more);
+    at += 160;
+  }
+  return text;
+}
+
+TEST(LandingKeys, StandBesideContacts) {
+  const auto device_with = [](const std::string& sections) {
+    return read_scene(SceneFile::parse(edited_bridge("[waveform.main]", sections + "[waveform.main]"), "x.toml")).device;
+  };
+  const auto names = [](const Device& device) {
+    std::vector<std::string> all;
+    for (const Contact& contact : device.contacts) all.push_back(contact.name + (contact.connects ? " connects" : ""));
+    return all;
+  };
+  const Device dimples = device_with(with_stops({"left", "right"}));
+  EXPECT_THAT(names(dimples), ElementsAre("right connects", "left connects", "dielectric"));
+  EXPECT_DOUBLE_EQ(dimples.gap.contact, 2.2e-6);
+  EXPECT_DOUBLE_EQ(dimples.contacts[2].gap, 2.97e-6);
+  EXPECT_THAT(names(device_with(with_stops({"left"}) + "[metrics]\nclosed = [\"dielectric\"]\n")),
+              ElementsAre("dielectric connects", "left"));
+  const Device stop = device_with(with_stops({"behind"}, "side = \"far\"\n"));
+  EXPECT_THAT(names(stop), ElementsAre("dielectric connects", "behind"));
+  EXPECT_DOUBLE_EQ(stop.gap.contact, 2.97e-6);
+  EXPECT_DOUBLE_EQ(stop.contacts[1].gap, 2.2e-6);
+}
+
 TEST(LandingKeys, AreRefusedByFileLineAndKey) {
   EXPECT_THAT(refusal_of(edited_bridge("model = \"linear\"", "model = \"wall\"")),
               HasSubstr("x.toml:14: electrode.main.dielectric.landing.from = \"30 nm\": belongs to model = \"linear\""));
@@ -144,7 +181,13 @@ TEST(LandingKeys, AreRefusedByFileLineAndKey) {
   EXPECT_THAT(refusal_of(edited_bridge("[waveform.main]",
                                        "[contact]\nmodel = \"linear\"\nstiffness = \"1 N/m\"\n"
                                        "pad_length = \"1 um\"\n[waveform.main]")),
-              HasSubstr("electrode.main.dielectric = "));
+              HasSubstr("[contact]: stands beside the face of a dielectric, which is a contact too: give it a name, "
+                        "[contact.tip], and a 'gap'"));
+  EXPECT_THAT(refusal_of(edited_bridge("[waveform.main]", with_stops({"dielectric"}) + "[waveform.main]")),
+              HasSubstr("x.toml:14: electrode.main.dielectric = "));
+  EXPECT_THAT(refusal_of(edited_bridge("[waveform.main]",
+                                       with_stops({"left", "right"}) + "[metrics]\nclosed = [\"dielctric\"]\n[waveform.main]")),
+              HasSubstr("there is no [contact.dielctric] (did you mean 'dielectric'?)"));
   EXPECT_THAT(refusal_of(edited_bridge("[waveform.main]", "[dispersion]\nmodel = \"casimir\"\n[waveform.main]")),
               HasSubstr("has a landing: a beam that lands on a dielectric takes no dispersion force"));
   EXPECT_THAT(refusal_of(edited_bridge("[waveform.main]",

@@ -154,10 +154,18 @@ TEST(Landing, APlateOnAWallClosesAsOnAStop) {
   EXPECT_LT(run.energy_error, 1e-4 * model.bending_energy());
 }
 
+// A dimple of the bridge, beside its electrode.
+Device with_dimple(Device device, double gap, Place at = 70_um) {
+  device.contacts = {{.model = LinearSpring{.stiffness = 1e3}, .pad_length = 2_um, .name = "dimple", .at = at, .gap = gap}};
+  device.gap.contact = gap;
+  return device;
+}
+
 // Forces are the slope of the energy, and the Jacobian is that of the forces, where part of the beam lies on the face.
 TEST(Landing, ForcesAreTheSlopeOfTheEnergy) {
-  for (const Landing& landing : {Landing{}, Landing{.stiffness = 3e15, .from = 20_nm}}) {
-    const Switch model = fine(capacitive_bridge(landing), 4);
+  const Landing wall, bed{.stiffness = 3e15, .from = 20_nm};
+  for (const Device& device : {capacitive_bridge(wall), capacitive_bridge(bed), with_dimple(capacitive_bridge(bed), 1.5_um)}) {
+    const Switch model = fine(device, 4);
     Switch::Workspace work = model.workspace();
     const std::vector<double> volts{25};
     const Eigen::Index n = model.modes();
@@ -180,6 +188,101 @@ TEST(Landing, ForcesAreTheSlopeOfTheEnergy) {
     }
     EXPECT_LT(by_v.norm(), 1e-9 * by_q.norm());
   }
+}
+
+// What each contact of a closing touches first, and how fast.
+class FirstTouches final : public ClosingObserver {
+ public:
+  void knot(const TrajectoryPoint&) override {}
+  void touch(const Touch& touch) override {
+    if (!first) first = touch;
+  }
+  ClosingObserver* contact(std::size_t c) override { return &of_contacts.at(c); }
+
+  struct OfOne final : public ClosingObserver {
+    void knot(const TrajectoryPoint&) override {}
+    void touch(const Touch& touch) override {
+      if (!first) first = touch;
+    }
+    std::optional<Touch> first;
+  };
+  std::optional<Touch> first;
+  std::vector<OfOne> of_contacts{2};
+};
+
+constexpr double volts_of_bridge = 55;
+
+Trajectory observed(const Device& device, ClosingObserver& observer, double duration) {
+  return observe_closing(fine(device, 6), std::vector<Signal>{Signal::constant(volts_of_bridge)},
+                         {.duration = duration, .tolerance = 1e-9}, observer);
+}
+
+// The dimple is the connection, and holds the bridge far above the face: the closing is that of a bridge which has no face.
+TEST(LandingBesideContacts, AFaceOutOfReachDoesNothing) {
+  const Device device = with_dimple(capacitive_bridge(), 0.5_um, 140_um);
+  Device without = device;
+  without.electrodes.front().dielectric->landing.reset();
+  without.contacts.front().gap = std::numeric_limits<double>::quiet_NaN();
+  FirstTouches one, other;
+  const Trajectory landing = observed(device, one, 3e-6), straight = observed(without, other, 3e-6);
+  ASSERT_EQ(landing.status, Status::done) << landing.message;
+  ASSERT_TRUE(one.first && other.first && one.of_contacts[0].first);
+  EXPECT_NEAR(one.first->begin, other.first->begin, 1e-9 * other.first->begin);
+  EXPECT_NEAR(one.first->impact_velocity, other.first->impact_velocity, 1e-7 * other.first->impact_velocity);
+  EXPECT_EQ(one.first->begin, one.of_contacts[0].first->begin);
+  EXPECT_FALSE(one.of_contacts[1].first);
+  ASSERT_EQ(landing.contacts.size(), 2U);
+  EXPECT_EQ(landing.contacts[1].name, face_name);
+}
+
+// The bridge lies on the face before its dimple is down: the face is touched as if it were alone, and makes no connection.
+TEST(LandingBesideContacts, TheFaceMakesNoConnection) {
+  const Device alone = capacitive_bridge(Landing{}), device = with_dimple(alone, 2.96_um);
+  FirstTouches one, other;
+  const Trajectory landing = observed(device, one, 2.6e-6), straight = observed(alone, other, 2.6e-6);
+  ASSERT_EQ(landing.status, Status::done) << landing.message;
+  ASSERT_TRUE(other.first && one.of_contacts[1].first);
+  EXPECT_FALSE(one.first);
+  EXPECT_NEAR(one.of_contacts[1].first->begin, other.first->begin, 1e-7 * other.first->begin);
+  EXPECT_NEAR(one.of_contacts[1].first->impact_velocity, other.first->impact_velocity, 1e-4 * other.first->impact_velocity);
+}
+
+// An undamped plate on a dimple and a face. Where it meets the face, what the source gave is in its springs and in its motion.
+TEST(LandingBesideContacts, APlateKeepsItsEnergy) {
+  constexpr double mass = 1e-10, stiffness = 10, dimple = 200, gap = 4_um, dimple_gap = 3_um, volts = 60;
+  constexpr double area = 100_um * 100_um, depth = 0.2_um / 7.6, bed = 1e17;
+  const Device device = {
+      .structure = {.length = 100_um, .width = 100_um, .kind = Plate{.mass = mass, .stiffness = stiffness}},
+      .gap = {.electrode = gap, .contact = dimple_gap},
+      .electrodes = {{.name = "main",
+                      .begin = 0,
+                      .end = 100_um,
+                      .fringing = Fringing::none,
+                      .dielectric = Dielectric{.thickness = 0.2_um, .permittivity = 7.6, .landing = Landing{.stiffness = bed}}}},
+      .contacts = {{.model = LinearSpring{.stiffness = dimple}, .name = "dimple", .gap = dimple_gap}}};
+  const Switch model(device);
+  FirstTouches touches;
+  const Trajectory run =
+      observe_closing(model, std::vector<Signal>{Signal::constant(volts)}, {.duration = 12e-6, .tolerance = 1e-10}, touches);
+  ASSERT_EQ(run.status, Status::done) << run.message;
+  EXPECT_LT(run.energy_error, 1e-6 * model.bending_energy());
+  const auto field = [&](double y) { return vacuum_permittivity * area * volts * volts / (2 * (gap - y + depth)); };
+  const auto speed_at = [&](double y) {
+    const double pressed = std::max(0.0, y - dimple_gap);
+    return std::sqrt(2 / mass * (field(y) - field(0) - stiffness * y * y / 2 - dimple * pressed * pressed / 2));
+  };
+  ASSERT_TRUE(touches.of_contacts[0].first && touches.of_contacts[1].first);
+  EXPECT_NEAR(touches.of_contacts[0].first->impact_velocity, speed_at(dimple_gap), 1e-7 * speed_at(dimple_gap));
+  EXPECT_NEAR(touches.of_contacts[1].first->impact_velocity, speed_at(gap), 1e-7 * speed_at(gap));
+
+  // At rest the field carries all three springs.
+  const std::optional<ClosedEquilibrium> closed = closed_equilibrium(model, std::vector<double>{volts});
+  ASSERT_TRUE(closed);
+  const double y = model.contact_deflection(closed->q.data());
+  const double push = dimple * (y - dimple_gap), face = area * bed * (y - gap);
+  ASSERT_GT(face, 0);
+  EXPECT_NEAR(field(y) / (gap - y + depth), stiffness * y + push + face, 1e-9 * face);
+  EXPECT_NEAR(closed->contact_force, push, 1e-9 * push);
 }
 
 TEST(Landing, HasNoDerivatives) {
@@ -214,8 +317,6 @@ TEST(Landing, RefusesWhatItCannotMean) {
   refused([&](Device& d) { landing(d).from = -1e-9; },
           "electrode.main.dielectric.landing.from = -1 nm: must be from 0 m to below gap.electrode");
   refused([&](Device& d) { landing(d) = {.from = 1_nm}; }, "electrode.main.dielectric.landing.from: a wall begins at the face");
-  refused([](Device& d) { d.contacts = {Contact{.model = LinearSpring{.stiffness = 1}, .pad_length = 1_um}}; },
-          "gap.contact = 3 um: the face of a dielectric with a landing is the contact: there is no other beside it");
   refused([](Device& d) { d.dispersion = Dispersion{}; },
           "gap.contact = 2.97 um: a beam that lands on a dielectric takes no dispersion force");
   refused(
