@@ -127,7 +127,7 @@ constexpr std::array names{
     Name{dimension::resistivity, "a resistivity", "ohm m", "22 nohm m"},
     Name{dimension::conductance, "a conductance", "S", "1 S"},
     Name{dimension::piezo_coefficient, "a piezoelectric coefficient", "m/V", "-171 pm/V"},
-    Name{dimension::charge_density, "a piezoelectric stress coefficient", "C/m^2", "-9.3 C/m^2"},
+    Name{dimension::charge_density, "a piezoelectric stress coefficient, or a charge per area", "C/m^2", "-9.3 C/m^2"},
     Name{dimension::damping, "a damping", "N s/m", "1.3e-5 N s/m"},
 };
 

@@ -62,7 +62,11 @@ class Run {
     } else if (model_.rest()) {
       out_.message = "under what the drives stand at before t = 0 the switch has no stable open state: they close it";
     } else {
-      out_.message = "with every drive at rest the switch has no stable open state: the dispersion force closes it by itself";
+      const bool has_dispersion = model_.device().dispersion.has_value(), is_charged = model_.device().is_charged();
+      out_.message = fmt::format("with every drive at rest the switch has no stable open state: {}",
+                                 has_dispersion && is_charged ? "the dispersion force and the charge on a dielectric close it"
+                                 : is_charged                 ? "the charge on a dielectric closes it by itself"
+                                                              : "the dispersion force closes it by itself");
     }
   }
 

@@ -11,6 +11,7 @@
 #include "base/require.h"
 #include "model/beam.h"
 #include "model/built_beam.h"
+#include "model/constants.h"
 #include "model/forces/electrostatic.h"
 #include "model/surface.h"
 
@@ -100,6 +101,9 @@ void check_dielectric(const Electrode& e, const Gap& gap) {
           [&] { return fmt::format("{}permittivity = {}: must be from 1 to 1000000", name, dielectric.permittivity); });
   require(dielectric.roughness >= 0 && dielectric.roughness < 1,
           [&] { return fmt::format("{}roughness = {}: must not be negative", name, engineering(dielectric.roughness, "m")); });
+  require(std::abs(dielectric.charge) < 1e6, [&] {
+    return fmt::format("{}charge = {}: must be between -1 and 1 MC/m^2", name, engineering(dielectric.charge, "C/m^2"));
+  });
   if (const auto& landing = dielectric.landing) {
     if (!landing->is_wall()) positive(landing->stiffness, "Pa/m", (name + "landing.stiffness").c_str());
     require(landing->from >= 0 && landing->from < gap.electrode, [&] {
@@ -261,6 +265,12 @@ double Device::contact_gap(std::size_t contact) const {
   const double offset = rest_offset(contact_position(contact));
   if (contact == 0) return gap.contact + offset;
   return contacts[contact].gap + (contacts[contact].side == Side::far ? -offset : offset);
+}
+
+double Dielectric::neutral_voltage() const { return -charge * thickness / (permittivity * vacuum_permittivity); }
+
+bool Device::is_charged() const {
+  return std::ranges::any_of(electrodes, [](const Electrode& e) { return e.dielectric && e.dielectric->charge != 0; });
 }
 
 double Device::dielectric_depth() const {

@@ -40,10 +40,13 @@ struct Dielectric {
   double thickness = 0;                 ///< [m]
   double permittivity = 1;              ///< relative
   double roughness = 0;                 ///< air that is left where its summits touch [m]
+  double charge = 0;                    ///< per area, on its face [C/m^2], of either sign
   std::optional<Landing> landing = {};  ///< none: what reaches it has failed, or is a plate that stands on a contact
 
   /// What it adds to the gap of the field, t / eps_r + roughness [m].
   [[nodiscard]] double depth() const { return thickness / permittivity + roughness; }
+  /// V0, the voltage of the electrode at which the charge leaves no field in the air, -charge t / (eps_r eps0) [V].
+  [[nodiscard]] double neutral_voltage() const;
 };
 
 /// One voltage, on one pad or several.
@@ -160,6 +163,8 @@ struct Device {
   [[nodiscard]] double closed_gap() const { return std::max(gap.electrode - gap.contact, gap.electrode / 100); }
   /// What all near electrodes add to the gap of their fields at least, where each has a dielectric; else 0 [m].
   [[nodiscard]] double dielectric_depth() const;
+  /// Whether there is a charge on the dielectric of an electrode.
+  [[nodiscard]] bool is_charged() const;
   /// Whether the contact acts along its pad, not at one place.
   [[nodiscard]] bool touches_along_pad() const {
     return has_contact() && contacts.front().distribution == ContactDistribution::pad;

@@ -266,8 +266,8 @@ void LinearizedClosing::linearize_step() {
 void LinearizedClosing::begin_at_rest() {
   rest_ = MatrixXd::Zero(size_, moving_);
   const std::vector<double> before = values_before(signals_);
-  const bool is_straight =
-      !model_.device().dispersion && std::all_of(before.begin(), before.end(), [](double v) { return v == 0; });
+  const bool is_straight = !model_.device().dispersion && !model_.device().is_charged() &&
+                           std::all_of(before.begin(), before.end(), [](double v) { return v == 0; });
   const std::optional<VectorXd> rest = moving_ == 0 || is_straight ? std::nullopt : model_.open_equilibrium(before);
   if (!rest) return;
   const VectorXd &q = *rest, still = VectorXd::Zero(n_);
@@ -302,7 +302,8 @@ void LinearizedClosing::set_node(Node& node, double t, const double* q, const do
   node.by_q /= fastest_;
   model_.drive_forces(work_, node.inputs.leftCols(dent_));
   for (std::size_t k = 0; k < volts_.size(); ++k) {
-    if (model_.drive_kind(k) == DriveKind::electrode) node.inputs.col(static_cast<Index>(k)) *= 2 * volts_[k];
+    if (model_.drive_kind(k) == DriveKind::electrode)
+      node.inputs.col(static_cast<Index>(k)) *= model_.strength_slope(k, volts_[k]);
   }
   node.inputs.col(dent_).setZero();
   if (contact.active && contact.unloading) {

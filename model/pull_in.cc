@@ -19,7 +19,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // A static equilibrium with the contact point held at a given deflection. `unknown` is what keeps it there: the strength of the
-// drive (V^2 of an electrode [V^2], the factor of the dispersion force), or the reaction of the holder [N].
+// drive (of an electrode [V^2], the factor of the dispersion force), or the reaction of the holder [N].
 struct Held {
   Eigen::VectorXd q;
   double unknown = 0;
@@ -68,7 +68,10 @@ class Statics {
     std::optional<Held> h = Held{.q = pushed(s)};
     std::vector<double> part(volts.begin(), volts.end());
     for (const double load : {0.25, 0.5, 0.75, 1.0}) {
-      std::transform(volts.begin(), volts.end(), part.begin(), [&](double v) { return v * std::sqrt(load); });
+      for (std::size_t k = 0; k < part.size(); ++k) {
+        const double neutral = model_.neutral_voltage(k);
+        part[k] = neutral + (volts[k] - neutral) * std::sqrt(load);
+      }
       h = pinned(part, s, std::move(*h));
       if (!h) break;
     }
@@ -346,8 +349,9 @@ std::string_view to_string(StaticKind kind) { return kind == StaticKind::fold ? 
 
 StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
   if (!pulls_in(model.device(), drive)) return {.status = Status::no_contact};
-  // The branch of an electrode begins where the switch rests at 0 V, that of the dispersion force at factor 0.
+  // The branch of an electrode begins where the switch rests without its field, that of the dispersion force at factor 0.
   std::vector<double> at_begin = standing(model, drive, bias);
+  if (model.neutral_voltage(drive) != 0 && !model.open_equilibrium(at_begin)) return {.status = Status::collapsed_at_rest};
   at_begin[drive] = model.value_of_strength(drive, 0);
   const std::optional<Eigen::VectorXd> rest = model.open_equilibrium(at_begin);
   if (!rest) return {.status = Status::collapsed_at_rest};
@@ -384,9 +388,9 @@ void follow_to_plane(EquilibriumBranch& branch, double plane) {
   for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
 }
 
-ReleasePoint released_at(double square, double deflection) {
+ReleasePoint released_at(const Switch& model, std::size_t drive, double square, double deflection) {
   if (!std::isfinite(square)) return {};
-  return {.voltage = std::sqrt(std::max(square, 0.0)), .deflection = deflection};
+  return {.voltage = square > 0 ? model.neutral_voltage(drive) + std::sqrt(square) : 0, .deflection = deflection};
 }
 
 }  // namespace
@@ -408,8 +412,9 @@ ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
   if (!model.has_contact() || !pulls_in(model.device(), drive)) return {};
   EquilibriumBranch branch(model, drive, bias);
   const double plane = model.contact_gap();
+  const auto released = [&](double square, double deflection) { return released_at(model, drive, square, deflection); };
   follow_to_plane(branch, plane);
-  if (model.rigid_contact() != nullptr) return released_at(branch(plane), plane);
+  if (model.rigid_contact() != nullptr) return released(branch(plane), plane);
   if (model.contact_reach() > 0) {
     // Adhesion inside may make a deeper well than the first.
     constexpr int looks = 256;
@@ -423,11 +428,11 @@ ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
     const double low = std::max(0.0, at / step - 1);
     const auto [depth, value] =
         boost::math::tools::brent_find_minima([&](double x) { return branch(plane + x * step); }, low, at / step + 1, 30);
-    return value < best ? released_at(value, plane + depth * step) : released_at(best, plane + at);
+    return value < best ? released(value, plane + depth * step) : released(best, plane + at);
   }
   // The contact is soft at first touch, so the branch may fall on beyond the plane before contact turns it up.
   const auto lowest = first_minimum([&](double depth) { return branch(plane + depth); }, model.penetration_scale() / 16);
-  return lowest ? released_at(lowest->value, plane + lowest->depth) : ReleasePoint{};
+  return lowest ? released(lowest->value, plane + lowest->depth) : ReleasePoint{};
 }
 
 double release_voltage(const Switch& model, std::size_t drive, Bias bias) { return release_point(model, drive, bias).voltage; }
@@ -657,13 +662,14 @@ std::optional<ClosedEquilibrium> closed_equilibrium_near(const Switch& model, st
 
 namespace {
 
-// The steps in which a pull-through voltage is looked for, and how far.
+// The steps in which a pull-through voltage is looked for, and how far. These functions look for the voltage that
+// acts, V - V0 of an electrode whose dielectric is charged.
 constexpr double pull_through_factor = 1.05, pull_through_range = 10;
 
 // Looks for closed equilibria up or down from `start`, whatever there is at other voltages.
 double pull_through_by_walk(const Switch& model, std::size_t drive, std::vector<double> levels, double start, double precision) {
   const auto holds = [&](double v) {
-    levels[drive] = v;
+    levels[drive] = model.neutral_voltage(drive) + v;
     return keeps_closed(model, closed_equilibrium(model, levels));
   };
   double low = start, high = start;
@@ -693,7 +699,7 @@ double pull_through_of_narrow_window(const Switch& model, std::size_t drive, std
                                      double precision) {
   constexpr double first_step = 1e-5;
   const auto holds = [&](double v) {
-    levels[drive] = v;
+    levels[drive] = model.neutral_voltage(drive) + v;
     return keeps_closed(model, closed_equilibrium(model, levels));
   };
   double low = nan;
@@ -720,7 +726,7 @@ std::optional<double> pull_through_from(const Switch& model, std::size_t drive, 
                                         const ClosedEquilibrium& near, double precision) {
   std::optional<ClosedEquilibrium> last = near;
   const auto follows = [&](double v) {
-    levels[drive] = v;
+    levels[drive] = model.neutral_voltage(drive) + v;
     std::optional<ClosedEquilibrium> next = closed_by_newton(model, levels, *last);
     const bool found = next.has_value();
     if (found) last = std::move(next);
@@ -738,19 +744,18 @@ std::optional<double> pull_through_from(const Switch& model, std::size_t drive, 
     (follows(middle) ? low : high) = middle;
   }
   // Newton's method may have failed where there is an equilibrium.
-  levels[drive] = high;
+  levels[drive] = model.neutral_voltage(drive) + high;
   return keeps_closed(model, closed_equilibrium(model, levels)) ? std::nullopt : std::optional(high);
 }
 
-}  // namespace
-
-double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts, double precision) {
+double acting_pull_through(const Switch& model, std::size_t drive, std::span<const double> volts, double precision) {
+  const double neutral = model.neutral_voltage(drive);
   // Below its release voltage nothing holds the switch.
-  const double release = release_voltage(model, drive, volts), given = std::abs(volts[drive]);
+  const double release = release_voltage(model, drive, volts) - neutral, given = std::abs(volts[drive] - neutral);
   const double start = std::fmax(given, pull_through_factor * release);
   if (!(start > 0)) return nan;
   std::vector<double> levels(volts.begin(), volts.end());
-  levels[drive] = start;
+  levels[drive] = neutral + start;
   const auto closed = closed_equilibrium(model, levels);
   const auto found =
       keeps_closed(model, closed) ? pull_through_from(model, drive, levels, start, *closed, precision) : std::nullopt;
@@ -765,10 +770,18 @@ double pull_through_voltage(const Switch& model, std::size_t drive, std::span<co
   return pull_through_of_narrow_window(model, drive, std::move(levels), release, precision);
 }
 
+}  // namespace
+
+double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts, double precision) {
+  return model.neutral_voltage(drive) + acting_pull_through(model, drive, volts, precision);
+}
+
 double pull_through_voltage_near(const Switch& model, std::size_t drive, std::span<const double> volts,
                                  const ClosedEquilibrium& near, double precision) {
-  const auto found = pull_through_from(model, drive, {volts.begin(), volts.end()}, std::abs(volts[drive]), near, precision);
-  return found ? *found : pull_through_voltage(model, drive, volts, precision);
+  const double neutral = model.neutral_voltage(drive);
+  const auto found =
+      pull_through_from(model, drive, {volts.begin(), volts.end()}, std::abs(volts[drive] - neutral), near, precision);
+  return found ? neutral + *found : pull_through_voltage(model, drive, volts, precision);
 }
 
 bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias, const Watch& watch, double tolerance) {

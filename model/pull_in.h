@@ -4,6 +4,9 @@
 // phi_i(x_c) P(y(x_c) - dt) with f the dispersion force at factor 1 are followed by the deflection of the contact point, which
 // goes through the fold without turning back; V^2 is an unknown there. The same functions take the dispersion force as the drive,
 // its factor as the unknown.
+//
+// A charge on the dielectric shifts all voltages by V0 = Switch::neutral_voltage(): V - V0 stands for V above. Voltages are those
+// that lie above V0, which a positive drive meets; a negative one meets 2 V0 less these.
 #pragma once
 
 #include <limits>
@@ -36,9 +39,10 @@ struct StaticPullIn {
 using Bias = std::span<const double>;
 
 /// Fold of the static branch of `drive`, or the voltage at which the contact point reaches the contact plane if that comes first.
-/// The branch of an electrode begins at the switch's rest under the bias, status collapsed_at_rest where there is none,
-/// no_contact for one on the far side; that of the dispersion force at factor 0, so that a negative answer says how much too
-/// strong the nominal force is. Throws InvalidInput for a bias of another number of drives.
+/// The branch of an electrode begins at the switch's rest under the bias, without a field of its own. The status is
+/// collapsed_at_rest where there is no rest there or at 0 V, no_contact for one on the far side; that of the dispersion force at
+/// factor 0, so that a negative answer says how much too strong the nominal force is. Throws InvalidInput for a bias of another
+/// number of drives.
 [[nodiscard]] StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// Where a drive holds the contact point of an equilibrium, stable or not.
@@ -72,9 +76,10 @@ struct ReleasePoint {
   double deflection = std::numeric_limits<double>::quiet_NaN();  ///< [m]
 };
 [[nodiscard]] ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias = {});
-/// Release voltage [V]: the smallest voltage with a closed equilibrium, 0 where the dispersion force, or the bias, keeps the
-/// switch closed by itself. NaN where there is no contact law, where the contact is too soft to keep the beam off the electrode
-/// at any voltage, or where the branch could not be followed. Throws as static_pull_in() does.
+/// Release voltage [V]: the smallest voltage above V0 with a closed equilibrium, 0 where the dispersion force, or the bias, keeps
+/// the switch closed by itself. It is negative where a charge on the dielectric keeps it closed at 0 V. NaN where there is no
+/// contact law, where the contact is too soft to keep the beam off the electrode at any voltage, or where the branch could not be
+/// followed. Throws as static_pull_in() does.
 [[nodiscard]] double release_voltage(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// Where the beam comes to rest on the contact.
@@ -104,9 +109,9 @@ struct ClosedEquilibrium {
 /// Whether there is a closed equilibrium that the switch does not leave: a stable one, as far as its modes can say.
 [[nodiscard]] bool keeps_closed(const Switch& model, const std::optional<ClosedEquilibrium>& closed);
 
-/// Voltage of `drive` from which on the closed switch is pulled through the contact [V], the other drives at `volts`: beyond, its
-/// closed equilibrium is unstable or gone. NaN where there is none between a tenth and ten times its value in `volts`, or
-/// the release voltage where that is more. To `precision`, relative.
+/// Voltage of `drive`, above V0, from which on the closed switch is pulled through the contact [V], the other drives at `volts`:
+/// beyond, its closed equilibrium is unstable or gone. NaN where there is none between a tenth and ten times its value in
+/// `volts`, or the release voltage where that is more, both counted from V0. To `precision`, relative.
 [[nodiscard]] double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts,
                                           double precision = 1e-6);
 

@@ -71,8 +71,8 @@ std::vector<double> held_slopes(const Switch& model, SwitchSlopes& by, std::size
     VectorXd right(n + 1);
     right.head(n) = -tangent.scale.cwiseProduct(change_of_accelerations(by, j, held->q, volts, contact, tangent.by_q));
     right[n] = -by.interference(j, held->q.data()) / largest;
-    const double by_square = solve_linear(bordered, right)[n];
-    slopes[j] = model.drive_kind(drive) == DriveKind::electrode ? by_square / (2 * held->voltage) : by_square;
+    const double by_strength = solve_linear(bordered, right)[n];
+    slopes[j] = by_strength / model.strength_slope(drive, held->voltage);
   }
   return slopes;
 }
@@ -101,13 +101,14 @@ MatrixXd symmetric_tangent(const Switch& model, const VectorXd& q, std::span<con
   return -(by_q + by_q.transpose()) / 2;
 }
 
-bool are_zero(std::span<const double> values) {
-  return std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
+// Tells whether all drives are at 0, where no charge on a dielectric pulls.
+bool are_zero(const Switch& model, std::span<const double> values) {
+  return !model.device().is_charged() && std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
 }
 
 // By the strength of a drive, of an equilibrium under constant voltages.
 VectorXd motion_by_voltage(const Switch& model, const Tangent& tangent, std::size_t drive, double value) {
-  const double by_value = model.drive_kind(drive) == DriveKind::electrode ? 2 * value : 1;
+  const double by_value = model.strength_slope(drive, value);
   const VectorXd force = model.drive_kind(drive) == DriveKind::piezo
                              ? model.basis().piezo_shape()
                              : VectorXd(tangent.by_strength.col(static_cast<Eigen::Index>(drive)));
@@ -136,12 +137,12 @@ std::vector<double> static_pull_in_slopes(const Switch& model, SwitchSlopes& by,
 
 std::vector<double> release_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive, const ReleasePoint& release,
                                    Bias bias) {
-  if (!(release.voltage > 0)) return std::vector<double>(by.moving().size(), no_slope);
+  if (std::isnan(release.voltage) || release.voltage == 0) return std::vector<double>(by.moving().size(), no_slope);
   return held_slopes(model, by, drive, release.deflection, bias);
 }
 
 double resonance(const Switch& model, std::size_t mode, std::span<const double> values) {
-  if (are_zero(values)) return model.basis().angular_frequencies()[static_cast<Eigen::Index>(mode)];
+  if (are_zero(model, values)) return model.basis().angular_frequencies()[static_cast<Eigen::Index>(mode)];
   const std::optional<Rest> rest = rest_under(model, values);
   if (!rest) return no_slope;
   const double square = symmetric_eigen(symmetric_tangent(model, rest->q, values)).values[static_cast<Eigen::Index>(mode)];
@@ -151,7 +152,7 @@ double resonance(const Switch& model, std::size_t mode, std::span<const double> 
 std::vector<double> resonance_slopes(const Switch& model, SwitchSlopes& by, std::size_t mode, std::span<const double> values) {
   std::vector<double> slopes(by.moving().size(), no_slope);
   const auto m = static_cast<Eigen::Index>(mode);
-  if (are_zero(values)) {
+  if (are_zero(model, values)) {
     for (std::size_t j = 0; j < slopes.size(); ++j)
       slopes[j] = by.of_switch(j, [&](const Switch& s, double) { return s.basis().angular_frequencies()[m]; });
     return slopes;
@@ -201,7 +202,7 @@ std::vector<double> open_capacitance_slopes(const Switch& model, SwitchSlopes& b
   const std::optional<Rest> rest = rest_under(model, values);
   if (!rest) return slopes;
   const Tangent tangent(model, rest->q, values, rest->contact);
-  // The force of an electrode at V is V^2 times that at unit strength, and minus the gradient of -C V^2 / 2.
+  // The force of an electrode is its strength times that at unit strength, and minus the gradient of -C (V - V0)^2 / 2.
   const VectorXd by_q = 2 * tangent.by_strength.col(static_cast<Eigen::Index>(drive));
   for (std::size_t j = 0; j < slopes.size(); ++j) {
     const VectorXd motion = -tangent.solved(change_of_accelerations(by, j, rest->q, values, rest->contact, tangent.by_q));

@@ -195,6 +195,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
       }
     }
     driven_laws_.push_back(one_law(std::move(pads)));
+    neutral_voltages_.push_back(e.dielectric ? e.dielectric->neutral_voltage() : 0);
   }
   std::vector<EvenRange> everywhere{{{0, n}, s.width, s.thickness}};
   if (s.is_built()) everywhere = even_ranges(s, quadrature_.positions(), 0, s.length);
@@ -260,7 +261,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     penetration_scale_ = penetration_under(force);
   }
   rest_ = Eigen::VectorXd::Zero(modes());
-  if (device_.dispersion) rest_ = equilibrium_from(*rest_, std::vector<double>(drives(), 0.0));
+  if (device_.dispersion || device_.is_charged()) rest_ = loaded_equilibrium(std::vector<double>(drives(), 0.0));
 }
 
 std::shared_ptr<const DistributedLaw> Switch::face_pressure() const {
@@ -305,10 +306,14 @@ std::vector<double> Switch::share_of(double share, std::span<const double> value
   return part;
 }
 
-// At once where that works, else in shares of the load: a beam that stretches is far stiffer bent than Newton's method expects of
-// the straight one.
 std::optional<Eigen::VectorXd> Switch::open_equilibrium(std::span<const double> values) const {
   if (std::all_of(values.begin(), values.end(), [](double value) { return value == 0; })) return rest_;
+  return loaded_equilibrium(values);
+}
+
+// At once where that works, else in shares of the load: a beam that stretches is far stiffer bent than Newton's method expects of
+// the straight one.
+std::optional<Eigen::VectorXd> Switch::loaded_equilibrium(std::span<const double> values) const {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(modes());
   if (std::optional<Eigen::VectorXd> found = equilibrium_from(q, values)) return found;
   constexpr double shortest = 1e-3;
@@ -496,7 +501,7 @@ double Switch::capacitance(std::size_t drive, const double* q, Workspace& work) 
 double Switch::charge(std::size_t drive, double value, const double* q, Workspace& work) const {
   switch (drive_kind(drive)) {
     case DriveKind::electrode:
-      return capacitance(drive, q, work) * value;
+      return capacitance(drive, q, work) * (value - neutral_voltages_[drive]);
     case DriveKind::dispersion:
       return -law_potential(drive, q, work);
     case DriveKind::piezo:

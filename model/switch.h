@@ -9,6 +9,14 @@
 // electrode. Galerkin projection on Gauss panels that start and end where an electrode, the piezo layer or a pad that acts along
 // its length does. Only the laws that the device has are composed: an absent effect costs nothing. A rigid plate is a strip that
 // stays flat: one mode, one quadrature point per panel.
+//
+// A charge per area sigma lies on the face of an electrode's dielectric. With E in the air and E_d in the dielectric, Gauss' law
+// says eps0 E = eps_r eps0 E_d + sigma, and V = E (h + h_r) + E_d t, so that
+//
+//   E = (V - V0) / (h + t / eps_r + h_r),   V0 = -sigma t / (eps_r eps0)
+//
+// The electrode pulls as if it stood at V - V0. The fringing field is taken to scale with it. C (V - V0) is the charge on the
+// electrode but for a constant, which no source feels.
 #pragma once
 
 #include <Eigen/Core>
@@ -74,11 +82,21 @@ class Switch {
     if (drive < electrodes_) return DriveKind::electrode;
     return drive < driven_laws_.size() ? DriveKind::dispersion : DriveKind::piezo;
   }
-  /// What multiplies the law of a drive with this value: V^2, or the force factor.
-  [[nodiscard]] double strength(std::size_t drive, double value) const { return drive < electrodes_ ? value * value : 1 + value; }
-  /// The non-negative inverse of strength().
+  /// V0, the voltage at which an electrode does not pull: not 0 where its dielectric is charged. 0 for the other drives [V].
+  [[nodiscard]] double neutral_voltage(std::size_t drive) const { return drive < electrodes_ ? neutral_voltages_[drive] : 0; }
+  /// The factor of a drive's law at this value: (V - V0)^2, or the force factor.
+  [[nodiscard]] double strength(std::size_t drive, double value) const {
+    if (drive >= electrodes_) return 1 + value;
+    const double acting = value - neutral_voltages_[drive];
+    return acting * acting;
+  }
+  /// Its derivative with respect to the value: 2 (V - V0), or 1.
+  [[nodiscard]] double strength_slope(std::size_t drive, double value) const {
+    return drive < electrodes_ ? 2 * (value - neutral_voltages_[drive]) : 1;
+  }
+  /// The inverse of strength(), of an electrode the value that is not below V0.
   [[nodiscard]] double value_of_strength(std::size_t drive, double strength) const {
-    return drive < electrodes_ ? std::sqrt(strength) : strength - 1;
+    return drive < electrodes_ ? neutral_voltages_[drive] + std::sqrt(strength) : strength - 1;
   }
   [[nodiscard]] bool has_piezo() const { return device_.piezo.has_value(); }
   [[nodiscard]] bool has_contact() const { return contact_ != nullptr; }
@@ -142,8 +160,8 @@ class Switch {
   /// Adds the film's part to the derivatives of (v, rates) by the state (q, v, film) whose field `work` holds.
   void add_film_derivatives(const double* state, const Workspace& work, Eigen::Ref<Eigen::MatrixXd> derivatives) const;
 
-  /// The motion before the first touch, whose accelerations are linear in the strengths of the drives (V^2 of an electrode, the
-  /// factor of the dispersion force, V of the piezo): no contact, and no compressible film, acts.
+  /// The motion before the first touch, whose accelerations are linear in the strengths of the drives (strength() of an
+  /// electrode, the factor of the dispersion force, V of the piezo): no contact, and no compressible film, acts.
   struct FreeMotion {
     Eigen::VectorXd accelerations;  ///< [m kg^(1/2) / s^2]
     Eigen::MatrixXd by_q, by_v;     ///< modes x modes
@@ -171,8 +189,8 @@ class Switch {
     return std::isfinite(most_gap_) && work.field.gap.head(quadrature_.points()).maxCoeff() > most_gap_;
   }
 
-  /// The stable static equilibrium under drives of 0, modal coordinates [m kg^(1/2)]; none when the beam collapses by itself or
-  /// rests on the contact plane.
+  /// The stable static equilibrium under drives of 0, modal coordinates [m kg^(1/2)]; none when the beam collapses by itself, by
+  /// the dispersion force or the charge on a dielectric, or rests on the contact plane.
   [[nodiscard]] const std::optional<Eigen::VectorXd>& rest() const { return rest_; }
   /// The same under these values of all drives, reached from the straight beam as they grow: what a run starts from.
   [[nodiscard]] std::optional<Eigen::VectorXd> open_equilibrium(std::span<const double> values) const;
@@ -180,8 +198,8 @@ class Switch {
   [[nodiscard]] double capacitance(std::size_t drive, const double* q, Workspace& work) const;
   /// Potential of a drive's law at unit strength [J]; 0 for the piezo.
   [[nodiscard]] double law_potential(std::size_t drive, const double* q, Workspace& work) const;
-  /// Minus the derivative of potential() with respect to the drive's value: the charge of an electrode or of the piezo [C], minus
-  /// the dispersion law's potential [J].
+  /// Minus the derivative of potential() with respect to the drive's value: the charge of an electrode beyond that at V0, or of
+  /// the piezo [C], minus the dispersion law's potential [J].
   [[nodiscard]] double charge(std::size_t drive, double value, const double* q, Workspace& work) const;
   [[nodiscard]] double elastic_energy(const double* q) const;  ///< of the beam, without piezo coupling and contact [J]
   /// Whether anything takes energy out all the time: gas, modal damping, or a contact law that depends on the rate.
@@ -202,8 +220,8 @@ class Switch {
   [[nodiscard]] double contact_dissipation(const double* q, const double* v, std::size_t c = 0) const;
   /// Energy that bends the beam by the contact gap at the contact point [J]: the scale of a closing's energies.
   [[nodiscard]] double bending_energy() const { return bending_energy_; }
-  /// Energy of the closed system under constant voltages: elastic + contact + dispersion - 1/2 C V^2 - V theta q [J]. Its
-  /// gradient is minus the static force.
+  /// Energy of the closed system under constant voltages: elastic + contact + dispersion - 1/2 C (V - V0)^2 - V theta
+  /// q [J]. Its gradient is minus the static force.
   [[nodiscard]] double potential(const double* q, std::span<const double> volts, const ContactStates& contacts,
                                  Workspace& work) const;
 
@@ -236,8 +254,10 @@ class Switch {
   /// The field of a state at rest.
   [[nodiscard]] GapField still_field(const double* q) const;
   void set_free_field(const double* q, const double* v, Workspace& work) const;
-  /// A share of what drives of these values do: V^2 of an electrode, the factor of the dispersion force, V of the piezo.
+  /// A share of what drives of these values do: the strength of an electrode or the dispersion force, V of the piezo.
   [[nodiscard]] std::vector<double> share_of(double share, std::span<const double> values) const;
+  /// Finds it from the straight beam, in shares of the load where it must.
+  [[nodiscard]] std::optional<Eigen::VectorXd> loaded_equilibrium(std::span<const double> values) const;
   [[nodiscard]] std::optional<Eigen::VectorXd> equilibrium_from(Eigen::VectorXd q, std::span<const double> values) const;
 
   Device device_;
@@ -245,6 +265,7 @@ class Switch {
   ModalBasis basis_;
   PointQuadrature quadrature_;
   std::size_t electrodes_ = 0;
+  std::vector<double> neutral_voltages_;                             // V0 of each electrode [V]
   std::vector<std::shared_ptr<const DistributedLaw>> driven_laws_;   // one per electrode, then the dispersion force
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // these dissipate
   std::shared_ptr<const ContactLaw> contact_;

@@ -1,6 +1,7 @@
 // The members of pull-in voltages and of the stable path, which `pull-in` and `check` write: see reports/record.h.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,7 @@ void members(A& a, PullInRecord& found) {
   a("dynamic_kind", internal::OrNull{found.dynamic_kind});
   a("release_V", found.release);
   a("pulled_through_V", found.pulled_through);
+  if (a.has(std::isfinite(found.neutral))) a("neutral_V", found.neutral);
   a.custom("by_modes", found.by_modes, internal::voltages_by_modes_json, internal::read_voltages_by_modes);
 }
 

@@ -99,12 +99,14 @@ std::string electrode_words(const std::string& name, const ElectrodeRecord& elec
                         std::isfinite(found.deflection) ? quantity(found.deflection, "m", digits) : "none",
                         electrode.status == Status::interrupted ? std::string("not known: the search for it was interrupted")
                                                                 : dynamic_words(found));
-  if (!has_contact) return text;
+  const std::string of_charge =
+      std::isfinite(found.neutral) ? fmt::format("  charge           {}\n", charge_words(found)) : std::string();
+  if (!has_contact) return text + of_charge;
   text += fmt::format("  release          {}{}\n", volts(found.release), shift_clause(found.by_modes, &VoltagesByModes::release));
   if (std::isfinite(found.pulled_through))
     text += fmt::format("  pulled through   {}: from there on a closed switch goes on to the electrode{}\n",
                         volts(found.pulled_through), shift_clause(found.by_modes, &VoltagesByModes::pulled_through));
-  return text;
+  return text + of_charge;
 }
 
 }  // namespace
@@ -177,6 +179,7 @@ ElectrodeRecord record_of(const PreparedScene& p, std::size_t k, const Electrode
                                   .pulled_through = closed.pulled_through,
                                   .static_kind = std::string(std::isfinite(s.voltage) ? to_string(s.kind) : ""),
                                   .deflection = s.deflection,
+                                  .neutral = p.model.neutral_voltage(k) != 0 ? p.model.neutral_voltage(k) : Metrics::unset,
                                   .dynamic_kind = dynamic_kind(p, k, s.voltage, d.voltage)}};
   const bool was_found = d.status != Status::interrupted;  // who has stopped the search waits for no more modes
   if (const ModeLadder ladder(p); was_found && ladder.exists() && std::isfinite(s.voltage))
@@ -210,6 +213,23 @@ std::string dynamic_words(const PullInRecord& found) {
                                              ? " (the static one: no step moves it, from there on its rest is unstable)"
                                          : found.dynamic_kind == "overdamped" ? " (overdamped: equals the static one)"
                                                                               : "");
+}
+
+bool sticks_by_charge(const PullInRecord& found) {
+  return std::isfinite(found.neutral) && std::abs(found.neutral) >= found.release - found.neutral;
+}
+
+std::string charge_words(const PullInRecord& found) {
+  if (!std::isfinite(found.neutral)) return {};
+  const auto mirrored = [&](double value) { return volts(2 * found.neutral - value); };
+  std::string words = fmt::format("leaves no field at {}", volts(found.neutral));
+  if (std::isfinite(found.static_pull_in))
+    words += fmt::format("; the other polarity pulls in at {}", mirrored(found.static_pull_in));
+  if (std::isfinite(found.release))
+    words += fmt::format("{} releases at {}", std::isfinite(found.static_pull_in) ? " and" : "; the other polarity",
+                         mirrored(found.release));
+  if (sticks_by_charge(found)) words += "; a closed switch stays closed at 0 V";
+  return words;
 }
 
 std::optional<StablePathRecord> stable_path_of(const PreparedScene& p, const Watch& watch) {

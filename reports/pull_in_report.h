@@ -25,6 +25,7 @@ struct PullInRecord {
          pulled_through = Metrics::unset;
   std::string static_kind;                  ///< of to_string(StaticKind); empty where there is no voltage
   double deflection = Metrics::unset;       ///< of the contact point at static pull-in [m]
+  double neutral = Metrics::unset;          ///< Switch::neutral_voltage() of a charged dielectric; unset without charge [V]
   std::string dynamic_kind;                 ///< "overshoot", "overdamped", "unstable_rest"; empty where there is no voltage
   std::optional<VoltagesByModes> by_modes;  ///< none where there are no more modes, or the search was interrupted
 };
@@ -43,6 +44,11 @@ struct ElectrodeRecord {
 /// The dynamic pull-in voltage. A step that damping lets not overshoot needs no less than the static one; nor does one that
 /// leaves the switch where it rests.
 [[nodiscard]] std::string dynamic_words(const PullInRecord& found);
+
+/// Tells whether the charge keeps the switch closed at 0 V once it is.
+[[nodiscard]] bool sticks_by_charge(const PullInRecord& found);
+/// Says how the charge on the dielectric shifts both polarities; empty without charge.
+[[nodiscard]] std::string charge_words(const PullInRecord& found);
 
 /// A drive that alone carries the switch to its contact through stable equilibria.
 struct StablePathRecord {

@@ -253,6 +253,10 @@ Outcome run(const Setting& setting, const CheckRequest&) {
                                   : fmt::format("Vsp {}, Vdp {}", volts(v.static_pull_in), dynamic_words(v)) + roughly) +
                                  (p.model.has_contact() ? ", release " + volts(v.release) : "") +
                                  (bias.empty() ? "" : ", under " + bias));
+    if (const std::string charge = charge_words(v); !charge.empty()) add("", "its charge " + charge);
+    if (sticks_by_charge(v))
+      warnings.push_back(
+          said_of(setting.scene, "electrode." + name + ".dielectric.charge", "keeps the switch closed at 0 V once it is closed"));
     if (v.by_modes) {
       std::string shifts = "more modes move Vsp by " + shift_words(v.by_modes->static_pull_in);
       if (std::isfinite(v.release)) shifts += ", release by " + shift_words(v.by_modes->release);

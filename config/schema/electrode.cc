@@ -63,6 +63,9 @@ const Section* dielectric_keys() {
                OfDielectric::number<&Dielectric::roughness>("roughness", dimension::length, not_negative,
                                                             "air that is left where its summits touch")
                    .by_default("'0 m'"),
+               OfDielectric::number<&Dielectric::charge>("charge", dimension::charge_density, any, "per area, on its face")
+                   .by_default("'0 C/m^2'")
+                   .such_as("-0.1 mC/m^2"),
                Key{.name = "landing",
                    .type = KeyType::table,
                    .about =

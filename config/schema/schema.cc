@@ -48,7 +48,7 @@ constexpr std::array extents{
     Extent{dimension::voltage, 1e-12, 1e9},
     Extent{dimension::slew_rate, 1e-6, 1e24},
     Extent{dimension::piezo_coefficient, 1e-18, 1e-6},
-    Extent{dimension::charge_density, 1e-6, 1e6},
+    Extent{dimension::charge_density, 1e-12, 1e6},
     Extent{dimension::damping, 1e-18, 1e6},
 };
 

@@ -35,9 +35,12 @@ void EnergyAudit::enter_stretch(const Knot& here, bool first) {
     drives_.enter(k, here.time);
     const double after = drives_.value(k, here.time);
     if (before == after) continue;
-    const double work = (model_.strength(k, after) - model_.strength(k, before)) *
-                        model_.law_potential(k, here.state.data(), equations_.workspace());
-    source_work_ += holds_charge(k) ? -work : work;
+    const double potential = model_.law_potential(k, here.state.data(), equations_.workspace());
+    if (holds_charge(k)) {
+      source_work_ -= (after * after - before * before) * potential;  // C V dV, whatever charge lies on a dielectric
+    } else {
+      source_work_ += (model_.strength(k, after) - model_.strength(k, before)) * potential;
+    }
   }
   add_charges(here, -1);
 }

@@ -3,6 +3,8 @@
 //
 //   work of the sources = integral of V dQ = [V Q] - integral of Q dV     dissipated = integral of the power taken out
 //
+// Q = C (V - V0) is the charge of an electrode, V0 that of a charge on its dielectric; its field stores C (V - V0)^2/2 + V0 Q.
+//
 // The bracket over each stretch between breakpoints, the integral of Q dV by Simpson's rule where a voltage changes. Changing a
 // force factor moves no charge: its work is that integral alone. Dissipation by Simpson's rule over each step, or, once the
 // residual exceeds 1e-4 of the bending energy, by that of Lobatto with four points over a motion that is exact for the modes.

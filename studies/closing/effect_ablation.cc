@@ -162,9 +162,16 @@ void add_omissible_fringing(const PreparedScene& prepared, std::vector<Omissible
 
 void add_omissible_dielectrics(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
-  if (d.lands_on_dielectric()) return;
   for (const Electrode& e : d.electrodes) {
     if (!e.dielectric) continue;
+    if (const double neutral = e.dielectric->neutral_voltage(); neutral != 0) {
+      const double most = std::abs(prepared.drives.at(e.name).hold_level());
+      list.push_back({.effect = "electrode." + e.name + ".dielectric.charge",
+                      .magnitude = {.name = "voltage without field", .unit = "V", .value = neutral},
+                      .group = {.name = "over all voltages", .value = std::abs(neutral) / (most + std::abs(neutral))},
+                      .instead = {}});
+    }
+    if (d.lands_on_dielectric()) continue;
     list.push_back({.effect = "electrode." + e.name + ".dielectric",
                     .magnitude = {.name = "added to the gap of the field", .unit = "m", .value = e.dielectric->depth()},
                     .group = {.name = "over the rest gap", .value = e.dielectric->depth() / d.gap.electrode},

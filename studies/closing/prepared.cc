@@ -241,8 +241,9 @@ void check_landing(const PreparedScene& p) {
     const Electrode& e = p.scene.device.electrodes[k];
     if (!e.dielectric) continue;
     const std::optional<DriverLimits>& limits = p.drives[k].limits;
-    const double most =
-        limits ? std::max(std::abs(limits->min_voltage), std::abs(limits->max_voltage)) : std::abs(p.drives[k].hold_level());
+    const double neutral = e.dielectric->neutral_voltage();
+    const double most = limits ? std::max(std::abs(limits->min_voltage - neutral), std::abs(limits->max_voltage - neutral))
+                               : std::abs(p.drives[k].hold_level() - neutral);
     const double least = least_face_stiffness(most, e.dielectric->depth() + landing->from);
     if (landing->stiffness > least) continue;
     p.scene.file.refuse(
@@ -367,8 +368,10 @@ PreparedScene prepare(const SceneFile& file, bool default_limits, const Watch& w
     watch.throw_if_stopped();
     const bool ok = found.dynamically.status == Status::done;
     if (needed && !ok && !take_limits_at_rest(p, k, find_pull_in, watch)) {
+      const bool is_closed = found.statically.status == Status::collapsed_at_rest && scene.device.is_charged();
       file.refuse("electrode." + name + ".span",
-                  "its pull-in voltage is needed for the unit Vsp or Vdp, but none could be found" + under_bias(p, k));
+                  "its pull-in voltage is needed for the unit Vsp or Vdp, but none could be found" + under_bias(p, k) +
+                      (is_closed ? ": the charge on a dielectric leaves no open state" : ""));
     }
     if (ok) p.pull_in.emplace(name, found);
   }

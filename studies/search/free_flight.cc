@@ -89,11 +89,15 @@ void FreeFlight::add_free(const PreparedScene& prepared, const std::string& name
     pull = up ? bound.upper : bound.lower;
     release = up ? bound.lower : bound.upper;
   } else {
-    const double most = std::min(std::max(std::abs(low), std::abs(high)), peak);
+    // Voltages are counted from where the electrode does not pull, those that ramp from 0 V.
+    const double neutral = ramps_ ? 0 : model_.neutral_voltage(drive);
+    f.sign = std::abs(low - neutral) > std::abs(high - neutral) ? -1 : 1;
+    const double most = f.sign > 0 ? std::min(high, peak) - neutral : neutral - std::max(low, -peak);
     require(most > 0, fmt::format("driver.{}: the least time needs a voltage above 0 V", name));
+    const double least = std::max(0.0, f.sign > 0 ? low - neutral : neutral - high);
     f.largest = ramps_ ? most : most * most;
-    f.sign = std::abs(low) > std::abs(high) ? -1 : 1;
-    bound = {.lower = 0, .upper = 1};
+    bound = {.lower = ramps_ ? 0 : least * least / f.largest, .upper = 1};
+    release = bound.lower;
     if (brakes) std::swap(pull, release);
   }
   if (ramps_) bound.slew = limits->max_slew / f.largest * time_unit();
@@ -114,7 +118,7 @@ std::vector<double> FreeFlight::strengths(const VectorXd& c) const {
   std::vector<double> all = held_;
   for (std::size_t k = 0; k < free_.size(); ++k) {
     const double value = c[static_cast<Index>(k)] * free_[k].largest;
-    all[free_[k].drive] = ramps_ ? strength(free_[k].drive, value) : value;
+    all[free_[k].drive] = ramps_ ? strength(free_[k].drive, free_[k].sign * value) : value;
   }
   return all;
 }
@@ -122,12 +126,13 @@ std::vector<double> FreeFlight::strengths(const VectorXd& c) const {
 // Without the bounds.
 double FreeFlight::control(const Free& f, double volts) const {
   const bool squared = !ramps_ && model_.drive_kind(f.drive) == DriveKind::electrode;
-  return (squared ? volts * volts : f.sign * volts) / f.largest;
+  return (squared ? model_.strength(f.drive, volts) : f.sign * volts) / f.largest;
 }
 
 double FreeFlight::strength_slope(const Free& f, double c) const {
   const bool squared = ramps_ && model_.drive_kind(f.drive) == DriveKind::electrode;
-  return squared ? 2 * c * f.largest * f.largest : f.largest;
+  const double per_control = f.sign * f.largest;
+  return squared ? model_.strength_slope(f.drive, c * per_control) * per_control : f.largest;
 }
 
 ControlledSystem::Rates FreeFlight::rates(const VectorXd& x, const VectorXd& c) {
@@ -181,7 +186,8 @@ std::map<std::string, double> FreeFlight::volts(const VectorXd& c) const {
   for (std::size_t k = 0; k < free_.size(); ++k) {
     const double value = c[static_cast<Index>(k)] * free_[k].largest;
     const bool squared = !ramps_ && model_.drive_kind(free_[k].drive) == DriveKind::electrode;
-    all[free_[k].name] = free_[k].sign * (squared ? std::sqrt(std::max(value, 0.0)) : value);
+    const double acting = free_[k].sign * (squared ? std::sqrt(std::max(value, 0.0)) : value);
+    all[free_[k].name] = squared ? model_.neutral_voltage(free_[k].drive) + acting : acting;
   }
   return all;
 }

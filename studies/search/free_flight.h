@@ -4,8 +4,9 @@
 //
 // q modal coordinates, omega natural frequencies, g contact gap, s_i what mode i moves at the contact point (of a mode with a
 // node there a tenth of the largest): z_i is the part of mode i in the way to the contact. A control is the strength of a drive
-// over its largest (V^2 of an electrode, V of the piezo), so that the motion is linear in it and the quickest control jumps
-// between its bounds; where the driver's slew is limited it is the voltage over its largest, and linear between knots.
+// over its largest (of an electrode that of Switch::strength(), V of the piezo), so that the motion is linear in it and the
+// quickest control jumps between its bounds; where the driver's slew is limited it is the voltage over its largest, and linear
+// between knots.
 #pragma once
 
 #include <Eigen/Core>
@@ -72,7 +73,7 @@ class FreeFlight final : public ControlledSystem {
     std::size_t drive;
     std::string name;
     double largest;   ///< strength, or voltage where its slew is limited
-    double sign;      ///< of the voltage of an electrode, which pulls with either
+    double sign;      ///< sign of the voltage by which an electrode acts: it pulls with either
     double max_slew;  ///< [V/s]
   };
   [[nodiscard]] double strength(std::size_t drive, double value) const;

@@ -122,6 +122,7 @@ QuasiStatic::QuasiStatic(const PreparedScene& prepared, Actuator actuator, Stabl
     : approach_(std::move(approach)), impulses_(impulses) {
   const Drive& carrier = prepared.drives.at(approach_.drive);
   is_electrode_ = approach_.drive != piezo_drive;
+  neutral_ = prepared.model.neutral_voltage(prepared.drives.place(approach_.drive));
   hold_ = carrier.hold_level(), before_ = carrier.value_before(), limits_ = *carrier.limits;
   period_ = 2 * pi / prepared.model.basis().angular_frequencies()[0];
   if (!approach_.holder.empty()) {
@@ -228,25 +229,29 @@ QuasiStatic QuasiStatic::paced(double steady) const {
   return own;
 }
 
-// Lines in the square of an electrode's volts, drawn by chords.
+// Lines in the square of the volts by which an electrode acts, drawn by chords.
 Waveform QuasiStatic::carrying(Points points) const {
   if (!is_electrode_) return slewed(points, before_, limits_);
   constexpr int chords = 5;
-  Points drawn{{points.front().first, std::sqrt(std::max(points.front().second, 0.0))}};
+  const auto volts = [this](double square) { return neutral_ + std::sqrt(std::max(square, 0.0)); };
+  Points drawn{{points.front().first, volts(points.front().second)}};
   for (std::size_t k = 1; k < points.size(); ++k) {
     const auto [begin, from] = points[k - 1];
     const auto [end, to] = points[k];
     const int parts = from == to ? 1 : chords;
     for (int i = 1; i <= parts; ++i) {
       const double share = static_cast<double>(i) / parts;
-      drawn.emplace_back(begin + share * (end - begin), std::sqrt(std::max(from + share * (to - from), 0.0)));
+      drawn.emplace_back(begin + share * (end - begin), volts(from + share * (to - from)));
     }
   }
   return slewed(drawn, before_, limits_);
 }
 
 DriveWaveforms QuasiStatic::waveforms(std::span<const double> x) const {
-  const auto strength = [this](double voltage) { return is_electrode_ ? voltage * std::abs(voltage) : voltage; };
+  const auto strength = [this](double voltage) {
+    const double acting = voltage - neutral_;
+    return is_electrode_ ? acting * std::abs(acting) : voltage;
+  };
   const double apart = nearest_points * period_;
   const double touching = reaches(holding_ == Holding::shaped ? x[3] : holder_before_), line = x[1];
   const auto within = [&](double voltage) { return std::clamp(voltage, limits_.min_voltage, limits_.max_voltage); };

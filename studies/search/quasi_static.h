@@ -77,6 +77,7 @@ class QuasiStatic {
   std::size_t impulses_;
   double period_ = 0;                                                   // of mode 1 [s]
   bool is_electrode_ = false;                                           // the one that carries
+  double neutral_ = 0;                                                  // its V0, see Switch::neutral_voltage() [V]
   std::vector<std::pair<double, double>> reaches_;                      // by the holder's level squared: [V^2, V]
   double hold_ = 0, before_ = 0, holder_hold_ = 0, holder_before_ = 0;  // [V]
   DriverLimits limits_, holder_limits_;

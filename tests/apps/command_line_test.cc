@@ -281,6 +281,38 @@ TEST(PullIn, TellsSeveralElectrodesByName) {
   EXPECT_EQ(j["pull_in"]["main"], run("check")["pull_in"]);
 }
 
+// A charge shifts both polarities, and may keep a closed switch closed at 0 V.
+TEST(PullIn, SaysWhatAChargeOnTheDielectricDoes) {
+  const Workplace here;
+  const auto charged = [&](const char* verb, const char* charge) {
+    return std::vector<std::string>{
+        verb,    "gold.toml",
+        "--set", "gap.contact=3.2 um",
+        "--set", fmt::format(R"(electrode.main.dielectric={{thickness="0.2 um",permittivity=7.6,charge="{}"}})", charge)};
+  };
+  const auto voltages = [&](const char* charge) {
+    std::vector<std::string> words = charged("pull-in", charge);
+    words.insert(words.end(), {"--json", "-", "--quiet"});
+    return json::parse(here.run(words).out)["pull_in"];
+  };
+  const json without = voltages("0 C/m^2"), little = voltages("-0.5 mC/m^2"), much = voltages("4 mC/m^2");
+  EXPECT_FALSE(without.contains("neutral_V"));
+  EXPECT_NEAR(little["neutral_V"].get<double>(), 1.486, 1e-3);
+  for (const char* voltage : {"static_V", "release_V", "pulled_through_V"})
+    EXPECT_NEAR(little[voltage].get<double>() - little["neutral_V"].get<double>(), without[voltage].get<double>(), 1e-4)
+        << voltage;
+  EXPECT_LT(much["release_V"].get<double>(), 0);
+  const std::string stuck = here.run(charged("pull-in", "4 mC/m^2")).out;
+  EXPECT_THAT(stuck, HasSubstr("  charge           leaves no field at \u2212"
+                               "11.889"));
+  EXPECT_THAT(stuck, HasSubstr("a closed switch stays closed at 0 V"));
+  EXPECT_THAT(here.run(charged("pull-in", "-0.5 mC/m^2")).out, Not(HasSubstr("stays closed")));
+  const Outcome checked = here.run(charged("check", "4 mC/m^2"));
+  EXPECT_THAT(checked.out, HasSubstr("its charge leaves no field at \u2212"
+                                     "11.889"));
+  EXPECT_THAT(checked.out, HasSubstr("keeps the switch closed at 0 V once it is closed"));
+}
+
 TEST(PullIn, SaysAtWhichBiasItsVoltagesAre_optimized) {
   const Workplace here;
   const std::vector<std::string> own{"pull-in", "pzt.toml", "--set", R"(waveform.piezo={family="step",level="0.3 V"})"};

@@ -60,12 +60,32 @@ TEST(DielectricKeys, AreReadAndMayVary) {
   EXPECT_DOUBLE_EQ(d.thickness, 0.2e-6);
   EXPECT_DOUBLE_EQ(d.permittivity, 7.6);
   EXPECT_DOUBLE_EQ(d.roughness, 5e-9);
+  EXPECT_EQ(d.charge, 0);
   EXPECT_TRUE(scene.device.lands_on_dielectric());
   ASSERT_EQ(scene.spread.variables.size(), 1U);
   file.set("electrode.main.dielectric.thickness=\"0.3 um\"");
   EXPECT_DOUBLE_EQ(read_scene(file).device.electrodes[0].dielectric->thickness, 0.3e-6);
   const Scene again = read_scene(SceneFile::parse(file.text(), "again.toml"));
   EXPECT_DOUBLE_EQ(again.device.electrodes[0].dielectric->thickness, 0.3e-6);
+}
+
+TEST(DielectricKeys, ChargeIsPerAreaAndMayVary) {
+  const std::string charged = edited_plate(R"(roughness = "5 nm")", R"(charge = "-0.4 mC/m^2")");
+  SceneFile file = SceneFile::parse(charged, "x.toml");
+  file.set(R"(spread."electrode.main.dielectric.charge"={distribution="normal",standard_deviation="0.1 mC/m^2"})");
+  const Scene scene = read_scene(file);
+  EXPECT_DOUBLE_EQ(scene.device.electrodes[0].dielectric->charge, -0.4e-3);
+  EXPECT_TRUE(scene.device.is_charged());
+  EXPECT_FALSE(read_scene(SceneFile::parse(plate, "x.toml")).device.is_charged());
+  ASSERT_EQ(scene.spread.variables.size(), 2U);
+  file.set("electrode.main.dielectric.charge=\"200 uC/m^2\"");
+  EXPECT_DOUBLE_EQ(read_scene(SceneFile::parse(file.text(), "again.toml")).device.electrodes[0].dielectric->charge, 0.2e-3);
+  const auto refused = [&](const std::string& value) {
+    return refusal_of(edited_plate(R"(roughness = "5 nm")", "charge = " + value));
+  };
+  EXPECT_THAT(refused("\"1 mC\""), HasSubstr("x.toml:12: electrode.main.dielectric.charge = \"1 mC\": expected "));
+  EXPECT_THAT(refused("1e-3"), HasSubstr("x.toml:12: electrode.main.dielectric.charge = 0.001: no unit (expected "));
+  EXPECT_THAT(refused("\"2 MC/m^2\""), HasSubstr("x.toml:12: electrode.main.dielectric.charge = \"2 MC/m^2\": must be "));
 }
 
 TEST(DielectricKeys, AreRefusedByFileLineAndKey) {

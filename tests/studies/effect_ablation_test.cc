@@ -44,6 +44,16 @@ TEST(OmissibleEffect, IsWhatTheSceneDescribes) {
   EXPECT_THAT(names(omissible_effects(prepare(scene("two-electrodes.toml")))),
               ElementsAre("structure.damping_ratio", "contact.damping"));
   EXPECT_THAT(names(omissible_effects(prepare(gold({"contact.distribution=pad"})))), testing::Contains("contact.distribution"));
+  const PreparedScene charged =
+      prepare(gold({R"(electrode.main.dielectric={thickness="0.2 um",permittivity=7.6,charge="1 mC/m^2"})"}));
+  const std::vector<OmissibleEffect> all = omissible_effects(charged);
+  EXPECT_THAT(names(all), testing::IsSupersetOf({"electrode.main.dielectric.charge", "electrode.main.dielectric"}));
+  for (const OmissibleEffect& effect : all) {
+    if (effect.effect != "electrode.main.dielectric.charge") continue;
+    EXPECT_EQ(effect.choice, "1 mC/m^2");
+    EXPECT_DOUBLE_EQ(effect.magnitude.value, charged.model.neutral_voltage(0));
+    EXPECT_FALSE(without(charged, {effect}).scene.device.is_charged());
+  }
   EXPECT_THAT(names(omissible_effects(prepare(gold({"surface.elastic_modulus=5 N/m"})))), testing::Contains("surface"));
   EXPECT_THAT(names(omissible_effects(prepare(scene("nem-casimir.toml")))), testing::Not(testing::Contains("dispersion")))
       << "what a waveform drives is no effect to leave out";

@@ -147,5 +147,26 @@ TEST(Instruments, HaveExactSlopesOnEveryKindOfSwitch) {
   }
 }
 
+// A charge on the dielectric acts at all voltages, 0 V among them.
+TEST(Instruments, HaveTheSlopesOfACharge) {
+  const auto charged = [](const char* charge, const char* contact_gap) {
+    SceneFile file = gold({"structure.modes=2", R"(electrode.main.dielectric={thickness="0.2 um",permittivity=7.6})"});
+    file.set(fmt::format("electrode.main.dielectric.charge={}", charge));
+    file.set(fmt::format("gap.contact={}", contact_gap));
+    return prepared(std::move(file),
+                    {"electrode.main.dielectric.charge", "electrode.main.dielectric.thickness", "structure.thickness"});
+  };
+  const PreparedScene p = charged("-1 mC/m^2", "2 um"), stuck = charged("4 mC/m^2", "3.2 um");
+  for (const Measurable what : at_rest) expect_slopes(p, {.what = what});
+  ASSERT_LT(release_voltage(stuck.model, 0), 0);
+  for (const Measurable what : at_rest) expect_slopes(stuck, {.what = what});
+  for (const double level : {0.0, 8.0}) {
+    expect_slopes(p, {.what = Measurable::frequency, .level = level});
+    expect_slopes(p, {.what = Measurable::capacitance, .level = level});
+  }
+  expect_slopes(p, {.what = Measurable::closing_time, .level = 22});
+  expect_slopes(p, {.what = Measurable::position, .level = 22, .times = {5e-6, 12e-6, 20e-6}}, 100 * agreement);
+}
+
 }  // namespace
 }  // namespace softland::instruments_test

@@ -13,6 +13,7 @@
 #include "model/constants.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/plain_step.h"
+#include "studies/search/bang_bang.h"
 #include "studies/search/free_flight.h"
 #include "studies/search/search_setting.h"
 #include "tests/studies/scenes.h"
@@ -238,6 +239,46 @@ TEST(FreeFlight, LandsUnderTheVoltageThatHoldsWithoutPressing) {
       std::sqrt(2 * part_of<Plate>(s).stiffness * gap.contact * open * open / (vacuum_permittivity * s.width * s.length));
   EXPECT_NEAR(landing->controls[0] * 120, balance, 1e-6 * balance);
   EXPECT_NEAR(landing->state[0], 1, 1e-9);
+}
+
+// 0.2 um of nitride with so much charge that no field is left at 10 V.
+constexpr auto charged_nitride = R"(electrode.main.dielectric={thickness="0.2 um",permittivity=7.6,charge="-3.3646 mC/m^2"})";
+
+TEST(LeastTime, CoastsWhereAChargeLeavesNoField) {
+  const PreparedScene p = prepare_and_choose(spring_plate({charged_nitride}), true);
+  const double neutral = p.model.neutral_voltage(0), speed = 1e-3;
+  ASSERT_NEAR(neutral, 10, 1e-3);
+  const LeastTime found = least_time(p, {.impact_velocity = speed});
+  ASSERT_EQ(found.status, Status::done) << found.message;
+  const auto best = bang_bang(p.model, {120}, {neutral}, {});
+  ASSERT_TRUE(best);
+  const double stop = 42 / 2.4e-9 * 2.6e-6;  // acceleration by the spring at the contact [m/s^2]
+  EXPECT_NEAR(found.time / (best->driven_time + best->coasting_time - speed / stop), 1, 1e-4);
+  EXPECT_NEAR(found.simulated_time / found.time, 1, 1e-4);
+  EXPECT_NEAR(signal(found.waveforms.at("main")).range(0.99 * found.time).maximum, 120, 1e-6);
+  EXPECT_NEAR(signal(found.waveforms.at("main")).voltage(0.99 * found.time), neutral, 0.5);
+}
+
+TEST(FreeFlight, HasTheSlopesOfACharge) {
+  for (const bool is_ramped : {false, true}) {
+    SceneFile file = spring_plate({charged_nitride});
+    if (is_ramped) file.set("driver.main.max_slew=20 V/us"), file.set("waveform.main.rise_time=6 us");
+    const PreparedScene p = prepare_and_choose(file, true);
+    FreeFlight flight(p, Actuator::electrostatic);
+    ASSERT_EQ(flight.ramps(), is_ramped);
+    const Eigen::VectorXd x = Eigen::VectorXd::Constant(2, 0.3), c = Eigen::VectorXd::Constant(1, 0.4),
+                          multipliers = Eigen::VectorXd::Constant(2, 0.7), step = Eigen::VectorXd::Constant(1, 1e-4);
+    const auto rate = [&](const Eigen::VectorXd& control) { return flight.rates(x, control).value[1]; };
+    EXPECT_NEAR(flight.rates(x, c).slope(1, 2), (rate(c + step) - rate(c - step)) / 2e-4, 1e-7 * std::abs(rate(c)));
+    EXPECT_NEAR(flight.curvature(x, c, multipliers)(2, 2), 0.7 * (rate(c + step) - 2 * rate(c) + rate(c - step)) / 1e-8,
+                1e-5 * std::abs(rate(c)));
+    const double volts = flight.volts(c).at("main");
+    if (is_ramped) {
+      EXPECT_DOUBLE_EQ(volts, 0.4 * 120);
+    } else {
+      EXPECT_NEAR(p.model.strength(0, volts), 0.4 * std::pow(120 - p.model.neutral_voltage(0), 2), 1e-8);
+    }
+  }
 }
 
 TEST(Limit, LandsAPlateAtRestWhereTheSlewIsLimited_optimized) {
