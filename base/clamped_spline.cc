@@ -1,29 +1,51 @@
 #include "base/clamped_spline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/gauss.h"
 #include "base/require.h"
 
 namespace softland {
+namespace {
 
-ClampedSpline::ClampedSpline(std::vector<double> x, std::vector<double> y) : x_(std::move(x)), y_(std::move(y)) {
+// Integral of f g, exact where that is a polynomial of degree 7 at most between two points.
+template <class F, class G>
+double integral_of_product(const std::vector<double>& points, F f, G g) {
+  constexpr int exact = 4;
+  static const GaussRule rule = gauss_rule(exact);
+  double sum = 0;
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+    const double half = (points[k + 1] - points[k]) / 2;
+    for (std::size_t p = 0; p < rule.points.size(); ++p) {
+      const double x = points[k] + half * (1 + rule.points[p]);
+      sum += half * rule.weights[p] * f(x) * g(x);
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+ClampedSpline::ClampedSpline(std::vector<double> x, std::vector<double> y, SplineEnd end) : x_(std::move(x)), y_(std::move(y)) {
   const std::size_t n = x_.size();
   require(n >= 2 && y_.size() == n, "a spline needs two points at least, and as many y as x");
   require(std::adjacent_find(x_.begin(), x_.end(), [](double a, double b) { return !(a < b); }) == x_.end(),
           "the points of a spline must rise");
-  // Rows of the tridiagonal system of the curvatures: the slope at the first point, continuous slopes between, s'' = 0 at the
-  // last.
+  // Rows of the tridiagonal system of the curvatures: the slope at the first point, continuous slopes between, s'' = 0 or the
+  // slope at the last.
   std::vector<double> diagonal(n), above(n), right(n);
   const auto width = [&](std::size_t k) { return x_[k + 1] - x_[k]; };
   const auto chord = [&](std::size_t k) { return (y_[k + 1] - y_[k]) / width(k); };
   diagonal[0] = width(0) / 3, above[0] = width(0) / 6, right[0] = chord(0);
   for (std::size_t k = 1; k < n; ++k) {
-    const double below = k + 1 < n ? width(k - 1) / 6 : 0, factor = below / diagonal[k - 1];
-    diagonal[k] = (k + 1 < n ? (width(k - 1) + width(k)) / 3 : 1) - factor * above[k - 1];
+    const double below = k + 1 < n || end == SplineEnd::clamped ? width(k - 1) / 6 : 0, factor = below / diagonal[k - 1];
+    const double own = k + 1 < n ? (width(k - 1) + width(k)) / 3 : end == SplineEnd::clamped ? width(k - 1) / 3 : 1;
+    const double turn = k + 1 < n ? chord(k) - chord(k - 1) : end == SplineEnd::clamped ? -chord(k - 1) : 0;
+    diagonal[k] = own - factor * above[k - 1];
     above[k] = k + 1 < n ? width(k) / 6 : 0;
-    right[k] = (k + 1 < n ? chord(k) - chord(k - 1) : 0) - factor * right[k - 1];
+    right[k] = turn - factor * right[k - 1];
   }
   curvature_.resize(n);
   for (std::size_t k = n; k-- > 0;) curvature_[k] = (right[k] - (k + 1 < n ? above[k] * curvature_[k + 1] : 0)) / diagonal[k];
@@ -47,17 +69,27 @@ double ClampedSpline::slope(double x) const {
 }
 
 double ClampedSpline::integral_of_square() const {
-  constexpr int exact = 4;  // points for a polynomial of degree 6
-  static const GaussRule rule = gauss_rule(exact);
-  double sum = 0;
-  for (std::size_t k = 0; k + 1 < x_.size(); ++k) {
-    const double half = (x_[k + 1] - x_[k]) / 2;
-    for (std::size_t p = 0; p < rule.points.size(); ++p) {
-      const double at = value(x_[k] + half * (1 + rule.points[p]));
-      sum += half * rule.weights[p] * at * at;
-    }
-  }
-  return sum;
+  const auto own = [this](double x) { return value(x); };
+  return integral_of_product(x_, own, own);
+}
+
+double ClampedSpline::integral_of_slopes(const ClampedSpline& other) const {
+  return integral_of_product(
+      x_, [this](double x) { return slope(x); }, [&](double x) { return other.slope(x); });
+}
+
+bool is_hinged(const std::vector<double>& x, const std::vector<double>& y) {
+  constexpr double near = 0.2, between = 1.2;  // shear of a thick beam leaves 1.4 to 1.5
+  if (x.size() < 4 || !(x[2] < near * x.back()) || !(y[1] * y[2] > 0)) return false;
+  return std::log(y[2] / y[1]) / std::log(x[2] / x[1]) < between;
+}
+
+bool is_hinged_at_end(std::vector<double> x, std::vector<double> y) {
+  const double end = x.back();
+  for (double& place : x) place = end - place;
+  std::ranges::reverse(x);
+  std::ranges::reverse(y);
+  return is_hinged(x, y);
 }
 
 }  // namespace softland

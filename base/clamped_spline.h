@@ -1,8 +1,8 @@
-// A cubic spline through points, of which the first one is clamped and the last one is free.
+// A cubic spline through points, of which the first one is clamped and the last one is free, or clamped as well.
 //
-//   s(x_k) = y_k,   s''' is constant between points,   s'(x_0) = 0,   s''(x_n) = 0
+//   s(x_k) = y_k,   s''' is constant between points,   s'(x_0) = 0,   s''(x_n) = 0 or s'(x_n) = 0
 //
-// This is how a beam that is clamped at x_0 and free at x_n bends: a natural spline (s''(x_0) = 0) is wrong at the clamp, where
+// This is how a beam that is clamped at x_0 bends: a natural spline (s''(x_0) = 0) is wrong at the clamp, where
 // the curvature of a beam is largest. The error falls with the fourth power of the distance of the points for a function that
 // keeps both ends. Source: de Boor, A Practical Guide to Splines, 1978, ch. IV.
 #pragma once
@@ -11,21 +11,32 @@
 
 namespace softland {
 
+/// How the last point of a spline is held.
+enum class SplineEnd { free, clamped };
+
 class ClampedSpline {
  public:
   /// Throws InvalidInput unless there are as many y as x, two at least, and x rises.
-  ClampedSpline(std::vector<double> x, std::vector<double> y);
+  ClampedSpline(std::vector<double> x, std::vector<double> y, SplineEnd end = SplineEnd::free);
 
   /// Beyond the ends the cubic there goes on.
   [[nodiscard]] double value(double x) const;
   [[nodiscard]] double slope(double x) const;
   /// Integral of s^2 from the first point to the last.
   [[nodiscard]] double integral_of_square() const;
+  /// Integral of s' t' from the first point to the last, t being another spline through the same places.
+  [[nodiscard]] double integral_of_slopes(const ClampedSpline& other) const;
 
  private:
   [[nodiscard]] std::size_t interval(double x) const;
 
   std::vector<double> x_, y_, curvature_;  // curvature: s'' at the points
 };
+
+/// Whether y leaves its first place with a slope, as at a hinge. A clamped beam leaves its clamp with the square of the distance,
+/// a hinged one with the distance itself. Too few places near the first one tell nothing: false.
+[[nodiscard]] bool is_hinged(const std::vector<double>& x, const std::vector<double>& y);
+/// The same of the last place, seen from there.
+[[nodiscard]] bool is_hinged_at_end(std::vector<double> x, std::vector<double> y);
 
 }  // namespace softland

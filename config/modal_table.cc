@@ -18,6 +18,8 @@ namespace {
 
 namespace keys = modal_keys;
 
+constexpr std::string_view clamped = "clamped";
+
 double one_of_unit(const SectionReader& in, std::string_view key, const Dimension& due) {
   const std::string& unit = in.text(key);
   if (due == dimension::mass && unit == "t") return 1e3;  // of models in mm, s and N
@@ -73,6 +75,10 @@ std::vector<double> take_width(Structure& s, const ModeTable& table, const Secti
   return {};
 }
 
+SplineEnd far_end_of(const SectionReader& in) {
+  return in.is_given(keys::far_anchor) && in.text(keys::far_anchor) == clamped ? SplineEnd::clamped : SplineEnd::free;
+}
+
 // Empty where the face is straight.
 std::vector<double> offsets_of(ModeTable& table) {
   const bool is_straight = std::ranges::all_of(table.rest_offsets, [](double offset) { return offset == 0; });
@@ -92,8 +98,11 @@ std::shared_ptr<const ModalTable> table_of_file(Scene& scene, const SectionReade
   std::vector<double> widths = take_width(scene.device.structure, table, in);
   if (table.nodes > 0) scene.file_notes.push_back(fmt::format("{}: {}", in.written(keys::file), summary(table)));
   std::vector<double> offsets = offsets_of(table);
+  const SplineEnd far_end = far_end_of(in);
+  in.require(far_end == SplineEnd::free || table.far_end == SplineEnd::clamped, keys::far_anchor,
+             "the far end of the file does not stand still in every mode, as at a clamp");
   return std::make_shared<const ModalTable>(std::move(table.positions), std::move(table.frequencies), std::move(table.shapes),
-                                            std::move(offsets), std::move(widths));
+                                            std::move(offsets), std::move(widths), far_end);
 }
 
 std::shared_ptr<const ModalTable> table_of_scene(Structure& s, const SectionReader& in) {
@@ -125,7 +134,7 @@ std::shared_ptr<const ModalTable> table_of_scene(Structure& s, const SectionRead
   }
   try {
     return std::make_shared<const ModalTable>(std::move(positions), std::move(frequencies), std::move(shapes), std::move(offsets),
-                                              std::move(widths));
+                                              std::move(widths), far_end_of(in));
   } catch (const InvalidInput& error) {
     in.file().fail(in.path(keys::shapes), error.what());
   }
@@ -165,6 +174,8 @@ std::vector<Key> modal_table_keys() {
               "across the axis at the positions, straight between them; instead of width")
           .instead("width")
           .fixed("it belongs to the modes"),
+      one_of(keys::far_anchor, {"free", clamped},
+             "how the far end of the modes is held; clamped: the contact is in the middle; absent: free"),
   };
 }
 
@@ -177,6 +188,15 @@ void read_modal_table(Scene& scene, const SectionReader& in) {
     for (const std::string_view key : {keys::shapes, keys::rest_offsets, keys::widths})
       in.require(!in.is_given(key), key, "stands beside positions, not beside a file");
     table = table_of_file(scene, in);
+  }
+  if (!table->has_far_clamp() && table->is_held_at_both_ends())
+    in.fail("the far end stands still in every mode: far_anchor = \"clamped\" says that it is held");
+  if (in.is_given("axial_stiffness")) {
+    in.require(table->has_far_clamp(), "axial_stiffness",
+               "needs far_anchor = \"clamped\": a structure stretches between two clamps only");
+    in.require(
+        table->rest_offsets().empty(), "axial_stiffness",
+        "cannot stand beside rest offsets: a curved structure stretches between two clamps as an arch, which is not simulated");
   }
   s.length = table->length();
   if (!in.is_given("modes")) s.modes = most_modes_of(s);

@@ -14,7 +14,7 @@ namespace modal_keys {
 inline constexpr std::string_view file = "file", axis = "axis", direction = "direction", length_unit = "length_unit",
                                   mass_unit = "mass_unit", mass = "mass", mass_normalised = "mass_normalised", clamp = "clamp",
                                   positions = "positions", frequencies = "frequencies", shapes = "shapes",
-                                  rest_offsets = "rest_offsets", widths = "widths";
+                                  rest_offsets = "rest_offsets", widths = "widths", far_anchor = "far_anchor";
 }  // namespace modal_keys
 
 /// These keys, which stand before the fields of a ModalStructure.

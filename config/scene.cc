@@ -152,6 +152,14 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
         "beam's Poisson's ratio; give e31 = d31 E / (1 - nu) of the layer",
         file.origin("piezo.d31").text, 100 * more));
   }
+  if (const auto* const modal = structure.find<ModalStructure>();
+      modal != nullptr && modal->table->has_far_clamp() && std::isnan(modal->axial_stiffness)) {
+    warnings.push_back(
+        fmt::format("{}: between two clamps bending stretches the structure, which is simulated where structure.axial_stiffness "
+                    "(E A / L of an "
+                    "even beam) is given; without it deflections must be small against the thickness",
+                    file.origin("structure.far_anchor").text));
+  }
   if (const auto* adhesive = device.has_contact() ? std::get_if<AdhesiveAsperities>(&device.contacts.front().model) : nullptr) {
     const double tabor = adhesive->tabor_number();
     if (tabor > AdhesiveAsperities::largest_tabor_number)

@@ -236,10 +236,6 @@ class TableMaker {
   std::vector<double> modal_masses_;
 };
 
-double TableMaker::mean_square(const std::vector<double>& shape) const {
-  return ClampedSpline(made_.positions, shape).integral_of_square() / made_.positions.back();
-}
-
 constexpr double still = 1e-4;  // of the largest motion
 
 double largest_motion(const std::vector<double>& shape) {
@@ -248,12 +244,14 @@ double largest_motion(const std::vector<double>& shape) {
   return most;
 }
 
-// A clamped beam leaves its clamp with the square of the distance, a hinged one with the distance itself.
-bool is_hinged(const ModeTable& table) {
-  constexpr double near = 0.2, between = 1.2;  // shear of a thick beam leaves 1.4 to 1.5
-  const std::vector<double>&x = table.positions, &y = table.shapes.front();
-  if (x.size() < 4 || !(x[2] < near * x.back()) || !(y[1] * y[2] > 0)) return false;
-  return std::log(y[2] / y[1]) / std::log(x[2] / x[1]) < between;
+SplineEnd far_end_of(const ModeTable& table) {
+  const bool is_held = std::ranges::all_of(
+      table.shapes, [](const std::vector<double>& shape) { return std::abs(shape.back()) <= still * largest_motion(shape); });
+  return is_held && !is_hinged_at_end(table.positions, table.shapes.front()) ? SplineEnd::clamped : SplineEnd::free;
+}
+
+double TableMaker::mean_square(const std::vector<double>& shape) const {
+  return ClampedSpline(made_.positions, shape, far_end_of(made_)).integral_of_square() / made_.positions.back();
 }
 
 // What holds of every table, whatever it was read from. Modes become positive at the far end, and exactly 0 at the clamp.
@@ -294,7 +292,10 @@ void check(ModeTable& table, const ModeKeys& keys) {
       for (double& value : shape) value = value == 0 ? 0 : -value;
     }
   }
-  if (is_hinged(table)) fail("mode_1 leaves the first place with a slope, as at a hinge: the first place must be a clamp");
+  table.far_end = far_end_of(table);
+  if (table.far_end == SplineEnd::clamped) table.notes.emplace_back("the far end stands still in every mode, as at a clamp");
+  if (is_hinged(table.positions, table.shapes.front()))
+    fail("mode_1 leaves the first place with a slope, as at a hinge: the first place must be a clamp");
 }
 
 }  // namespace

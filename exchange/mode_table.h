@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/clamped_spline.h"
 #include "exchange/mode_keys.h"
 
 namespace softland {
@@ -37,6 +38,7 @@ struct ModeTable {
   std::vector<double> rest_offsets;         ///< of the face towards the direction of motion at rest [m], by position
   std::vector<double> frequencies;          ///< [Hz], rising
   std::vector<std::vector<double>> shapes;  ///< mass-normalised [kg^(-1/2)]: of each mode by position, positive at the far end
+  SplineEnd far_end = SplineEnd::free;      ///< clamped where it stands still in every mode, and mode_1 leaves it without a slope
 
   std::size_t nodes = 0;            ///< of the mesh; 0 of a table
   std::vector<ModeFound> found;     ///< every mode of a mesh, taken or not; empty of a table

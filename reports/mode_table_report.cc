@@ -63,7 +63,7 @@ void draw_taken(internal::Picture& drawn, const ModeTable& table, const ModeFoun
   constexpr std::size_t most_dots = 30;
   const std::string id = fmt::format("mode-{}", found.number), places = id + "-places";
   const std::vector<double>& shape = table.shapes[column];
-  const ClampedSpline spline(table.positions, shape);
+  const ClampedSpline spline(table.positions, shape, table.far_end);
   // Numbers of one to three digits, whatever the mass.
   const int exponent = 3 * static_cast<int>(std::floor(std::log10(largest_of(shape)) / 3));
   const double unit = std::pow(10.0, exponent);

@@ -95,8 +95,9 @@ int table_of_file(const Common& c, const ModesRequest& r) {
   if (!c.out.empty()) {
     write_whole(c.out, mode_table_csv(table));
     text += "\n" +
-            wrapped(fmt::format("In {}: the table, for structure = {{ kind = \"modes\", file = \"{}\" }}", c.out,
-                                std::filesystem::path(c.out).filename().string())) +
+            wrapped(fmt::format("In {}: the table, for structure = {{ kind = \"modes\", file = \"{}\"{} }}", c.out,
+                                std::filesystem::path(c.out).filename().string(),
+                                table.far_end == SplineEnd::clamped ? ", far_anchor = \"clamped\"" : "")) +
             "\n";
   }
   if (!r.plot.empty()) {

@@ -100,6 +100,8 @@ inline Anchor Structure::near_hold() const {
 }
 inline Anchor Structure::far_hold() const {
   if (const Beam* const beam = find<Beam>(); beam != nullptr && beam->far_anchor) return *beam->far_anchor;
+  if (const auto* const modal = find<ModalStructure>())
+    return modal->table && modal->table->has_far_clamp() ? Anchor{} : free_end;
   const bool is_clamped = std::visit(
       []<class Kind>(const Kind&) {
         return requires { Kind::has_far_clamp; };

@@ -31,12 +31,13 @@ bool is_finite(const std::vector<double>& values) {
 }  // namespace
 
 ModalTable::ModalTable(std::vector<double> positions, std::vector<double> frequencies, std::vector<std::vector<double>> shapes,
-                       std::vector<double> rest_offsets, std::vector<double> widths)
+                       std::vector<double> rest_offsets, std::vector<double> widths, SplineEnd far_end)
     : positions_(std::move(positions)),
       frequencies_(std::move(frequencies)),
       shapes_(std::move(shapes)),
       rest_offsets_(std::move(rest_offsets)),
-      widths_(std::move(widths)) {
+      widths_(std::move(widths)),
+      far_end_(far_end) {
   constexpr std::size_t fewest = 3;
   require_table(positions_.size() >= fewest && positions_.front() == 0 && rises(positions_) && is_finite(positions_),
                 "three positions at least must rise from 0, the clamp");
@@ -52,8 +53,11 @@ ModalTable::ModalTable(std::vector<double> positions, std::vector<double> freque
     require_table(shape.size() == positions_.size(), "a shape must have a value per position");
     require_table(is_finite(shape) && shape.front() == 0, "a shape must be 0 at the clamp, and finite");
     require_table(std::any_of(shape.begin(), shape.end(), [](double v) { return v != 0; }), "a shape must move");
-    splines_.emplace_back(positions_, shape);
+    splines_.emplace_back(positions_, shape, far_end);
   }
+  if (!has_far_clamp()) return;
+  require_table(is_held_at_both_ends(), "a far end that is clamped must stand still in every mode");
+  require_table(!is_hinged_at_end(positions_, shapes_.front()), "the first mode must leave a clamped far end without a slope");
 }
 
 double ModalTable::rest_offset(double x) const {
@@ -70,6 +74,15 @@ bool ModalTable::is_held_at_both_ends() const {
     const auto [low, high] = std::minmax_element(shape.begin(), shape.end());
     return std::abs(shape.back()) <= still * std::max(-*low, *high);
   });
+}
+
+std::vector<double> ModalTable::slope_products(int modes) const {
+  std::vector<double> products;
+  for (int j = 0; j < modes; ++j) {
+    for (int i = 0; i < modes; ++i)
+      products.push_back(splines_[static_cast<std::size_t>(i)].integral_of_slopes(splines_[static_cast<std::size_t>(j)]));
+  }
+  return products;
 }
 
 Eigen::VectorXd TabulatedModes::Shapes::value(double x) const {
@@ -109,9 +122,14 @@ std::string ModalStructure::why_invalid(double length, int modes) const {
     return fmt::format("structure.length = {}: must be the length of the table of modes, {}", engineering(length, "m"),
                        engineering(table->length(), "m"));
   }
-  if (table->is_held_at_both_ends()) {
-    return "structure.kind = modes: the far end stands still in every mode; between two clamps bending stretches the structure, "
-           "which modes do not hold: kind = clamped-clamped does";
+  if (table->is_held_at_both_ends() && !table->has_far_clamp())
+    return "structure.kind = modes: the far end stands still in every mode: far_anchor = \"clamped\" says that it is held";
+  if (!std::isnan(axial_stiffness)) {
+    if (!table->has_far_clamp())
+      return "structure.axial_stiffness: needs far_anchor = \"clamped\": a structure stretches between two clamps only";
+    if (!table->rest_offsets().empty())
+      return "structure.axial_stiffness: cannot stand beside rest offsets: a curved structure stretches between two clamps as an "
+             "arch, which is not simulated";
   }
   if (modes > table->count())
     return fmt::format("structure.modes = {}: must not exceed {}, the modes of the file", modes, table->count());

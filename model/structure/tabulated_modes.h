@@ -1,16 +1,20 @@
-// Modes of a structure that another program computed, as a table along its axis, clamped at x = 0 and free at its far end.
+// Modes of a structure that another program computed, as a table along its axis, clamped at x = 0 and free or clamped
+// at its far end.
 //
-//   q_i'' = -(f omega_i)^2 q_i + ...      y(x) = sum over i of phi_i(x) q_i
+//   q_i'' = -(f omega_i)^2 q_i + Q_i + ...      y(x) = sum over i of phi_i(x) q_i
 //
 // phi mass-normalised modes [kg^(-1/2)], of which a row per place is known, omega angular frequencies [rad/s], f a factor by
 // which a device is stiffer than the table says. Between the places a cubic that is clamped at x = 0 (base/clamped_spline.h):
-// value and slope are 0 there. It answers what BeamModes answers, so that laws per length act on it as on a beam. Valid while
-// deflections are small against the thickness, since the modes are linear. Source: modal superposition, any textbook on
+// value and slope are 0 there. Q is the force of stretching between two clamps (model/stretching.h): the slopes are those of the
+// cubics, and EA/L is the axial stiffness that a scene gives. It answers what BeamModes answers, so that laws per length act on
+// it as on a beam. Without an axial stiffness it is valid while deflections are small against the thickness, since the modes are
+// linear. Source: modal superposition, any textbook on
 // structural dynamics, e.g. Meirovitch, Fundamentals of Vibrations, 2001, ch. 7.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +22,7 @@
 #include <vector>
 
 #include "base/clamped_spline.h"
+#include "model/stretching.h"
 #include "model/structure/kind.h"
 
 namespace softland {
@@ -28,9 +33,10 @@ class ModalTable {
   /// `positions` [m] rise from 0, `frequencies` [Hz] rise, a shape [kg^(-1/2)] per frequency and a value in it per position, 0 at
   /// the first one. Throws InvalidInput with the rule unless that holds, with three positions at least.
   /// `rest_offsets` [m], one per position or none of a straight structure, are those of its face, positive towards the near
-  /// electrode. `widths` [m], one per position or none of a structure as wide everywhere, run straight between positions.
+  /// electrode. `widths` [m], one per position or none of a structure as wide everywhere, run straight between positions. A far
+  /// end that is clamped stands still in every mode, and the first one leaves it without a slope.
   ModalTable(std::vector<double> positions, std::vector<double> frequencies, std::vector<std::vector<double>> shapes,
-             std::vector<double> rest_offsets = {}, std::vector<double> widths = {});
+             std::vector<double> rest_offsets = {}, std::vector<double> widths = {}, SplineEnd far_end = SplineEnd::free);
 
   [[nodiscard]] int count() const { return static_cast<int>(frequencies_.size()); }
   [[nodiscard]] double length() const { return positions_.back(); }                         ///< [m]
@@ -47,17 +53,21 @@ class ModalTable {
   [[nodiscard]] double rest_offset(double x) const;
   /// The least of these [m].
   [[nodiscard]] double lowest_rest_offset() const;
-  /// Whether the last place stands still in every mode: the far end is clamped as well.
+  /// Whether the last place stands still in every mode: the far end is held as well.
   [[nodiscard]] bool is_held_at_both_ends() const;
+  [[nodiscard]] bool has_far_clamp() const { return far_end_ == SplineEnd::clamped; }
+  /// Integrals of phi_i' phi_j' of the first modes, column by column [1/(kg m)].
+  [[nodiscard]] std::vector<double> slope_products(int modes) const;
   [[nodiscard]] bool operator==(const ModalTable& other) const {
     return positions_ == other.positions_ && frequencies_ == other.frequencies_ && shapes_ == other.shapes_ &&
-           rest_offsets_ == other.rest_offsets_ && widths_ == other.widths_;
+           rest_offsets_ == other.rest_offsets_ && widths_ == other.widths_ && far_end_ == other.far_end_;
   }
 
  private:
   std::vector<double> positions_, frequencies_;
   std::vector<std::vector<double>> shapes_;
   std::vector<double> rest_offsets_, widths_;
+  SplineEnd far_end_;
   std::vector<ClampedSpline> splines_;
 };
 
@@ -93,7 +103,7 @@ class TabulatedModes {
   Eigen::VectorXd frequencies_;
 };
 
-/// The kind "modes": clamped at x = 0 and free at its far end.
+/// The kind "modes": clamped at x = 0, and free or clamped at its far end.
 struct ModalStructure {
   static constexpr std::string_view name = "modes", whose = "beside the modes of a file",
                                     length_is = "the {} of the modes' table",
@@ -103,7 +113,8 @@ struct ModalStructure {
   static constexpr std::array usual_spread{UsualSpread{"frequency_factor", "3.5 %", true}};
 
   std::shared_ptr<const ModalTable> table = {};
-  double frequency_factor = 1;  ///< of all natural frequencies, over those of the table
+  double frequency_factor = 1;         ///< of all natural frequencies, over those of the table
+  double axial_stiffness = not_given;  ///< force per elongation between its clamps, E A / L of an even beam [N/m]
 
   /// Keys that say where the table is, and how it is read, stand in config/modal_table.h.
   template <class S>
@@ -113,6 +124,7 @@ struct ModalStructure {
     return std::to_array<Field<S>>({
         S::damping(),
         {.key = "frequency_factor", .about = "of all natural frequencies, over those of the file", .in = within<S, ModalStructure, &ModalStructure::frequency_factor>, .range = {.least = 0.01, .most = 100}, .fallback = "1.0"},
+        {.key = "axial_stiffness", .unit = "N/m", .about = "between two clamps: force per elongation, E A / L of an even beam; absent: stretching is not simulated", .in = within<S, ModalStructure, &ModalStructure::axial_stiffness>, .such_as = "12 kN/m"},
         {.key = "width", .unit = "m", .about = "across the axis, the same everywhere; absent: that of the file, which may change along it", .in = reach<S, &S::width>, .why_fixed = follows_no_size},
         {.key = "thickness", .unit = "m", .about = "needed by fringing and gas laws that depend on it, and by nothing else", .in = reach<S, &S::thickness>, .why_fixed = follows_no_size},
         {.key = "modes", .about = "number of modes kept; absent: all of the file", .count = reach<S, &S::modes>, .range = {.least = 1, .most = S::most_modes}},
@@ -145,6 +157,14 @@ struct ModalStructure {
   template <class Device>
   [[nodiscard]] double lowest_rest_offset(const Device&) const {
     return table->lowest_rest_offset();
+  }
+  /// None where the scene does not give its axial stiffness.
+  template <class S>
+  [[nodiscard]] std::optional<MidPlaneStretching> stretching(const TabulatedModes& modes, const S&) const {
+    if (std::isnan(axial_stiffness)) return std::nullopt;
+    const auto count = static_cast<int>(modes.angular_frequencies().size());
+    return MidPlaneStretching{
+        .modes = static_cast<std::size_t>(count), .slopes = table->slope_products(count), .stiffness = axial_stiffness / 2};
   }
   [[nodiscard]] std::string why_invalid(double length, int modes) const;
   [[nodiscard]] int most_modes() const;

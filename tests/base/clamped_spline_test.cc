@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "base/require.h"
@@ -51,6 +52,39 @@ TEST(ClampedSpline, HasAnErrorOfFourthOrderForTheModeOfACantilever) {
   const double order = std::log2(error(20) / error(40));
   EXPECT_GT(order, 3.7);
   EXPECT_LT(order, 4.3);
+}
+
+TEST(ClampedSpline, BetweenTwoClampsIsTheCubicThatStaysFlatAtBoth) {
+  const auto beam = [](double x) { return x * x * (3 - 2 * x); };  // s'(0) = s'(1) = 0
+  const std::vector<double> x{0, 0.2, 0.35, 0.7, 1};
+  std::vector<double> y;
+  for (const double at : x) y.push_back(beam(at));
+  const ClampedSpline s(x, y, SplineEnd::clamped), half_as_far(x, {0, y[1] / 2, y[2] / 2, y[3] / 2, 0.5}, SplineEnd::clamped);
+  for (double at = 0; at <= 1; at += 0.01) {
+    EXPECT_NEAR(s.value(at), beam(at), rounding);
+    EXPECT_NEAR(s.slope(at), 6 * at * (1 - at), 10 * rounding);
+  }
+  EXPECT_NEAR(s.integral_of_slopes(s), 1.2, 10 * rounding) << "of 36 x^2 (1 - x)^2";
+  EXPECT_NEAR(s.integral_of_slopes(half_as_far), 0.6, 10 * rounding);
+}
+
+TEST(ClampedSpline, SeesHingesByTheSlopeWithWhichTheyAreLeft) {
+  const auto at_places = [](int parts, auto curve) {
+    std::vector<double> x, y;
+    for (int i = 0; i <= parts; ++i) x.push_back(static_cast<double>(i) / parts), y.push_back(curve(x.back()));
+    return std::pair(x, y);
+  };
+  const auto sees = [&](int parts, auto curve) {
+    const auto [x, y] = at_places(parts, curve);
+    return std::pair(is_hinged(x, y), is_hinged_at_end(x, y));
+  };
+  const auto clamps = [](double x) { return x * x * (1 - x) * (1 - x); };
+  const auto clamp_and_hinge = [](double x) { return x * x * (1 - x); };
+  const auto hinges = [](double x) { return x * (1 - x); };
+  EXPECT_EQ(sees(30, clamps), std::pair(false, false));
+  EXPECT_EQ(sees(30, clamp_and_hinge), std::pair(false, true));
+  EXPECT_EQ(sees(30, hinges), std::pair(true, true));
+  EXPECT_EQ(sees(5, hinges), std::pair(false, false)) << "too few places to tell";
 }
 
 TEST(ClampedSpline, RefusesPointsThatDoNotRise) {

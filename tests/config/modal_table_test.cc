@@ -187,6 +187,42 @@ TEST_F(ModalScene, TakesTheRestShapeOfItsFile) {
   EXPECT_EQ(scene(held).device.rest_offset(68e-6), bent.device.rest_offset(68e-6));
 }
 
+TEST_F(ModalScene, MayBeClampedAtItsFarEnd) {
+  std::string csv = "x_m,width_m,rest_offset_m,mode_1\nfrequency_Hz,,,25000\n", bent = csv;
+  for (int k = 0; k <= 20; ++k) {
+    const double u = k / 20.0;
+    csv += fmt::format("{},1e-05,0,{}\n", 1e-4 * u, 1.6e7 * u * u * (1 - u) * (1 - u));
+    bent += fmt::format("{},1e-05,{},{}\n", 1e-4 * u, k == 7 ? 1e-8 : 0, 1.6e7 * u * u * (1 - u) * (1 - u));
+  }
+  write("bridge.csv", csv), write("bent.csv", bent);
+  const std::string bridge = edited(modes_scene, "modes.csv", "bridge.csv"),
+                    clamped = edited(bridge, "thickness =", "far_anchor = \"clamped\"\nthickness ="),
+                    stretched = edited(clamped, "thickness =", "axial_stiffness = \"12 kN/m\"\nthickness =");
+  EXPECT_THAT(refusal(bridge), HasSubstr("x.toml:1: [structure]: the far end stands still in every mode: far_anchor = "
+                                         "\"clamped\" says that it is held"));
+  EXPECT_THAT(refusal(edited(clamped, "bridge.csv", "modes.csv")),
+              HasSubstr("x.toml:4: structure.far_anchor = \"clamped\": the far end of the file does not stand still"));
+  EXPECT_THAT(refusal(edited(edited(stretched, "\"clamped\"", "\"free\""), "bridge.csv", "modes.csv")),
+              HasSubstr("x.toml:5: structure.axial_stiffness = \"12 kN/m\": needs far_anchor = \"clamped\""));
+  EXPECT_THAT(refusal(edited(stretched, "bridge.csv", "bent.csv")),
+              HasSubstr("structure.axial_stiffness = \"12 kN/m\": cannot stand beside rest offsets"));
+  EXPECT_THAT(refusal(edited(clamped, "\"clamped\"", "\"hinged\"")), HasSubstr("x.toml:4: structure.far_anchor"));
+  const Scene linear = scene(clamped), cubic = scene(stretched);
+  EXPECT_THAT(linear.warnings, testing::Contains(HasSubstr("is simulated where structure.axial_stiffness")));
+  EXPECT_THAT(cubic.warnings, testing::Not(testing::Contains(HasSubstr("axial_stiffness"))));
+  EXPECT_DOUBLE_EQ(linear.device.contact_position(), 50e-6);
+  EXPECT_FALSE(Switch(linear.device).stretching());
+  ASSERT_TRUE(Switch(cubic.device).stretching());
+  EXPECT_EQ(Switch(cubic.device).stretching()->stiffness, 6e3);
+  // A result reads back to the same.
+  const SceneFile held = resolved(cubic, {});
+  const Scene again = read_scene(SceneFile::parse(held.text(), "elsewhere.toml"));
+  EXPECT_TRUE(*part_of<ModalStructure>(again.device.structure).table == *part_of<ModalStructure>(cubic.device.structure).table);
+  EXPECT_EQ(part_of<ModalStructure>(again.device.structure).axial_stiffness, 12e3);
+  const Scene free = scene(std::string(modes_scene));
+  EXPECT_FALSE(*part_of<ModalStructure>(free.device.structure).table == *part_of<ModalStructure>(again.device.structure).table);
+}
+
 TEST_F(ModalScene, RefusesListsThatAreNoTable) {
   const auto held = [&](const std::string& lists) {
     return edited(modes_scene, "file = \"modes.csv\"", lists + "width = \"10 um\"");

@@ -60,7 +60,7 @@ TEST(Schema, EveryKeySetsAMemberOrIsKnownToSetNone) {
                                    "structure.rest_shape", "structure.file", "structure.axis", "structure.direction",
                                    "structure.length_unit", "structure.mass_unit", "structure.mass", "structure.mass_normalised",
                                    "structure.clamp", "structure.positions", "structure.frequencies", "structure.shapes",
-                                   "structure.rest_offsets", "structure.widths"));
+                                   "structure.rest_offsets", "structure.widths", "structure.far_anchor"));
 }
 
 TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {

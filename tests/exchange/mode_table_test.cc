@@ -192,6 +192,23 @@ TEST(ModeTable, OfAHingedEndIsRefused) {
   EXPECT_THAT(refusal_of(text, {}), HasSubstr("leaves the first place with a slope, as at a hinge"));
 }
 
+// Modes of a table that stand still at the far end: of a clamp there, and of a hinge.
+TEST(ModeTable, TellsWhetherItsFarEndIsAClamp) {
+  const auto table = [](auto curve) {
+    std::string text = "x_m,mode_1\nfrequency_Hz,1000\n";
+    for (int i = 0; i <= 20; ++i) text += fmt::format("{},{}\n", i * 1e-6, curve(i / 20.0));
+    return parse_mode_table(text, "modes.csv", {});
+  };
+  const ModeTable clamped = table([](double u) { return 1e6 * u * u * (1 - u) * (1 - u); });
+  EXPECT_EQ(clamped.far_end, SplineEnd::clamped);
+  EXPECT_THAT(summary(clamped), HasSubstr("the far end stands still in every mode, as at a clamp"));
+  const ModeTable hinged = table([](double u) { return 1e6 * u * u * (1 - u); }),
+                  free = table([](double u) { return 1e6 * u * u; });
+  EXPECT_EQ(hinged.far_end, SplineEnd::free);
+  EXPECT_EQ(free.far_end, SplineEnd::free);
+  EXPECT_THAT(summary(free), testing::Not(HasSubstr("far end")));
+}
+
 // Nodes anywhere, as of tetrahedra: bending with torsion over it, and in-plane bending.
 TEST(ModeTable, OfAnIrregularMeshIsFittedOnTheAxis) {
   constexpr std::size_t count = 2600;

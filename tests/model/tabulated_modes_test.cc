@@ -4,13 +4,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/require.h"
 #include "model/beam.h"
+#include "model/closing.h"
 #include "model/mode_shapes.h"
+#include "model/pull_in.h"
 #include "model/switch.h"
 #include "tests/support/devices.h"
 
@@ -18,8 +23,9 @@ namespace softland {
 namespace {
 
 /// The modes of a device's beam at even places.
-std::shared_ptr<const ModalTable> modal_table_of(const Device& device, int modes, int parts) {
-  const BeamModes beam(beam_sections(device), modes);
+std::shared_ptr<const ModalTable> modal_table_of(Device device, int modes, int parts) {
+  device.structure.modes = modes;
+  const BeamModes beam = beam_modes(device, nullptr);
   std::vector<double> positions, frequencies;
   for (int k = 0; k <= parts; ++k)
     positions.push_back(k == parts ? device.structure.length : device.structure.length * k / parts);
@@ -29,7 +35,12 @@ std::shared_ptr<const ModalTable> modal_table_of(const Device& device, int modes
     shapes.push_back({0});
     for (std::size_t k = 1; k < positions.size(); ++k) shapes.back().push_back(beam.value(positions[k])[i]);
   }
-  return std::make_shared<const ModalTable>(positions, frequencies, shapes);
+  const SplineEnd far_end = device.structure.has_far_clamp() ? SplineEnd::clamped : SplineEnd::free;
+  if (far_end == SplineEnd::clamped) {
+    for (std::vector<double>& shape : shapes) shape.back() = 0;
+  }
+  return std::make_shared<const ModalTable>(positions, frequencies, shapes, std::vector<double>(), std::vector<double>(),
+                                            far_end);
 }
 
 Device by_modes(Device device, std::shared_ptr<const ModalTable> table) {
@@ -94,6 +105,56 @@ TEST(TabulatedModes, MoveASwitchAsTheBeamDoes) {
   beam.accelerations(q.data(), v.data(), volts, false, work, expected.data());
   table.accelerations(q.data(), v.data(), volts, false, other, found.data());
   EXPECT_LT((found - expected).norm(), interpolated * expected.norm());
+}
+
+/// The gold bridge by its modes, and its axial stiffness.
+Device bridge_by_modes(const Device& bridge, int parts) {
+  const Structure& s = bridge.structure;
+  Device device = by_modes(bridge, modal_table_of(bridge, s.modes, parts));
+  part_of<ModalStructure>(device.structure).axial_stiffness = part_of<Beam>(s).youngs_modulus * s.width * s.thickness / s.length;
+  return device;
+}
+
+TEST(TabulatedModes, BetweenTwoClampsStretchAsTheBeamDoes) {
+  constexpr double interpolated = 5e-6;  // fourth order; the fifth mode turns by 0.17 from place to place
+  const Device device = test::gold_bridge();
+  const Switch beam(device), table(bridge_by_modes(device, table_places));
+  ASSERT_TRUE(table.stretching());
+  EXPECT_DOUBLE_EQ(table.stretching()->stiffness, beam.stretching()->stiffness);
+  const auto of_largest = [&](const std::vector<double>& all) { return std::abs(*std::ranges::max_element(all)); };
+  for (std::size_t k = 0; k < beam.stretching()->slopes.size(); ++k)
+    EXPECT_NEAR(table.stretching()->slopes[k], beam.stretching()->slopes[k], interpolated * of_largest(beam.stretching()->slopes))
+        << k;
+  EXPECT_DOUBLE_EQ(table.device().contact_position(), device.structure.length / 2);
+}
+
+// The figures of the table are those of the beam, and nearer to them with the fourth power of the distance of its places.
+TEST(TabulatedModes, BetweenTwoClampsPullInAndCloseAsTheBeamDoes) {
+  constexpr double interpolated = 1e-5;
+  const Device device = test::gold_bridge();
+  const Switch beam(device);
+  const double volts = static_pull_in(beam, 0).voltage;
+  const std::vector<Signal> drives{Signal::constant(1.6 * volts), Signal::constant(0)};
+  const auto closing_time = [&](const Switch& model) {
+    const Trajectory run = simulate_closing(model, drives, {.duration = 200e-6, .tolerance = 1e-10, .after_contact = 0});
+    return run.touches.empty() ? std::numeric_limits<double>::quiet_NaN() : run.touches.front().begin;
+  };
+  const double expected = closing_time(beam);
+  ASSERT_GT(expected, 0);
+  const auto errors = [&](int parts) {
+    const Switch table(bridge_by_modes(device, parts));
+    return std::pair(std::abs(static_pull_in(table, 0).voltage / volts - 1), std::abs(closing_time(table) / expected - 1));
+  };
+  const auto [volts_error, time_error] = errors(table_places);
+  EXPECT_LT(volts_error, interpolated);
+  EXPECT_LT(time_error, interpolated);
+  const auto [coarse_volts, coarse_time] = errors(10);
+  EXPECT_GT(coarse_volts, 10 * volts_error);
+  EXPECT_GT(coarse_time, 10 * time_error);
+  // Without its axial stiffness it is another switch.
+  Device straight = bridge_by_modes(device, table_places);
+  part_of<ModalStructure>(straight.structure).axial_stiffness = not_given;
+  EXPECT_LT(static_pull_in(Switch(straight), 0).voltage, 0.9 * volts);
 }
 
 TEST(TabulatedModes, OfSwitchesOfOneTableShareTheirQuadrature) {
@@ -169,8 +230,24 @@ TEST(TabulatedModes, AreRefusedWithTheRule) {
                       std::make_shared<const ModalTable>(std::vector<double>{0, 125e-6, 250e-6}, std::vector<double>{1e4},
                                                          std::vector<std::vector<double>>{{0, middle, 1}}));
     device.structure.modes = 1;
-    expect_refused_with([&] { (void)Switch(device); }, "the far end stands still in every mode");
+    expect_refused_with([&] { (void)Switch(device); }, "the far end stands still in every mode: far_anchor = \"clamped\"");
   }
+  const auto clamped = [](std::vector<double> y) {
+    std::vector<double> x(y.size());
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<double>(i);
+    return [=] { (void)ModalTable(x, {1}, {y}, {}, {}, SplineEnd::clamped); };
+  };
+  expect_refused_with(clamped({0, 1, 1}), "a far end that is clamped must stand still in every mode");
+  expect_refused_with(clamped({0, 1, 4, 9, 16, 25, 36, 49, 56, 48, 32, 16, 0}), "must leave a clamped far end without a slope");
+  device = by_modes(test::gold_cantilever(), table);
+  part_of<ModalStructure>(device.structure).axial_stiffness = 1e4;
+  expect_refused_with([&] { (void)Switch(device); }, "structure.axial_stiffness: needs far_anchor = \"clamped\"");
+  device = bridge_by_modes(test::gold_bridge(), 4);
+  const auto& straight = *part_of<ModalStructure>(device.structure).table;
+  part_of<ModalStructure>(device.structure).table =
+      std::make_shared<const ModalTable>(straight.positions(), straight.frequencies(), straight.shapes(),
+                                         std::vector<double>{0, 0, 1e-7, 0, 0}, std::vector<double>(), SplineEnd::clamped);
+  expect_refused_with([&] { (void)Switch(device); }, "structure.axial_stiffness: cannot stand beside rest offsets");
 }
 
 }  // namespace
