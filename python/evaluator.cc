@@ -34,8 +34,9 @@ Figure figure_named(const std::string& name) {
   return *found;
 }
 
-std::unique_ptr<Evaluator> made(const PyScene& scene, const std::vector<std::string>& keys, const std::vector<std::string>& names,
-                                const std::string& vdp, double tolerance, const py::object& progress) {
+std::unique_ptr<Evaluator> made_evaluator(const PyScene& scene, const std::vector<std::string>& keys,
+                                          const std::vector<std::string>& names, const std::string& vdp, double tolerance,
+                                          const py::object& progress) {
   require(vdp == "nominal" || vdp == "each", [&] { return fmt::format("vdp {}: must be nominal or each", vdp); });
   std::vector<Figure> figures;
   for (const std::string& name : names) figures.push_back(figure_named(name));
@@ -79,7 +80,7 @@ py::tuple evaluate(const Evaluator& evaluator, const Rows& rows, int jobs, const
 
 void bind_evaluator(py::module_& m) {
   py::class_<Evaluator>(m, "Evaluator")
-      .def(py::init(&made))
+      .def(py::init(&made_evaluator))
       .def_property_readonly("keys", &Evaluator::keys)
       .def_property_readonly("units", &Evaluator::units)
       .def_property_readonly("nominal",

@@ -12,6 +12,7 @@
 #include "config/read_keys.h"
 #include "exchange/level_edges.h"
 #include "exchange/recording.h"
+#include "python/array.h"
 #include "python/scene.h"
 #include "reports/recording_report.h"
 
@@ -22,10 +23,6 @@ namespace py = pybind11;
 namespace {
 
 using Column = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-py::array_t<double> array(const std::vector<double>& values) {
-  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
-}
 
 std::vector<double> numbers(const Column& column) { return {column.data(), column.data() + column.size()}; }
 

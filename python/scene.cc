@@ -14,6 +14,7 @@
 #include "config/units.h"
 #include "model/mode_shapes.h"
 #include "model/recorded_motion.h"
+#include "python/array.h"
 #include "reports/closing_record.h"
 #include "reports/record_file.h"
 #include "studies/closing/auto_settings.h"
@@ -83,10 +84,6 @@ void change(SceneFile& file, const std::string& key, const Value& value) {
 }
 
 std::string json_of_scene(const SceneFile& file) { return json_text(file.json()); }
-
-py::array_t<double> array(const std::vector<double>& values) {
-  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
-}
 
 // Time, deflection, velocity, acceleration and contact force, a row per knot.
 py::array_t<double> points_of(const Trajectory& run) {

@@ -26,8 +26,8 @@ struct PyTuning {
   std::string command;
 };
 
-std::unique_ptr<PyTuning> made(const PyScene& scene, const verbs::Told& told, const std::string& log, std::string command,
-                               const py::object& progress) {
+std::unique_ptr<PyTuning> made_tuning(const PyScene& scene, const verbs::Told& told, const std::string& log, std::string command,
+                                      const py::object& progress) {
   const verbs::TuneRequest request = in_keywords("tune", [&] { return verbs::tune_request(told); });
   auto tuning = std::make_unique<PyTuning>(PyTuning{.session = request.session(scene.file), .command = std::move(command)});
   if (!log.empty()) static_cast<void>(tuning->session.keep(log, request.resume));
@@ -89,7 +89,7 @@ std::string answered(const PracticeDevice& device, const std::string& line) {
 
 void bind_tuning(py::module_& m) {
   py::class_<PyTuning>(m, "Tuning")
-      .def(py::init(&made))
+      .def(py::init(&made_tuning))
       .def("shot", &shot_of)
       .def("learn", &learn)
       .def_property_readonly("is_done", [](const PyTuning& t) { return t.session.tuner().is_done(); })
