@@ -2,8 +2,8 @@
 //
 //   F(q, V; p) = 0                      an equilibrium, F static modal accelerations
 //   q_p = -F_q^-1 F_p                   at constant voltages, away from a fold
-//   [F_q  F_l ] [q_p]     [F_p]         at a constant interference d of the contact point, l = strength of the drive that holds
-//   it [d_q   0  ] [l_p] = - [d_p]
+//   [F_q  F_l ] [q_p]     [F_p]         at a constant interference d of the contact point, l = strength of what holds it
+//   [d_q   0  ] [l_p] = - [d_p]
 //
 // The pull-in voltage is the largest of the open branch, or that at the contact plane; the release voltage is the least of the
 // closed branch. V as a function of the interference has no slope at such an extremum, and at the plane the interference is 0: in

@@ -190,7 +190,7 @@ TEST(Landing, ForcesAreTheSlopeOfTheEnergy) {
   }
 }
 
-// What each contact of a closing touches first, and how fast.
+// Records what the connection and each contact of a closing touch first, and how fast.
 class FirstTouches final : public ClosingObserver {
  public:
   void knot(const TrajectoryPoint&) override {}
@@ -275,7 +275,7 @@ TEST(LandingBesideContacts, APlateKeepsItsEnergy) {
   EXPECT_NEAR(touches.of_contacts[0].first->impact_velocity, speed_at(dimple_gap), 1e-7 * speed_at(dimple_gap));
   EXPECT_NEAR(touches.of_contacts[1].first->impact_velocity, speed_at(gap), 1e-7 * speed_at(gap));
 
-  // At rest the field carries all three springs.
+  // The field carries all three springs at rest.
   const std::optional<ClosedEquilibrium> closed = closed_equilibrium(model, std::vector<double>{volts});
   ASSERT_TRUE(closed);
   const double y = model.contact_deflection(closed->q.data());
