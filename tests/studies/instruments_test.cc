@@ -11,6 +11,7 @@
 
 #include "model/constants.h"
 #include "model/pull_in.h"
+#include "model/static_slopes.h"
 #include "scenes.h"
 #include "studies/closing/auto_settings.h"
 
@@ -149,15 +150,20 @@ TEST(Instruments, HaveExactSlopesOnEveryKindOfSwitch) {
 
 // A charge on the dielectric acts at all voltages, 0 V among them.
 TEST(Instruments, HaveTheSlopesOfACharge) {
-  const auto charged = [](const char* charge, const char* contact_gap) {
-    SceneFile file = gold({"structure.modes=2", R"(electrode.main.dielectric={thickness="0.2 um",permittivity=7.6})"});
+  const SceneFile bare = gold({"structure.modes=2", R"(electrode.main.dielectric={thickness="0.2 um",permittivity=7.6})"});
+  const auto charged = [&](const char* charge, const char* contact_gap) {
+    SceneFile file = bare;
     file.set(fmt::format("electrode.main.dielectric.charge={}", charge));
     file.set(fmt::format("gap.contact={}", contact_gap));
-    return prepared(std::move(file),
-                    {"electrode.main.dielectric.charge", "electrode.main.dielectric.thickness", "structure.thickness"});
+    return prepared(std::move(file), {"electrode.main.dielectric.charge", "electrode.main.dielectric.thickness",
+                                      "structure.thickness", "driver.main.gain"});
   };
   const PreparedScene p = charged("-1 mC/m^2", "2 um"), stuck = charged("4 mC/m^2", "3.2 um");
   for (const Measurable what : at_rest) expect_slopes(p, {.what = what});
+  // The charge softens the beam at 0 V, as the shifted voltage would do without it.
+  const double at_0 = resonance(p.model, 0, std::vector<double>{0}), neutral = p.model.neutral_voltage(0);
+  EXPECT_NEAR(at_0 / resonance(prepare(bare).model, 0, std::vector<double>{-neutral}), 1, 1e-9);
+  EXPECT_LT(at_0, 0.999 * p.model.basis().angular_frequencies()[0]);
   ASSERT_LT(release_voltage(stuck.model, 0), 0);
   for (const Measurable what : at_rest) expect_slopes(stuck, {.what = what});
   for (const double level : {0.0, 8.0}) {
