@@ -136,7 +136,8 @@ class KeyFinder {
  private:
   static void look_at(const SectionReader& in, Found& found) {
     const Key& key = *found.schema;
-    const bool is_list = key.type == KeyType::quantities && (!key.may_be_one || in.is_list(key.name));
+    const bool is_one = key.may_be_one && found.key.element == 0 && in.has_value(key.name) && in.quantities(key.name).size() == 1;
+    const bool is_list = key.type == KeyType::quantities && !is_one && (!key.may_be_one || in.is_list(key.name));
     require(key.type != KeyType::text && key.type != KeyType::texts,
             [&] { return fmt::format("{} is a text, which cannot vary", found.key.path); });
     require(key.part == nullptr, [&] { return fmt::format("{} has keys of its own: name one of them", found.key.path); });

@@ -145,8 +145,11 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
     for (const Key& key : of_key.keys()) {
       const std::size_t size =
           key.bound.element != nullptr && of_key.has_value(key.name) ? of_key.quantities(key.name).size() : 0;
+      // A number of a list that belongs to something else is refused with the reason, too.
+      const bool is_fixed_list = key.type == KeyType::quantities && !key.why_fixed.empty();
       const bool is_number =
-          key.type == KeyType::quantity ? element == 0
+          is_fixed_list                   ? true
+          : key.type == KeyType::quantity ? element == 0
           : key.bound.element != nullptr
               ? (of_key.is_list(key.name) ? element >= 1 && element <= size : element == 0)
               : key.bound.place != nullptr && element >= 1 && element <= key.count && !of_key.is_nested(key.name);

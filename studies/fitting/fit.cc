@@ -395,6 +395,18 @@ class EndOfFit {
 
   void add_next(const Watch& watch);
   void add_population();
+  // Without a prior, an unknown that no datum moves with keeps the value at which its search began.
+  void require_all_seen(const std::string& bench) const {
+    for (std::size_t i = 0; i < setup_.parameters.size(); ++i) {
+      const Parameter& p = setup_.parameters[i];
+      require_request(p.has_prior || !slopes_.col(static_cast<Index>(i)).isZero(0), [&] {
+        return fmt::format(
+            "{} {}: no measurement of {} depends on it: leave it out, or give it an entry of [spread], which tells what is "
+            "known of it",
+            requested("unknown"), fit_.scene.scene.spread.variables[p.variable].name, bench);
+      });
+    }
+  }
 
  private:
   void add_residuals(const VectorXd& values) {
@@ -891,6 +903,7 @@ Fit fit(const SceneFile& given, const Bench& bench, const FitOptions& options, c
   }
   EndOfFit end(*stage.setup, found);
   end.add(stage.all.ends[stage.all.best]);
+  end.require_all_seen(bench.name);
   end.add_population();
   if (options.suggest) end.add_next(watch);
   found.doubts = doubts_of(found, stage.all, stage.all.ends[stage.all.best]);
