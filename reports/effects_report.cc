@@ -92,6 +92,23 @@ std::string spread_of_laws(const Effects& effects) {
                        : "The gas laws differ on this scene, largest less smallest over the scene's own, by: " + words + ".";
 }
 
+// A line per closing that was not followed to the end of the window.
+std::vector<std::string> bounds_of(const Effects& effects) {
+  std::vector<std::string> lines;
+  const auto tell = [&](const std::string& closing, const Metrics& figures, const std::optional<double>& end) {
+    if (!end) return;
+    const std::string closes =
+        std::isfinite(figures.initial_contact_time) ? "its figures are those up to then" : "it does not close until then";
+    lines.push_back(fmt::format("{} is followed for {} only, since it costs far more than the scene's own closing: {}.", closing,
+                                internal::quantity(*end, "s"), closes));
+  };
+  for (const EffectAblation& o : effects.omissions) tell(fmt::format("The closing without {}", o.what.effect), o.metrics, o.end);
+  for (const Effect& e : effects.list) {
+    tell(e.choice == "none" ? "The closing without gas" : fmt::format("The closing under {}", e.choice), e.metrics, e.end);
+  }
+  return lines;
+}
+
 // One line per warning, with the laws it is about.
 std::vector<std::string> warnings_of(const Effects& effects) {
   std::vector<std::pair<std::string, std::string>> warnings;  // laws, what
@@ -124,6 +141,7 @@ void members(A& a, Effect& effect) {
   a("metrics", effect.metrics);
   a("rhs_s", effect.rhs_seconds);
   a("warnings", effect.warnings);
+  a("followed_until_s", effect.end);
 }
 
 template <class A>
@@ -141,6 +159,7 @@ void members(A& a, EffectAblation& one) {
   a("metrics", one.metrics);
   a("influence", one.influence);
   a("rhs_s", one.rhs_seconds);
+  a("followed_until_s", one.end);
 }
 
 template <class A>
@@ -192,6 +211,7 @@ std::string text_of(const EffectsRecord& record) {
                                          "the closed tip; every other column is of the whole closing, its change is relative to "
                                          "the scene's own."},
                                Paragraph{spread_of_laws(effects)}}};
+  for (const std::string& line : bounds_of(effects)) laws.parts.emplace_back(Paragraph{line});
   for (const std::string& line : warnings_of(effects)) laws.parts.emplace_back(Paragraph{line});
   document.sections = {std::move(left_out), std::move(laws)};
   return terminal_text(document);

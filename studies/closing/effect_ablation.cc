@@ -30,13 +30,9 @@ double force_at_rest(const Device& described, std::size_t electrode) {
 
 double first_frequency(const Device& device) { return Switch(device).basis().angular_frequencies()[0]; }
 
-Metrics closing(const PreparedScene& p, const Watch& watch, double done = 0, double share = 1) {
-  return metrics(simulate_closing(p.model, p.signals(),
-                                  {.duration = p.duration,
-                                   .tolerance = p.tolerance,
-                                   .stop = watch.stop,
-                                   .observer = observer(watch, "closings without each effect", p.duration, done, share)}),
-                 p.scene.metrics);
+BoundedClosing closing(const PreparedScene& p, const Watch& watch, const ClosingBound& bound = {}, double done = 0,
+                       double share = 1) {
+  return bounded_closing(p, p.model, bound, watch, "closings without each effect", done, share);
 }
 
 // How far the contact point rests from where it does in `without`.
@@ -132,6 +128,12 @@ void add_omissible_structure(const PreparedScene& prepared, std::vector<Omissibl
                     .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(without) - 1},
                     .instead = 0.0});
   }
+  if (const auto* const modal = s.find<ModalStructure>(); modal != nullptr && !std::isnan(modal->axial_stiffness)) {
+    list.push_back({.effect = "structure.axial_stiffness",
+                    .magnitude = {.name = "stiffness", .unit = "N/m", .value = modal->axial_stiffness},
+                    .group = {.name = "(gap / thickness)^2", .value = std::pow(d.contact_gap() / s.thickness, 2)},
+                    .instead = {}});
+  }
   if (s.find<Beam>() != nullptr) {
     add_omissible_parts(d, list);
     add_omissible_rest_shape(d, list);
@@ -160,6 +162,7 @@ void add_omissible_fringing(const PreparedScene& prepared, std::vector<Omissible
   }
 }
 
+// A face on which the beam lands stays, but its roughness.
 void add_omissible_dielectrics(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
   for (const Electrode& e : d.electrodes) {
@@ -170,6 +173,13 @@ void add_omissible_dielectrics(const PreparedScene& prepared, std::vector<Omissi
                       .magnitude = {.name = "voltage without field", .unit = "V", .value = neutral},
                       .group = {.name = "over all voltages", .value = std::abs(neutral) / (most + std::abs(neutral))},
                       .instead = {}});
+    }
+    if (e.dielectric->roughness > 0) {
+      list.push_back(
+          {.effect = "electrode." + e.name + ".dielectric.roughness",
+           .magnitude = {.name = "air left under its summits", .unit = "m", .value = e.dielectric->roughness},
+           .group = {.name = "over the electrical gap of the face", .value = e.dielectric->roughness / e.dielectric->depth()},
+           .instead = 0.0});
     }
     if (d.lands_on_dielectric()) continue;
     list.push_back({.effect = "electrode." + e.name + ".dielectric",
@@ -208,19 +218,29 @@ void add_omissible_gas(const PreparedScene& prepared, std::vector<OmissibleEffec
 void add_omissible_contact(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
   const Contact& contact = d.contacts.front();
+  const auto section = [](const Contact& c) { return c.name.empty() ? std::string("contact") : "contact." + c.name; };
   if (contact.distribution == ContactDistribution::pad) {
     const double rise = 1.5 * d.contact_gap() / d.structure.length * contact.pad_length;  // of a uniform beam bent by its end
-    list.push_back({.effect = "contact.distribution",
+    list.push_back({.effect = section(contact) + ".distribution",
                     .magnitude = {.name = "tilt of the pad", .unit = "m", .value = rise},
                     .group = {.name = "over the interference", .value = rise / prepared.model.penetration_scale()},
                     .instead = std::string(name_of(contact_distributions, ContactDistribution::centre)),
                     .automatic = false});
   }
-  if (const double damping = number_of(contact.model, "damping", 0); damping > 0) {
-    list.push_back({.effect = "contact.damping",
-                    .magnitude = {.name = "damping", .unit = "s/m", .value = damping},
-                    .group = {.name = "1 - restitution, at 0.1 m/s", .value = 0.1 * damping},
-                    .instead = {}});
+  for (std::size_t k = 0; k < d.contacts.size(); ++k) {
+    const Contact& c = d.contacts[k];
+    if (c.side == Side::far) {
+      list.push_back({.effect = section(c),
+                      .magnitude = {.name = "gap of the back stop", .unit = "m", .value = d.contact_gap(k)},
+                      .group = {.name = "over the contact gap", .value = d.contact_gap(k) / d.contact_gap()},
+                      .instead = {}});
+    }
+    if (const double damping = number_of(c.model, "damping", 0); damping > 0) {
+      list.push_back({.effect = section(c) + ".damping",
+                      .magnitude = {.name = "damping", .unit = "s/m", .value = damping},
+                      .group = {.name = "1 - restitution, at 0.1 m/s", .value = 0.1 * damping},
+                      .instead = {}});
+    }
   }
 }
 
@@ -262,6 +282,13 @@ PreparedScene without(const PreparedScene& prepared, const std::vector<Omissible
       file.erase(e.effect);
     }
   }
+  const auto drops_contact = [&](const OmissibleEffect& e) {
+    return std::ranges::any_of(prepared.scene.device.contacts, [&](const Contact& c) { return e.effect == "contact." + c.name; });
+  };
+  // One contact alone is the connection.
+  const auto left =
+      prepared.scene.device.contacts.size() - static_cast<std::size_t>(std::ranges::count_if(effects, drops_contact));
+  if (left < 2) file.erase("metrics.closed");
   PreparedScene p = prepare(file);
   p.scene.warnings = prepared.scene.warnings;
   p.pull_in = prepared.pull_in;
@@ -279,19 +306,47 @@ double influence(const Metrics& own, const Metrics& other, const MetricsOptions&
   return most;
 }
 
-std::vector<EffectAblation> ablate_effects(const PreparedScene& prepared, const Metrics& own, bool timed, const Watch& watch) {
+BoundedClosing bounded_closing(const PreparedScene& prepared, const Switch& model, const ClosingBound& bound, const Watch& watch,
+                               const std::string& what, double done, double share) {
+  constexpr long steps_per_look = 64;  // at the clock
+  BoundedClosing found;
+  const auto tell = observer(watch, what, prepared.duration, done, share);
+  const double start = processor_seconds();
+  const Trajectory t = simulate_closing(model, prepared.signals(),
+                                        {.duration = prepared.duration,
+                                         .tolerance = prepared.tolerance,
+                                         .stop = watch.stop,
+                                         .observer = [&](double time, const double* q, const double* v) {
+                                           if (tell) tell(time, q, v);
+                                           keep_state(model, q, found.states);
+                                           ++found.steps;
+                                           const bool late =
+                                               found.steps % steps_per_look == 0 && processor_seconds() - start > bound.seconds;
+                                           if (found.steps < bound.steps && !late) return false;
+                                           found.end = time;
+                                           return true;
+                                         }});
+  found.seconds = processor_seconds() - start;
+  found.metrics = metrics(t, prepared.scene.metrics);
+  found.warnings = t.warnings;
+  return found;
+}
+
+std::vector<EffectAblation> ablate_effects(const PreparedScene& prepared, const BoundedClosing& own, bool timed,
+                                           const Watch& watch) {
   std::vector<EffectAblation> list;
   std::vector<OmissibleEffect> effects = omissible_effects(prepared);
   for (OmissibleEffect& effect : effects) {
     const double share = 1.0 / static_cast<double>(effects.size());
     const PreparedScene p = without(prepared, {effect});
+    const BoundedClosing one = closing(p, watch, ClosingBound::after(own), static_cast<double>(list.size()) * share, share);
     EffectAblation o{.what = std::move(effect),
-                     .metrics = closing(p, watch, static_cast<double>(list.size()) * share, share),
-                     .influence = 0,
-                     .rhs_seconds = Metrics::unset};
-    o.influence = influence(own, o.metrics, prepared.scene.metrics);
+                     .metrics = one.metrics,
+                     .influence = influence(own.metrics, one.metrics, prepared.scene.metrics),
+                     .rhs_seconds = Metrics::unset,
+                     .end = one.end};
     if (watch.stopped()) break;
-    if (timed) o.rhs_seconds = right_hand_side_seconds(p.model, p.signals(), p.duration);
+    if (timed) o.rhs_seconds = right_hand_side_seconds(p.model, hold_levels(p.signals()), one.states);
     list.push_back(std::move(o));
   }
   return list;
@@ -300,9 +355,9 @@ std::vector<EffectAblation> ablate_effects(const PreparedScene& prepared, const 
 EffectsChoice negligible_effects(const PreparedScene& prepared, double tolerance, const Watch& watch) {
   require_open_start(prepared.scene, "effects = \"auto\" judges a closing");
   EffectsChoice choice;
-  const Metrics own = closing(prepared, watch);
+  const BoundedClosing own = closing(prepared, watch);
   for (EffectAblation& o : ablate_effects(prepared, own, false, watch)) {
-    if (o.what.automatic && o.influence <= tolerance) choice.left_out.push_back(std::move(o));
+    if (o.what.automatic && !o.end && o.influence <= tolerance) choice.left_out.push_back(std::move(o));
   }
   watch.throw_if_stopped();
   std::sort(choice.left_out.begin(), choice.left_out.end(),
@@ -310,7 +365,7 @@ EffectsChoice negligible_effects(const PreparedScene& prepared, double tolerance
   for (; !choice.left_out.empty(); choice.left_out.pop_back()) {
     std::vector<OmissibleEffect> effects;
     for (const EffectAblation& o : choice.left_out) effects.push_back(o.what);
-    choice.influence = influence(own, closing(without(prepared, effects), watch), prepared.scene.metrics);
+    choice.influence = influence(own.metrics, closing(without(prepared, effects), watch).metrics, prepared.scene.metrics);
     watch.throw_if_stopped();
     if (choice.influence <= tolerance) return choice;
   }

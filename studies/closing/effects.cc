@@ -23,30 +23,32 @@ std::string refusal(Device device, const Gas& gas) {
   return {};
 }
 
-Effect closing_with(const PreparedScene& prepared, const std::optional<Gas>& gas, const Watch& watch, double done, double share) {
+struct LawClosing {
+  Effect effect;
+  BoundedClosing closing;
+};
+
+LawClosing closing_with(const PreparedScene& prepared, const std::optional<Gas>& gas, const ClosingBound& bound,
+                        const Watch& watch, double done, double share) {
   Device described = prepared.scene.device;
   described.gas = gas;
   const Switch model(described, prepared.quadrature);
-  const std::vector<Signal> signals = prepared.signals();
-  const Trajectory t =
-      simulate_closing(model, signals,
-                       {.duration = prepared.duration,
-                        .tolerance = prepared.tolerance,
-                        .stop = watch.stop,
-                        .observer = observer(watch, "closings with every gas law", prepared.duration, done, share)});
+  BoundedClosing closing = bounded_closing(prepared, model, bound, watch, "closings with every gas law", done, share);
   Effect e{.section = "gas",
            .choice = "none",
            .magnitude = {.name = "damping per length, closed", .unit = "N s/m^2", .value = 0},
            .group = {.name = "Knudsen number, closed"},
-           .metrics = metrics(t, prepared.scene.metrics),
-           .rhs_seconds = watch.stopped() ? Metrics::unset : right_hand_side_seconds(model, signals, prepared.duration),
-           .warnings = t.warnings};
-  if (!gas) return e;
+           .metrics = closing.metrics,
+           .rhs_seconds =
+               watch.stopped() ? Metrics::unset : right_hand_side_seconds(model, hold_levels(prepared.signals()), closing.states),
+           .warnings = closing.warnings,
+           .end = closing.end};
+  if (!gas) return {std::move(e), std::move(closing)};
   const double closed = described.closed_gap();
   e.choice = name_of(*gas);
   e.magnitude.value = damping_per_length(*model.gas(), closed);
   if (const FilmState* const film = film_of(*gas)) e.group.value = mean_free_path(*film) / closed;
-  return e;
+  return {std::move(e), std::move(closing)};
 }
 
 }  // namespace
@@ -83,16 +85,26 @@ Effects compare_effects(const PreparedScene& prepared, const Watch& watch) {
     }
     laws.emplace_back(gas);
   });
+  // The scene's own closing comes first: by its steps the others are bounded.
+  const double share = 1.0 / static_cast<double>(laws.size());
+  LawClosing of_scene = closing_with(prepared, own, {}, watch, 0, share);
+  if (watch.stopped()) throw Interrupted();
+  of_scene.effect.in_scene = true;
+  double done = share;
+  bool has_own = false;
   for (const std::optional<Gas>& law : laws) {
-    const double share = 1.0 / static_cast<double>(laws.size());
-    Effect e = closing_with(prepared, law, watch, static_cast<double>(found.list.size()) * share, share);
+    if (law.has_value() == own.has_value() && (!own || law->index() == own->index())) {
+      found.list.push_back(of_scene.effect);
+      has_own = true;
+      continue;
+    }
+    Effect e = closing_with(prepared, law, ClosingBound::after(of_scene.closing), watch, done, share).effect;
     if (watch.stopped()) break;
-    e.in_scene = law.has_value() == own.has_value() && (!own || law->index() == own->index());
+    done += share;
     found.list.push_back(std::move(e));
   }
-  const bool own_is_there = std::any_of(found.list.begin(), found.list.end(), [](const Effect& e) { return e.in_scene; });
-  if (!own_is_there) throw Interrupted();
-  found.omissions = ablate_effects(prepared, found.own("gas").metrics, true, watch);
+  if (!has_own) found.list.push_back(of_scene.effect);
+  if (!watch.stopped()) found.omissions = ablate_effects(prepared, of_scene.closing, true, watch);
   found.interrupted = watch.stopped();
   return found;
 }

@@ -3,6 +3,7 @@
 // the law differs.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct Effect {
   Metrics metrics;                    ///< of this closing
   double rhs_seconds = 0;             ///< per right-hand side, along this closing [s]
   std::vector<std::string> warnings;  ///< of this closing
+  std::optional<double> end = {};     ///< see BoundedClosing; the scene's own closing runs to the end of the window
 };
 
 /// A law that cannot take the place of the scene's own.
@@ -47,8 +49,8 @@ struct Effects {
 
 /// Repeats the closing without each effect, and with no gas and with every gas law, in the state of gas that the scene describes
 /// (air at 101325 Pa and 300 K where it describes none), each law without what only others are given. The linear damper and the
-/// film over a slit only where the scene describes them. Throws Interrupted where `watch` asks to stop before the scene's own
-/// closing is complete.
+/// film over a slit only where the scene describes them. No closing but the scene's own costs more than the bound after that
+/// (ClosingBound). Throws Interrupted where `watch` asks to stop before the scene's own closing is complete.
 [[nodiscard]] Effects compare_effects(const PreparedScene& prepared, const Watch& watch = {});
 
 }  // namespace softland

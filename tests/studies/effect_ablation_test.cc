@@ -1,6 +1,7 @@
 // What a scene could do without, and effects = "auto".
 #include "studies/closing/effect_ablation.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -156,6 +157,93 @@ TEST(Without, APartIsTheSceneThatDoesNotHaveIt) {
   EXPECT_NE(t_i(solid), t_i(whole));
 }
 
+TEST(OmissibleEffect, MayBeABackStopAndTheDampingOfEveryContact) {
+  const PreparedScene p = prepare(scene("new/two-contacts.toml"));
+  const std::vector<OmissibleEffect> all = omissible_effects(p);
+  EXPECT_THAT(names(all), ElementsAre("structure.modes", "electrode.main.fringing", "gas", "contact.left.damping",
+                                      "contact.right.damping", "contact.stop", "contact.stop.damping"));
+  EXPECT_EQ(all[3].choice, "0.5 s/m");
+  const OmissibleEffect& stop = all[5];
+  EXPECT_EQ(stop.choice, "linear");
+  EXPECT_DOUBLE_EQ(stop.magnitude.value, 1e-6);
+  EXPECT_DOUBLE_EQ(stop.group.value, 1);
+  const PreparedScene open = without(p, {stop});
+  ASSERT_EQ(open.scene.device.contacts.size(), 2u);
+  EXPECT_EQ(open.scene.device.contacts[0].side, Side::near);
+  EXPECT_EQ(open.scene.device.contacts[1].side, Side::near);
+  // One dimple is left of a dimple and a stop: it is the connection, whatever [metrics] closed says.
+  const PreparedScene one =
+      prepare(without(without(scene("new/two-contacts.toml", {"metrics.closed=any"}), "spread"), "contact.right"));
+  const std::vector<OmissibleEffect> of_one = omissible_effects(one);
+  const auto back = std::ranges::find(of_one, "contact.stop", &OmissibleEffect::effect);
+  ASSERT_NE(back, of_one.end());
+  EXPECT_EQ(without(one, {*back}).scene.device.contacts.size(), 1u);
+}
+
+TEST(OmissibleEffect, MayBeTheRoughnessOfADielectric) {
+  constexpr std::string_view nitride = "electrode.main.dielectric={thickness=\"0.2 um\", permittivity=8, roughness=\"25 nm\"}";
+  const PreparedScene p = prepare(gold_at_17_volts({nitride}));
+  const std::vector<OmissibleEffect> all = omissible_effects(p);
+  EXPECT_THAT(names(all), ElementsAre("structure.modes", "electrode.main.fringing", "electrode.main.dielectric.roughness",
+                                      "electrode.main.dielectric", "gas"));
+  EXPECT_EQ(all[2].choice, "25 nm");
+  EXPECT_NEAR(all[2].group.value, 0.5, 1e-12) << "25 nm of the 50 nm that the dielectric adds to the gap";
+  const PreparedScene smooth = without(p, {all[2]});
+  ASSERT_TRUE(smooth.scene.device.electrodes[0].dielectric);
+  EXPECT_EQ(smooth.scene.device.electrodes[0].dielectric->roughness, 0);
+  EXPECT_LT(own(smooth).initial_contact_time, own(p).initial_contact_time) << "the field is stronger";
+  // A face on which the beam lands stays.
+  const PreparedScene lands = prepare(scene("new/capacitive-bridge.toml", {"electrode.main.dielectric.roughness=10 nm"}));
+  EXPECT_THAT(names(omissible_effects(lands)), testing::Contains("electrode.main.dielectric.roughness"));
+  EXPECT_THAT(names(omissible_effects(lands)), testing::Not(testing::Contains("electrode.main.dielectric")));
+}
+
+TEST(OmissibleEffect, MayBeTheStretchingOfATableOfModes) {
+  std::string positions, shape;
+  for (int k = 0; k <= 20; ++k) {
+    const double u = k / 20.0;
+    positions += fmt::format("{}\"{:.12g} um\"", k == 0 ? "" : ",", 250 * u);
+    shape += fmt::format("{}{:.12g}", k == 0 ? "" : ",", 2e6 * 16 * u * u * (1 - u) * (1 - u));
+  }
+  const std::string table = fmt::format(
+      "structure={{kind=\"modes\",positions=[{}],frequencies=[\"60 kHz\"],shapes=[[{}]],width=\"20 um\",thickness=\"2 um\","
+      "far_anchor=\"clamped\",axial_stiffness=\"12 kN/m\"}}",
+      positions, shape);
+  SceneFile file = without(gold_at_17_volts(), "spread");
+  file.set(table);
+  const PreparedScene p = prepare(file);
+  const std::vector<OmissibleEffect> all = omissible_effects(p);
+  ASSERT_THAT(names(all), testing::Contains("structure.axial_stiffness"));
+  const OmissibleEffect& stretching = *std::ranges::find(all, "structure.axial_stiffness", &OmissibleEffect::effect);
+  EXPECT_EQ(stretching.choice, "12 kN/m");
+  EXPECT_NEAR(stretching.group.value, 1, 1e-12) << "a gap of 2 um over a thickness of 2 um";
+  EXPECT_TRUE(p.model.stretching());
+  EXPECT_FALSE(without(p, {stretching}).model.stretching());
+}
+
+TEST(BoundedClosing, EndsWhereItCostsTooMuch) {
+  const PreparedScene p = prepare(gold_at_17_volts());
+  const BoundedClosing whole = bounded_closing(p, p.model, {}, {}, "");
+  EXPECT_FALSE(whole.end);
+  EXPECT_EQ(whole.metrics.major_bounce_height, own(p).major_bounce_height) << "that of simulate";
+  ASSERT_GT(whole.steps, 100);
+  const BoundedClosing same = bounded_closing(p, p.model, {.steps = whole.steps + 1}, {}, "");
+  EXPECT_FALSE(same.end);
+  EXPECT_EQ(same.metrics.major_bounce_height, whole.metrics.major_bounce_height);
+  const BoundedClosing early = bounded_closing(p, p.model, {.steps = 10}, {}, "");
+  EXPECT_EQ(early.steps, 10);
+  ASSERT_TRUE(early.end);
+  EXPECT_LT(*early.end, whole.metrics.initial_contact_time);
+  EXPECT_EQ(early.metrics.status, Status::no_contact);
+  const BoundedClosing late = bounded_closing(p, p.model, {.seconds = 0}, {}, "");
+  EXPECT_LT(late.steps, 100) << "the clock is looked at now and then";
+  EXPECT_TRUE(late.end);
+  EXPECT_EQ(ClosingBound::after({.steps = 100, .seconds = 0.01}).steps, ClosingBound::fewest_steps);
+  EXPECT_EQ(ClosingBound::after({.steps = 50'000, .seconds = 0.5}).steps, 500'000);
+  EXPECT_EQ(ClosingBound::after({.steps = 100, .seconds = 0.01}).seconds, ClosingBound::least_seconds);
+  EXPECT_EQ(ClosingBound::after({.steps = 100, .seconds = 0.5}).seconds, 50);
+}
+
 TEST(Influence, IsTheLargestRelativeChange) {
   Metrics a;
   a.initial_contact_time = 10e-6;
@@ -203,7 +291,7 @@ TEST(AutomaticEffects, CountTogether) {
   const SceneFile file = gold_at_17_volts({"structure.damping_ratio=1e-4", "gas={ model = \"linear\", quality_factor = 5000 }"});
   const PreparedScene p = prepare(file);
   std::vector<double> alone;
-  for (const EffectAblation& o : ablate_effects(p, own(p), false)) {
+  for (const EffectAblation& o : ablate_effects(p, bounded_closing(p, p.model, {}, {}, ""), false)) {
     if (o.what.effect == "gas" || o.what.effect == "structure.damping_ratio") alone.push_back(o.influence);
   }
   ASSERT_EQ(alone.size(), 2u);
