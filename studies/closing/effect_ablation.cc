@@ -276,6 +276,7 @@ PreparedScene without(const PreparedScene& prepared, const std::vector<Omissible
     const bool inside = std::any_of(effects.begin(), effects.end(),
                                     [&](const OmissibleEffect& other) { return e.effect.starts_with(other.effect + "."); });
     if (inside) continue;
+    file.erase(fmt::format("spread.\"{}\"", e.effect));  // it has nothing left to vary
     if (e.instead) {
       file.assign(e.effect, *e.instead);
     } else {

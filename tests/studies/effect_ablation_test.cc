@@ -221,6 +221,18 @@ TEST(OmissibleEffect, MayBeTheStretchingOfATableOfModes) {
   EXPECT_FALSE(without(p, {stretching}).model.stretching());
 }
 
+// Nothing is left to vary of a stress of 0.
+TEST(Without, ANumberThatVariesTakesItsSpreadAlong) {
+  SceneFile file = without(scene("new/clamped-clamped.toml"), "spread");
+  file.set(R"(spread."structure.residual_stress"={distribution="normal",cov="5 %"})");
+  const PreparedScene varied = prepare(file);
+  const std::vector<OmissibleEffect> all = omissible_effects(varied);
+  const auto stress = std::ranges::find(all, "structure.residual_stress", &OmissibleEffect::effect);
+  ASSERT_NE(stress, all.end());
+  const PreparedScene relaxed = without(varied, {*stress});
+  EXPECT_EQ(part_of<Bridge>(relaxed.scene.device.structure).residual_stress, 0);
+}
+
 TEST(BoundedClosing, EndsWhereItCostsTooMuch) {
   const PreparedScene p = prepare(gold_at_17_volts());
   const BoundedClosing whole = bounded_closing(p, p.model, {}, {}, "");
