@@ -793,7 +793,7 @@ bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias
 
 namespace {
 
-// Whether friction at rest keeps the first mode from swinging.
+// Tells whether friction at rest keeps the first mode from swinging.
 bool is_overdamped(const Switch& model) {
   if (!model.rest()) return false;
   const Eigen::Index n = model.modes();

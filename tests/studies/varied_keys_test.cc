@@ -130,7 +130,7 @@ pad_length = "5 um"
 )",
                           R"([electrode.main]
 span = ["60 um", "200 um"]
-dielectric = { thickness = "0.2 um", permittivity = 7.6, roughness = "5 nm" }
+dielectric = { thickness = "0.2 um", permittivity = 7.6, roughness = "5 nm", charge = "-10 uC/m^2" }
 [electrode.back]
 span = ["60 um", "200 um"]
 side = "far"
