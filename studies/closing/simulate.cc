@@ -478,7 +478,8 @@ Hold hold_of_connection(const Switch& model, const std::vector<double>& levels, 
   std::vector<double> conductances;
   double force = needs_all ? std::numeric_limits<double>::infinity() : 0;
   for (std::size_t c = 0; c < model.contacts(); ++c) {
-    const bool acts = model.contact_deflection(rest->data(), c) > model.contact_gap(c) - model.contact_reach(c);
+    const bool acts =
+        model.has_spread_contact(c) || model.contact_deflection(rest->data(), c) > model.contact_gap(c) - model.contact_reach(c);
     const double own = acts ? model.contact_push(rest->data(), still.data(), true, c) : 0;
     hold.forces.push_back(own);
     conductances.push_back(conductance_at(model, *rest, own, c));

@@ -131,6 +131,64 @@ TEST(ClosedState, BelowThePullThroughVoltageAPushedBeamComesBack) {
   }
 }
 
+// A cantilever over nitride, whose dimple holds it up where the face would be touched first.
+PreparedScene over_nitride(std::string_view volts) {
+  SceneFile file = SceneFile::parse(R"(
+[structure]
+kind = "cantilever"
+length = "150 um"
+width = "50 um"
+thickness = "3 um"
+youngs_modulus = "78 GPa"
+density = "19300 kg/m^3"
+damping_ratio = 0.5
+modes = 4
+[gap]
+electrode = "2 um"
+[electrode.main]
+span = ["30 um", "140 um"]
+fringing = "none"
+dielectric = { thickness = "0.2 um", permittivity = 7, landing = { model = "linear", stiffness = "1e18 Pa/m", from = "10 nm" } }
+[contact.dimple]
+model = "linear"
+stiffness = "2e4 N/m"
+at = "145 um"
+gap = "1.2 um"
+pad_length = "4 um"
+[waveform.main]
+family = "step"
+[simulate]
+duration = "60 us"
+)",
+                                    "over_nitride.toml");
+  file.assign("waveform.main.level", std::string(volts));
+  return prepare(file);
+}
+
+// The pressure of the face is summed over the points of the beam.
+TEST(ClosedState, TellsWhatTheFaceOfADielectricCarriesBesideItsContact) {
+  const PreparedScene p = over_nitride("140 V");
+  const Closing down = simulate(p, false);
+  ASSERT_EQ(down.contacts.size(), 2U);
+  EXPECT_EQ(down.trajectory.contacts[1].name, face_name);
+  EXPECT_NEAR(down.trajectory.contacts[0].hold_force, down.metrics.hold_force, 1e-9 * down.metrics.hold_force);
+  const std::optional<ClosedEquilibrium> closed = closed_equilibrium(p.model, std::vector<double>{140});
+  ASSERT_TRUE(closed);
+  const PointQuadrature& points = p.model.quadrature();
+  double face = 0;
+  for (Eigen::Index k = 0; k < points.points(); ++k) {
+    const double depth = 10e-9 - (2e-6 - points.shapes().row(k).dot(closed->q));
+    const bool is_over = points.positions()[k] > 30e-6 && points.positions()[k] < 140e-6;
+    if (is_over && depth > 0) face += points.weights()[k] * 50e-6 * 1e18 * depth;
+  }
+  EXPECT_GT(face, 0);
+  EXPECT_NEAR(down.trajectory.contacts[1].hold_force, face, 1e-6 * face);
+
+  const Closing above = simulate(over_nitride("60 V"), false);
+  EXPECT_GT(above.trajectory.contacts[0].hold_force, 0);
+  EXPECT_TRUE(std::isnan(above.trajectory.contacts[1].hold_force));
+}
+
 TEST(ClosedState, ThatIsUnstableHasNotSettledAndHoldsNothing) {
   const PreparedScene stable = prepare(bridge({level(0.93 * pulled_through())}));  // with more modes, too
   const Closing stays = simulate(stable, true);
