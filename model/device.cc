@@ -320,12 +320,16 @@ void set_face_contact(Device& d) {
   const Landing* landing = d.landing();
   if (landing == nullptr) return;
   const double plane = d.gap.electrode - landing->from;
+  // The stiffness of a wall is that of the switch, which finds it from its modes.
+  const LinearSpring bed{.stiffness = landing->is_wall() ? 1 : landing->stiffness};
   if (const auto known = d.face_contact()) {
-    (*known == 0 ? d.gap.contact : d.contacts[*known].gap) = plane;
+    Contact& face = d.contacts[*known];
+    face.model = bed;
+    if (!d.structure.is_rigid()) face.at = first_touch_on(d);
+    (*known == 0 ? d.gap.contact : face.gap) = plane;
     return;
   }
-  // The stiffness of a wall is that of the switch, which finds it from its modes.
-  Contact face{.model = LinearSpring{.stiffness = landing->is_wall() ? 1 : landing->stiffness}, .along_face = true};
+  Contact face{.model = bed, .along_face = true};
   if (!d.structure.is_rigid()) face.at = first_touch_on(d);
   const bool has_others = d.has_contact();
   if (has_others) face.name = face_name;

@@ -130,7 +130,7 @@ pad_length = "5 um"
 )",
                           R"([electrode.main]
 span = ["60 um", "200 um"]
-dielectric = { thickness = "0.2 um", permittivity = 7.6, roughness = "5 nm", charge = "-10 uC/m^2" }
+dielectric = { thickness = "0.2 um", permittivity = 7.6, roughness = "5 nm" }
 [electrode.back]
 span = ["60 um", "200 um"]
 side = "far"
@@ -164,7 +164,7 @@ modes = 5
 )",
                             "", R"([electrode.main]
 span = ["100 um", "180 um"]
-dielectric = { thickness = "0.2 um", permittivity = 7.6, roughness = "5 nm", landing = { model = "linear", stiffness = "1e17 Pa/m", from = "30 nm" } }
+dielectric = { thickness = "0.2 um", permittivity = 7.6, roughness = "5 nm", charge = "-10 uC/m^2", landing = { model = "linear", stiffness = "1e17 Pa/m", from = "30 nm" } }
 )",
                             "[gap]\nelectrode = \"2.5 um\"\n");
   all["plate"] = scene_of(R"([structure]
