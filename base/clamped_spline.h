@@ -33,8 +33,8 @@ class ClampedSpline {
   std::vector<double> x_, y_, curvature_;  // curvature: s'' at the points
 };
 
-/// Whether y leaves its first place with a slope, as at a hinge. A clamped beam leaves its clamp with the square of the distance,
-/// a hinged one with the distance itself. Too few places near the first one tell nothing: false.
+/// Tells whether y leaves its first place with a slope, as at a hinge. A clamped beam leaves its clamp with the square of the
+/// distance, a hinged one with the distance itself. Too few places near the first one tell nothing: false.
 [[nodiscard]] bool is_hinged(const std::vector<double>& x, const std::vector<double>& y);
 /// The same of the last place, seen from there.
 [[nodiscard]] bool is_hinged_at_end(std::vector<double> x, std::vector<double> y);

@@ -206,7 +206,7 @@ inline constexpr std::string_view face_name = "dielectric";
 
 /// Gives a device whose dielectric has a landing the contact that this is, with its plane and its place: where a beam that bends
 /// under its electrodes touches first. It comes last, and makes no connection, where the device has a contact on the near side;
-/// else it comes first, and makes it. Nothing changes without a landing, and when it is called again.
+/// else it comes first, and makes it. Called again, it follows a landing that has changed. Nothing changes without a landing.
 void set_face_contact(Device& device);
 
 /// Why a device whose contact lies at its electrode cannot land there; empty when it can.
