@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -67,6 +68,10 @@ class DistributedLawOf final : public DistributedLaw {
       return;
     }
     for (Eigen::Index p = begin_; p < end_; ++p) {
+      if (!Law::driven && gap[p] >= floor_) {  // a film is squeezed out at a few points long before it is at all of them
+        load[p] += law.load(gap[p], velocity[p]);
+        continue;
+      }
       const Dual at = law.load(Dual(std::max(gap[p], floor_), 1), Dual(velocity[p]));
       load[p] += factor * (at.value + at.slope * below(gap[p]));
     }
@@ -85,10 +90,8 @@ class DistributedLawOf final : public DistributedLaw {
         if constexpr (Law::driven) {
           by_gap[k] = law.load(Dual(gap[p + k], 1), Dual(velocity[p + k])).slope;
         } else {
-          using Both = Gradient<2>;
-          const auto slopes =
-              law.load(Both(gap[p + k], Directions<2>::unit(0)), Both(velocity[p + k], Directions<2>::unit(1))).slope;
-          by_gap[k] = slopes.along[0], by_rate[k] = slopes.along[1];
+          const auto both = slopes(law, gap[p + k], velocity[p + k]);
+          by_gap[k] = both[0], by_rate[k] = both[1];
         }
       }
       for (Eigen::Index k = 0; k < lanes; ++k) {
@@ -134,9 +137,20 @@ class DistributedLawOf final : public DistributedLaw {
   }
 
  private:
+  /// By the gap and by the velocity.
+  [[gnu::always_inline]] static std::array<double, 2> slopes(const Law& law, double gap, double velocity) {
+    using Both = Gradient<2>;
+    const auto along = law.load(Both(gap, Directions<2>::unit(0)), Both(velocity, Directions<2>::unit(1))).slope.along;
+    return {along[0], along[1]};
+  }
   void add_tangent_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const {
     const double factor = Law::driven ? drive : 1;
     for (Eigen::Index p = begin_; p < end_; ++p) {
+      if (!Law::driven && field.gap[p] >= floor_) {
+        const auto [by_gap, by_rate] = slopes(law_, field.gap[p], field.velocity[p]);
+        by_deflection[p] -= by_gap, by_velocity[p] += by_rate;
+        continue;
+      }
       // Outer direction the gap, inner the velocity: the slope of the tangent depends on the velocity too.
       const double gap = std::max(field.gap[p], floor_);
       const auto at = law_.load(DualOf<Dual>(gap, 1), DualOf<Dual>(Dual(field.velocity[p], 1)));

@@ -34,6 +34,7 @@ Json origin_of(const SceneFile& file, const TunerOptions& options) {
           {"gain_error", options.laboratory.gain_error},
           {"shot_error", options.laboratory.shot_error},
           {"trigger_delay_s", options.laboratory.trigger_delay},
+          {"capacitance_F", options.laboratory.sees_capacitance() ? Json(options.laboratory.capacitance) : Json()},
           {"constrain", options.touch ? Json(options.touch->text) : Json()}};
 }
 

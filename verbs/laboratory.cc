@@ -9,6 +9,7 @@ LaboratoryErrors ToldErrors::errors(const SceneFile& file) const {
   known.gain_error = gain_error.value_or(known.gain_error);
   known.shot_error = shot_error.value_or(known.shot_error);
   known.trigger_delay = trigger_delay.value_or(known.trigger_delay);
+  if (capacitance) known.capacitance = *capacitance;
   return known;
 }
 

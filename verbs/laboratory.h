@@ -14,6 +14,7 @@ namespace softland::verbs {
 struct ToldErrors {
   std::optional<double> edge_error = {}, unseen = {}, gain_error = {}, shot_error = {};
   std::optional<double> trigger_delay = {};  ///< expected by `tune`, which alone has the option
+  std::optional<double> capacitance = {};    ///< what the instrument sees instead of the contact
 
   /// Throws InvalidInput for a scene that cannot be read.
   [[nodiscard]] LaboratoryErrors errors(const SceneFile& file) const;
@@ -31,6 +32,10 @@ void laboratory_options(Archive& a, ToldErrors& r) {
                        "error of the gain of a source, constant but unknown, one standard deviation (default: 0.5 %)");
   a.program().quantity("shot-error", r.shot_error, {dimension::none}, "SHARE",
                        "scatter of the gain from shot to shot, one standard deviation (default: 0.02 %)");
+  a.quantity(
+      "capacitance", r.capacitance, {dimension::capacitance, positive, "a capacitance above 0 F"}, "THRESHOLD",
+      "records tell when the capacitance of the electrode that closes the switch is above this, \"1.2 pF\", instead of when "
+      "its contact is closed: for a switch that lands on a dielectric (docs/tune.md)");
 }
 
 }  // namespace softland::verbs

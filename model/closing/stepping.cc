@@ -18,9 +18,17 @@ namespace {
 // contact that rattles may show ninety in a row, so that some such runs go over without need.
 constexpr double held_back = 2;  // Stepper::stiffness()
 constexpr long steps_to_look = 100;
-constexpr int patience = 50;  // looks
-// Of the tolerance: where the explicit method took a hundred times the steps, its errors were far below the tolerance.
-constexpr double implicit_care = 0.01;
+// How an implicit method takes over.
+struct TakeOver {
+  int looks = 50;           // in a row, after which it does
+  double tolerance = 0.01;  // share: where the explicit method took a hundred times the steps, its errors were far below its own
+};
+
+// A film that is squeezed out along the face of a dielectric stays as stiff as it has become, and the kinks of the face at one
+// point after the other, not the tolerance, keep the steps short.
+TakeOver take_over(const Device& device) {
+  return device.lands_along_face() && device.gas ? TakeOver{.looks = 2, .tolerance = 1} : TakeOver{};
+}
 
 Knot at_rest(const ClosingParts& parts) {
   const Switch& model = parts.model;
@@ -116,12 +124,13 @@ bool Stepping::check_work() {
   if (options.integrator != Integrator::automatic || work_.integrator != Integrator::lawson) return true;
   const bool stiff = stepper_->stiffness() > held_back && parts_.first().phase.phase() != Phase::rest;
   stiff_looks_ = stiff ? stiff_looks_ + 1 : 0;
-  if (stiff_looks_ < patience) {
+  const TakeOver rule = take_over(parts_.model.device());
+  if (stiff_looks_ < rule.looks) {
     next_look_ = std::min(next_look_, work_.steps + steps_to_look);
     return true;
   }
   work_.integrator = Integrator::bdf;
-  const double tolerance = implicit_care * options.tolerance;
+  const double tolerance = rule.tolerance * options.tolerance;
   stepper_ = make_stepper(work_.integrator, parts_.equations.system(), tolerance);
   tolerances_ = Tolerances(parts_.model, tolerance);
   return restart();

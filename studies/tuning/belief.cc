@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "base/decompositions.h"
@@ -19,7 +20,7 @@ using Eigen::VectorXd;
 constexpr std::size_t sampled_devices = 160;
 
 // Time in (touch, touch + span) that the contact is open, by openings of at least `least` [s].
-double open_time(double touch, const std::vector<ContactOpening>& openings, double span, double least) {
+double open_time(double touch, std::span<const ContactOpening> openings, double span, double least) {
   double sum = 0;
   for (const ContactOpening& o : openings) {
     if (o.end - o.begin >= least && o.begin < touch + span) sum += std::min(o.end, touch + span) - o.begin;
@@ -50,15 +51,17 @@ double Likelihood::touch_deviation(double speed) const {
 double Likelihood::touch_residual(const ImaginedClosing& closing, const ContactRecord& record) const {
   constexpr double one_alone = 30;
   const std::optional<double> seen = first_touch(record);
-  if (!closing.closes() || !seen) return closing.closes() == seen.has_value() ? 0 : one_alone;
-  return (closing.recorded_touch() - *seen) / touch_deviation(closing.speed);
+  const bool closes = closing.is_seen_to_close();
+  if (!closes || !seen) return closes == seen.has_value() ? 0 : one_alone;
+  return (closing.recorded_touch() - *seen) / touch_deviation(closing.seen().speed);
 }
 
 double Likelihood::of_record(const ImaginedClosing& closing, const ContactRecord& record) const {
   constexpr double linear_from = 6;
   const double r = std::abs(touch_residual(closing, record));
   double sum = r < linear_from ? -r * r / 2 : linear_from * (linear_from / 2 - r);
-  if (!closing.closes() || !first_touch(record)) return sum;
+  if (!closing.is_seen_to_close() || !first_touch(record)) return sum;
+  const auto imagined = closing.seen();
   const double unseen = scene_.options().laboratory.unseen;
   if (!record.edges.empty()) {
     constexpr std::array spans{0.09, 0.3, 0.9};
@@ -66,14 +69,14 @@ double Likelihood::of_record(const ImaginedClosing& closing, const ContactRecord
     const double t0 = scene_.scales().closing_time;
     const std::vector<ContactOpening> seen = openings(record);
     for (const double span : spans) {
-      const double own = open_time(closing.touch, closing.openings, span * t0, unseen);
+      const double own = open_time(imagined.touch, imagined.openings, span * t0, unseen);
       const double recorded = open_time(*first_touch(record), seen, span * t0, 0);
       sum += gentle((own - recorded) / (least * t0 + share * std::max(own, recorded)));
     }
   } else if (record.bounce_count) {
     constexpr double share = 0.3;
     const auto own = static_cast<double>(
-        std::ranges::count_if(closing.openings, [&](const ContactOpening& o) { return o.end - o.begin >= unseen; }));
+        std::ranges::count_if(imagined.openings, [&](const ContactOpening& o) { return o.end - o.begin >= unseen; }));
     const double counted = *record.bounce_count;
     sum += gentle((own - counted) / (1 + share * std::max(own, counted)));
     if ((own > 0) != (counted > 0)) sum += gentle(1);

@@ -1,6 +1,8 @@
-// What a laboratory sees of one closing: when the contact was open and when it was closed.
+// What a laboratory sees of one closing: when the contact was open and when it was closed. Where it sees the capacitance instead,
+// the contact counts as closed while that is above a threshold.
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
@@ -18,6 +20,10 @@ struct LaboratoryErrors {
   /// Standard deviation of the time by which records begin late, constant but unknown [s]; 0: they begin with the drives. A
   /// simulated laboratory has its own (PracticeOptions).
   double trigger_delay = 2e-6;
+  /// Records tell when the capacitance of the electrode that closes the switch is above this [F]; NaN: when its contact is
+  /// closed.
+  double capacitance = std::numeric_limits<double>::quiet_NaN();
+  [[nodiscard]] bool sees_capacitance() const { return !std::isnan(capacitance); }
 };
 
 class SceneFile;

@@ -13,6 +13,7 @@
 #include "model/closing.h"
 #include "model/gas/gas_law.h"
 #include "studies/closing/auto_settings.h"
+#include "studies/tuning/capacitance_edges.h"
 #include "studies/tuning/tuned_scene.h"
 
 namespace softland {
@@ -114,7 +115,10 @@ PracticeDevice::PracticeDevice(SceneFile file, const PracticeOptions& options)
     : options_(options),
       nominal_(prepared(std::move(file))),
       own_(with_model(nominal_, options.model)),
-      device_(drawn(own_, options.seed)) {}
+      device_(drawn(own_, options.seed)) {
+  if (const LaboratoryErrors& laboratory = options_.laboratory; laboratory.sees_capacitance())
+    static_cast<void>(capacitance_rise(nominal_, laboratory.capacitance));
+}
 
 double PracticeDevice::gain(std::size_t drive, std::uint64_t shot) const {
   const std::uint64_t of_drive = random_bits(options_.seed, Stream::practice_gain, drive);
@@ -123,11 +127,11 @@ double PracticeDevice::gain(std::size_t drive, std::uint64_t shot) const {
   return constant * scatter * (1 + options_.drift * static_cast<double>(shot - 1));
 }
 
-std::vector<ContactEdge> PracticeDevice::seen_edges(const Trajectory& closing, std::uint64_t shot) const {
+std::vector<ContactEdge> PracticeDevice::seen_edges(const std::vector<ContactClosure>& closures, std::uint64_t shot) const {
   const std::uint64_t of_shot = random_bits(options_.seed, Stream::practice_edges, shot);
   std::uint64_t drawn = 0;
   std::vector<ContactEdge> seen;
-  for (const Touch& touch : closing.touches) {
+  for (const ContactClosure& touch : closures) {
     const double closes = touch.begin + options_.laboratory.edge_error * random_normal(of_shot, Stream::practice_edges, drawn++),
                  opens = touch.end + options_.laboratory.edge_error * random_normal(of_shot, Stream::practice_edges, drawn++);
     const bool stays_open = seen.empty() || closes - seen.back().time > std::max(0.0, options_.laboratory.unseen);
@@ -157,13 +161,22 @@ PracticeClosing PracticeDevice::close(std::uint64_t shot, const std::vector<Wave
   for (std::size_t k = 0; k < signals.size(); ++k) {
     if (own_.model.drive_kind(k) != DriveKind::dispersion) signals[k] = scaled(signals[k], gain(k, shot));
   }
-  const Trajectory closing = simulate_closing(*device_.model, signals, {.duration = duration, .tolerance = own_.tolerance});
+  const ClosingOptions options{.duration = duration, .tolerance = own_.tolerance};
+  const Trajectory closing = simulate_closing(*device_.model, signals, options);
   PracticeClosing seen{.record = {}, .motion = metrics(closing, own_.scene.metrics)};
   for (const Touch& touch : closing.touches)
     seen.largest_impact_velocity = std::fmax(seen.largest_impact_velocity, touch.impact_velocity);
   seen.record.error = seen_failure(closing);
   if (!seen.record.error.empty()) return seen;
-  seen.record.edges = seen_edges(closing, shot);
+  std::vector<ContactClosure> closures;
+  if (options_.laboratory.sees_capacitance()) {
+    CapacitanceEdges edges(*device_.model, searched_drive(device_.model->device()), options_.laboratory.capacitance);
+    static_cast<void>(observe_closing(*device_.model, signals, options, edges));
+    for (const CapacitanceRise& rise : edges.rises()) closures.push_back({.begin = rise.begin, .end = rise.end});
+  } else {
+    for (const Touch& touch : closing.touches) closures.push_back({.begin = touch.begin, .end = touch.end});
+  }
+  seen.record.edges = seen_edges(closures, shot);
   for (ContactEdge& edge : seen.record.edges) edge.time -= options_.trigger_delay;
   if (const std::string fault = record_fault(seen.record); !fault.empty())
     seen.record = {.error = "the record begins after the contact has closed"};

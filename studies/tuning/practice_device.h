@@ -8,7 +8,7 @@
 //
 // The record begins late by the trigger's delay, the same in all shots. It holds the edges of the contact, closed or open, each
 // late by an error of its own. An opening that is shorter than what the instrument resolves is not seen, nor is a touch that the
-// errors turn around.
+// errors turn around. Where the instrument sees the capacitance, the contact counts as closed while that is above its threshold.
 //
 // The device differs from the scene as [spread] says, or the assumed one (config/assumed_spread.h), and beyond that as its model
 // does: what a belief over the scene cannot know. Its random numbers have streams of their own, which no ensemble draws from.
@@ -49,6 +49,11 @@ struct PracticeClosing {
   double largest_impact_velocity = Metrics::unset;  ///< of all touches [m/s]
 };
 
+/// The contact is closed.
+struct ContactClosure {
+  double begin = 0, end = 0;  ///< [s]; the end is NaN where the record ends closed
+};
+
 class PracticeDevice {
  public:
   /// Throws InvalidInput for a scene that cannot be simulated or has no contact, and for a model that it cannot have.
@@ -66,7 +71,7 @@ class PracticeDevice {
 
  private:
   [[nodiscard]] double gain(std::size_t drive, std::uint64_t shot) const;
-  [[nodiscard]] std::vector<ContactEdge> seen_edges(const Trajectory& closing, std::uint64_t shot) const;
+  [[nodiscard]] std::vector<ContactEdge> seen_edges(const std::vector<ContactClosure>& closures, std::uint64_t shot) const;
 
   PracticeOptions options_;
   PreparedScene nominal_, own_;  // the scene, and that of the device's model

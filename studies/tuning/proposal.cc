@@ -195,12 +195,13 @@ PredictedRecord Outlook::predicted(const std::vector<Waveform>& waveforms) const
   std::vector<double> touches, speeds, heights;
   double bouncing = 0;
   for (const ImaginedClosing& closing : close(waveforms, 0, size())) {
-    if (!closing.closes()) continue;
+    if (!closing.is_seen_to_close()) continue;
+    const auto seen = closing.seen();
     touches.push_back(closing.recorded_touch());
-    speeds.push_back(closing.speed);
+    speeds.push_back(seen.speed);
     heights.push_back(closing.highest);
     bouncing += std::ranges::any_of(
-        closing.openings, [&](const ContactOpening& o) { return o.end - o.begin >= scene_.options().laboratory.unseen; });
+        seen.openings, [&](const ContactOpening& o) { return o.end - o.begin >= scene_.options().laboratory.unseen; });
   }
   PredictedRecord record{
       .touch_median = unset, .touch_low = unset, .touch_high = unset, .rebound_median = unset, .rebound_high = unset};
@@ -222,7 +223,8 @@ double Outlook::touch_slope(const std::vector<Waveform>& waveforms) const {
   const std::vector<ImaginedClosing> less = close(waveforms, 0, size(), 1 - apart), more = close(waveforms, 0, size(), 1 + apart);
   std::vector<double> slopes;
   for (std::size_t k = 0; k < less.size(); ++k) {
-    if (less[k].closes() && more[k].closes()) slopes.push_back((more[k].touch - less[k].touch) / (2 * apart));
+    if (less[k].is_seen_to_close() && more[k].is_seen_to_close())
+      slopes.push_back((more[k].seen().touch - less[k].seen().touch) / (2 * apart));
   }
   return slopes.empty() ? Metrics::unset : sample_quantile(slopes, 0.5);
 }

@@ -19,6 +19,7 @@
 #include "studies/closing/plain_step.h"
 #include "studies/devices/stable_approach.h"
 #include "studies/search/search_setting.h"
+#include "studies/tuning/capacitance_edges.h"
 
 namespace softland {
 namespace {
@@ -111,10 +112,15 @@ class LaneClosing final : public LandingObserver {
   ImaginedClosing closing = {};
 };
 
-// The same of a closing that is run by itself.
+// The same of a closing that is run by itself, and of its capacitance where an instrument sees that.
 class SingleClosing final : public ClosingObserver {
  public:
-  explicit SingleClosing(double gap) : finder_(gap) {}
+  SingleClosing(const Switch& model, double threshold, double speed_per_rate)
+      : finder_(model.contact_gap()), speed_per_rate_(speed_per_rate) {
+    if (!std::isnan(threshold)) edges_.emplace(model, searched_drive(model.device()), threshold);
+  }
+  [[nodiscard]] bool follows_motion() const override { return edges_.has_value(); }
+  void step(const Knot& begin, const Knot& end, const ContactState& contact) override { edges_->step(begin, end, contact); }
   void knot(const TrajectoryPoint& point) override {
     finder_.knot(point, [&](const Rebound& rebound) { add(rebound, rebound.end); });
   }
@@ -123,6 +129,7 @@ class SingleClosing final : public ClosingObserver {
     closing.followed = finder_.usable() && run.status == Status::done;
     if (finder_.touched()) closing.touch = finder_.first_touch(), closing.speed = finder_.impact_velocity();
     if (const auto& last = finder_.under_way()) add(*last, std::numeric_limits<double>::infinity());
+    if (edges_) closing.by_capacitance = seen(edges_->rises());
     return std::move(closing);
   }
   ImaginedClosing closing = {};
@@ -132,7 +139,21 @@ class SingleClosing final : public ClosingObserver {
     closing.openings.push_back({.begin = rebound.begin, .end = end});
     closing.highest = std::max(closing.highest, rebound.height);
   }
+  [[nodiscard]] SeenClosing<std::vector<ContactOpening>> seen(const std::vector<CapacitanceRise>& rises) const {
+    SeenClosing<std::vector<ContactOpening>> own;
+    if (rises.empty()) return own;
+    own.touch = rises.front().begin;
+    own.speed = speed_per_rate_ * rises.front().rate;
+    for (std::size_t k = 0; k < rises.size(); ++k) {
+      if (std::isnan(rises[k].end)) break;
+      own.openings.push_back(
+          {.begin = rises[k].end, .end = k + 1 < rises.size() ? rises[k + 1].begin : std::numeric_limits<double>::infinity()});
+    }
+    return own;
+  }
   ReboundFinder finder_;
+  double speed_per_rate_;  // [m/F]
+  std::optional<CapacitanceEdges> edges_;
 };
 
 }  // namespace
@@ -221,6 +242,7 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
     return fmt::format("the error of edges, {}, must be below a tenth of the closing time of the plain step, {}",
                        engineering(options.laboratory.edge_error, "s", 3), engineering(scales_.closing_time, "s", 3));
   });
+  if (options.laboratory.sees_capacitance()) scales_.rise = capacitance_rise(nominal_, options.laboratory.capacitance);
   find_units(watch);
 }
 
@@ -327,14 +349,16 @@ std::vector<ImaginedClosing> TunedScene::close(std::span<const ImaginedShot> sho
                        .observer = &landings[i]});
     }
     std::vector<FleetEnd> ends(fleet.size());
-    if (options_.vectors != Vectors::none) ends = close_in_lanes(fleet, nominal_.tolerance, options_.vectors);
+    const LaboratoryErrors& laboratory = options_.laboratory;
+    if (options_.vectors != Vectors::none && !laboratory.sees_capacitance())
+      ends = close_in_lanes(fleet, nominal_.tolerance, options_.vectors);
     for (std::size_t k = 0; k < fleet.size(); ++k) {
       ImaginedClosing& closing = all[begin + places[k]];
       if (ends[k].followed) {
         closing = std::move(landings[places[k]].closing);
         closing.followed = true;
       } else {
-        SingleClosing single(fleet[k].model->contact_gap());
+        SingleClosing single(*fleet[k].model, laboratory.capacitance, scales_.gap / scales_.rise);
         const Trajectory run = observe_closing(*fleet[k].model, fleet[k].drives,
                                                {.duration = fleet[k].duration,
                                                 .tolerance = nominal_.tolerance,

@@ -44,6 +44,7 @@ struct TuningScales {
   double closing_time = 0;  ///< T_0: first touch of the plain step on the nominal device [s]
   double gap = 0;           ///< contact gap [m]
   double rebound = 0;       ///< significant rebound [m]
+  double rise = 0;          ///< of the capacitance from the open to the closed state [F]; 0 unless records tell of it
   double latest_touch = std::numeric_limits<double>::infinity();  ///< that is asked for [s]
   /// When the plain step's contact stays on the nominal device; NaN unless the approach is quasi-static [s].
   double permanent_contact = std::numeric_limits<double>::quiet_NaN();
@@ -57,6 +58,15 @@ struct ImaginedDevice {
   double delay = 0;  ///< the time by which its records begin late [s]
 };
 
+/// What an instrument sees of a closing, but for its errors.
+template <class Openings>
+struct SeenClosing {
+  double touch = std::numeric_limits<double>::quiet_NaN();  ///< when the contact first closes, since the drives began [s]
+  double speed =
+      std::numeric_limits<double>::quiet_NaN();  ///< then; of a capacitance, over its rise, times the contact gap [m/s]
+  Openings openings = {};                        ///< since the drives began [s]
+};
+
 /// A closing of an imagined device, as exact as its model.
 struct ImaginedClosing {
   bool followed = false;                                      ///< to the end of its window
@@ -66,9 +76,17 @@ struct ImaginedClosing {
   double highest = 0;                                         ///< rebound [m]
   std::vector<ContactOpening> openings = {};                  ///< since the drives began [s]
   double delay = 0;                                           ///< the time by which its record begins late [s]
+  /// What is seen of the capacitance; none where an instrument sees the contact.
+  std::optional<SeenClosing<std::vector<ContactOpening>>> by_capacitance = {};
   [[nodiscard]] bool closes() const { return followed && touch == touch; }
+  [[nodiscard]] SeenClosing<std::span<const ContactOpening>> seen() const {
+    if (by_capacitance) return {by_capacitance->touch, by_capacitance->speed, by_capacitance->openings};
+    return {touch, speed, openings};
+  }
+  /// Whether a record shows that it closes.
+  [[nodiscard]] bool is_seen_to_close() const { return followed && !std::isnan(seen().touch); }
   /// When a record shows the first touch [s]; NaN: none.
-  [[nodiscard]] double recorded_touch() const { return touch - delay; }
+  [[nodiscard]] double recorded_touch() const { return seen().touch - delay; }
   /// From when on the contact stays [s]; infinite where it is open at last.
   [[nodiscard]] double stays_from() const { return openings.empty() ? touch : std::max(touch, openings.back().end); }
 };
@@ -99,7 +117,10 @@ class TunedScene {
   void choose(Approach approach);
   [[nodiscard]] bool spread_is_assumed() const { return spread_is_assumed_; }
   /// Whether closings go in lanes.
-  [[nodiscard]] bool is_in_lanes() const { return why_not_in_lanes(nominal_.model).empty() && options_.vectors != Vectors::none; }
+  [[nodiscard]] bool is_in_lanes() const {
+    return why_not_in_lanes(nominal_.model).empty() && options_.vectors != Vectors::none &&
+           !options_.laboratory.sees_capacitance();
+  }
   /// Number of coordinates, of which the trigger delay is the last.
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(nominal_.scene.spread.variables.size()) + 1; }
   /// Which coordinates are of [spread] or the gain of a source: what moves the units of volts and time.

@@ -201,7 +201,7 @@ int unexplained_bounces(const TunedScene& scene, std::span<const LearnedShot> sh
   const std::vector<ImaginedClosing> closings = scene.close(fired, watch);
   int count = 0;
   for (std::size_t i = 0; i < shots.size(); ++i) {
-    const bool bounces = std::ranges::any_of(closings[i].openings, [&](const ContactOpening& one) {
+    const bool bounces = std::ranges::any_of(closings[i].seen().openings, [&](const ContactOpening& one) {
       return one.end - one.begin >= scene.options().laboratory.unseen;
     });
     count += has_long_bounce(scene, shots[i].record) && !bounces;
