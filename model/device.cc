@@ -105,11 +105,23 @@ void check_dielectric(const Electrode& e, const Gap& gap) {
     return fmt::format("{}charge = {}: must be between -1 and 1 MC/m^2", name, engineering(dielectric.charge, "C/m^2"));
   });
   if (const auto& landing = dielectric.landing) {
-    if (!landing->is_wall()) positive(landing->stiffness, "Pa/m", (name + "landing.stiffness").c_str());
+    if (landing->asperities) {
+      check_fields(name + "landing", *landing->asperities);
+      const double height = landing->asperities->height;
+      require(height < gap.electrode, [&] {
+        return fmt::format("{}landing.asperity_height = {}: must be below gap.electrode", name, engineering(height, "m"));
+      });
+      require(std::isnan(landing->stiffness) && landing->from == 0 && landing->asperities->damping == 0, [&] {
+        return name + "landing.asperity_height: asperities begin at their height, without a bed and without damping";
+      });
+    } else if (!landing->is_wall()) {
+      positive(landing->stiffness, "Pa/m", (name + "landing.stiffness").c_str());
+    }
     require(landing->from >= 0 && landing->from < gap.electrode, [&] {
       return fmt::format("{}landing.from = {}: must be from 0 m to below gap.electrode", name, engineering(landing->from, "m"));
     });
-    require(!landing->is_wall() || landing->from == 0, [&] { return name + "landing.from: a wall begins at the face"; });
+    require(!std::isnan(landing->stiffness) || landing->from == 0,
+            [&] { return name + "landing.from: a wall begins at the face"; });
   }
   require(e.side == Side::near,
           [&] { return fmt::format("electrode.{}.dielectric: belongs to an electrode on the near side alone", e.name); });
@@ -314,23 +326,36 @@ Place first_touch_on(const Device& d) {
   return nearest;
 }
 
+// The length of all pads on whose face the beam may land [m].
+double length_of_faces(const Device& d) {
+  double sum = 0;
+  for (const Electrode& e : d.electrodes) {
+    if (!e.dielectric || !e.dielectric->landing) continue;
+    for (const Stretch& pad : e.pads(d.structure.length)) sum += pad.end - pad.begin;
+  }
+  return sum;
+}
+
 }  // namespace
 
 void set_face_contact(Device& d) {
   const Landing* landing = d.landing();
   if (landing == nullptr) return;
-  const double plane = d.gap.electrode - landing->from;
-  // The stiffness of a wall is that of the switch, which finds it from its modes.
-  const LinearSpring bed{.stiffness = landing->is_wall() ? 1 : landing->stiffness};
+  const double plane = d.gap.electrode - landing->begin();
+  const auto set = [&](Contact& face) {
+    // The stiffness of a wall is that of the switch, which finds it from its modes.
+    face.model = LinearSpring{.stiffness = landing->is_wall() ? 1 : landing->stiffness};
+    if (landing->asperities) face.model = *landing->asperities, face.pad_length = length_of_faces(d);
+    if (!d.structure.is_rigid()) face.at = first_touch_on(d);
+  };
   if (const auto known = d.face_contact()) {
     Contact& face = d.contacts[*known];
-    face.model = bed;
-    if (!d.structure.is_rigid()) face.at = first_touch_on(d);
+    set(face);
     (*known == 0 ? d.gap.contact : face.gap) = plane;
     return;
   }
-  Contact face{.model = bed, .along_face = true};
-  if (!d.structure.is_rigid()) face.at = first_touch_on(d);
+  Contact face{.along_face = true};
+  set(face);
   const bool has_others = d.has_contact();
   if (has_others) face.name = face_name;
   if (std::ranges::find(d.contacts, Side::near, &Contact::side) != d.contacts.end()) {
@@ -348,7 +373,8 @@ bool have_equal_landings(const Electrode& one, const Electrode& other) {
   const auto of = [](const Electrode& e) { return e.dielectric && e.dielectric->landing ? &*e.dielectric->landing : nullptr; };
   const Landing *a = of(one), *b = of(other);
   if (a == nullptr || b == nullptr) return a == b;
-  return a->from == b->from && (a->stiffness == b->stiffness || (a->is_wall() && b->is_wall()));
+  const bool have_equal_beds = a->stiffness == b->stiffness || (std::isnan(a->stiffness) && std::isnan(b->stiffness));
+  return a->from == b->from && have_equal_beds && a->asperities == b->asperities;
 }
 
 std::string why_no_landing(const Device& d) {

@@ -27,12 +27,16 @@ struct Gap {
   double contact = 0;    ///< dt, rest distance of the first contact to its plane, or of the contact point without contact [m]
 };
 
-/// How a beam lands on a dielectric: the pressure of its face on the beam, in proportion to the depth.
+/// How a beam lands on a dielectric: the pressure of its face on the beam, see model/contact/face.h. The face is a wall where
+/// neither a stiffness nor asperities are given.
 struct Landing {
-  double stiffness = std::numeric_limits<double>::quiet_NaN();  ///< per area [Pa/m]; NaN: a wall, see model/contact/face.h
-  double from = 0;                                              ///< how far above the face the pressure begins [m]
+  double stiffness = std::numeric_limits<double>::quiet_NaN();  ///< stiffness of a bed per area [Pa/m]
+  double from = 0;                                              ///< how far above the face the pressure of a bed begins [m]
+  std::optional<UniformAsperities> asperities = {};             ///< they stand on the face, without damping
 
-  [[nodiscard]] bool is_wall() const { return std::isnan(stiffness); }
+  [[nodiscard]] bool is_wall() const { return std::isnan(stiffness) && !asperities; }
+  /// How far above the face the pressure begins [m]: of asperities at the height of the highest one.
+  [[nodiscard]] double begin() const { return asperities ? asperities->height : from; }
 };
 
 /// An insulator on an electrode, which faces the moving part: the gaps of the scene end at its face, the metal lies deeper.

@@ -91,7 +91,7 @@ std::shared_ptr<const DistributedLaw> one_law(std::vector<std::shared_ptr<const 
 double points_to_land(const Device& device) {
   if (!device.lands_along_face()) return 0;
   constexpr double points = 6;
-  return points * pi * std::sqrt(device.gap.electrode / (device.dielectric_depth() + device.landing()->from));
+  return points * pi * std::sqrt(device.gap.electrode / (device.dielectric_depth() + device.landing()->begin()));
 }
 
 // Calls `make` with the force law of an electrode.
@@ -236,14 +236,14 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
   bending_energy_ = force * contact_gap_ / 2;
   if (const auto face = device_.face_contact()) {
     face_at_ = *face;
-    auto& spring = std::get<LinearSpring>(device_.contacts[face_at_].model);
     if (device_.landing()->is_wall()) {
       double area = 0;
       for_faces(device_, quadrature_.positions(), [&](const EvenRange& even) {
         area += even.width * quadrature_.weights().segment(even.points.begin, even.points.end - even.points.begin).sum();
       });
       const double depth = device_.dielectric_depth();
-      spring.stiffness = wall_stiffness(1 / compliance, device_.gap.electrode + depth, area, depth);
+      std::get<LinearSpring>(device_.contacts[face_at_].model).stiffness =
+          wall_stiffness(1 / compliance, device_.gap.electrode + depth, area, depth);
     }
     face_ = face_pressure();
   }
@@ -266,10 +266,18 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
 
 std::shared_ptr<const DistributedLaw> Switch::face_pressure() const {
   constexpr double no_floor = -std::numeric_limits<double>::infinity();
-  const double stiffness = std::get<LinearSpring>(device_.contacts[face_at_].model).stiffness, from = device_.landing()->from;
+  const double from = device_.landing()->begin();
+  const ContactModel& model = device_.contacts[face_at_].model;
   std::vector<std::shared_ptr<const DistributedLaw>> pads;
   for_faces(device_, quadrature_.positions(), [&](const EvenRange& even) {
-    pads.push_back(erased(FacePressure{.stiffness = even.width * stiffness, .from = from}, even.points, no_floor));
+    if (const auto* const rough = std::get_if<UniformAsperities>(&model)) {
+      const ContactPad per_length{.width = even.width, .length = 1};
+      pads.push_back(
+          erased(RoughFacePressure{uniform_contact(rough->summits, rough->height, per_length)}, even.points, no_floor));
+    } else {
+      const double stiffness = std::get<LinearSpring>(model).stiffness;
+      pads.push_back(erased(FacePressure{.stiffness = even.width * stiffness, .from = from}, even.points, no_floor));
+    }
   });
   return one_law(std::move(pads));
 }

@@ -1,9 +1,16 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "base/engineering.h"
+#include "config/schema/laws.h"
 #include "config/schema/sections.h"
 #include "config/section_reader.h"
 #include "model/forces/electrostatic.h"
@@ -28,10 +35,33 @@ Landing& landing(Scene& scene, std::size_t k) {
 }
 using OfLanding = Of<landing>;
 
+// The keys of a section come in the order of their names: any of them may be the first one.
+UniformAsperities& asperities(Scene& scene, std::size_t k) {
+  std::optional<UniformAsperities>& one = landing(scene, k).asperities;
+  if (!one) one.emplace();
+  return *one;
+}
+
+/// The keys of asperities on the face, which take no energy.
+std::vector<Key> asperity_keys() {
+  std::vector<Key> keys;
+  const auto add = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) {
+    static constexpr const Field<UniformAsperities>& field = fields_of<UniformAsperities>[i];
+    if (field.key == "damping") return;
+    Key key = described(field);
+    key.bound.number = [](Scene& scene, std::size_t k) -> double& { return field.in(asperities(scene, k)); };
+    keys.push_back(std::move(key).of({UniformAsperities::name}));
+  };
+  [&]<std::size_t... i>(std::index_sequence<i...>) { (add(std::integral_constant<std::size_t, i>()), ...); }
+  (std::make_index_sequence<fields_of<UniformAsperities>.size()>());
+  return keys;
+}
+
 const Section* landing_keys() {
   static const Section keys = [] {
-    Key model =
-        one_of("model", {"wall", "linear"}, "wall: it does not yield; linear: a spring on every spot of the face").needed();
+    Key model = one_of("model", {"wall", "linear", UniformAsperities::name},
+                       "wall: it does not yield; linear: a spring on every spot of the face; asperity-uniform: summits on it")
+                    .needed();
     model.bound.choose = [](Scene& scene, std::size_t k, std::string_view) { static_cast<void>(landing(scene, k)); };
     Key stiffness = OfLanding::number<&Landing::stiffness>("stiffness", dimension::stress_gradient, positive,
                                                            "pressure of the face per depth")
@@ -42,10 +72,14 @@ const Section* landing_keys() {
                    .such_as("30 nm");
     stiffness.only_for = {"linear"};
     from.only_for = {"linear"};
-    return Section{.name = "landing",
-                   .selector = "model",
-                   .keys = {std::move(model), std::move(stiffness), std::move(from)},
-                   .about = "how the beam lands on the face"};
+    Section section{.name = "landing",
+                    .selector = "model",
+                    .keys = {std::move(model), std::move(stiffness), std::move(from)},
+                    .about = "how the beam lands on the face",
+                    .advice = {{"damping", "the face of a dielectric takes no energy"},
+                               {"pad", "the pad is all of the face over the electrode"}}};
+    std::ranges::move(asperity_keys(), std::back_inserter(section.keys));
+    return section;
   }();
   return &keys;
 }
@@ -128,9 +162,11 @@ void check_landing(Device& d, const Electrode& e, const SectionReader& in) {
              fmt::format("has a landing, whose contact is called {0}: [contact.{0}] needs another name", face_name));
   in.require(in.file().find({"dispersion"}) == nullptr, "dielectric",
              "has a landing: a beam that lands on a dielectric takes no dispersion force");
-  const double from = e.dielectric->landing->from, plane = d.gap.electrode - from;
+  const Landing& landing = *e.dielectric->landing;
+  const double plane = d.gap.electrode - landing.begin();
   in.require(plane > 0, "dielectric",
-             "has a landing that begins at the beam: 'from' must be less than " + gap.written("electrode"));
+             fmt::format("has a landing that begins at the beam: '{}' must be less than {}",
+                         landing.asperities ? "asperity_height" : "from", gap.written("electrode")));
   if (gap.is_given("contact")) {
     gap.require(std::abs(d.gap.contact - plane) <= 1e-9 * d.gap.electrode, "contact",
                 "must be " + engineering(plane, "m") + ", where the landing begins: leave it out");

@@ -1,23 +1,32 @@
 // Landing of a beam along the face of the dielectric on its electrodes.
 //
-//   p = k max(0, d)        U = a k d^2 / 2        d = b - h
+//   wall, linear       p = k max(0, d)        U = a k d^2 / 2        d = b - h
+//   asperity-uniform   p and U of model/contact/asperity_uniform.h with An = 1 m^2, and with An / m = a; b = Hm
 //
 // p pressure of the face on the beam [Pa], d depth [m], h local gap between beam and face, b height above the face from which the
 // pressure acts, k stiffness per area [Pa/m], U energy per length [J/m], a local width [m]. Lossless. Source: textbook, a bed of
-// springs (Winkler).
+// springs (Winkler), and that of the asperities. These stand on the face, with heights up to Hm above it: the beam touches the
+// highest one at h = Hm.
 //
 // A wall has no growing field below its face. Its k is that at which the field of the voltage 2 V1 sinks the beam in by a
 // fiftieth of H = t / eps_r + roughness, the smallest gap of the field: own choice. V1^2 = 8 K g^3 / (27 eps0 A) closes parallel
 // plates. K stiffness of the beam at the contact point [N/m], g rest gap of the field, A area of the faces [m^2].
 //
 // A linear bed lets the field grow on below the face. One that is softer than 27 eps0 V^2 / (8 (H + b)^3) lets it pull the beam
-// through, like parallel plates whose springs are at rest where the pressure begins.
+// through, like parallel plates whose springs are at rest where the pressure begins. Asperities hold these off up to a voltage V:
+//
+//   eps0 V^2 / 2 = max over d of p(d) (H + b - d)^2
+//
+// That product has one maximum: p / p' is two thirds of the mean depth of the summits in touch, weighted with its root, which
+// grows with d, and H + b - d falls. Own derivation.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/select.h"
 #include "model/constants.h"
+#include "model/contact/asperity_uniform.h"
 #include "model/dual.h"
 
 namespace softland {
@@ -34,7 +43,35 @@ namespace softland {
   return 27.0 / 8 * vacuum_permittivity * voltage * voltage / (depth * depth * depth);
 }
 
-/// The pressure of the face on a beam of one width.
+/// Voltage up to which the face holds plates off, whose springs are at rest where the pressure begins [V]: `pressure` is a law of
+/// elastic contact per area, `depth` is H + b [m].
+template <class Law>
+[[nodiscard]] double most_face_voltage(const Law& pressure, double depth) {
+  double low = 0, high = depth;  // they enclose the depth at which p (H + b - d)^2 is largest
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    const Dual at = pressure.force(Dual(middle, 1));
+    (at.slope * (depth - middle) > 2 * at.value ? low : high) = middle;
+  }
+  return (depth - low) * std::sqrt(2 * pressure.force(low) / vacuum_permittivity);
+}
+
+/// The pressure of a face with asperities on a beam of one width.
+struct RoughFacePressure {
+  UniformAsperityContact asperities;  ///< per length
+  static constexpr bool driven = false;
+
+  /// [N/m], away from the electrode
+  template <class S>
+  [[gnu::always_inline]] S load(S gap, S /*velocity*/) const {
+    const S depth = S(asperities.height) - gap;
+    return select(
+        depth > 0, [&] { return -asperities.force(depth); }, [] { return S(0); });
+  }
+  [[nodiscard]] double potential(double gap) const { return asperities.energy(std::max(0.0, asperities.height - gap)); }
+};
+
+/// The pressure of a wall or a linear bed on a beam of one width.
 struct FacePressure {
   double stiffness = 0;  ///< per length, a k [N/m^2]
   double from = 0;       ///< b [m]

@@ -19,6 +19,8 @@ struct Summits {
   double density = 0;            ///< eta [1/m^2]
   double effective_modulus = 0;  ///< E* [Pa]
 
+  [[nodiscard]] bool operator==(const Summits&) const = default;
+
   /// How many are under the pad.
   [[nodiscard]] double count(const ContactPad& pad) const { return density * pad.width * pad.length; }
   /// Force of all of them over d^1.5, by Hertz [N/m^1.5].

@@ -20,6 +20,8 @@ struct UniformAsperities {
   double height = 0;   ///< Hm [m]
   double damping = 0;  ///< of Hunt and Crossley [s/m]
 
+  [[nodiscard]] bool operator==(const UniformAsperities&) const = default;
+
   static consteval auto fields() {
     using Law = UniformAsperities;
     return joined(summit_fields<Law>(), height_fields<Law>(), modulus_fields<Law>(), damping_fields<Law>());

@@ -244,11 +244,19 @@ void check_landing(const PreparedScene& p) {
     const double neutral = e.dielectric->neutral_voltage();
     const double most = limits ? std::max(std::abs(limits->min_voltage - neutral), std::abs(limits->max_voltage - neutral))
                                : std::abs(p.drives[k].hold_level() - neutral);
-    const double least = least_face_stiffness(most, e.dielectric->depth() + landing->from);
-    if (landing->stiffness > least) continue;
+    const double depth = e.dielectric->depth() + landing->begin();
+    std::string key = "stiffness", unit = "Pa/m";
+    double own = landing->stiffness, least = least_face_stiffness(most, depth);
+    if (const std::optional<UniformAsperities>& rough = landing->asperities) {
+      const UniformAsperityContact per_area = uniform_contact(rough->summits, rough->height, {.width = 1, .length = 1});
+      key = "asperity_density", unit = "1/m^2";
+      own = rough->summits.density;
+      least = own * std::pow(most / most_face_voltage(per_area, depth), 2);  // the pressure is in proportion to it
+    }
+    if (own > least) continue;
     p.scene.file.refuse(
-        "electrode." + e.name + ".dielectric.landing.stiffness",
-        fmt::format("must be greater than {}, below which {} pulls the beam through the face{}", engineering(least, "Pa/m", 3),
+        "electrode." + e.name + ".dielectric.landing." + key,
+        fmt::format("must be greater than {}, below which {} pulls the beam through the face{}", engineering(least, unit, 3),
                     engineering(most, "V", 4), limits ? ", the limit of driver." + e.name : ", its hold level"));
   }
 }

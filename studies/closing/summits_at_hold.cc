@@ -31,7 +31,8 @@ double touching_share(const Law& law, double d) {
 
 std::optional<SummitsAtHold> summits_at_hold(const Switch& model, const ClosedEquilibrium& closed) {
   const Device& device = model.device();
-  if (!device.has_contact() || device.touches_along_pad()) return std::nullopt;
+  // A beam lies on a pad or a face with another depth at every point.
+  if (!device.has_contact() || device.touches_along_pad() || device.contacts.front().along_face) return std::nullopt;
   const double d = model.contact_deflection(closed.q.data()) - device.contact_gap();
   return std::visit(
       [&]<class Law>(const Law& law) -> std::optional<SummitsAtHold> {

@@ -137,6 +137,8 @@ std::string edited_bridge(const std::string& old, const std::string& replacement
   return text.replace(at, old.size(), replacement);
 }
 
+const std::string linear_bed = R"(model = "linear", stiffness = "1e17 Pa/m", from = "30 nm")";
+
 TEST(LandingKeys, MakeTheFaceTheContact) {
   SceneFile file = SceneFile::parse(capacitive, "x.toml");
   const Device linear = read_scene(file).device;
@@ -146,11 +148,51 @@ TEST(LandingKeys, MakeTheFaceTheContact) {
   EXPECT_DOUBLE_EQ(linear.landing()->stiffness, 1e17);
   file.set("electrode.main.dielectric.landing.from=\"0.05 um\"");
   EXPECT_DOUBLE_EQ(read_scene(SceneFile::parse(file.text(), "again.toml")).device.gap.contact, 2.95e-6);
-  std::string text = edited_bridge(R"(model = "linear", stiffness = "1e17 Pa/m", from = "30 nm")", R"(model = "wall")");
+  std::string text = edited_bridge(linear_bed, R"(model = "wall")");
   text.resize(text.find("[spread]"));
   const Device wall = read_scene(SceneFile::parse(text, "x.toml")).device;
   EXPECT_TRUE(wall.landing()->is_wall());
   EXPECT_DOUBLE_EQ(wall.gap.contact, 3e-6);
+}
+
+// The bridge over asperities, by the keys that [contact] has for them.
+std::string rough_bridge(const std::string& numbers) {
+  std::string text = edited_bridge(linear_bed, "model = \"asperity-uniform\", " + numbers);
+  return text.replace(text.find("landing.stiffness"), std::string("landing.stiffness").size(), "landing.asperity_radius");
+}
+
+TEST(LandingKeys, DescribeAsperities) {
+  const std::string numbers =
+      R"(asperity_radius = "90 nm", asperity_density = "1e12 1/m^2", asperity_height = "40 nm", effective_modulus = "50 GPa")";
+  const Scene scene = read_scene(SceneFile::parse(rough_bridge(numbers), "x.toml"));
+  EXPECT_EQ(scene.spread.variables.size(), 1U);
+  EXPECT_DOUBLE_EQ(scene.device.gap.contact, 2.96e-6) << "the highest of them";
+  const Landing& landing = *scene.device.landing();
+  EXPECT_FALSE(landing.is_wall());
+  ASSERT_TRUE(landing.asperities);
+  EXPECT_DOUBLE_EQ(landing.asperities->summits.radius, 90e-9);
+  EXPECT_DOUBLE_EQ(landing.asperities->summits.density, 1e12);
+  EXPECT_DOUBLE_EQ(landing.asperities->summits.effective_modulus, 50e9);
+  EXPECT_DOUBLE_EQ(landing.asperities->height, 40e-9);
+
+  const auto refused = [&](const std::string& old, const std::string& replacement) {
+    std::string other = numbers;
+    return refusal_of(rough_bridge(other.replace(other.find(old), old.size(), replacement)));
+  };
+  EXPECT_THAT(refused(R"(, asperity_height = "40 nm")", ""),
+              HasSubstr("x.toml:14: [electrode.main.dielectric.landing]: missing key 'asperity_height' (a length such as "));
+  EXPECT_THAT(refused("90 nm", "-90 nm"),
+              HasSubstr("x.toml:14: electrode.main.dielectric.landing.asperity_radius = \"-90 nm\": must be "));
+  EXPECT_THAT(refused("40 nm", "3 um"), HasSubstr("x.toml:14: electrode.main.dielectric"));
+  EXPECT_THAT(refused("40 nm", "3 um"), HasSubstr("'asperity_height' must be less than gap.electrode"));
+  EXPECT_THAT(refused("asperity_radius", R"(damping = "1 s/m", asperity_radius)"),
+              HasSubstr("landing.damping = \"1 s/m\": unknown key; the face of a dielectric takes no energy"));
+  EXPECT_THAT(refused("asperity_radius", R"(pad_length = "1 um", asperity_radius)"),
+              HasSubstr("landing.pad_length = \"1 um\": unknown key; the pad is all of the face over the electrode"));
+  EXPECT_THAT(refused("asperity_radius", R"(from = "1 nm", asperity_radius)"),
+              HasSubstr("landing.from = \"1 nm\": belongs to model = \"linear\""));
+  EXPECT_THAT(refusal_of(edited_bridge("stiffness = \"1e17 Pa/m\"", "asperity_height = \"40 nm\", stiffness = \"1e17 Pa/m\"")),
+              HasSubstr("landing.asperity_height = \"40 nm\": belongs to model = \"asperity-uniform\""));
 }
 
 // Dimples of 0.8 um at places of the bridge.
@@ -192,7 +234,8 @@ TEST(LandingKeys, AreRefusedByFileLineAndKey) {
   EXPECT_THAT(refusal_of(edited_bridge("model = \"linear\"", "model = \"wall\"")),
               HasSubstr("x.toml:14: electrode.main.dielectric.landing.from = \"30 nm\": belongs to model = \"linear\""));
   EXPECT_THAT(refusal_of(edited_bridge("model = \"linear\"", "model = \"soft\"")),
-              HasSubstr("x.toml:14: electrode.main.dielectric.landing.model = \"soft\": unknown value (known: wall, linear)"));
+              HasSubstr("x.toml:14: electrode.main.dielectric.landing.model = \"soft\": unknown value (known: wall, linear, "
+                        "asperity-uniform)"));
   EXPECT_THAT(refusal_of(edited_bridge("stiffness = \"1e17 Pa/m\", ", "")),
               HasSubstr("x.toml:14: [electrode.main.dielectric.landing]: missing key 'stiffness'"));
   EXPECT_THAT(refusal_of(edited_bridge("\"30 nm\"", "\"4 um\"")), HasSubstr("x.toml:14: electrode.main.dielectric"));

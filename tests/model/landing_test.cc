@@ -1,6 +1,7 @@
 // Landing of a beam along the face of the dielectric on its electrode.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -36,6 +37,23 @@ Device capacitive_bridge(Landing landing = {.stiffness = 1e15, .from = 30_nm}) {
                           .end = 190_um,
                           .fringing = Fringing::none,
                           .dielectric = Dielectric{.thickness = 0.2_um, .permittivity = 7, .landing = landing}}}};
+}
+
+// Summits as high as the air that they leave under the bridge adds to the gap of its field.
+constexpr UniformAsperities summits_of_nitride{.summits = {.radius = 100_nm, .density = 1e12, .effective_modulus = 48e9},
+                                               .height = 30_nm};
+constexpr Landing rough{.asperities = summits_of_nitride};
+
+// Their pressure as a sum over heights: summits of even heights share a thousand of them.
+double pressure_of_summits(const UniformAsperities& face, double depth) {
+  constexpr int heights = 1000;
+  double sum = 0;
+  for (int k = 0; k < heights; ++k) {
+    const double lower = face.height * (k + 0.5) / heights;  // than the highest one
+    if (depth > lower) sum += std::pow(depth - lower, 1.5) / heights;
+  }
+  const Summits& all = face.summits;
+  return all.density * 4.0 / 3 * all.effective_modulus * std::sqrt(all.radius) * sum;
 }
 
 Switch fine(const Device& device, int modes) { return Switch(device, {.points_per_length = 400, .modes = modes}); }
@@ -131,6 +149,99 @@ TEST(Landing, AFieldPullsTheBeamThroughASoftFace) {
   }
 }
 
+// Asperities hold plates off whose springs are at rest at the highest one up to a voltage that a look at all depths finds, too.
+TEST(Landing, AFieldPullsTheBeamThroughSoftAsperities) {
+  for (const double depth : {10e-9, 40e-9, 400e-9}) {
+    const double bed = most_face_voltage(LinearContact{.stiffness = 1e15}, depth);
+    expect_share(least_face_stiffness(bed, depth), 1e15, 1e-9, "a linear bed");
+    const double height = summits_of_nitride.height;
+    const UniformAsperityContact pressure = uniform_contact(summits_of_nitride.summits, height, {.width = 1, .length = 1});
+    double largest = 0;
+    constexpr int looks = 2000;
+    for (int k = 1; k < looks; ++k) {
+      const double sunk = depth * k / looks;
+      largest = std::max(largest, pressure_of_summits(summits_of_nitride, sunk) * std::pow(depth - sunk, 2));
+    }
+    expect_share(most_face_voltage(pressure, depth), std::sqrt(2 * largest / vacuum_permittivity), 1e-4, "asperities");
+    if (depth * 5 / 9 > height) continue;
+    const double sunk = depth * 5 / 9, square = 2 * pressure.force(sunk) * std::pow(depth - sunk, 2) / vacuum_permittivity;
+    expect_share(most_face_voltage(pressure, depth), std::sqrt(square), 1e-12, "where not all of them touch");
+  }
+  const Switch model = fine(capacitive_bridge(rough), 8);
+  const double most = most_face_voltage(uniform_contact(summits_of_nitride.summits, summits_of_nitride.height, {1, 1}),
+                                        depth_of_nitride + summits_of_nitride.height);
+  EXPECT_TRUE(closed_equilibrium(model, std::vector<double>{0.85 * most}));
+  EXPECT_FALSE(closed_equilibrium(model, std::vector<double>{1.05 * most}));
+}
+
+// The face carries what the sum over its summits does at every point of the beam that lies on it, and the beam touches it where
+// it reaches the highest one.
+TEST(Landing, AsperitiesPressAsTheirSummitsDo) {
+  const Switch model = fine(capacitive_bridge(rough), 16);
+  EXPECT_DOUBLE_EQ(model.contact_gap(), 2.97_um);
+  const PointQuadrature& points = model.quadrature();
+  for (const double voltage : {20.0, 60.0}) {
+    const std::optional<ClosedEquilibrium> closed = closed_equilibrium(model, std::vector<double>{voltage});
+    ASSERT_TRUE(closed) << voltage;
+    double force = 0;
+    for (Eigen::Index k = 0; k < points.points(); ++k) {
+      const double depth = points.shapes().row(k).dot(closed->q) - 2.97_um;
+      const bool is_over = points.positions()[k] > 90_um && points.positions()[k] < 190_um;
+      if (is_over && depth > 0) force += points.weights()[k] * 120_um * pressure_of_summits(summits_of_nitride, depth);
+    }
+    EXPECT_GT(force, 0);
+    expect_share(closed->contact_force, force, 1e-5, "force at " + std::to_string(voltage));
+  }
+}
+
+// A plate lands on asperities with all of its area at once: as on a [contact] of that area.
+TEST(Landing, APlateOnAsperitiesClosesAsOnAContactOfThem) {
+  constexpr double height = 100_nm;
+  const UniformAsperities asperities{.summits = {.radius = 100_nm, .density = 1e12, .effective_modulus = 48e9}, .height = height};
+  Device face = {.structure = {.length = 100_um, .width = 100_um, .kind = Plate{.mass = 1e-10, .stiffness = 10}},
+                 .gap = {.electrode = 4_um, .contact = 4_um - height},
+                 .electrodes = {{.name = "main",
+                                 .begin = 0,
+                                 .end = 80_um,
+                                 .fringing = Fringing::none,
+                                 .dielectric = Dielectric{
+                                     .thickness = 0.2_um, .permittivity = 7.6, .landing = Landing{.asperities = asperities}}}}};
+  Device contact = face;
+  contact.electrodes.front().dielectric->landing.reset();
+  contact.contacts = {{.model = asperities, .pad_length = 40_um, .pad_width = 200_um}};
+  const Switch on_face(face), on_contact(contact);
+  expect_share(on_face.penetration_scale(), on_contact.penetration_scale(), 1e-9, "penetration");
+  expect_share(static_pull_in(on_face, 0).voltage, static_pull_in(on_contact, 0).voltage, 1e-12, "static pull-in");
+  expect_share(release_voltage(on_face, 0), release_voltage(on_contact, 0), 1e-7, "release");
+  Switch::Workspace one = on_face.workspace(), other = on_contact.workspace();
+  for (const double voltage : {15.0, 60.0, 90.0}) {
+    const std::vector<double> volts{voltage};
+    const auto down = closed_equilibrium(on_face, volts), expected = closed_equilibrium(on_contact, volts);
+    ASSERT_TRUE(down && expected) << voltage;
+    const std::string at = " at " + std::to_string(voltage);
+    expect_share(down->q[0], expected->q[0], 1e-9, "deflection" + at);
+    expect_share(down->contact_force, expected->contact_force, 1e-7, "force" + at);
+    expect_share(down->potential, expected->potential, 1e-9, "potential" + at);
+    expect_share(down->smallest_eigenvalue, expected->smallest_eigenvalue, 1e-7, "tangent" + at);
+    expect_share(on_face.capacitance(0, down->q.data(), one), on_contact.capacitance(0, expected->q.data(), other), 1e-9,
+                 "capacitance" + at);
+  }
+  const auto figures_of = [](const Switch& model) {
+    MetricsObserver figures(model.contact_gap());
+    const Trajectory run =
+        observe_closing(model, std::vector<Signal>{Signal::constant(60)}, {.duration = 40e-6, .tolerance = 1e-10}, figures);
+    EXPECT_EQ(run.status, Status::done) << run.message;
+    EXPECT_LT(run.energy_error, 1e-6 * model.bending_energy());
+    EXPECT_GT(run.smallest_gap, 40_nm) << "where the field of the contact's device is continued";
+    return figures.metrics(run);
+  };
+  const Metrics landed = figures_of(on_face), expected = figures_of(on_contact);
+  expect_share(landed.initial_contact_time, expected.initial_contact_time, 1e-9, "first touch");
+  expect_share(landed.impact_velocity, expected.impact_velocity, 1e-9, "impact velocity");
+  expect_share(landed.major_bounce_height, expected.major_bounce_height, 1e-7, "highest rebound");
+  expect_share(landed.peak_contact_force, expected.peak_contact_force, 1e-2, "largest force, told from three points of a step");
+}
+
 // A plate lands with all of its area at once: the wall gives it the numbers of a rigid stop.
 TEST(Landing, APlateOnAWallClosesAsOnAStop) {
   Device device = {.structure = {.length = 100_um, .width = 100_um, .kind = Plate{.mass = 1e-10, .stiffness = 10}},
@@ -164,7 +275,8 @@ Device with_dimple(Device device, double gap, Place at = 70_um) {
 // Forces are the slope of the energy, and the Jacobian is that of the forces, where part of the beam lies on the face.
 TEST(Landing, ForcesAreTheSlopeOfTheEnergy) {
   const Landing wall, bed{.stiffness = 3e15, .from = 20_nm};
-  for (const Device& device : {capacitive_bridge(wall), capacitive_bridge(bed), with_dimple(capacitive_bridge(bed), 1.5_um)}) {
+  for (const Device& device :
+       {capacitive_bridge(wall), capacitive_bridge(bed), capacitive_bridge(rough), with_dimple(capacitive_bridge(bed), 1.5_um)}) {
     const Switch model = fine(device, 4);
     Switch::Workspace work = model.workspace();
     const std::vector<double> volts{25};
@@ -317,6 +429,26 @@ TEST(Landing, RefusesWhatItCannotMean) {
   refused([&](Device& d) { landing(d).from = -1e-9; },
           "electrode.main.dielectric.landing.from = -1 nm: must be from 0 m to below gap.electrode");
   refused([&](Device& d) { landing(d) = {.from = 1_nm}; }, "electrode.main.dielectric.landing.from: a wall begins at the face");
+  const auto asperities = [&](Device& d) -> UniformAsperities& { return *(landing(d) = rough).asperities; };
+  refused([&](Device& d) { asperities(d).summits.radius = 0; },
+          "electrode.main.dielectric.landing.asperity_radius = 0 m: must be greater than 0 and below 1e30");
+  refused([&](Device& d) { asperities(d).height = 3_um; },
+          "electrode.main.dielectric.landing.asperity_height = 3 um: must be below gap.electrode");
+  const std::string no_bed =
+      "electrode.main.dielectric.landing.asperity_height: asperities begin at their height, without a bed and without damping";
+  refused([&](Device& d) { asperities(d).damping = 1; }, no_bed);
+  refused([&](Device& d) { asperities(d), landing(d).from = 1_nm; }, no_bed);
+  refused([&](Device& d) { asperities(d), landing(d).stiffness = 1e15; }, no_bed);
+  refused(
+      [&](Device& d) {
+        asperities(d);
+        d.electrodes.push_back(d.electrodes.front());
+        d.electrodes.back().name = "other";
+        d.electrodes.back().begin = 200_um;
+        d.electrodes.back().end = 250_um;
+        d.electrodes.back().dielectric->landing->asperities->summits.density = 2e12;
+      },
+      std::string("gap.contact = 2.97 um: ") + unequal_landings);
   refused([](Device& d) { d.dispersion = Dispersion{}; },
           "gap.contact = 2.97 um: a beam that lands on a dielectric takes no dispersion force");
   refused(

@@ -1,10 +1,13 @@
 // A scene made ready to run.
 #include "studies/closing/prepared.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <string_view>
 
 #include "model/closing.h"
 #include "model/constants.h"
@@ -14,6 +17,7 @@ namespace softland {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 TEST(Accuracy, TakesATenthForTheToleranceAndFourPointsADigit) {
@@ -149,6 +153,36 @@ TEST(Prepare, RefusesMoreSamplesThanARunCanFollow) {
             }),
             "--set driver.main.sample_rate=1 GHz: takes 600000 samples in the window of 600 us; there may be 100000: give at "
             "most 166 MHz, a simulate.duration of at most 100 us, or no sample_rate");
+}
+
+// A bridge at its hold level of 30 V, and at 40 V, the limit of its driver.
+TEST(Prepare, RefusesAFaceThroughWhichTheFieldPullsTheBeam) {
+  const auto with = [](std::string_view landing, std::string_view limit) {
+    SceneFile file = scene("new/capacitive-bridge.toml", {"waveform.main.level=30 V"});
+    file.set(fmt::format("electrode.main.dielectric.landing={}", landing));
+    if (!limit.empty()) file.set(fmt::format("driver.main.max_voltage={}", limit));
+    return file;
+  };
+  const auto asperities = [](std::string_view density) {
+    return fmt::format(
+        "{{ model = \"asperity-uniform\", asperity_radius = \"100 nm\", asperity_density = \"{} 1/m^2\", "
+        "asperity_height = \"40 nm\", effective_modulus = \"48 GPa\" }}",
+        density);
+  };
+  // Where H is below 4/5 of the height of the summits, the beam collapses from 5/9 of the gap of the field on.
+  const double way = 0.2e-6 / 7 + 40e-9, sunk = way * 5 / 9;
+  const double most = vacuum_permittivity * 30 * 30 / 2 / std::pow(way - sunk, 2);
+  const double least = most / (8.0 / 15 * 48e9 * std::sqrt(100e-9) / 40e-9 * std::pow(sunk, 2.5));
+  EXPECT_EQ(fmt::format("{:.3g}", least), "7.48e+10");
+  EXPECT_THAT(refusal([&] { (void)prepare(with(asperities("1e10"), "")); }),
+              testing::EndsWith("landing.asperity_density = \"1e10 1/m^2\": must be greater than 7.48e10 1/m^2, below which 30 V "
+                                "pulls the beam through the face, its hold level"));
+  EXPECT_EQ(refusal([&] { (void)prepare(with(asperities(fmt::format("{:.6e}", 1.0001 * least)), "")); }), "");
+  EXPECT_THAT(refusal([&] { (void)prepare(with(asperities(fmt::format("{:.6e}", 1.7 * least)), "40 V")); }),
+              HasSubstr("below which 40 V pulls the beam through the face, the limit of driver.main"));
+  EXPECT_EQ(refusal([&] { (void)prepare(with(asperities(fmt::format("{:.6e}", 1.8 * least)), "40 V")); }), "");
+  EXPECT_THAT(refusal([&] { (void)prepare(with("{ model = \"linear\", stiffness = \"1e12 Pa/m\" }", "")); }),
+              HasSubstr("landing.stiffness = \"1e12 Pa/m\": must be greater than 1.15e15 Pa/m, below which 30 V pulls"));
 }
 
 TEST(Prepare, TakesWindowAndToleranceFromTheScene) {

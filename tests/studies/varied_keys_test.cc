@@ -167,6 +167,12 @@ span = ["100 um", "180 um"]
 dielectric = { thickness = "0.2 um", permittivity = 7.6, roughness = "5 nm", charge = "-10 uC/m^2", landing = { model = "linear", stiffness = "1e17 Pa/m", from = "30 nm" } }
 )",
                             "[gap]\nelectrode = \"2.5 um\"\n");
+  const std::string_view bed = R"(model = "linear", stiffness = "1e17 Pa/m", from = "30 nm")";
+  std::string rough = all["landing"];
+  rough.replace(rough.find(bed), bed.size(),
+                R"(model = "asperity-uniform", asperity_radius = "100 nm", asperity_density = "1e13 1/m^2", )"
+                R"(asperity_height = "30 nm", effective_modulus = "60 GPa")");
+  all["landing on asperities"] = rough;
   all["plate"] = scene_of(R"([structure]
 kind = "plate"
 mass = "5e-9 kg"
