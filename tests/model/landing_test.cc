@@ -194,6 +194,21 @@ TEST(Landing, AsperitiesPressAsTheirSummitsDo) {
   }
 }
 
+// An undamped bridge lands on stiff asperities and rebounds: what the source gave is in the beam, its motion and the summits.
+TEST(Landing, ABridgeOnAsperitiesKeepsItsEnergy) {
+  Device device = capacitive_bridge(rough);
+  Electrode& wide = device.electrodes.front();
+  wide.begin = 2_um, wide.end = 278_um;
+  wide.dielectric->landing->asperities->summits.density = 1e13;
+  const Switch model = fine(device, 6);
+  MetricsObserver figures(model.contact_gap());
+  const Trajectory run = observe_closing(model, std::vector<Signal>{Signal::constant(1.05 * static_pull_in(model, 0).voltage)},
+                                         {.duration = 5e-6, .tolerance = 1e-9}, figures);
+  ASSERT_EQ(run.status, Status::done) << run.message;
+  EXPECT_GT(figures.metrics(run).impact_energy, model.bending_energy()) << "the summits stored it";
+  EXPECT_LT(run.energy_error, 1e-5 * model.bending_energy());
+}
+
 // A plate lands on asperities with all of its area at once: as on a [contact] of that area.
 TEST(Landing, APlateOnAsperitiesClosesAsOnAContactOfThem) {
   constexpr double height = 100_nm;
@@ -239,7 +254,7 @@ TEST(Landing, APlateOnAsperitiesClosesAsOnAContactOfThem) {
   expect_share(landed.initial_contact_time, expected.initial_contact_time, 1e-9, "first touch");
   expect_share(landed.impact_velocity, expected.impact_velocity, 1e-9, "impact velocity");
   expect_share(landed.major_bounce_height, expected.major_bounce_height, 1e-7, "highest rebound");
-  expect_share(landed.peak_contact_force, expected.peak_contact_force, 1e-2, "largest force, told from three points of a step");
+  expect_share(landed.peak_contact_force, expected.peak_contact_force, 1e-6, "largest force, told from three points of a step");
 }
 
 // A plate lands with all of its area at once: the wall gives it the numbers of a rigid stop.
