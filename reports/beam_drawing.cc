@@ -19,7 +19,7 @@ using internal::given_quantity;
 using Corners = std::vector<std::pair<double, double>>;
 
 constexpr const char *of_beam = "#c9a227", *of_layer = "#7a5cc4", *of_electrode = "#2b6cb0", *of_contact = "#b83232",
-                     *ink = "#1b1f24", *pale = "#5f6b76";
+                     *of_stop = "#8a8f96", *of_dielectric = "#4fa39a", *ink = "#1b1f24", *pale = "#5f6b76";
 
 std::string polygon(const Corners& corners, const std::string& paint) {
   std::string points;
@@ -72,18 +72,21 @@ class BeamSketch {
         out += label(x(pad.begin) + 4, middle - edge - 3, e.name, of_electrode);
       }
     }
-    for (std::size_t c = 0; c < d_.contacts.size(); ++c)
-      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"{}\"/>\n", x(d_.contact_position(c)), middle,
-                         of_contact);
+    for (std::size_t c = 0; c < d_.contacts.size(); ++c) out += dots(c, across, middle);
     return {out, middle + edge + 24};
   }
 
   std::pair<std::string, double> from_the_side(double top) const {
     double highest = 0;
     for (int k = 0; k <= places; ++k) highest = std::max(highest, height(s_.length * k / places, true));
+    for (std::size_t c = 0; c < d_.contacts.size(); ++c) {
+      if (d_.contacts[c].side == Side::far) highest = std::max(highest, stop_plane(c));
+    }
     constexpr double most_height = 220;
     const double up = most_height / (highest + d_.gap.electrode), ground = top + 20 + most_height;  // [px/m]
     const auto y = [&](double above_electrode) { return ground - above_electrode * up; };
+    constexpr double least = 2;  // of a layer [px]
+    double deepest = 0;
     std::string out = label(0, top,
                             fmt::format("from the side, heights enlarged {:.3g} times: {} above the electrode", up / scale_,
                                         given_quantity(d_.gap.electrode, "m", 4)));
@@ -115,21 +118,44 @@ class BeamSketch {
     }
     for (const Electrode& e : d_.electrodes) {
       for (const Stretch& pad : e.pads(s_.length)) {
-        if (e.side != Side::far) out += rectangle(x(pad.begin), ground, x(pad.end), ground + 8, filled(of_electrode));
+        if (e.side == Side::far) continue;
+        const double metal = e.dielectric ? std::max(least, e.dielectric->thickness * up) : 0;  // below the face
+        out += rectangle(x(pad.begin), ground + metal, x(pad.end), ground + metal + 8, filled(of_electrode));
+        if (e.dielectric) out += rectangle(x(pad.begin), ground, x(pad.end), ground + metal, filled(of_dielectric));
+        deepest = std::max(deepest, metal);
       }
     }
     for (std::size_t c = 0; c < d_.contacts.size(); ++c) {
-      if (d_.contacts[c].side == Side::far) continue;
-      const double at = d_.contact_position(c), plane = d_.gap.electrode + d_.rest_offset(at) - d_.contact_gap(c);
-      out += rectangle(x(at) - 3, y(plane), x(at) + 3, ground, filled(of_contact));
+      if (d_.contacts[c].along_face) continue;  // the dielectric
+      const double at = x(d_.contact_position(c)), half = 3;
+      if (d_.contacts[c].side == Side::far)
+        out += rectangle(at - half, y(stop_plane(c)) - 8, at + half, y(stop_plane(c)), filled(of_stop));
+      else
+        out += rectangle(at - half, y(height(d_.contact_position(c), false) - d_.contact_gap(c)), at + half, ground,
+                         filled(of_contact));
     }
-    return {out, ground + 24};
+    return {out, ground + deepest + 24};
   }
 
  private:
   static constexpr int places = 100;
 
   [[nodiscard]] double x(double place) const { return place * scale_; }
+  /// Of a back stop above the electrode [m].
+  [[nodiscard]] double stop_plane(std::size_t c) const { return height(d_.contact_position(c), true) + d_.contact_gap(c); }
+  /// Contacts, of which equal ones stand side by side across the beam; none of a face, which is that of an electrode.
+  [[nodiscard]] std::string dots(std::size_t c, double across, double middle) const {
+    const Contact& contact = d_.contacts[c];
+    if (contact.along_face) return {};
+    constexpr double most = 12;  // that are drawn
+    const int count = static_cast<int>(std::min(most, contact.count));
+    const double at = d_.contact_position(c), apart = width_at(s_, at) * across / count;
+    std::string out;
+    for (int k = 0; k < count; ++k)
+      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" {}/>\n", x(at), middle + (k - (count - 1) / 2.0) * apart,
+                         filled(contact.side == Side::far ? of_stop : of_contact));
+    return out;
+  }
   // Of the upper or lower face above the electrode, layers left aside [m].
   [[nodiscard]] double height(double at, bool upper) const {
     return d_.gap.electrode + d_.rest_offset(at) + (upper ? section_at(s_, at).thickness : 0);

@@ -26,6 +26,11 @@ void expect_refused(const std::string& text, const std::string& words) {
   EXPECT_NE(refusal(text).find(words), std::string::npos) << text << "\nsays " << refusal(text);
 }
 
+TEST(Bench, ReleasesASwitchThatAChargeKeepsClosedBelowZero) {
+  const Bench bench = parsed("[[measurement]]\nquantity = \"release\"\nvalue = \"-0.5 V\"\nerror = \"2 %\"\n");
+  EXPECT_EQ(bench.measurements.at(0).values, std::vector<double>{-0.5});
+  EXPECT_DOUBLE_EQ(bench.measurements[0].errors.at(0), 0.01);
+}
 TEST(Bench, HasValuesWithErrorsInSiUnits) {
   const Bench bench = parsed(R"(
 [[measurement]]
@@ -243,6 +248,7 @@ TEST(Bench, RefusesWhatItCannotMean) {
                  "bench.toml:3: measurement.value = \"1 um\": expected a voltage [V], got a length [m]");
   expect_refused(begin + "value = 17.1\nerror = \"1 %\"", "expected a voltage in quotes");
   expect_refused(begin + "value = \"1 V\"\nerror = \"0 V\"", "must be above 0");
+  expect_refused(begin + "value = \"-1 V\"\nerror = \"1 %\"", "a pull_in must be above 0");
   expect_refused(begin + "value = \"1 V\"\nerror = \"1 %\"\nlevel = \"3 V\"", "a pull_in has none");
   expect_refused(begin + "value = \"1 V\"\nerror = \"1 %\"\nmode = 2", "is of a frequency only");
   expect_refused(begin + "value = \"1 V\"\nerror = \"1 %\"\neror = 2", "unknown key (did you mean 'error'?)");
