@@ -167,10 +167,27 @@ class Run {
     check_interval(field);
   }
 
+  // Whether the gap is below the floor over an electrode: a beam that lands on the face of a dielectric may swing lower beside it.
+  [[nodiscard]] bool is_over_electrode() {
+    const Device& device = model_.device();
+    if (!device.lands_along_face() || device.structure.is_rigid()) return true;
+    GapField field = model_.workspace().field;
+    const double* q = here().state.data();
+    model_.quadrature().set_field(q, q + model_.modes(), field);
+    const Eigen::ArrayXd& positions = model_.quadrature().positions();
+    for (const Electrode& e : device.electrodes) {
+      for (const Stretch& pad : e.pads(device.structure.length)) {
+        for (Eigen::Index p = 0; p < positions.size(); ++p)
+          if (pad.begin <= positions[p] && positions[p] <= pad.end && field.gap[p] < model_.gap_floor()) return true;
+      }
+    }
+    return false;
+  }
+
   // After a step, at whose end these figures were found.
   void check_interval(const FieldFigures& field) {
     if (ended_) return;
-    if (field.smallest_gap < model_.gap_floor()) {
+    if (field.smallest_gap < model_.gap_floor() && is_over_electrode()) {
       const Device& device = model_.device();
       const double floor = model_.gap_floor();
       if (floor < 0)
