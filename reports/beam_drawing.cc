@@ -164,8 +164,8 @@ class BeamSketch {
   template <class ToPixel, class Heights>
   void band(double begin, double end, Corners& corners, ToPixel&& y, Heights&& heights) const {
     const double inside = 1e-9 * s_.length;
-    for (int k = 0; k <= 2 * places; ++k) {
-      const double share = static_cast<double>(k <= places ? k : 2 * places - k) / places;
+    for (int k = 0; k <= 2 * places + 1; ++k) {
+      const double share = static_cast<double>(k <= places ? k : 2 * places + 1 - k) / places;
       const double at = begin + (end - begin) * share, look = std::clamp(at, begin + inside, end - inside);
       const auto [low, high] = heights(look);
       corners.emplace_back(x(at), y(d_.gap.electrode + d_.rest_offset(at) + (k <= places ? low : high)));

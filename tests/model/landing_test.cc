@@ -217,7 +217,7 @@ TEST(Landing, ABridgeOnAsperitiesKeepsItsEnergy) {
 // Beside the electrode a bridge that lands hard swings below the level of the face, where there is nothing to touch.
 TEST(Landing, ABridgeMaySwingLowerBesideItsElectrode) {
   const Switch model = fine(capacitive_bridge({.stiffness = 1e18}), 6);
-  const Trajectory run = simulate_closing(model, std::vector{Signal::constant(48)}, {.duration = 5e-6, .tolerance = 1e-9});
+  const Trajectory run = simulate_closing(model, std::vector{Signal::constant(48)}, {.duration = 20e-6, .tolerance = 1e-9});
   EXPECT_EQ(run.status, Status::done) << run.message;
   EXPECT_LT(run.smallest_gap, model.gap_floor());
   EXPECT_LT(run.energy_error, 1e-4 * model.bending_energy());
