@@ -167,8 +167,7 @@ class Run {
     check_interval(field);
   }
 
-  // Whether the gap is below the floor over an electrode: a beam that lands on the face of a dielectric may swing lower beside
-  // it.
+  // A beam that lands on the face of a dielectric may swing lower beside the electrode than over it.
   [[nodiscard]] bool is_over_electrode() {
     const Device& device = model_.device();
     if (!device.lands_along_face() || device.structure.is_rigid()) return true;

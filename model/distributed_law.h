@@ -137,7 +137,7 @@ class DistributedLawOf final : public DistributedLaw {
   }
 
  private:
-  /// By the gap and by the velocity.
+  /// The slopes of the load by the gap and by the velocity.
   [[gnu::always_inline]] static std::array<double, 2> slopes(const Law& law, double gap, double velocity) {
     using Both = Gradient<2>;
     const auto along = law.load(Both(gap, Directions<2>::unit(0)), Both(velocity, Directions<2>::unit(1))).slope.along;

@@ -141,7 +141,7 @@ class BeamSketch {
   static constexpr int places = 100;
 
   [[nodiscard]] double x(double place) const { return place * scale_; }
-  /// Of a back stop above the electrode [m].
+  /// The height of a back stop above the electrode [m].
   [[nodiscard]] double stop_plane(std::size_t c) const { return height(d_.contact_position(c), true) + d_.contact_gap(c); }
   /// Contacts, of which equal ones stand side by side across the beam; none of a face, which is that of an electrode.
   [[nodiscard]] std::string dots(std::size_t c, double across, double middle) const {

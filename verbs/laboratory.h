@@ -14,7 +14,7 @@ namespace softland::verbs {
 struct ToldErrors {
   std::optional<double> edge_error = {}, unseen = {}, gain_error = {}, shot_error = {};
   std::optional<double> trigger_delay = {};  ///< expected by `tune`, which alone has the option
-  std::optional<double> capacitance = {};    ///< what the instrument sees instead of the contact
+  std::optional<double> capacitance = {};    ///< a threshold, where the instrument sees that
 
   /// Throws InvalidInput for a scene that cannot be read.
   [[nodiscard]] LaboratoryErrors errors(const SceneFile& file) const;

@@ -24,8 +24,8 @@ struct TakeOver {
   double tolerance = 0.01;  // share: where the explicit method took a hundred times the steps, its errors were far below its own
 };
 
-// A film that is squeezed out along the face of a dielectric stays as stiff as it has become, and the kinks of the face at one
-// point after the other, not the tolerance, keep the steps short.
+// A film that is squeezed out along the face of a dielectric stays as stiff as it has become. There the kinks of the face, at one
+// point after the other, keep the steps short, not the tolerance.
 TakeOver take_over(const Device& device) {
   return device.lands_along_face() && device.gas ? TakeOver{.looks = 2, .tolerance = 1} : TakeOver{};
 }

@@ -1,5 +1,5 @@
-// When the capacitance of a switch passes a threshold: what an instrument sees of a closing that no current tells, a landing on a
-// dielectric.
+// The times at which the capacitance of a switch passes a threshold. An instrument sees them of a closing that no current tells,
+// such as a landing on a dielectric.
 #pragma once
 
 #include <cstddef>
@@ -15,18 +15,18 @@ namespace softland {
 struct CapacitanceRise {
   double begin = 0;  ///< [s]
   double end = 0;    ///< [s]; NaN where it lasts to the end of the run
-  double rate = 0;   ///< of the capacitance at its begin [F/s]
+  double rate = 0;   ///< how fast the capacitance grows at its begin [F/s]
 };
 
 /// Follows the capacitance of one electrode, step by step. A rise and a fall within one step of the integrator are not seen.
 class CapacitanceEdges final : public ClosingObserver {
  public:
-  /// Of the electrode of drive `drive`; `threshold` [F]. Keeps a reference.
+  /// `drive` is that of the electrode, `threshold` in F. The object keeps a reference to the switch.
   CapacitanceEdges(const Switch& model, std::size_t drive, double threshold);
 
   [[nodiscard]] bool follows_motion() const override { return true; }
   void step(const Knot& begin, const Knot& end, const ContactState& contact) override;
-  /// In order of time.
+  /// They are in order of time.
   [[nodiscard]] const std::vector<CapacitanceRise>& rises() const { return rises_; }
 
  private:

@@ -1,5 +1,5 @@
-// What a laboratory sees of one closing: when the contact was open and when it was closed. Where it sees the capacitance instead,
-// the contact counts as closed while that is above a threshold.
+// A record of one closing says when a laboratory saw the contact open and when closed. Where it sees the capacitance instead, the
+// contact counts as closed while that is above a threshold.
 #pragma once
 
 #include <cmath>

@@ -44,7 +44,7 @@ struct TuningScales {
   double closing_time = 0;  ///< T_0: first touch of the plain step on the nominal device [s]
   double gap = 0;           ///< contact gap [m]
   double rebound = 0;       ///< significant rebound [m]
-  double rise = 0;          ///< of the capacitance from the open to the closed state [F]; 0 unless records tell of it
+  double rise = 0;          ///< the capacitance of the closed state less that of the open one [F]; 0: no record tells of it
   double latest_touch = std::numeric_limits<double>::infinity();  ///< that is asked for [s]
   /// When the plain step's contact stays on the nominal device; NaN unless the approach is quasi-static [s].
   double permanent_contact = std::numeric_limits<double>::quiet_NaN();
@@ -58,7 +58,7 @@ struct ImaginedDevice {
   double delay = 0;  ///< the time by which its records begin late [s]
 };
 
-/// What an instrument sees of a closing, but for its errors.
+/// A closing as an instrument without errors sees it.
 template <class Openings>
 struct SeenClosing {
   double touch = std::numeric_limits<double>::quiet_NaN();  ///< when the contact first closes, since the drives began [s]
@@ -76,14 +76,14 @@ struct ImaginedClosing {
   double highest = 0;                                         ///< rebound [m]
   std::vector<ContactOpening> openings = {};                  ///< since the drives began [s]
   double delay = 0;                                           ///< the time by which its record begins late [s]
-  /// What is seen of the capacitance; none where an instrument sees the contact.
+  /// The same closing by its capacitance; none where an instrument sees the contact.
   std::optional<SeenClosing<std::vector<ContactOpening>>> by_capacitance = {};
   [[nodiscard]] bool closes() const { return followed && touch == touch; }
   [[nodiscard]] SeenClosing<std::span<const ContactOpening>> seen() const {
     if (by_capacitance) return {by_capacitance->touch, by_capacitance->speed, by_capacitance->openings};
     return {touch, speed, openings};
   }
-  /// Whether a record shows that it closes.
+  /// A record shows that it closes.
   [[nodiscard]] bool is_seen_to_close() const { return followed && !std::isnan(seen().touch); }
   /// When a record shows the first touch [s]; NaN: none.
   [[nodiscard]] double recorded_touch() const { return seen().touch - delay; }

@@ -91,7 +91,7 @@ TEST(CapacitanceEdges, AThresholdThatTellsNothingIsRefused) {
   }
 }
 
-// What the instrument sees of an imagined device is what the practice device of the same values shows.
+// A practice device shows of its values what the belief imagines of them.
 TEST(CapacitanceEdges, ABeliefImaginesWhatThePracticeDeviceShows) {
   LaboratoryErrors laboratory{.edge_error = 0, .unseen = 0, .gain_error = 0, .shot_error = 0, .trigger_delay = 0};
   laboratory.capacitance = capacitance_at(1.3e-6);
