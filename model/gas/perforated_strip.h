@@ -16,6 +16,7 @@
 
 #include <cmath>
 
+#include "base/select.h"
 #include "model/constants.h"
 #include "model/structure/beam_parts.h"
 
@@ -40,7 +41,10 @@ struct PerforatedStripFilm {
     using std::exp;
     using std::sqrt;
     const S cube = gap * gap * gap, resistance = S(through) + S(around) / cube;
-    const S x = S(width / 2) / sqrt(cube * resistance / S(12 * viscosity)), decayed = exp(S(-2) * x);
+    const S x = S(width / 2) / sqrt(cube * resistance / S(12 * viscosity));
+    constexpr double wide = 25;  // beyond it exp(-2 x) is below the rounding of load and slopes
+    const S decayed = select(
+        x < wide, [&] { return S(exp(S(-2) * x)); }, [] { return S(0); });
     return -resistance * S(width) * (S(1) - (S(1) - decayed) / ((S(1) + decayed) * x)) * velocity;
   }
 };
