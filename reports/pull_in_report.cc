@@ -83,6 +83,14 @@ std::string shift_clause(const std::optional<VoltagesByModes>& found, ByModes Vo
   return shift.empty() ? shift : "; more modes move it by " + shift;
 }
 
+// The face of a dielectric with a landing is a contact, too.
+bool makes_contact(const json& scene) {
+  const json electrodes = scene.value("electrode", json::object());
+  return scene.contains("contact") || std::ranges::any_of(electrodes, [](const json& electrode) {
+           return electrode.value("dielectric", json::object()).contains("landing");
+         });
+}
+
 std::string electrode_words(const std::string& name, const ElectrodeRecord& electrode, bool is_far, bool has_contact) {
   constexpr int digits = 4;
   std::string text = fmt::format("electrode {}\n", name);
@@ -264,7 +272,7 @@ PullInsRecord read_pull_ins(const json& from) {
 }
 
 std::string text_of(const PullInsRecord& record) {
-  const bool has_contact = record.origin.scene.contains("contact");
+  const bool has_contact = makes_contact(record.origin.scene);
   const std::vector<DrawnScene::Electrode> all = read_drawn_scene(record.origin.scene).electrodes;
   std::string text;
   for (const auto& [name, electrode] : record.electrodes) {

@@ -17,6 +17,7 @@ struct Shipped {
   std::string name, text;
   [[nodiscard]] bool has(const std::string& what) const { return std::regex_search(text, std::regex("\n" + what)); }
   /// Few modes, a coarse accuracy and no compressible film: what is asked here is not how exact the figures are.
+  [[nodiscard]] bool has_contact() const { return has("\\[contact[.\\]]") || has("[^\n]*landing = "); }
   [[nodiscard]] std::vector<std::string> quickly(std::vector<std::string> words) const {
     words.insert(words.end(), {"--set", "simulate.accuracy=1e-3"});
     if (!has("kind = \"plate\"")) words.insert(words.end(), {"--set", "structure.modes=2"});
@@ -118,7 +119,7 @@ class EveryVerb : public testing::TestWithParam<Shipped> {
 
 TEST_P(EveryVerb, Describes_optimized) {
   const std::string& name = scene().name;
-  const bool contact = scene().has("\\[contact\\]");
+  const bool contact = scene().has_contact();
   const std::string check = done(scene().quickly({"check", name})).out;
   for (const char* figure : {"release", "in-contact period"}) {
     EXPECT_TRUE(contact || check.find(figure) == std::string::npos) << figure << " without contact in\n" << check;
@@ -149,7 +150,7 @@ TEST_P(EveryVerb, Describes_optimized) {
 
 TEST_P(EveryVerb, Simulates_optimized) {
   const std::string& name = scene().name;
-  const bool contact = scene().has("\\[contact\\]");
+  const bool contact = scene().has_contact();
   const json j = data(scene().quickly({"simulate", name, "--quiet", "--json", "-"}));
   const json& m = j["metrics"];
   EXPECT_TRUE(m["initial_contact_time_s"].is_number());
@@ -173,7 +174,7 @@ TEST_P(EveryVerb, Simulates_optimized) {
 
 TEST_P(EveryVerb, FindsTheLimit_slow) {
   const std::vector<std::string> words = scene().quickly({"limit", scene().name, "--no-curves", "--quiet", "--out", "out"});
-  if (!scene().has("\\[contact\\]")) return refused(words, "limit needs a [contact]");
+  if (!scene().has_contact()) return refused(words, "limit needs a [contact]");
   if (!scene().has("\\[electrode")) return refused(words, "needs an electrode");
   EXPECT_NE(done(words).out.find("least time of a touch"), std::string::npos);
   const json j = json::parse(read(here.path() / "out/limit.json"), nullptr, false);
@@ -188,7 +189,7 @@ TEST_P(EveryVerb, FindsTheLimit_slow) {
 TEST_P(EveryVerb, OpensAgain) {
   const std::vector<std::string> words =
       scene().quickly({"release", scene().name, "--budget", "300", "--samples", "10", "--quiet", "--out", "out"});
-  if (!scene().has("\\[contact\\]")) return refused(words, "release needs a [contact]");
+  if (!scene().has_contact()) return refused(words, "release needs a [contact]");
   if (!scene().has("\\[electrode")) return refused(words, "needs an electrode");
   EXPECT_NE(done(words).out.find("open for good"), std::string::npos);
   const json j = json::parse(read(here.path() / "out/release.json"), nullptr, false);
@@ -213,7 +214,7 @@ TEST_P(EveryVerb, Compares_optimized) {
 
 TEST_P(EveryVerb, Measures_optimized) {
   // A beam with a contact takes some seconds; tests/apps/command_line_test.cc has one.
-  if (!scene().has("kind = \"plate\"") && scene().has("\\[contact\\]")) return;
+  if (!scene().has("kind = \"plate\"") && scene().has_contact()) return;
   (void)done(scene().quickly({"accuracy", scene().name, "--quiet", "--json", "accuracy.json"}));
   const std::string written = read(here.path() / "accuracy.json");
   EXPECT_TRUE(json::parse(written, nullptr, false).is_object()) << written;
@@ -222,7 +223,7 @@ TEST_P(EveryVerb, Measures_optimized) {
 TEST_P(EveryVerb, Judges_long) {
   const std::string& name = scene().name;
   const std::vector<std::string> words = scene().quickly({"robustness", name, "--quiet", "--samples", "20", "--jobs", "1"});
-  if (!scene().has("\\[contact\\]")) {
+  if (!scene().has_contact()) {
     refused(words, "robustness needs a [contact] section");
     return;
   }
@@ -248,7 +249,7 @@ TEST_P(EveryVerb, IsPractisedOn_optimized) {
   write(here.path() / "stdin.txt",
         "{\"shot\":1,\"hold_s\":1e-05,\"drives\":{\"main\":{\"time_s\":[0,1e-06],\"V\":[0,0.001]}}}\n");
   const std::vector<std::string> words = scene().quickly({"device", scene().name, "--quiet"});
-  if (!scene().has("\\[contact\\]")) return refused(words, "there is no [contact]: a lab would see nothing of a closing");
+  if (!scene().has_contact()) return refused(words, "there is no [contact]: a lab would see nothing of a closing");
   const json answer = data(words);
   EXPECT_EQ(answer["shot"], 1);
   EXPECT_NE(answer.contains("edges_s"), answer.contains("error")) << answer;
@@ -260,7 +261,7 @@ TEST_P(EveryVerb, Searches_long) {
     const std::vector<std::string> words = scene().quickly({"optimize", scene().name, "--quiet", "--robust", "none", "--budget",
                                                             "2", "--jobs", "1", "--actuator", actuator, "--out", actuator});
     const bool has_electrode = scene().has("\\[electrode"), has_piezo = scene().has("\\[piezo\\]");
-    if (!scene().has("\\[contact\\]")) {
+    if (!scene().has_contact()) {
       refused(words, "optimize needs a [contact] section");
     } else if (!has_electrode && *actuator != 'p') {
       refused(words, "needs an electrode");
