@@ -436,8 +436,7 @@ std::vector<std::string> changes_of(const toml::node& node, const std::string& n
 const std::vector<BenchQuantity>& bench_quantities() {
   static const std::vector<BenchQuantity> all{
       {.name = "pull_in", .dimension = dimension::voltage},
-      // A charge on a dielectric may keep the switch closed at 0 V.
-      {.name = "release", .dimension = dimension::voltage, .is_positive = false},
+      {.name = "release", .dimension = dimension::voltage},
       {.name = "frequency", .dimension = dimension::frequency, .has_level = true},
       {.name = "capacitance", .dimension = dimension::capacitance, .has_level = true},
       {.name = "closing_time", .dimension = dimension::time, .has_level = true, .has_waveform = true},

@@ -26,11 +26,6 @@ void expect_refused(const std::string& text, const std::string& words) {
   EXPECT_NE(refusal(text).find(words), std::string::npos) << text << "\nsays " << refusal(text);
 }
 
-TEST(Bench, ReleasesASwitchThatAChargeKeepsClosedBelowZero) {
-  const Bench bench = parsed("[[measurement]]\nquantity = \"release\"\nvalue = \"-0.5 V\"\nerror = \"2 %\"\n");
-  EXPECT_EQ(bench.measurements.at(0).values, std::vector<double>{-0.5});
-  EXPECT_DOUBLE_EQ(bench.measurements[0].errors.at(0), 0.01);
-}
 TEST(Bench, HasValuesWithErrorsInSiUnits) {
   const Bench bench = parsed(R"(
 [[measurement]]

@@ -41,7 +41,11 @@ TEST(StaticSweep, ClosesAtThePullInVoltageAndOpensAtTheReleaseVoltage) {
     EXPECT_NEAR(first(up, SweepState::closed), std::max(pull_in, release), 1.01 * step) << name;
     EXPECT_NEAR(first(down, SweepState::open), std::min(pull_in, release), 1.01 * step) << name;
     for (const SweepPoint& p : points) {
-      EXPECT_EQ(p.state == SweepState::open, p.deflection < model.device().gap.contact) << name << p.voltage;
+      const bool is_above = p.deflection < model.device().gap.contact;
+      // A beam may lie on the face of a dielectric beside its middle, which is above the face then.
+      if (p.state == SweepState::open || !model.device().lands_along_face()) {
+        EXPECT_EQ(p.state == SweepState::open, is_above) << name << p.voltage;
+      }
       EXPECT_GT(p.capacitance, 0) << name;
     }
     for (std::size_t k = 1; k < up.size(); ++k) EXPECT_GT(up[k].capacitance, up[k - 1].capacitance * (1 - 1e-12)) << name;
