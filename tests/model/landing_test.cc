@@ -210,7 +210,7 @@ TEST(Landing, ABridgeOnAsperitiesKeepsItsEnergy) {
     EXPECT_LT(run.energy_error, 1e-5 * model.bending_energy()) << after_contact;
     return figures.metrics(run);
   };
-  run_until(5e-9);  // on its way down
+  run_until(5e-9);  // the bridge is on its way down
   EXPECT_GT(run_until(1).impact_energy, model.bending_energy()) << "the summits stored it";
 }
 

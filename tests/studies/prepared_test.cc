@@ -169,7 +169,7 @@ TEST(Prepare, RefusesAFaceThroughWhichTheFieldPullsTheBeam) {
         "asperity_height = \"40 nm\", effective_modulus = \"48 GPa\" }}",
         density);
   };
-  // Where H is below 4/5 of the height of the summits, the beam collapses from 5/9 of the gap of the field on.
+  // The beam collapses from 5/9 of the gap of the field on, if H is below 4/5 of the height of the summits.
   const double way = 0.2e-6 / 7 + 40e-9, sunk = way * 5 / 9;
   const double most = vacuum_permittivity * 30 * 30 / 2 / std::pow(way - sunk, 2);
   const double least = most / (8.0 / 15 * 48e9 * std::sqrt(100e-9) / 40e-9 * std::pow(sunk, 2.5));
