@@ -159,11 +159,12 @@ class Drives {
 };
 
 struct SimulateOptions {
-  double duration = 0;              ///< [s]; 0: choose (six periods of the first mode, or four closings by a step)
-  double accuracy = 1e-6;           ///< target relative error of t_i, v_i and B_H
-  double tolerance = 0;             ///< relative tolerance of the integrator; 0: derived from accuracy
-  bool automatic_effects = false;   ///< leave out what changes no figure by more than effects_tolerance
-  double effects_tolerance = 1e-3;  ///< relative, of t_i, v_i and B_H
+  double duration = 0;     ///< [s]; 0: choose (six periods of the first mode, or four closings by a step)
+  double accuracy = 1e-6;  ///< target relative error of t_i, v_i and B_H
+  double tolerance = 0;    ///< relative tolerance of the integrator; 0: derived from accuracy
+  double open_at = std::numeric_limits<double>::quiet_NaN();  ///< the switch is commanded to open [s]; NaN: told from the drives
+  bool automatic_effects = false;                             ///< leave out what changes no figure by more than effects_tolerance
+  double effects_tolerance = 1e-3;                            ///< relative, of t_i, v_i and B_H
 };
 
 /// What is measured on every device before it is driven: the waveform is then a recipe in the device's own units, V(t) = Vdp f(t

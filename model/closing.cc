@@ -71,9 +71,14 @@ class Run {
   }
 
   void go_through_stretches() {
-    const std::vector<double> stops = parts_.drives.stretches(options_.duration);
+    const std::vector<double> stops = parts_.drives.stretches(options_.duration, options_.opens_at);
     for (std::size_t i = 0; i + 1 < stops.size() && !ended_; ++i) {
       stop_ = stops[i + 1];
+      if (stops[i] >= options_.opens_at) parts_.end_closing(stops[i]);
+      if (i > 0 && parts_.observer.takes_energies()) {
+        audit_.settle(here());
+        parts_.observer.energies(stops[i], audit_.balance());
+      }
       audit_.enter_stretch(here(), i == 0);
       restart();
       parts_.push(here());
@@ -158,8 +163,8 @@ class Run {
     here().time = stay.until;
     const FieldFigures field = parts_.equations.field(here().state.data());
     const TrajectoryPoint before = parts_.first().course.last(), now = parts_.point(parts_.first(), here());
-    if (now.time > before.time) parts_.first().force.take_line(before, now);
-    if (parts_.electrical)
+    if (now.time > before.time && !parts_.closing_is_over) parts_.first().force.take_line(before, now);
+    if (parts_.electrical && !parts_.closing_is_over)
       parts_.electrical->take_rest(before.time, now.time, [&](double t) { return parts_.plate.press(here(), t); });
     parts_.first().course.push(now);
     if (stay.leaves) pass({.time = stay.until, .edge = Edge{.level = plane_, .side = 1, .next = Phase::flight}});
@@ -268,7 +273,7 @@ class Run {
   // Takes over what the contacts did. Where there are several, it tells of their connection too.
   void gather_contacts() {
     if (parts_.electrical) {
-      parts_.electrical->finish(here().time);
+      if (!parts_.closing_is_over) parts_.electrical->finish(here().time);
       out_.electrical = parts_.electrical->connection();
     }
     std::vector<ForceOutcome> forces;

@@ -66,6 +66,9 @@ struct ClosingOptions {
   std::span<const double> begins_closed = {};
   /// Where begins_closed is empty: `closed` begins in the stable closed equilibrium under what the drives have been before t = 0.
   StartState start = StartState::open;
+  /// The drives command a closed switch to open at this time [s]. The contact force and the electrical state after it are not
+  /// those of the closing: Trajectory::steady_force_time and the like tell of the time before.
+  double opens_at = std::numeric_limits<double>::infinity();
   const std::atomic<bool>* stop = nullptr;  ///< set from outside: ends the run as `interrupted`
   /// Called after every step with time [s], q and v, which the states of a compressible film follow; true ends the run (status
   /// done).

@@ -770,14 +770,23 @@ double acting_pull_through(const Switch& model, std::size_t drive, std::span<con
   return pull_through_of_narrow_window(model, drive, std::move(levels), release, precision);
 }
 
+// A rigid face of which nothing is below.
+bool lands_on_wall(const Switch& model, std::size_t drive) {
+  const Device& device = model.device();
+  if (drive >= device.electrodes.size() || !device.electrodes[drive].dielectric || device.face_contact() != 0) return false;
+  return device.landing()->is_wall();
+}
+
 }  // namespace
 
 double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts, double precision) {
+  if (lands_on_wall(model, drive)) return nan;
   return model.neutral_voltage(drive) + acting_pull_through(model, drive, volts, precision);
 }
 
 double pull_through_voltage_near(const Switch& model, std::size_t drive, std::span<const double> volts,
                                  const ClosedEquilibrium& near, double precision) {
+  if (lands_on_wall(model, drive)) return nan;
   const double neutral = model.neutral_voltage(drive);
   const auto found =
       pull_through_from(model, drive, {volts.begin(), volts.end()}, std::abs(volts[drive] - neutral), near, precision);

@@ -25,7 +25,11 @@ CourseRecorder::CourseRecorder(double contact_gap, const MetricsOptions& options
 
 void CourseRecorder::knot(const TrajectoryPoint& point) {
   figures_.knot(point);
-  finder_.knot(point, [this](const Rebound& rebound) { rebounds_.push_back(rebound); });
+  finder_.knot(point, [this](const Rebound& rebound) { (opens_ ? release_bounces_ : rebounds_).push_back(rebound); });
+  if (!opens_ && point.time >= options_.opening.time) {
+    opens_ = true;
+    if (finder_.under_way()) rebounds_.push_back(*finder_.under_way());
+  }
   has_passed_ = has_passed_ || point.position > contact_gap_;
   points_.push_back(point);
   if (++in_last_ == bucket_) {
@@ -44,12 +48,8 @@ void CourseRecorder::touch(const Touch& touch) {
 
 std::vector<Rebound> CourseRecorder::rebounds() const {
   std::vector<Rebound> all = rebounds_;
-  if (finder_.under_way()) all.push_back(*finder_.under_way());
+  if (!opens_ && finder_.under_way()) all.push_back(*finder_.under_way());
   return all;
-}
-
-void CourseRecorder::follow_contacts(std::span<const double> gaps) {
-  for (const double gap : gaps) contacts_.push_back(std::make_unique<CourseRecorder>(gap, options_, most_knots_));
 }
 
 Metrics CourseRecorder::metrics_of(std::size_t contact, const Trajectory& end) {

@@ -8,7 +8,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "objectives/metrics.h"
@@ -22,8 +21,10 @@ class CourseRecorder final : public ClosingObserver {
   /// `contact_gap` [m]; `most_knots`: at least 32.
   explicit CourseRecorder(double contact_gap, const MetricsOptions& options = {}, std::size_t most_knots = most_recorded_knots);
 
-  /// Records each of several contacts, with these gaps to their planes [m], beside the connection that they make.
-  void follow_contacts(std::span<const double> gaps);
+  /// Records one of several contacts, the next in order, beside the connection that they make. `contact_gap` [m]
+  void follow_contact(double contact_gap, const MetricsOptions& options) {
+    contacts_.push_back(std::make_unique<CourseRecorder>(contact_gap, options, most_knots_));
+  }
 
   void knot(const TrajectoryPoint& point) override;
   void touch(const Touch& touch) override;
@@ -34,8 +35,10 @@ class CourseRecorder final : public ClosingObserver {
 
   /// Figures of the run, once it has ended: see metrics(). Those of all knots.
   [[nodiscard]] Metrics metrics(const Trajectory& end) { return figures_.metrics(end); }
-  /// rebounds() of all knots.
+  /// rebounds() of all knots until the command to open.
   [[nodiscard]] std::vector<Rebound> rebounds() const;
+  /// Separations that ended in a touch after it.
+  [[nodiscard]] const std::vector<Rebound>& release_bounces() const { return release_bounces_; }
   /// Whether some knots are left out.
   [[nodiscard]] bool is_thinned() const { return is_thinned_; }
   /// Figures and rebounds of one of several contacts, once the run has ended.
@@ -63,7 +66,8 @@ class CourseRecorder final : public ClosingObserver {
   std::size_t bucket_ = 1;         // knots in a full one
   std::size_t in_last_ = 0;        // knots since the last full one
   std::vector<Touch> touches_;
-  std::vector<Rebound> rebounds_;
+  std::vector<Rebound> rebounds_, release_bounces_;
+  bool opens_ = false;  // the command to open is past
   std::vector<std::unique_ptr<CourseRecorder>> contacts_;
 };
 

@@ -11,6 +11,8 @@ std::string Figure::label() const {
 double Figure::value(const Metrics& metrics) const {
   if (const auto* const number = std::get_if<double Metrics::*>(&member)) return metrics.**number;
   // Counts and yes or no have no value that says "not known": what followed the first touch is known with the highest rebound.
+  if (asked == &AskedFigures::opening && is_count())
+    return std::isfinite(metrics.opening_time) ? metrics.*std::get<int Metrics::*>(member) : Metrics::unset;
   const bool followed = std::isfinite(metrics.major_bounce_height) &&
                         (asked != &AskedFigures::electrical || std::isfinite(metrics.electrical_contact));
   if (const auto* const count = std::get_if<int Metrics::*>(&member)) return followed ? metrics.**count : Metrics::unset;

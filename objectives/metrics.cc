@@ -32,21 +32,51 @@ void LandingFigures::rebound(const Rebound& rebound) {
   last_end_ = rebound.end;
 }
 
+LandingFigures::Course MetricsObserver::course() const {
+  return {.sound = rebounds_.usable(),
+          .touched = rebounds_.touched(),
+          .above = rebounds_.under_way().has_value(),
+          .first_touch = rebounds_.first_touch(),
+          .impact_velocity = rebounds_.impact_velocity(),
+          .last_time = rebounds_.last_time(),
+          .closest = closest_};
+}
+
 void MetricsObserver::knot(const TrajectoryPoint& point) {
   if (!rebounds_.touched()) closest_ = std::min(closest_, contact_gap_ - point.position);
-  rebounds_.knot(point, [this](const Rebound& rebound) { figures_.rebound(rebound); });
+  if (opening_) opening_->follow(last_, point);
+  rebounds_.knot(point, [this](const Rebound& rebound) { opening_ ? opening_->bounce(rebound) : figures_.rebound(rebound); });
+  last_ = point;
+  if (!opening_ && point.time >= options_.opening.time) begin_opening();
+}
+
+// A rebound that is under way belongs to the landing, and what becomes of it to the opening.
+void MetricsObserver::begin_opening() {
+  landing_ = course();
+  if (landing_->above) figures_.rebound(*rebounds_.under_way());
+  opening_.emplace(options_.opening, contact_gap_, options_.significant_rebound);
 }
 
 Metrics MetricsObserver::metrics(const Trajectory& end) {
-  const bool above = rebounds_.under_way().has_value();
-  if (above) figures_.rebound(*rebounds_.under_way());
-  return figures_.metrics(end, {.sound = rebounds_.usable(),
-                                .touched = rebounds_.touched(),
-                                .above = above,
-                                .first_touch = rebounds_.first_touch(),
-                                .impact_velocity = rebounds_.impact_velocity(),
-                                .last_time = rebounds_.last_time(),
-                                .closest = closest_});
+  if (!opening_) {
+    if (rebounds_.under_way()) figures_.rebound(*rebounds_.under_way());
+    return figures_.metrics(end, course());
+  }
+  landing_->sound = rebounds_.usable();
+  Metrics result = figures_.metrics(end, *landing_);
+  result.asked.opening = true;
+  result.end = rebounds_.last_time();
+  const OpeningOnCommand opening = opening_->figures(rebounds_.under_way(), last_);
+  result.open_command = opening.command;
+  result.opening_time = opening.opening_time;
+  result.release_bounces = opening.bounces;
+  result.release_bounce_height = opening.highest_bounce;
+  result.release_settling_time = opening.settling_time;
+  result.overshoot_open = opening.overshoot;
+  result.least_gap_open = opening.least_gap;
+  result.closed_time =
+      options_.opening.time - landing_->first_touch - result.separated + opening.opening_time - opening.separated;
+  return result;
 }
 
 Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) const {

@@ -9,6 +9,7 @@
 #include "model/closing/observer.h"
 #include "model/device.h"
 #include "model/trajectory.h"
+#include "objectives/opening.h"
 #include "objectives/rebounds.h"
 
 namespace softland {
@@ -17,6 +18,7 @@ namespace softland {
 struct AskedFigures {
   bool resistance = false;  ///< of a connection whose contacts have a resistivity
   bool electrical = false;  ///< of a device with Device::electrical
+  bool opening = false;     ///< of a run that opens on command
   bool operator==(const AskedFigures&) const = default;
 };
 /// Returns what a device asks for.
@@ -28,6 +30,7 @@ struct MetricsOptions {
   double significant_rebound = 1e-9;  ///< a rebound counts when it is higher than this [m]
   double steady_force = 0.1;          ///< the contact force is steady from this share of the hold force on
   AskedFigures asked = {};
+  OpeningCommand opening = {};  ///< figures of the landing are those until then
 };
 
 struct Metrics {
@@ -54,6 +57,16 @@ struct Metrics {
   double electrical_settling = unset;  ///< ElectricalOutcome::closed_from [s]
   int electrical_bounces = 0;          ///< ElectricalOutcome::openings; meaningless where it never closes
   AskedFigures asked = {};             ///< MetricsOptions::asked
+  // Of a switch that the drives command to open: see OpeningOnCommand.
+  double open_command = unset;           ///< [s]
+  double opening_time = unset;           ///< from the command to the last break of the contact [s]
+  int release_bounces = 0;               ///< meaningless where the contact is closed at the end
+  double release_bounce_height = unset;  ///< [m]; 0 where there is none
+  double release_settling_time = unset;  ///< from the command on, to rest in the open state [s]
+  double overshoot_open = unset;         ///< [m]
+  double least_gap_open = unset;         ///< [m]
+  double closed_time = unset;            ///< time in touch from the first touch to the last break [s]
+  double back_stop_velocity = unset;     ///< largest impact velocity on a back stop after it, 0 if none [m/s]; by simulate()
   // Set by simulate() where nothing touched: see set_open_figures().
   double static_deflection = unset;   ///< of the contact point in the open equilibrium under the hold levels [m]
   double overshoot = unset;           ///< furthest beyond it, seen from where the run started [m]
@@ -113,16 +126,25 @@ class MetricsObserver final : public ClosingObserver {
  public:
   /// `contact_gap` [m]
   explicit MetricsObserver(double contact_gap, const MetricsOptions& options = {})
-      : figures_(options), rebounds_(contact_gap), contact_gap_(contact_gap), closest_(contact_gap) {}
+      : options_(options), figures_(options), rebounds_(contact_gap), contact_gap_(contact_gap), closest_(contact_gap) {}
   void knot(const TrajectoryPoint& point) override;
-  void touch(const Touch& touch) override { figures_.touch(touch); }
+  void touch(const Touch& touch) override {
+    if (touch.begin < options_.opening.time) figures_.touch(touch);
+  }
   /// Of the run, once it has ended: see metrics().
   [[nodiscard]] Metrics metrics(const Trajectory& end);
 
  private:
+  [[nodiscard]] LandingFigures::Course course() const;
+  void begin_opening();
+
+  MetricsOptions options_;
   LandingFigures figures_;
   ReboundFinder rebounds_;
   double contact_gap_, closest_;  // [m]
+  TrajectoryPoint last_;
+  std::optional<CommandedOpening> opening_;        // from the command on
+  std::optional<LandingFigures::Course> landing_;  // until then
 };
 
 /// All rebounds, significant or not, in order, as far as the knots are finite; a separation below 1e-12 of the contact gap is

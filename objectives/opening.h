@@ -4,7 +4,9 @@
 
 #include <limits>
 
+#include "integrators/quintic.h"
 #include "model/trajectory.h"
+#include "objectives/rebounds.h"
 
 namespace softland {
 
@@ -20,8 +22,68 @@ struct BandFigures {
   double below = 0, above = 0;  ///< furthest from the open position, away from the contact and towards it [m]; 0 if never
   double residual = std::numeric_limits<double>::quiet_NaN();  ///< OpeningFigures::residual_vibration
 };
-/// Between knots the motion is the quintic through them.
+
+/// Follows the distance from the open position from one turn to the next. Between knots the motion is the quintic through them.
+class BandFollower {
+ public:
+  explicit BandFollower(const OpeningBand& band) : band_(band) {}
+  /// Takes the motion between two knots.
+  void follow(const TrajectoryPoint& a, const TrajectoryPoint& b);
+  [[nodiscard]] BandFigures figures() const;
+
+ private:
+  void reach(double time, double position);
+  void reach_end_of_drives(double position);
+  void leave_band(const Quintic& curve, double from, double at_from, double to, double at_to);
+
+  OpeningBand band_;
+  bool inside_ = false;
+  double settled_from_ = 0, below_ = 0, above_ = 0, residual_ = std::numeric_limits<double>::quiet_NaN();
+};
 [[nodiscard]] BandFigures band_figures(const Trajectory& course, const OpeningBand& band);
+
+/// A command to open, while a run goes on.
+struct OpeningCommand {
+  double time = std::numeric_limits<double>::infinity();  ///< [s]
+  double open_position =
+      std::numeric_limits<double>::quiet_NaN();  ///< of the contact point at rest under the levels that follow [m]; NaN: none
+};
+
+/// How a closed switch opens on a command. Times count from the command; NaN throughout where it is closed at the end.
+struct OpeningOnCommand {
+  double command = std::numeric_limits<double>::quiet_NaN();        ///< [s], from t = 0
+  double opening_time = std::numeric_limits<double>::quiet_NaN();   ///< to the last break of the contact [s]
+  double settling_time = std::numeric_limits<double>::quiet_NaN();  ///< from when on it stays at rest, within settled_band [s]
+  double overshoot = std::numeric_limits<double>::quiet_NaN();  ///< furthest beyond the open position, away from the contact [m]
+  double least_gap = std::numeric_limits<double>::quiet_NaN();  ///< smallest separation on its way back [m]; the last, if none
+  double highest_bounce = std::numeric_limits<double>::quiet_NaN();  ///< [m]; 0 where there is none
+  double separated = 0;                                              ///< time in separations until the last break [s]
+  int bounces = 0;  ///< separations above the significant rebound that end in a touch; meaningless where it is closed
+};
+
+/// Of the contact gap: the contact has come to rest where it stays so near its open position.
+inline constexpr double settled_band = 0.02;
+
+/// Finds them while a run goes on.
+class CommandedOpening {
+ public:
+  /// Lengths in m.
+  CommandedOpening(const OpeningCommand& command, double contact_gap, double significant_rebound);
+  /// Takes the motion between two knots after the command.
+  void follow(const TrajectoryPoint& a, const TrajectoryPoint& b);
+  /// Takes a separation that ended in a touch after the command.
+  void bounce(const Rebound& rebound);
+  /// Of the run, once it has ended at its last knot, with the contact open since the begin of `under_way`, or closed.
+  [[nodiscard]] OpeningOnCommand figures(const std::optional<Rebound>& under_way, const TrajectoryPoint& last) const;
+
+ private:
+  OpeningCommand command_;
+  double contact_gap_, significant_;  // [m]
+  BandFollower band_;
+  double nearest_ = std::numeric_limits<double>::quiet_NaN();  // position on its way back [m]
+  double highest_ = 0, separated_ = 0;                         // [m], [s]
+  int bounces_ = 0;
+};
 
 struct OpeningFigures {
   static constexpr double unset = std::numeric_limits<double>::quiet_NaN();

@@ -57,7 +57,9 @@ std::map<std::string, Points> waveforms(const PreparedScene& p) {
 
 RunRecord run(const PreparedScene& p, const Closing& closing, const MetricsOptions& options) {
   FigureValues figures(closing.metrics), errors = closing.errors;
-  figures.asked = errors.asked = options.asked;
+  figures.asked = options.asked;
+  figures.asked.opening = closing.metrics.asked.opening;
+  errors.asked = figures.asked;
   CurveRecord curve = curve_of(closing.trajectory, closing.rebounds, closing.is_thinned, options);
   curve.resistance = resistance_course(p.scene.device, closing.trajectory, curve.time);
   return {.status = std::string(to_string(closing.metrics.status)),

@@ -99,6 +99,40 @@ std::string opening_clause(const Actor& actor, const FigureValues& figures, cons
                      quantity(settling, "s"), quantity(figures[&Metrics::static_deflection], "m"));
 }
 
+// How it opens on command; empty where nothing commands it to.
+std::string opening_on_command(const FigureValues& figures) {
+  const double command = figures[&Metrics::open_command], opening = figures[&Metrics::opening_time];
+  if (!std::isfinite(command)) return {};
+  const std::string at = "the command at " + quantity(command, "s");
+  if (!std::isfinite(opening)) return "; it does not open on " + at;
+  std::string words = fmt::format("; it opens {} after {}", quantity(opening, "s"), at);
+  const auto bounces = static_cast<int>(figures[&Metrics::release_bounces]);
+  if (bounces > 0) words += fmt::format(" and {} {}", bounces, bounces > 1 ? "bounces" : "bounce");
+  const double rest = figures[&Metrics::release_settling_time];
+  return words + (std::isfinite(rest) ? fmt::format(", and is at rest {} after it", quantity(rest, "s"))
+                                      : ", and has not come to rest when the window ends");
+}
+
+std::string landing_words(const Actor& actor, const RunRecord& run, const FigureValues& figures, const std::string& end) {
+  const double height = rebound_height(figures);
+  if (is_clean(figures)) {
+    std::string words = closes(actor, "at " + first_touch(figures)) + " with no rebound";
+    if (height > 0) words += " above " + quantity(height, "m");
+    return words;
+  }
+  std::string words = fmt::format("{} first touches at {}", actor.subject, first_touch(figures));
+  if (figures[&Metrics::bounce_count] > 0) {
+    words += ", then " + bounces(figures, run.errors);
+    if (height > 0) words += " up to " + quantity(height, "m");
+  } else if (height > 0) {
+    words += ", then rebounds up to " + quantity(height, "m");
+  }
+  if (settles(figures)) return words + " and settles after " + settling(figures, run.errors);
+  if (std::isfinite(figures[&Metrics::open_command])) return words + " and has not settled when it is commanded to open";
+  return words + " and has not settled when the window ends" + (end.empty() ? "" : " at " + end) +
+         " (what follows is not counted)";
+}
+
 }  // namespace
 
 std::string closing_clause(const Actor& actor, const RunRecord& run, double window) {
@@ -129,22 +163,7 @@ std::string closing_clause(const Actor& actor, const RunRecord& run, double wind
     return fmt::format("{} reaches the contact plane at {} with {}; without a [contact] section the run ends there",
                        actor.subject, first_touch(figures), impact_speed(figures));
   }
-  const double height = rebound_height(figures);
-  if (is_clean(figures)) {
-    std::string words = closes(actor, "at " + first_touch(figures)) + " with no rebound";
-    if (height > 0) words += " above " + quantity(height, "m");
-    return words;
-  }
-  std::string words = fmt::format("{} first touches at {}", actor.subject, first_touch(figures));
-  if (figures[&Metrics::bounce_count] > 0) {
-    words += ", then " + bounces(figures, run.errors);
-    if (height > 0) words += " up to " + quantity(height, "m");
-  } else if (height > 0) {
-    words += ", then rebounds up to " + quantity(height, "m");
-  }
-  if (settles(figures)) return words + " and settles after " + settling(figures, run.errors);
-  return words + " and has not settled when the window ends" + (end.empty() ? "" : " at " + end) +
-         " (what follows is not counted)";
+  return landing_words(actor, run, figures, end) + opening_on_command(figures);
 }
 
 std::string landing_clause(const std::string& subject, const RunRecord& run) {

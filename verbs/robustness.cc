@@ -16,6 +16,7 @@
 #include "reports/report_files.h"
 #include "reports/robustness_report.h"
 #include "studies/closing/auto_settings.h"
+#include "studies/closing/open_command.h"
 #include "studies/devices/box_and_chaos.h"
 #include "verbs/study.h"
 
@@ -56,7 +57,7 @@ struct RobustnessRequest : Usual {
   // Diagrams are of all devices, which stand in devices.csv.
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_robustness(json)); }
 
-  RobustnessOptions options{.jobs = one_per_core(), .worth_of_measuring = true};
+  RobustnessOptions options{.jobs = one_per_core(), .worth_of_measuring = true, .opens_on_command = true};
   std::vector<std::string> results;  ///< whose drives are judged as well
   std::string calibration;           ///< the measurements of every device; empty: the scene says them
   bool box_and_chaos = false;        ///< ranges over a box, and polynomial chaos, beside the sample
@@ -88,8 +89,9 @@ std::shared_ptr<const PreparedScene> nominal_of(const Setting& setting, const Ro
   SceneFile file = setting.scene;
   spread_assumed = assume_spread(file);
   set_calibration(file, request.calibration);
-  if (!spread_assumed && request.calibration.empty()) return setting.prepared(true);
-  return std::make_shared<const PreparedScene>(prepare_and_choose(file, true, setting.watch));
+  if (!spread_assumed && request.calibration.empty())
+    return std::make_shared<const PreparedScene>(closing_of(*setting.prepared(true)));
+  return std::make_shared<const PreparedScene>(closing_of(prepare_and_choose(file, true, setting.watch)));
 }
 
 std::vector<Outcome::File> files_of(const std::shared_ptr<const Judged>& judged) {

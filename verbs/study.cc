@@ -27,8 +27,8 @@ std::string Study::keyword(std::string_view option) const {
 }
 
 const std::vector<Study>& scene_studies() {
-  static const std::vector<Study> all{check_study(),   pull_in_study(),    effects_study(), accuracy_study(), limit_study(),
-                                      release_study(), robustness_study(), fit_study(),     calibrate_study()};
+  static const std::vector<Study> all{check_study(),   pull_in_study(), effects_study(),    accuracy_study(), limit_study(),
+                                      release_study(), cycle_study(),   robustness_study(), fit_study(),      calibrate_study()};
   return all;
 }
 

@@ -160,6 +160,7 @@ template <class Request>
 [[nodiscard]] Study accuracy_study();
 [[nodiscard]] Study calibrate_study();
 [[nodiscard]] Study check_study();
+[[nodiscard]] Study cycle_study();
 [[nodiscard]] Study device_study();
 [[nodiscard]] Study effects_study();
 [[nodiscard]] Study explore_study();

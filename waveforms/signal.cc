@@ -312,6 +312,14 @@ double last_breakpoint(std::span<const Signal> signals) {
   return last;
 }
 
+Signal held_from(const Signal& signal, double time) {
+  if (time == 0) return Signal::standing(signal.before());
+  std::vector<SignalPiece> pieces = signal.pieces();
+  std::erase_if(pieces, [&](const SignalPiece& piece) { return piece.begin >= time; });
+  if (!pieces.back().is_level()) pieces.push_back({.begin = time, .value = signal.voltage_before(time)});
+  return Signal(std::move(pieces), signal.before());
+}
+
 Signal scaled(const Signal& signal, double factor) {
   std::vector<SignalPiece> pieces = signal.pieces();
   for (SignalPiece& piece : pieces) {

@@ -85,6 +85,9 @@ class Signal {
 /// When the last piece of any of them begins [s].
 [[nodiscard]] double last_breakpoint(std::span<const Signal> signals);
 
+/// The signal until `time`, and from then on what it stands at just before: at 0 s what it is before t = 0 [s].
+[[nodiscard]] Signal held_from(const Signal& signal, double time);
+
 /// The signal times a factor, a finite number.
 [[nodiscard]] Signal scaled(const Signal& signal, double factor);
 

@@ -22,6 +22,8 @@ Section simulate_section() {
           .keys = {OfSimulate::number<&SimulateOptions::duration>(
                        "duration", dimension::time, positive,
                        "absent: six periods of the first mode, or four times what a step takes to close the switch"),
+                   OfSimulate::number<&SimulateOptions::open_at>("open_at", dimension::time, not_negative,
+                                                                 "command to open; absent: told from the drives"),
                    OfSimulate::number<&SimulateOptions::accuracy>("accuracy", dimension::none, small_error,
                                                                   "relative error of t_i, v_i, B_H and the peak force")
                        .by_default("1e-06")

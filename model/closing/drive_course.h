@@ -18,9 +18,10 @@ class DriveCourse {
   [[nodiscard]] std::size_t size() const { return signals_.size(); }
   /// Of all drives before t = 0.
   [[nodiscard]] std::vector<double> before() const { return values_before(signals_); }
-  /// Begin and end of every stretch within [0, duration], in order [s].
-  [[nodiscard]] std::vector<double> stretches(double duration) const {
+  /// Begin and end of every stretch within [0, duration], in order, one of them at `also` where that lies within [s].
+  [[nodiscard]] std::vector<double> stretches(double duration, double also = std::numeric_limits<double>::infinity()) const {
     std::vector<double> stops{0, duration};
+    if (also > 0 && also < duration) stops.push_back(also);
     for (const Signal& signal : signals_) {
       for (const double t : signal.breakpoints()) {
         if (t > 0 && t < duration) stops.push_back(t);

@@ -36,6 +36,10 @@ class ClosingObserver {
   [[nodiscard]] virtual bool follows_motion() const { return false; }
   /// A step under a contact law in this state.
   virtual void step(const Knot& /*begin*/, const Knot& /*end*/, const ContactState& /*contact*/) {}
+  /// Tells whether the observer wants the energies where a stretch of the drives ends.
+  [[nodiscard]] virtual bool takes_energies() const { return false; }
+  /// Of the run so far, at a breakpoint of the drives before what they do there [s].
+  virtual void energies(double /*time*/, const EnergyBalance& /*balance*/) {}
   /// At the knot that the next step starts from.
   virtual void pass(const Knot& /*here*/, const PhaseChange& /*change*/) {}
 

@@ -69,7 +69,7 @@ TrajectoryPoint ClosingParts::point(const FollowedContact& contact, const Knot& 
 void ClosingParts::record(FollowedContact& contact, const TipMotion& tip, const TrajectoryPoint& from,
                           const TrajectoryPoint& to) {
   contact.touches.take(tip, from, to);
-  if (contact.touches.count() == 0) return;
+  if (contact.touches.count() == 0 || closing_is_over) return;
   if (!contact.phase.in_contact()) contact.force.pass_maximum();
   contact.force.take(tip, from, to, contact.phase.law());
 }
@@ -186,7 +186,7 @@ void Stepping::account(const FieldFigures& field, EnergyAudit& audit) {
     if (c.end.time > from.time) parts_.record(c, TipMotion(c.motion, from, c.end), from, c.end);
     c.touches.take(here_, next_, c.motion);
   }
-  if (parts_.electrical) {
+  if (parts_.electrical && !parts_.closing_is_over) {
     std::vector<ContactInStep> contacts;
     for (FollowedContact& c : parts_.contacts)
       contacts.push_back({c.motion, c.course.last(), c.end, c.phase.law(), c.phase.in_contact()});

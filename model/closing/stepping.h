@@ -66,6 +66,7 @@ struct ClosingParts {
   std::vector<FollowedContact> contacts;       ///< at least one: see ContactPhases
   std::optional<ElectricalRecord> electrical;  ///< where the device asks for it
   ClosingObserver& observer;
+  bool closing_is_over = false;  ///< ClosingOptions::opens_at is past
 
   ClosingParts(const Switch& switch_model, std::span<const Signal> signals, const ClosingOptions& closing_options,
                ClosingObserver& closing_observer)
@@ -94,6 +95,11 @@ struct ClosingParts {
   ClosingParts& operator=(const ClosingParts&) = delete;
 
   [[nodiscard]] FollowedContact& first() { return contacts.front(); }
+  /// Takes what follows for an opening [s].
+  void end_closing(double time) {
+    if (electrical && !closing_is_over) electrical->finish(time);
+    closing_is_over = true;
+  }
   /// Records the peaks and the contact force of a piece of a step.
   void record(FollowedContact& contact, const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
   /// The place of a contact at a knot.

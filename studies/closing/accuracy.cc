@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "base/engineering.h"
+#include "studies/closing/open_command.h"
 
 namespace softland {
 namespace {
@@ -323,7 +324,8 @@ double AccuracyStudy::worst_error(const AccuracyRow& row) const {
 
 AccuracyStudy study_accuracy(const PreparedScene& prepared, const AccuracyOptions& options) {
   require_open_start(prepared.scene, "accuracy closes the switch");
-  return Study(prepared, options).run();
+  const PreparedScene closing = closing_of(prepared);
+  return Study(closing, options).run();
 }
 
 }  // namespace softland

@@ -32,7 +32,7 @@ bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, co
 // Figures of the closing with each pull-in voltage that its drives are written in higher, and lower, by the error of that
 // voltage: a multiple of what a finer quadrature changes, and the width of its bracket.
 std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switch& fine, const SwitchOptions& quadrature,
-                                      const ClosingOptions& options, const Watch& watch) {
+                                      const ClosingOptions& options, const MetricsOptions& figures, const Watch& watch) {
   const Scene& written = prepared.effects ? prepared.effects->described : prepared.scene;
   std::vector<Metrics> found;
   for (const std::string& name : written.need_pull_in) {
@@ -63,12 +63,15 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
         continue;
       }
       const std::vector<Signal> signals = moved.signals();
-      const Hold hold = hold_of(fine, signals);
+      std::vector<Signal> held = signals;
+      if (std::isfinite(options.opens_at) && moved.start() == StartState::open)
+        std::ranges::transform(held, held.begin(), [&](const Signal& one) { return held_from(one, options.opens_at); });
+      const Hold hold = hold_of(fine, held);
       ClosingOptions own = options;
       own.steady_force = hold.steady_force(prepared.scene.metrics);
       Trajectory t = simulate_closing(fine, signals, own);
-      set_rest(t, fine, signals, hold);
-      found.push_back(metrics(t, prepared.scene.metrics));
+      set_rest(t, fine, held, hold);
+      found.push_back(metrics(t, figures));
       set_open_figures(found.back(), t, fine, signals);
     }
   }
@@ -145,9 +148,11 @@ Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
                                .tolerance = std::min(c.judge->tolerance, c.tolerance),
                                .steady_force = prepared.scene.metrics.steady_force * c.trajectory.hold_force,
                                .start = prepared.start(),
+                               .opens_at = c.command ? c.command->time : std::numeric_limits<double>::infinity(),
                                .stop = watch.stop};
+  const MetricsOptions figures = with_opening(prepared.scene.metrics, fine, signals, c.command);
   const Metrics& better = c.judge->metrics;
-  const std::vector<Metrics> moved = at_other_pull_in(prepared, fine, quadrature, options, watch);
+  const std::vector<Metrics> moved = at_other_pull_in(prepared, fine, quadrature, options, figures, watch);
   std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options, {.jobs = jobs}, watch);
   if (watch.stopped()) {
     c.metrics.status = Status::interrupted;
@@ -161,7 +166,7 @@ Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
     t.is_held = c.trajectory.is_held;
     t.hold_capacitance = c.trajectory.hold_capacitance;
     t.hold_resistance = c.trajectory.hold_resistance;
-    runs.push_back(metrics(t, prepared.scene.metrics));
+    runs.push_back(metrics(t, figures));
     set_open_figures(runs.back(), t, fine, signals);
   }
   Certificate certificate{.ill_conditioned = {}, .grazing = {}, .runs = static_cast<int>(runs.size())};

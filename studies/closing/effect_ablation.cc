@@ -10,6 +10,7 @@
 #include "model/forces/electrostatic.h"
 #include "model/gas/gas_law.h"
 #include "studies/closing/closing_progress.h"
+#include "studies/closing/open_command.h"
 #include "studies/closing/timing.h"
 
 namespace softland {
@@ -295,6 +296,7 @@ PreparedScene without(const PreparedScene& prepared, const std::vector<Omissible
   p.pull_in = prepared.pull_in;
   p.drives = prepared.drives.of(p.drive_names());  // which charge the switch with all effects
   p.duration = prepared.duration;
+  p.held_from = prepared.held_from;
   p.tolerance = prepared.tolerance;
   return p;
 }
@@ -353,8 +355,9 @@ std::vector<EffectAblation> ablate_effects(const PreparedScene& prepared, const 
   return list;
 }
 
-EffectsChoice negligible_effects(const PreparedScene& prepared, double tolerance, const Watch& watch) {
-  require_open_start(prepared.scene, "effects = \"auto\" judges a closing");
+EffectsChoice negligible_effects(const PreparedScene& scene, double tolerance, const Watch& watch) {
+  require_open_start(scene.scene, "effects = \"auto\" judges a closing");
+  const PreparedScene prepared = closing_of(scene);
   EffectsChoice choice;
   const BoundedClosing own = closing(prepared, watch);
   for (EffectAblation& o : ablate_effects(prepared, own, false, watch)) {

@@ -7,6 +7,7 @@
 #include "model/closing.h"
 #include "model/gas/gas_law.h"
 #include "studies/closing/closing_progress.h"
+#include "studies/closing/open_command.h"
 #include "studies/closing/timing.h"
 
 namespace softland {
@@ -69,8 +70,9 @@ double Effects::spread(const std::string& section, const Figure& figure) const {
   return (most - least) / figure.value(own(section).metrics);
 }
 
-Effects compare_effects(const PreparedScene& prepared, const Watch& watch) {
-  require_open_start(prepared.scene, "effects closes the switch");
+Effects compare_effects(const PreparedScene& scene, const Watch& watch) {
+  require_open_start(scene.scene, "effects closes the switch");
+  const PreparedScene prepared = closing_of(scene);
   const std::optional<Gas>& own = prepared.scene.device.gas;
   Effects found{.window = prepared.duration};
   std::vector<std::optional<Gas>> laws{std::nullopt};

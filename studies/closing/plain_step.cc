@@ -14,8 +14,12 @@ Step step_to(const PreparedScene& given, const std::string& drive, double level)
   return {.level = level, .rise_time = std::abs(level - own.value_before()) / slew};
 }
 
+// To the hold level, or to what the closing is held at before a command to open.
 Step step_of(const PreparedScene& given, const std::string& drive) {
-  return step_to(given, drive, given.drives.at(drive).hold_level());
+  const Drive& own = given.drives.at(drive);
+  const bool opens = std::isfinite(given.held_from) && own.waveform;
+  return step_to(given, drive,
+                 opens ? signal(*own.waveform, own.value_before()).voltage_before(given.held_from) : own.hold_level());
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "model/constants.h"
 #include "model/contact/face.h"
 #include "model/timoshenko.h"
+#include "studies/closing/open_command.h"
 
 namespace softland {
 
@@ -47,7 +48,12 @@ std::vector<Signal> PreparedScene::told(const std::vector<Waveform>& waveforms) 
   return signals;
 }
 
-std::vector<Signal> PreparedScene::signals() const { return driven(waveforms()); }
+std::vector<Signal> PreparedScene::signals() const {
+  std::vector<Signal> all = driven(waveforms());
+  if (std::isfinite(held_from))
+    std::ranges::transform(all, all.begin(), [&](const Signal& s) { return softland::held_from(s, held_from); });
+  return all;
+}
 
 Signal PreparedScene::told_samples(std::size_t k, const Signal& told) const {
   return softland::told_samples(told, drives[k].source, limits(k), duration);
@@ -173,23 +179,24 @@ double default_window(const Switch& model, const std::vector<Signal>& signals) {
   return closing.touches.empty() ? usual : std::max(usual, closings * closing.touches.front().begin);
 }
 
-/// The window of a scene that names none and begins closed [s]: it shows how the switch comes to rest in its open state, within
-/// ten times six periods of the first mode.
-double default_window_of_opening(const Switch& model, const std::vector<Signal>& signals) {
+/// The window of a scene that names none and opens a closed switch from `begin` on [s]: it shows how the switch comes to rest in
+/// its open state, within ten times six periods of the first mode.
+double default_window_of_opening(const Switch& model, const std::vector<Signal>& signals, StartState start, double begin) {
   constexpr double periods = 6, longest = 10, loose = 1e-4, settled = 0.02, margin = 2;
   constexpr long most_steps = 100'000;
   const double period = 2 * pi / model.basis().angular_frequencies()[0], usual = periods * period;
   const std::optional<Eigen::VectorXd> open = model.open_equilibrium(hold_levels(signals));
-  if (!open || !(usual <= longest_window)) return usual;
+  if (!open || !(begin + usual <= longest_window)) return begin + usual;
   const Trajectory opening = simulate_closing(
-      model, signals, {.duration = longest * usual, .tolerance = loose, .max_steps = most_steps, .start = StartState::closed});
+      model, signals, {.duration = begin + longest * usual, .tolerance = loose, .max_steps = most_steps, .start = start});
   const double position = model.contact_deflection(open->data());
-  double furthest = 0, since = 0;
-  for (const TrajectoryPoint& p : opening.points) furthest = std::max(furthest, std::abs(p.position - position));
+  double furthest = 0, since = begin;
+  for (const TrajectoryPoint& p : opening.points)
+    if (p.time >= begin) furthest = std::max(furthest, std::abs(p.position - position));
   for (const TrajectoryPoint& p : opening.points) {
-    if (!(std::abs(p.position - position) <= settled * furthest)) since = p.time;
+    if (p.time >= begin && !(std::abs(p.position - position) <= settled * furthest)) since = p.time;
   }
-  return std::clamp(since + margin * period, usual, longest * usual);
+  return std::clamp(since + margin * period, begin + usual, begin + longest * usual);
 }
 
 /// The drives but for what sampling and filters make of them.
@@ -199,6 +206,26 @@ std::vector<Signal> without_sources(const PreparedScene& p) {
     if (!p.drives[k].errors.are_none()) signals[k] = with_errors(signals[k], p.drives[k].errors);
   }
   return signals;
+}
+
+/// The window of a scene that names none [s].
+double default_window(const PreparedScene& p) {
+  const std::vector<Signal> signals = without_sources(p);
+  if (p.start() == StartState::closed) return default_window_of_opening(p.model, signals, StartState::closed, 0);
+  const double asked = p.scene.simulate.open_at;
+  if (std::isfinite(asked)) return default_window_of_opening(p.model, signals, StartState::open, asked);
+  if (const std::optional<OpenCommand> command = open_command(p.model, signals, StartState::open))
+    return default_window_of_opening(p.model, signals, StartState::open, command->time);
+  return default_window(p.model, signals);
+}
+
+void check_open_at(const PreparedScene& p) {
+  const double asked = p.scene.simulate.open_at;
+  if (!std::isfinite(asked)) return;
+  const SceneFile& file = p.scene.file;
+  if (!p.model.has_contact()) file.refuse("simulate.open_at", "needs a [contact], which is what opens");
+  if (!(asked < p.duration))
+    file.refuse("simulate.open_at", fmt::format("must lie in the window, which ends at {}", engineering(p.duration, "s")));
 }
 
 /// Windows and waveforms that no computer would see the end of.
@@ -385,9 +412,8 @@ PreparedScene prepare(const SceneFile& file, bool default_limits, const Watch& w
   }
   p.drives = scene.drives(p.voltage_units());
   load_sources(p);
-  p.duration = scene.simulate.duration > 0 ? scene.simulate.duration
-               : scene.begins_closed       ? default_window_of_opening(p.model, without_sources(p))
-                                           : default_window(p.model, without_sources(p));
+  p.duration = scene.simulate.duration > 0 ? scene.simulate.duration : default_window(p);
+  check_open_at(p);
   check_window(p);
   check_sources(p);
   check_landing(p);

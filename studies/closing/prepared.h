@@ -44,6 +44,8 @@ struct PreparedScene {
   Drives drives;         ///< in volts; the load of a source with a resistance is the open switch
   double duration = 0;   ///< window [s]
   double tolerance = 0;  ///< of the integrator
+  /// From then on its drives stay at what they are just before [s]: see closing_of().
+  double held_from = std::numeric_limits<double>::infinity();
   SwitchOptions quadrature = {};
   double quadrature_accuracy = 0;  ///< that it was chosen for
   /// Where the scene says effects = "auto": what it describes and what was left out. The scene above is the one without.

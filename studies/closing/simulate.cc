@@ -8,11 +8,10 @@
 #include <utility>
 
 #include "base/engineering.h"
-#include "model/contact/resistance.h"
+#include "model/constants.h"
 #include "objectives/course_recorder.h"
-#include "studies/closing/actuator.h"
-#include "studies/closing/closed_state.h"
 #include "studies/closing/closing_progress.h"
+#include "studies/closing/open_command.h"
 #include "studies/closing/open_state.h"
 #include "studies/closing/summits_at_hold.h"
 
@@ -41,7 +40,7 @@ FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, do
 struct Run {
   Trajectory trajectory;
   Metrics metrics;
-  std::vector<Rebound> rebounds;
+  std::vector<Rebound> rebounds, release_bounces = {};
   std::vector<ContactClosing> contacts = {};
   bool is_thinned = false;
   double tolerance = 0;
@@ -129,13 +128,39 @@ constexpr int most_in_vain = 2;    // in a row
 
 bool can_tighten(const Run& r) { return r.tolerance / tighter_by >= least_tolerance; }
 
+bool is_back_stop(const Switch& model, std::size_t contact) { return model.device().contacts[contact].side == Side::far; }
+
+// What the figures of an opening on command leave to those who know the switch: impacts on its back stops, and whether the run
+// ends open and at rest, in which a period of the first mode has to pass.
+void set_commanded_opening(Metrics& m, const Trajectory& run, const Switch& model) {
+  if (!m.asked.opening) return;
+  for (std::size_t c = 0; c < run.contacts.size(); ++c) {
+    if (!is_back_stop(model, c)) continue;
+    m.back_stop_velocity = std::fmax(m.back_stop_velocity, 0);
+    for (const Touch& touch : run.contacts[c].touches)
+      if (touch.begin >= m.open_command) m.back_stop_velocity = std::max(m.back_stop_velocity, touch.impact_velocity);
+  }
+  const double period = 2 * pi / model.basis().angular_frequencies()[0];
+  const bool rests = m.end - (m.open_command + m.release_settling_time) >= period;
+  if (m.status == Status::done && !rests && !run.began_closed) m.status = Status::not_settled;
+}
+
 // Runs of a scene's closing, each told to the watch.
 class ClosingRuns {
  public:
   ClosingRuns(const PreparedScene& prepared, const Watch& watch)
-      : prepared_(prepared), watch_(watch), signals_(prepared.signals()) {}
+      : prepared_(prepared),
+        watch_(watch),
+        signals_(prepared.signals()),
+        command_(open_command(prepared, signals_)),
+        open_(command_ ? prepared.model.open_equilibrium(hold_levels(signals_)) : std::nullopt) {}
 
   [[nodiscard]] const std::vector<Signal>& signals() const { return signals_; }
+  [[nodiscard]] const std::optional<OpenCommand>& command() const { return command_; }
+  /// Those of the closing: until the command to open.
+  [[nodiscard]] const std::vector<Signal>& held() const {
+    return command_ && prepared_.start() == StartState::open ? command_->held : signals_;
+  }
   [[nodiscard]] bool was_interrupted() const { return was_interrupted_; }
 
   Run as_asked() { return run(prepared_.model, prepared_.tolerance, prepared_.quadrature, ClosingOptions{}.max_steps); }
@@ -163,37 +188,60 @@ class ClosingRuns {
     Run r{.tolerance = tolerance, .quadrature = quadrature};
     const std::string what =
         count_++ == 0 ? "closing" : fmt::format("closing again at tolerance {}, for its errors", engineering(tolerance, "", 1));
-    const Hold hold = hold_of(model, signals_);
-    CourseRecorder recorder(prepared_.scene.device.contact_gap(), prepared_.scene.metrics);
-    if (model.contacts() > 1) {
-      std::vector<double> gaps;
-      for (std::size_t c = 0; c < model.contacts(); ++c) gaps.push_back(model.contact_gap(c));
-      recorder.follow_contacts(gaps);
-    }
+    const Hold hold = hold_of(model, held());
+    CourseRecorder recorder = recorder_of(model);
     r.trajectory = observe_closing(model, signals_,
                                    {.duration = prepared_.duration,
                                     .tolerance = tolerance,
                                     .max_steps = max_steps,
                                     .steady_force = hold.steady_force(prepared_.scene.metrics),
                                     .start = prepared_.start(),
+                                    .opens_at = command_ ? command_->time : std::numeric_limits<double>::infinity(),
                                     .stop = watch_.stop,
                                     .observer = observer(watch_, what, prepared_.duration)},
                                    recorder);
     recorder.hand_over(r.trajectory);
     was_interrupted_ = was_interrupted_ || r.trajectory.status == Status::interrupted;
-    set_rest(r.trajectory, model, signals_, hold);
+    set_rest(r.trajectory, model, held(), hold);
     r.metrics = recorder.metrics(r.trajectory);
+    if (is_before_touch(r)) {
+      command_.reset();
+      return run(model, tolerance, quadrature, max_steps);
+    }
     r.rebounds = recorder.rebounds();
+    r.release_bounces = recorder.release_bounces();
     for (std::size_t c = 0; c < r.trajectory.contacts.size(); ++c)
       r.contacts.push_back({.metrics = recorder.metrics_of(c, r.trajectory), .rebounds = recorder.rebounds_of(c)});
     r.is_thinned = recorder.is_thinned();
     set_open_figures(r.metrics, r.trajectory, model, signals_);
+    if (command_) set_commanded_opening(r.metrics, r.trajectory, model);
     return r;
+  }
+
+  // A command counts after the first touch alone.
+  [[nodiscard]] bool is_before_touch(const Run& r) const {
+    return command_ && prepared_.start() == StartState::open && came_to_its_end(r.trajectory) &&
+           !(r.metrics.initial_contact_time < command_->time);
+  }
+
+  // Follows the connection, and each of several contacts; what strikes a back stop is followed to the end.
+  [[nodiscard]] CourseRecorder recorder_of(const Switch& model) const {
+    const MetricsOptions& plain = prepared_.scene.metrics;
+    const MetricsOptions options = with_opening(plain, model, signals_, command_);
+    CourseRecorder recorder(prepared_.scene.device.contact_gap(), options);
+    for (std::size_t c = 0; c < model.contacts() && model.contacts() > 1; ++c) {
+      MetricsOptions own = is_back_stop(model, c) ? plain : options;
+      if (std::isfinite(own.opening.open_position)) own.opening.open_position = model.contact_deflection(open_->data(), c);
+      recorder.follow_contact(model.contact_gap(c), own);
+    }
+    return recorder;
   }
 
   const PreparedScene& prepared_;
   const Watch& watch_;
   std::vector<Signal> signals_;
+  std::optional<OpenCommand> command_;
+  std::optional<Eigen::VectorXd> open_;  // after a command
   int count_ = 0;
   bool was_interrupted_ = false;
 };
@@ -275,11 +323,6 @@ void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared,
   }
 }
 
-// Tells whether a run that began closed has left its contact for good.
-bool has_opened(const Trajectory& run) {
-  return run.began_closed && !run.touches.empty() && std::isfinite(run.touches.back().end);
-}
-
 // A run that began closed loses the state in which it began, or the one in which it ends, where more modes deny them.
 void judge_opening_with_more_modes(Closing& c, const PreparedScene& prepared, const std::vector<Signal>& signals) {
   const ModeLadder ladder(prepared);
@@ -310,6 +353,11 @@ void warn_of_start(Closing& c, const PreparedScene& prepared) {
                                           engineering(t.other_start, "m", digits), other_start_hint(prepared));
     }
     c.warnings.push_back(t.message);
+  } else if (!t.began_closed && c.metrics.asked.opening && c.metrics.settled && c.metrics.status == Status::not_settled) {
+    c.warnings.emplace_back(std::isfinite(c.metrics.opening_time)
+                                ? "the switch opens on command, and is not at rest in its open state when the window ends: a "
+                                  "longer simulate.duration, or a slower waveform, shows it there"
+                                : "the switch is commanded to open, and its contact is closed when the window ends");
   } else if (t.began_closed && c.metrics.status == Status::not_settled) {
     c.warnings.emplace_back(
         has_opened(t) ? "the run begins closed, and the switch is not at rest in its open state when the window ends: a longer "
@@ -398,6 +446,7 @@ Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watc
   }
   c.trajectory = std::move(best.trajectory);
   c.rebounds = std::move(best.rebounds);
+  c.release_bounces = std::move(best.release_bounces);
   c.contacts = std::move(best.contacts);
   c.is_thinned = best.is_thinned;
   c.tolerance = best.tolerance;
@@ -417,119 +466,24 @@ Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watc
     c.rebounds.clear();
     judge_opening_with_more_modes(c, prepared, runs.signals());
   } else {
-    judge_with_more_modes(c, prepared, runs.signals());
+    judge_with_more_modes(c, prepared, runs.held());
   }
   warn_of_start(c, prepared);
   if (!c.trajectory.began_closed && c.metrics.status != Status::collapsed_at_rest && !c.trajectory.is_held &&
       c.metrics.status != Status::open) {
-    const ClosedState state = closed_state(prepared, runs.signals());
-    c.warnings.push_back(hold_warning(prepared.model, runs.signals(), state));
-    c.is_pulled_through = !warning(state).empty() || !prepared.model.open_equilibrium(hold_levels(runs.signals()));
+    const ClosedState state = closed_state(prepared, runs.held());
+    c.warnings.push_back(hold_warning(prepared.model, runs.held(), state));
+    c.is_pulled_through = !warning(state).empty() || !prepared.model.open_equilibrium(hold_levels(runs.held()));
   }
   if (std::isfinite(c.metrics.hold_force) && !runs.was_interrupted()) {
-    if (std::string few = few_summits_warning(prepared.model, runs.signals()); !few.empty()) c.warnings.push_back(std::move(few));
+    if (std::string few = few_summits_warning(prepared.model, runs.held()); !few.empty()) c.warnings.push_back(std::move(few));
   }
   if (runs.was_interrupted()) say_interrupted(c);
+  c.command = runs.command();
   c.warnings.insert(c.warnings.begin(), c.trajectory.warnings.begin(), c.trajectory.warnings.end());
   c.warnings.insert(c.warnings.begin(), prepared.scene.warnings.begin(), prepared.scene.warnings.end());
   set_drive_figures(c.metrics, prepared, runs.signals());
   return c;
-}
-
-std::string hold_warning(const Switch& model, const std::vector<Signal>& signals, const ClosedState& state) {
-  if (state.stable != false && hold_of(model, signals).is_held) return {};
-  const std::string unstable = warning(state);
-  return unstable.empty() ? std::string(not_held) : unstable;
-}
-
-namespace {
-
-// The same device, of which another contact is the first.
-Device with_first_contact(Device device, std::size_t c) {
-  device.contacts.front().gap = device.gap.contact;
-  std::swap(device.contacts.front(), device.contacts[c]);
-  device.gap.contact = device.contacts.front().gap;
-  return device;
-}
-
-// Conductance of a contact at rest under this force [S]; NaN where it is not known.
-double conductance_at(const Switch& model, const Eigen::VectorXd& q, double force, std::size_t c = 0) {
-  const ContactResistance contact = contact_resistance(model.device(), c);
-  if (!contact.is_known()) return Metrics::unset;
-  return contact.conductance(model.contact_deflection(q.data(), c) - model.contact_gap(c), force);
-}
-
-// What several contacts carry where the switch rests under these levels, and what the connection that they make does.
-Hold hold_of_connection(const Switch& model, const std::vector<double>& levels, Hold hold) {
-  const bool needs_all = model.device().connection == Connection::all;
-  std::optional<Eigen::VectorXd> rest;
-  if (keeps_closed(model, hold.closed)) rest = hold.closed->q;
-  // Another contact than the first one may hold the beam.
-  for (std::size_t c = 1; c < model.contacts() && !rest && !needs_all; ++c) {
-    if (!model.device().contacts[c].connects) continue;
-    const Switch other(with_first_contact(model.device(), c));
-    const std::optional<ClosedEquilibrium> closed = closed_equilibrium(other, levels);
-    if (keeps_closed(other, closed)) rest = closed->q;
-  }
-  hold.is_held = false;
-  hold.force = Metrics::unset;
-  if (!rest) return hold;
-  const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
-  std::vector<double> conductances;
-  double force = needs_all ? std::numeric_limits<double>::infinity() : 0;
-  for (std::size_t c = 0; c < model.contacts(); ++c) {
-    const bool acts =
-        model.has_spread_contact(c) || model.contact_deflection(rest->data(), c) > model.contact_gap(c) - model.contact_reach(c);
-    const double own = acts ? model.contact_push(rest->data(), still.data(), true, c) : 0;
-    hold.forces.push_back(own);
-    conductances.push_back(conductance_at(model, *rest, own, c));
-    hold.resistances.push_back(resistance_of(conductances.back()));
-    if (!model.device().contacts[c].connects) continue;
-    force = needs_all ? std::min(force, own) : std::max(force, own);
-  }
-  hold.is_held = force > 0;
-  if (!hold.is_held) return hold;
-  hold.force = force;
-  if (model.device().conducts()) hold.resistance = resistance_of(connection_conductance(model.device(), conductances));
-  return hold;
-}
-
-}  // namespace
-
-Hold hold_of(const Switch& model, const std::vector<Signal>& signals, const std::optional<ClosedEquilibrium>& near) {
-  const std::vector<double> levels = hold_levels(signals);
-  Hold hold{.closed = near ? closed_equilibrium_near(model, levels, *near) : closed_equilibrium(model, levels)};
-  const bool stays = keeps_closed(model, hold.closed);
-  if (stays) hold.force = hold.closed->contact_force;
-  if (stays && model.device().conducts()) hold.resistance = resistance_of(conductance_at(model, hold.closed->q, hold.force));
-  if (model.contacts() > 1) return hold_of_connection(model, levels, std::move(hold));
-  const bool sticks = model.has_contact() && may_stick(model.device().contacts.front().model);
-  hold.is_held = stays || !model.has_contact() || (sticks && !hold.closed);
-  return hold;
-}
-
-void set_hold(Trajectory& trajectory, const Hold& hold) {
-  trajectory.hold_force = hold.force;
-  trajectory.is_held = hold.is_held;
-  trajectory.hold_resistance = hold.resistance;
-  for (std::size_t c = 0; c < std::min(trajectory.contacts.size(), hold.forces.size()); ++c) {
-    trajectory.contacts[c].hold_resistance = hold.resistances[c];
-    if (hold.forces[c] > 0) trajectory.contacts[c].hold_force = hold.forces[c];
-  }
-}
-
-void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold) {
-  set_hold(trajectory, hold);
-  if (!has_pulling_electrode(model.device())) return;
-  std::optional<Eigen::VectorXd> q;
-  if (trajectory.touches.empty() || has_opened(trajectory)) {
-    q = model.open_equilibrium(hold_levels(signals));
-  } else if (hold.closed) {
-    q = hold.closed->q;
-  }
-  if (!q) return;
-  Switch::Workspace work = model.workspace();
-  trajectory.hold_capacitance = model.capacitance(searched_drive(model.device()), q->data(), work);
 }
 
 void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const std::vector<Signal>& signals) {

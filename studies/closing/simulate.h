@@ -4,14 +4,13 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/watch.h"
 #include "model/closing.h"
-#include "model/pull_in.h"
 #include "objectives/figures.h"
-#include "studies/closing/closed_state.h"
+#include "studies/closing/hold.h"
+#include "studies/closing/open_command.h"
 #include "studies/closing/prepared.h"
 
 namespace softland {
@@ -37,9 +36,11 @@ struct ContactClosing {
 
 struct Closing {
   Trajectory trajectory;
-  bool is_thinned = false;             ///< the trajectory lacks knots: it draws the picture, and no more (CourseRecorder)
-  std::vector<Rebound> rebounds = {};  ///< of all knots
+  bool is_thinned = false;                    ///< the trajectory lacks knots: it draws the picture, and no more (CourseRecorder)
+  std::vector<Rebound> rebounds = {};         ///< of all knots until the command to open, where there is one
+  std::vector<Rebound> release_bounces = {};  ///< separations after it that ended in a touch
   Metrics metrics;
+  std::optional<OpenCommand> command = {};    ///< where the drives command the switch to open
   std::vector<ContactClosing> contacts = {};  ///< in the order of Trajectory::contacts; empty where there is one
   /// Absolute error estimates: the difference to the judge's and what rounding leaves, that of the drive energy at least the
   /// residual of the energies, or what certify() makes of it. NaN where
@@ -69,36 +70,6 @@ void allow_for_residual(FigureValues& errors, const Trajectory& run);
 /// Below this a peak contact force is as good as none [N]: a hundredth of what bends the beam by the contact gap.
 [[nodiscard]] double least_peak_force(const PreparedScene& prepared);
 
-/// What is to be warned of where a trajectory is not held.
-inline constexpr std::string_view not_held =
-    "the hold levels do not keep the switch closed: it has no closed equilibrium under them. They are below its release "
-    "voltage, or so high that the electrode pulls the beam past the contact";
-
-/// What is to be warned of where the hold levels of these drives do not keep a switch closed whose closed state under them is
-/// `state`; empty where they do.
-[[nodiscard]] std::string hold_warning(const Switch& model, const std::vector<Signal>& signals, const ClosedState& state);
-
-/// What the hold levels of drives do to a closed switch.
-struct Hold {
-  std::optional<ClosedEquilibrium> closed;  ///< if there is one
-  double force = Metrics::unset;            ///< of the contact, where it is stable, or of the connection of several [N]
-  std::vector<double> forces = {};          ///< of each of several contacts [N]; empty where no state holds
-  double resistance = Metrics::unset;       ///< of the contact, or of the connection of several [Ohm]; NaN: open, or not known
-  std::vector<double> resistances = {};     ///< of each of several contacts [Ohm]; empty where no state holds
-  /// Whether anything holds the switch: not where it has a contact and no such equilibrium, unless the contact may hold on by
-  /// adhesion, nor where it is unstable.
-  bool is_held = true;
-  /// ClosingOptions::steady_force [N]; NaN where nothing holds the switch.
-  [[nodiscard]] double steady_force(const MetricsOptions& options) const { return options.steady_force * force; }
-};
-/// `near`: the equilibrium of a switch and drives little different, from which this one is found sooner.
-[[nodiscard]] Hold hold_of(const Switch& model, const std::vector<Signal>& signals,
-                           const std::optional<ClosedEquilibrium>& near = {});
-/// Sets hold force and whether anything holds the switch.
-void set_hold(Trajectory& trajectory, const Hold& hold);
-/// The same, and the capacitance where the hold levels leave the switch.
-void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold);
-
 /// Peak voltage and peak slew of these drives in the window.
 void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const std::vector<Signal>& signals);
 
@@ -108,9 +79,11 @@ void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const st
 /// helps; the figures are then those of the tightest run. No run is its own judge, and no error is 0. Asked to stop, the status
 /// of the figures is interrupted: they are those of the last run that was complete, without errors, or of the part of the first
 /// one that was run. A switch that is not held (see set_hold()) has not settled, however quiet it is at the end of the window.
-/// A run that began closed (PreparedScene::start()) has no figures of a landing, and is done where it ends open and at rest. The
-/// status is collapsed_at_rest where the state that it is to begin in does not exist, and the message names the other one.
-/// One that has not touched, and was not meant to (see stays_open()), has the status `open`.
+/// Where the drives command the switch to open (open_command.h), the figures of the landing are those until then, with the hold
+/// force under what the drives stood at, and the opening has its own: the run is done where it landed and settled before, and is
+/// open and at rest at the end. A run that began closed (PreparedScene::start()) has no figures of a landing, and is done where
+/// it ends open and at rest. The status is collapsed_at_rest where the state that it is to begin in does not exist, and the
+/// message names the other one. One that has not touched, and was not meant to (see stays_open()), has the status `open`.
 [[nodiscard]] Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watch& watch = {});
 
 }  // namespace softland

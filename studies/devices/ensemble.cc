@@ -450,7 +450,10 @@ DeviceCloser::DeviceCloser(const PreparedScene& nominal, const std::vector<Ensem
   }
   if (is_measured) meter_.emplace(nominal, gauges);
   for (const EnsembleDrive& drive : drives) {
-    nominal_signals_.push_back(nominal.driven(drive.waveforms));
+    std::vector<Signal> signals = nominal.driven(drive.waveforms);
+    nominal_commands_.push_back(run.opens_on_command ? open_command(nominal, signals, std::numeric_limits<double>::infinity())
+                                                     : std::nullopt);
+    nominal_signals_.push_back(nominal_commands_.back() ? nominal_commands_.back()->held : std::move(signals));
     nominal_closed_.push_back(closed_equilibrium(nominal.model, hold_levels(nominal_signals_.back())));
   }
 }
@@ -479,8 +482,15 @@ std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const
         own[i] = device_drives_.signals(drive.waveforms, units, devices[i].values);
         signals = &own[i];
       }
+      double duration = options_.duration;
+      if (nominal_commands_[d]) {
+        const double begin = nominal_commands_[d]->time * units.time;
+        if (signals == &own[i])
+          std::ranges::transform(own[i], own[i].begin(), [&](const Signal& s) { return held_from(s, begin); });
+        duration = std::min(duration, begin);
+      }
       places.push_back(i);
-      driven.push_back({.device = &devices[i], .signals = signals, .duration = options_.duration});
+      driven.push_back({.device = &devices[i], .signals = signals, .duration = duration});
     }
     std::vector<DeviceOutcome> closed =
         close_driven(driven, nominal_->scene.metrics, options_, nominal_closed_[d], measures_drive_energy_, vectors_);

@@ -19,6 +19,7 @@
 #include "sampling/classes.h"
 #include "sampling/points.h"
 #include "sampling/sobol_indices.h"
+#include "studies/closing/open_command.h"
 #include "studies/closing/prepared.h"
 #include "studies/devices/device_drives.h"
 
@@ -205,6 +206,8 @@ struct EnsembleRun {
   int jobs = 1;             ///< threads; does not change the outcomes
   Vectors vectors = vectors_in_use();
   bool measures_drive_energy = false;
+  /// Whether drives may command the devices to open (open_command.h): closings end there.
+  bool opens_on_command = false;
 };
 
 /// The closing of one device; figures are those of the run, however early its options end it.
@@ -256,6 +259,7 @@ class DeviceCloser {
   DeviceDrives device_drives_;
   std::optional<DeviceMeter> meter_;
   std::vector<std::vector<Signal>> nominal_signals_;              // of every drive
+  std::vector<std::optional<OpenCommand>> nominal_commands_;      // of every drive, where it may have one
   std::vector<std::optional<ClosedEquilibrium>> nominal_closed_;  // under its hold levels
 };
 

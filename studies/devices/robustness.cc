@@ -321,7 +321,8 @@ EnsembleRun run_of(const PreparedScene& nominal, const RobustnessOptions& option
           .seed = options.seed,
           .jobs = options.jobs,
           .vectors = options.vectors,
-          .measures_drive_energy = options.measures_drive_energy};
+          .measures_drive_energy = options.measures_drive_energy,
+          .opens_on_command = options.opens_on_command};
 }
 
 EnsembleDrive exactly_measured(const PreparedScene& nominal, const DriveRobustness& drive) {

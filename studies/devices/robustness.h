@@ -65,6 +65,7 @@ struct RobustnessOptions {
   /// A last drive that is calibrated is judged with nothing known of the devices as well, with each measurement alone, and with
   /// all of them without error, sorted into classes and each device in its own units.
   bool worth_of_measuring = false;
+  bool opens_on_command = false;  ///< EnsembleRun::opens_on_command
 };
 
 struct Robustness {

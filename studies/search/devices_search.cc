@@ -21,7 +21,7 @@
 namespace softland {
 namespace {
 
-constexpr std::uint64_t devices_of_choice = 512;
+constexpr std::uint64_t devices_of_choice = 512, least_of_verdict = 500;
 constexpr std::size_t most_of_race = 3;                       // placed, by either measure
 constexpr double most_times = 5, most_times_of_landings = 7;  // the plain step's closing time, of 95 %
 constexpr double margin = 0.98;                               // of the step's figures, in the choice
@@ -31,6 +31,7 @@ constexpr std::uint64_t measured_devices = 128;               // of a search in 
 constexpr double coarse_error = 0.01, fine_error = 0.002;     // of measurements, relative
 constexpr double least_times_of_error = 20;
 constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative
+constexpr double most_rows = 4;                                                   // in measured units
 constexpr std::size_t devices_by_error = 256;                                     // of the verdict
 constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2;
 constexpr double least_of_race = 0.4, end_of_race = 0.75;  // of a budget of time
@@ -135,15 +136,22 @@ DevicesSearch::DevicesSearch(const SceneFile& file, const OptimizeOptions& optio
   fit_budget();
 }
 
-// A race has as many of the usual closings as its work allows, and so many that its searches tell something.
+// A race has as many of the usual closings as its work allows, and so many that its searches tell something; a verdict has as
+// many devices as that share of the race, and so many that their 95th percentiles tell something.
 void DevicesSearch::fit_budget() {
   race_length_ = devices_.closings;
+  verdict_ = devices_.verdict;
   if (!devices_.counts_work) return;
   const double usual = usual_work(shaped_drives(first().given.scene.file, options_.actuator));
   const bool in_lanes = why_not_in_lanes(first().given.model).empty();
   const double work = closing_work(first()).counted * (in_lanes ? 1 : usual_lanes);
   const auto shortest = static_cast<long>(std::ceil(least_length_of_race * static_cast<double>(race_closings)));
   race_length_ = std::min(devices_.closings, std::max(within_work(devices_.closings, work, usual), shortest));
+  if (!devices_.verdict_is_asked) {
+    const double share = static_cast<double>(race_length_) / static_cast<double>(devices_.closings);
+    verdict_ = std::max(std::min(devices_.verdict, least_of_verdict),
+                        static_cast<std::uint64_t>(share * static_cast<double>(devices_.verdict)));
+  }
 }
 
 SearchEstimate DevicesSearch::estimate(SearchEstimate nominal) const {
@@ -151,7 +159,7 @@ SearchEstimate DevicesSearch::estimate(SearchEstimate nominal) const {
   constexpr double rows = 20;
   const double one = device_share * (approach_ ? slow_approach : 1) * nominal.closing;
   const double searches = usual_room_.empty() || devices_.are_a_budget ? 1.5 : 2.25;
-  const double closings = searches * static_cast<double>(race_length_) + rows * static_cast<double>(devices_.verdict);
+  const double closings = searches * static_cast<double>(race_length_) + rows * static_cast<double>(verdict_);
   nominal.closings = race_length_;
   nominal.has_fewer = nominal.has_fewer || race_length_ < devices_.closings;
   nominal.seconds = std::min(nominal.seconds + closings * one, options_.max_seconds * options_.jobs);
@@ -307,7 +315,7 @@ bool DevicesSearch::says_when_to_close() const {
 // Of a budget of time the searches leave what the verdict takes, where they keep a part; `closing`: of one device [s].
 void DevicesSearch::reserve_for_verdict(double closing, double reserved) {
   constexpr double rows = 20;  // over a search's window: three over the whole one, three in measured units, and the front
-  const double verdict = rows * static_cast<double>(devices_.verdict) * closing, all = options_.max_seconds;
+  const double verdict = rows * static_cast<double>(verdict_) * closing, all = options_.max_seconds;
   race_end_ = std::clamp(all - verdict, least_of_race * all, end_of_race * all) - reserved;
 }
 
@@ -507,9 +515,14 @@ InMeasuredUnits DevicesSearch::in_measured_units(const ChosenFrom& winner, const
   const bool times = tells_time();
   const auto found = searched_in(winner, drawing, std::array{coarse, times ? by_time : fine});
   if (!found[0]) return all;
-  all.rows = {row_of("Vdp to 1 %", *found[0], coarse, true), row_of("Vdp and period to 1 %", *found[0], both, false)};
-  if (found[1]) all.rows.push_back(row_of("Vdp and period to 0.2 %", *found[1], fine, !times));
-  if (found[1] && times) all.rows.push_back(row_of("closing time to 50 ns", *found[1], by_time, true));
+  const auto row = [&](const char* name, const DriveWaveforms& waveforms, const Calibration& knowledge, bool is_searched) {
+    watch_.tell("verdict on devices that are measured", static_cast<double>(all.rows.size()) / most_rows);
+    all.rows.push_back(row_of(name, waveforms, knowledge, is_searched));
+  };
+  row("Vdp to 1 %", *found[0], coarse, true);
+  row("Vdp and period to 1 %", *found[0], both, false);
+  if (found[1]) row("Vdp and period to 0.2 %", *found[1], fine, !times);
+  if (found[1] && times) row("closing time to 50 ns", *found[1], by_time, true);
   std::vector waveforms{*found[0]};
   if (found[1]) waveforms.push_back(*found[1]);
   all.by_error = judged_by_error(waveforms, winner.waveforms);
@@ -622,6 +635,7 @@ std::vector<KnownVdp> DevicesSearch::judged_by_error(const std::vector<DriveWave
     }
     watch_.throw_if_stopped();
     judged.push_back(best);
+    watch_.tell("verdict by the error of Vdp", static_cast<double>(judged.size()) / errors_of_pull_in.size());
   }
   return judged;
 }
@@ -634,8 +648,8 @@ RobustCost DevicesSearch::verdict_devices(const KnownUnits& known) {
 const GaugedEnsemble& DevicesSearch::gauged(const Calibration& knowledge) {
   std::optional<GaugedEnsemble>& all = knowledge.time_error ? gauged_by_time_ : gauged_by_pull_in_;
   if (!all)
-    all = gauge_all(Ensemble(first().given, devices_.verdict, options_.seed), Gauges::of(knowledge), compared_precision,
-                    options_.jobs, watch_);
+    all = gauge_all(Ensemble(first().given, verdict_, options_.seed), Gauges::of(knowledge), compared_precision, options_.jobs,
+                    watch_);
   return *all;
 }
 

@@ -33,6 +33,7 @@ struct Leading {
 struct ForDevicesOptions {
   std::vector<Criterion> conditions = {};  ///< on figures of device_figures, that 95 % of the devices have to fulfil
   std::uint64_t verdict = 2000;            ///< fresh devices
+  bool verdict_is_asked = false;           ///< else slow closings have fewer, as counts_work has it
   /// Families of the race; empty: raced_families, as far as the scene has room for them, and the quasi-static approach.
   std::string families = {};
   bool hold_step_is_chosen = true;  ///< with the actuator pzt the electrode's plain step may come later than t = 0
@@ -151,6 +152,8 @@ class DevicesSearch {
   /// The searched drives of a candidate, and the others as in the plain step.
   [[nodiscard]] DriveWaveforms all_drives(DriveWaveforms searched) const;
   [[nodiscard]] long closings() const { return closings_; }
+  /// Fresh devices of the verdict: as many as were asked for, or fewer where closings are slow.
+  [[nodiscard]] std::uint64_t verdict() const { return verdict_; }
 
  private:
   // What the choice asks of a candidate beside its rank.
@@ -217,6 +220,7 @@ class DevicesSearch {
   std::atomic<bool> gave_up_ = false;
   double race_end_ = 0;  // since the beginning [s]
   long race_length_ = race_closings;
+  std::uint64_t verdict_ = ForDevicesOptions{}.verdict;
   std::vector<Criterion> conditions_;  // with limits of their own
   RobustAim tail_aim_;
   RaceAims aims_;

@@ -367,7 +367,7 @@ class DevicesStudy {
   }
 
   [[nodiscard]] RobustnessOptions verdict_options() const {
-    return {.samples = devices_.verdict,
+    return {.samples = searched_.verdict(),
             .seed = options_.seed,
             .jobs = options_.jobs,
             .measures_drive_energy = options_.target.measures_drive_energy()};
@@ -552,6 +552,7 @@ class DevicesStudy {
     const RobustCost fresh = searched_.verdict_devices(searched_.known());
     for (const ChosenFrom* one : kept) {
       watch_.throw_if_stopped();
+      tell("verdict on candidates", static_cast<double>(findings().front.size()) / static_cast<double>(kept.size()));
       const std::vector<DeviceOutcome> outcomes = searched_.closed(fresh, one->waveforms);
       findings().front.push_back({.first_touch = quantile_95(outcomes, key_of(&Metrics::initial_contact_time)),
                                   .impact_speed = quantile_95(outcomes, key_of(&Metrics::largest_impact_velocity)),

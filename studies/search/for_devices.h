@@ -9,7 +9,8 @@
 //   4  searches in units that are measured on every device: Vdp to 1 %, and the closing time of one slow step to 50 ns (of
 //      switches for which that is no time, Vdp and period to 0.2 %); again, under conditions, where one finds what is harder
 //      than the plain step
-//   5  verdict on 2000 fresh devices: plain step, drawing and winner over the whole window; measured units over that of a search,
+//   5  verdict on 2000 fresh devices (of slow closings 500 or more): plain step, drawing and winner over the whole window;
+//   measured units over that of a search,
 //      which moves 95 % quantiles by less than 0.4 %
 //
 // What wins where a drive can carry the switch to its contact through stable equilibria (stable_approach.h): of the candidates

@@ -57,6 +57,7 @@ class Race {
     alone_ = all_rungs;
     const double longer = alone_ || options_.are_a_budget ? length : longer_where_many_land * length;
     planned_ = all_rungs ? length * static_cast<double>(planned) : static_cast<double>(options_.closings);
+    planned_ += static_cast<double>(scouting_of(runners, begun));
     begin(runners, begun);
     std::erase_if(runners, [](const Runner& r) { return r.x.empty(); });
     bool many = false;
@@ -64,8 +65,10 @@ class Race {
       search(runners, rungs[k], many ? longer : length, k);
       many = judge(runners, rungs[std::min(k + 1, rungs.size() - 1)].devices, k == 0 ? enough_land : many_land);
       if (k > 0) add(result, runners);
-      if (k == 0 && many)
+      if (k == 0 && many) {
         planned_ = static_cast<double>(closings_) + longer / length * (planned_ - static_cast<double>(closings_));
+        if (!all_rungs) planned_ += static_cast<double>(most_again * last_again.closings) * longer;
+      }
       if (all_rungs) continue;
       runners = k == 0 ? survivors(std::move(runners), many) : best(std::move(runners), many);
       if (options_.on_stage && k + 1 < rungs.size() && !over()) options_.on_stage(racer(leading(runners, many)));
@@ -101,6 +104,15 @@ class Race {
   void took(long closings) {
     const long all = closings_ += closings;
     if (options_.progress) options_.progress(std::min(1.0, static_cast<double>(all) / planned_));
+  }
+
+  // Closings in which the starts are looked at.
+  [[nodiscard]] std::size_t scouting_of(const std::vector<Runner>& runners, const std::vector<DriveWaveforms>& begun) const {
+    std::set<std::size_t> families;
+    for (const Runner& r : runners) families.insert(r.family);
+    std::size_t starts = 0;
+    for (const std::size_t family : families) starts += starts_of(family, begun).size();
+    return scouting_devices * starts;
   }
 
   // The best of many starts, for either measure.

@@ -128,6 +128,7 @@ ForDevicesOptions race_of(const SearchRequest& request, const SceneFile& scene, 
   options.family = families_of_drawing(options.family, scene, options.actuator);
   read_shared_conditions(request, options.conditions, race.conditions);
   race.verdict = devices_of(request, race.verdict, 100);
+  race.verdict_is_asked = request.samples.has_value();
   race.counts_work = !request.budget;
   if (!request.budget) return race;
   if (std::isfinite(options.max_seconds)) {

@@ -206,6 +206,33 @@ TEST_P(EveryVerb, OpensAgain) {
   EXPECT_EQ(done({"export", "out/release.toml"}).out.rfind("time_s,", 0), 0U);
 }
 
+TEST_P(EveryVerb, CyclesAtARate_optimized) {
+  const json closed = data(scene().quickly({"simulate", scene().name, "--quiet", "--json", "-"}))["metrics"];
+  const json& touch = closed["initial_contact_time_s"];
+  constexpr double long_cycle = 40;  // times the first touch
+  const double rate = touch.is_number() ? 1 / (long_cycle * touch.get<double>()) : 1e3;
+  const std::vector<std::string> words = scene().quickly(
+      {"cycle", scene().name, "--rate", std::to_string(rate) + " Hz", "--no-scan", "--cycles", "2", "--quiet", "--out", "out"});
+  if (!scene().has_contact()) return refused(words, "cycle needs a [contact]");
+  const std::string text = done(words).out;
+  EXPECT_NE(text.find("Cycles at "), std::string::npos);
+  const json j = json::parse(read(here.path() / "out/cycle.json"), nullptr, false);
+  const json& drive = j["drives"].back();
+  ASSERT_EQ(drive["status"], "done") << drive["message"];
+  ASSERT_EQ(drive["cycles"].size(), 2U);
+  const bool sticks = text.find("the switch is closed when a cycle ends") != std::string::npos;
+  EXPECT_EQ(sticks, scene().name == "nem-casimir.toml") << "which adhesion holds at 0 V";
+  for (const json& cycle : drive["cycles"]) {
+    if (sticks) break;
+    EXPECT_TRUE(cycle["opening_time_s"].is_number() && cycle["opening_time_s"] >= 0) << cycle;
+    EXPECT_GT(cycle["closed_time_s"], 0);
+    EXPECT_GT(cycle["largest_impact_velocity_m_s"], 0);
+  }
+  // Of several contacts the first touch of a cycle is that of all.
+  if (!j["scene"]["contact"].contains("model")) return;
+  EXPECT_NEAR(drive["cycles"][0]["initial_contact_time_s"].get<double>(), touch.get<double>(), 1e-5 * touch.get<double>());
+}
+
 TEST_P(EveryVerb, Compares_optimized) {
   (void)done(scene().quickly({"effects", scene().name, "--quiet", "--json", "effects.json"}));
   const std::string written = read(here.path() / "effects.json");

@@ -24,7 +24,7 @@ Metrics distinct_metrics() {
   for (const Figure& figure : figure_table) {
     if (const auto* const number = std::get_if<double Metrics::*>(&figure.member)) m.** number = next++;
   }
-  m.bounce_count = m.electrical_bounces = 17;
+  m.bounce_count = m.electrical_bounces = m.release_bounces = 17;
   m.settled = true;
   return m;
 }
@@ -39,19 +39,22 @@ TEST(Figures, AreTheMembersOfMetricsEachOnce) {
   }
   // Does not compile with another number of members.
   const auto& [status, t_i, t_p, t_b, n_b, b_h, t_1, v_i, force, impact, hold, steady, least, capacitance, drive, settled,
-               resistance, closed, closed_for_good, n_e, asked, deflection, overshoot, settling, voltage, slew, v_max, closest,
-               separated, last_end, excess, end, reopened] = distinct_metrics();
+               resistance, closed, closed_for_good, n_e, asked, command, opening, n_o, bounce, rest, beyond, back, in_touch, stop,
+               deflection, overshoot, settling, voltage, slew, v_max, closest, separated, last_end, excess, end, reopened] =
+      distinct_metrics();
   EXPECT_EQ(status, Status::not_run);
-  constexpr std::size_t members = 29, told = 24;
+  constexpr std::size_t members = 38, told = 33;
   EXPECT_EQ(figure_table.size(), members);
   EXPECT_EQ(all_figures.size(), told);
   EXPECT_TRUE(settled);
   EXPECT_EQ(n_b, 17);
   EXPECT_EQ(n_e, 17);
+  EXPECT_EQ(n_o, 17);
   EXPECT_EQ(asked, AskedFigures());
-  for (const double number : {t_i,    t_p,     t_b,         b_h,      t_1,        v_i,        force,    impact,         hold,
-                              steady, least,   capacitance, drive,    deflection, overshoot,  settling, voltage,        slew,
-                              v_max,  closest, separated,   last_end, excess,     resistance, closed,   closed_for_good})
+  for (const double number : {t_i,     t_p,     t_b,         b_h,      t_1,        v_i,        force,    impact,          hold,
+                              steady,  least,   capacitance, drive,    deflection, overshoot,  settling, voltage,         slew,
+                              v_max,   closest, separated,   last_end, excess,     resistance, closed,   closed_for_good, command,
+                              opening, bounce,  rest,        beyond,   back,       in_touch,   stop})
     EXPECT_TRUE(number > 0);
   EXPECT_TRUE(std::isnan(end) && !reopened) << "no figures of merit";
 }
@@ -116,10 +119,13 @@ TEST(Figures, HaveTheirErrorsFromThoseWhoCanTell) {
   EXPECT_EQ(
       keys([](const Figure& f) { return f.is_told_by_two_runs(); }),
       "t_i, B_H, t_1, v_i, peak force, impact energy, t_F, least force, t_e, static deflection, overshoot, open settling time, "
+      "opening time, highest bounce on opening, open and at rest, overshoot on opening, least gap, time in touch, impact on the "
+      "back "
+      "stop, "
       "drive energy, ");
   EXPECT_EQ(keys([](const Figure& f) { return f.has_error() && !f.is_told_by_two_runs(); }),
-            "t_p, t_b, N_B, hold force, contact resistance, t_c, N_e, capacitance, ");
-  EXPECT_EQ(keys([](const Figure& f) { return !f.has_error(); }), "peak voltage, peak slew, settled, ");
+            "t_p, t_b, N_B, hold force, contact resistance, t_c, N_e, capacitance, bounces on opening, ");
+  EXPECT_EQ(keys([](const Figure& f) { return !f.has_error(); }), "command to open, peak voltage, peak slew, settled, ");
 }
 
 TEST(Figures, OfTargetsAreLowerWhereTheyAreBetter) {

@@ -12,7 +12,7 @@ PROGRAM = os.environ["SOFTLAND_PROGRAM"]
 METHODS = {
     "simulate": softland.Scene.simulate, "optimize": softland.Scene.optimize, "explore": softland.Scene.explore, "tune": softland.Scene.tuning, "device": softland.Scene.device,
     "export": softland.Scene.export, "check": softland.Scene.checked, "pull-in": softland.Scene.pull_in, "effects": softland.Scene.effects, "accuracy": softland.Scene.accuracy,
-    "limit": softland.Scene.limit, "release": softland.Scene.opening, "robustness": softland.Scene.robustness, "fit": softland.Scene.fit, "calibrate": softland.Scene.calibrate,
+    "limit": softland.Scene.limit, "release": softland.Scene.opening, "cycle": softland.Scene.cycle, "robustness": softland.Scene.robustness, "fit": softland.Scene.fit, "calibrate": softland.Scene.calibrate,
 }  # fmt: skip
 NO_METHOD = {
     "modes": "scene.modes() has the modes of a scene, and tables of other programs are arrays in Python",

@@ -37,6 +37,7 @@ Told told_of(const std::string& study) {
       {"pull-in", {{"sweep", {"0 V:20 V:9"}}}},
       {"limit", {}},
       {"release", {{"budget", {"60"}}, {"samples", {"8"}}}},
+      {"cycle", {{"rate", {"5 kHz"}}, {"samples", {"2"}}, {"cycles", {"2"}}}},
       {"robustness", {{"samples", {"12"}}, {"other-ways", {""}}, {"calibrate", {"Vdp:1 %"}}}},
       {"fit", {{"data", {measured}}, {"starts", {"2"}}, {"unknown", {"structure.youngs_modulus", "structure.thickness"}}}},
       {"calibrate", {{"samples", {"16"}}, {"steps", {"1.2"}}}}};

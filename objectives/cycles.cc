@@ -1,0 +1,57 @@
+#include "objectives/cycles.h"
+
+#include <cmath>
+
+namespace softland {
+
+CycleRecorder::CycleRecorder(double contact_gap, const MetricsOptions& options, const CycleTimes& times)
+    : contact_gap_(contact_gap), times_(times) {
+  for (std::size_t n = 0; n < times.cycles; ++n) {
+    MetricsOptions own = options;
+    own.opening.time = times.command(n);
+    cycles_.push_back({.metrics = MetricsObserver(contact_gap, own)});
+  }
+  cycles_.front().began_open = true;
+}
+
+// A knot between two cycles belongs to both.
+void CycleRecorder::knot(const TrajectoryPoint& point) {
+  if (current_ == cycles_.size()) return;
+  cycles_[current_].metrics.knot(point);
+  if (point.time < times_.begin(current_ + 1)) return;
+  if (++current_ == cycles_.size()) return;
+  cycles_[current_].began_open = point.position < contact_gap_;
+  cycles_[current_].metrics.knot(point);
+}
+
+void CycleRecorder::touch(const Touch& touch) {
+  const auto cycle = static_cast<std::size_t>(touch.begin / times_.period);
+  if (cycle < cycles_.size()) cycles_[cycle].metrics.touch(touch);
+}
+
+void CycleRecorder::energies(double time, const EnergyBalance& balance) {
+  if (counted_ == cycles_.size() || time < times_.begin(counted_ + 1)) return;
+  cycles_[counted_++].source_work = balance.source_work - work_before_;
+  work_before_ = balance.source_work;
+}
+
+CycleFigures CycleRecorder::figures(std::size_t cycle, const Trajectory& run) {
+  Cycle& own = cycles_[cycle];
+  Trajectory alone = run;
+  alone.status = Status::done;
+  alone.contacts.clear();
+  alone.steady_force_time = alone.least_force_after_touch = Metrics::unset;
+  alone.energy.source_work =
+      std::isnan(own.source_work) && counted_ == cycle ? run.energy.source_work - work_before_ : own.source_work;
+  alone.layer_energy = 0;
+  CycleFigures f{.metrics = own.metrics.metrics(alone)};
+  const double begin = times_.begin(cycle);
+  for (double Metrics::*const time : {&Metrics::initial_contact_time, &Metrics::permanent_contact_time,
+                                      &Metrics::last_rebound_end, &Metrics::open_command, &Metrics::end})
+    f.metrics.*time -= begin;
+  f.closes = own.began_open && f.metrics.initial_contact_time < times_.on_time;
+  f.opens = std::isfinite(f.metrics.opening_time);
+  return f;
+}
+
+}  // namespace softland

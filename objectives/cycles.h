@@ -1,0 +1,60 @@
+// Figures of a switch that is closed and opened again and again in one run: those of every cycle, each from the state in which
+// the one before has left the switch.
+#pragma once
+
+#include <vector>
+
+#include "objectives/metrics.h"
+
+namespace softland {
+
+/// When cycles begin, and when they are commanded to open.
+struct CycleTimes {
+  double period = 0;   ///< [s]
+  double on_time = 0;  ///< from the begin of a cycle to its command [s]
+  std::size_t cycles = 1;
+
+  [[nodiscard]] double begin(std::size_t cycle) const { return static_cast<double>(cycle) * period; }  ///< [s]
+  [[nodiscard]] double command(std::size_t cycle) const { return begin(cycle) + on_time; }             ///< [s]
+};
+
+/// One cycle of a run.
+struct CycleFigures {
+  /// Figures of its closing until the command, and of the opening after it. Times count from the begin of the cycle, the drive
+  /// energy is what the sources give in it, and the first touch that of the connection.
+  Metrics metrics;
+  bool closes = false;  ///< it begins open, and touches before the command
+  bool opens = false;   ///< it is open at the end
+};
+
+class CycleRecorder final : public ClosingObserver {
+ public:
+  /// `contact_gap` [m]; `options` say what a rebound is, and where the contact comes to rest (MetricsOptions::opening).
+  CycleRecorder(double contact_gap, const MetricsOptions& options, const CycleTimes& times);
+
+  void knot(const TrajectoryPoint& point) override;
+  void touch(const Touch& touch) override;
+  [[nodiscard]] bool takes_energies() const override { return true; }
+  void energies(double time, const EnergyBalance& balance) override;
+
+  /// How many have ended.
+  [[nodiscard]] std::size_t ended() const { return current_; }
+  /// Of one that has begun. `run`: with the hold force and the in-contact period of the closings, as far as they are known.
+  [[nodiscard]] CycleFigures figures(std::size_t cycle, const Trajectory& run);
+
+ private:
+  struct Cycle {
+    MetricsObserver metrics;
+    double source_work = Metrics::unset;  // [J]
+    bool began_open = false;
+  };
+
+  double contact_gap_;
+  CycleTimes times_;
+  std::vector<Cycle> cycles_;
+  std::size_t current_ = 0;
+  double work_before_ = 0;  // at the begin of the current cycle [J]
+  std::size_t counted_ = 0;
+};
+
+}  // namespace softland

@@ -1,0 +1,296 @@
+#include "reports/cycle_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "reports/chart.h"
+#include "reports/document.h"
+#include "reports/downsample.h"
+#include "reports/quantity.h"
+#include "reports/study_members.h"
+#include "reports/svg.h"
+#include "sampling/statistics.h"
+#include "waveforms/export.h"
+
+namespace softland {
+namespace {
+
+using internal::percent;
+using internal::quantity;
+using nlohmann::json;
+
+constexpr std::size_t most_of_course = 4000;  // of a course
+constexpr double line_tolerance = 1e-4;       // of the largest voltage, where a drive is no straight line
+constexpr std::size_t told_cycles = 3;        // the first ones, and the last
+
+CycleRecord::Devices devices_of(const CycledDrive& drive, double rate) {
+  const std::vector<double>& rates = drive.of_devices;
+  const auto steady = std::ranges::count_if(rates, [&](double own) { return own >= rate; });
+  return {.count = rates.size(),
+          .at_5 = sample_quantile(rates, 0.05),
+          .at_50 = sample_quantile(rates, 0.5),
+          .at_95 = sample_quantile(rates, 0.95),
+          .steady = static_cast<double>(steady) / static_cast<double>(rates.size())};
+}
+
+// One cycle of every drive that is a voltage.
+std::map<std::string, Points> waveforms_of(const PreparedScene& given, const CycledDrive& drive, const CycleTimes& times) {
+  std::map<std::string, Points> all;
+  CycleTimes once = times;
+  once.cycles = 1;
+  const std::vector<Signal> signals = cycled(drive.waveforms, once);
+  const std::vector<std::string> names = given.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] == dispersion_drive) continue;
+    const double size = std::max(signals[k].peak(), 1e-9);
+    for (const auto& [time, voltage] : polyline(signals[k], once.period, line_tolerance * size, 0))
+      all[names[k]].push_back({time, voltage});
+  }
+  return all;
+}
+
+CycleRecord::Course course_of(const Cycles& cycles) {
+  std::vector<double> time, gap;
+  for (const auto& [t, g] : cycles.gap) time.push_back(t), gap.push_back(g);
+  CycleRecord::Course course;
+  for (const std::size_t row : internal::downsampled({&gap}, most_of_course)) {
+    course.time.push_back(time[row]);
+    course.gap.push_back(gap[row]);
+  }
+  return course;
+}
+
+const CycleRecord::Drive& found_of(const CycleRecord& r) { return r.drives.back(); }
+
+std::string rate_words(double rate) { return std::isfinite(rate) ? quantity(rate, "Hz") : std::string("none"); }
+
+std::string finding(const CycleRecord& r) {
+  if (r.drives.empty()) return "No rate was tried.";
+  const CycleRecord::Drive &plain = r.drives.front(), &found = found_of(r);
+  if (found.steady_rates.empty() && found.other_rates.empty()) {
+    if (!std::isfinite(r.rate)) return "The switch does not close and come back to rest: there is no rate to scan.";
+    const bool sticks = std::ranges::any_of(found.cycles, [](const auto& c) { return !std::isfinite(c.metrics.opening_time); });
+    return fmt::format("Cycles at {}{}.", quantity(r.rate, "Hz"), sticks ? "; the switch is closed when a cycle ends" : "");
+  }
+  const auto at = [](double rate) {
+    return std::isfinite(rate) ? "at up to " + quantity(rate, "Hz") : std::string("at no rate of the scan");
+  };
+  if (r.drives.size() == 1) return fmt::format("Switched plainly, every cycle lands like the first {}.", at(plain.largest));
+  return fmt::format("With these waveforms every cycle lands like the first {}; switched plainly, {}.", at(found.largest),
+                     at(plain.largest));
+}
+
+std::string name_words(const CycleRecord& r, const CycleRecord::Drive& drive) {
+  return &drive == &r.drives.front() ? "plain" : "waveforms";
+}
+
+ReportTable rates_table(const CycleRecord& r) {
+  ReportTable table{.head = {""}, .rows = {{"largest steady rate"}, {"steady again"}}};
+  const bool has_devices = std::ranges::any_of(r.drives, [](const CycleRecord::Drive& d) { return d.devices.has_value(); });
+  if (has_devices) table.rows.insert(table.rows.end(), {{"of 95 % of the devices"}, {"of half of the devices"}});
+  const bool has_rate = has_devices && std::isfinite(r.rate);
+  if (has_rate) table.rows.push_back({fmt::format("devices steady at {}", quantity(r.rate, "Hz"))});
+  for (const CycleRecord::Drive& d : r.drives) {
+    table.head.push_back(name_words(r, d));
+    std::string windows;
+    for (const auto& [low, high] : d.windows)
+      windows += (windows.empty() ? "" : ", ") +
+                 (low == high ? quantity(low, "Hz") : quantity(low, "Hz") + " to " + quantity(high, "Hz"));
+    table.rows[0].push_back(rate_words(d.largest));
+    table.rows[1].push_back(windows.empty() ? "—" : windows);
+    if (!has_devices) continue;
+    table.rows[2].push_back(d.devices ? rate_words(d.devices->at_5) : "—");
+    table.rows[3].push_back(d.devices ? rate_words(d.devices->at_50) : "—");
+    if (has_rate) table.rows[4].push_back(d.devices ? percent(d.devices->steady) : "—");
+  }
+  return table;
+}
+
+ReportTable cycles_table(const CycleRecord::Drive& drive) {
+  struct Row {
+    const char* name;
+    Figure::Member member;
+  };
+  const std::array rows{Row{"first contact", &Metrics::initial_contact_time},
+                        Row{"largest impact speed", &Metrics::largest_impact_velocity},
+                        Row{"rebounds", &Metrics::bounce_count},
+                        Row{"highest rebound", &Metrics::major_bounce_height},
+                        Row{"opening time", &Metrics::opening_time},
+                        Row{"bounces on opening", &Metrics::release_bounces},
+                        Row{"least gap after opening", &Metrics::least_gap_open},
+                        Row{"time in touch", &Metrics::closed_time},
+                        Row{"drive energy", &Metrics::drive_energy}};
+  ReportTable table{.head = {"cycle"}, .rows = {}};
+  std::vector<std::size_t> shown;
+  for (std::size_t n = 0; n < drive.cycles.size(); ++n) {
+    if (n < told_cycles || n + 1 == drive.cycles.size()) shown.push_back(n);
+  }
+  for (const std::size_t n : shown) table.head.push_back(std::to_string(n + 1));
+  for (const Row& row : rows) {
+    const Figure& figure = figure_of(row.member);
+    TableRow cells{row.name};
+    for (const std::size_t n : shown) {
+      const double value = figure.value(drive.cycles[n].metrics);
+      cells.push_back(!std::isfinite(value) ? "—"
+                      : figure.is_count()   ? fmt::format("{:.0f}", value)
+                                            : quantity(value, figure.unit));
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+}  // namespace
+
+template <class A>
+void members(A& a, CycleRecord::Devices& d) {
+  a("count", d.count);
+  a("largest_rate_5_Hz", d.at_5);
+  a("largest_rate_50_Hz", d.at_50);
+  a("largest_rate_95_Hz", d.at_95);
+  a("steady_at_rate", d.steady);
+}
+
+template <class A>
+void members(A& a, CycleRecord::Cycle& cycle) {
+  members(a, cycle.metrics);
+  a(key_of(&Metrics::largest_impact_velocity), cycle.metrics.largest_impact_velocity);
+}
+
+template <class A>
+void members(A& a, CycleRecord::Drive& d) {
+  a("name", d.name);
+  a("largest_rate_Hz", d.largest);
+  a("windows_Hz", d.windows);
+  a("steady_rates_Hz", d.steady_rates);
+  a("other_rates_Hz", d.other_rates);
+  a("devices", internal::OrNull{d.devices});
+  a("status", d.status);
+  a("message", d.message);
+  a("cycles", d.cycles);
+  a("waveforms", d.waveforms);
+}
+
+template <class A>
+void members(A& a, CycleRecord::Course& course) {
+  a("time_s", course.time);
+  a("tip_gap_m", course.gap);
+}
+
+template <class A>
+void members(A& a, CycleRecord& r) {
+  members(a, r.origin);
+  a("status", r.status);
+  a("rate_Hz", r.rate);
+  a("duty", r.duty);
+  a("cycles", r.cycles);
+  a("seed", r.seed);
+  a("contact_gap_m", r.contact_gap);
+  a("drives", r.drives);
+  a("warnings", r.warnings);
+  if (a.has(!r.curves.empty())) a("curves", r.curves);
+}
+
+CycleRecord record_of(const PreparedScene& given, const Cycling& cycling, const std::string& command) {
+  CycleRecord record{.origin = origin_of("cycle", given, command),
+                     .status = cycling.interrupted ? "interrupted" : "done",
+                     .rate = cycling.rate,
+                     .duty = cycling.options.duty,
+                     .cycles = cycling.options.cycles,
+                     .seed = cycling.options.seed,
+                     .contact_gap = given.model.contact_gap(),
+                     .drives = {},
+                     .warnings = given.scene.warnings,
+                     .curves = {}};
+  for (const CycledDrive& drive : cycling.drives) {
+    CycleRecord::Drive& own = record.drives.emplace_back();
+    own.name = drive.waveforms.name;
+    own.largest = drive.scan.largest;
+    for (const auto& [low, high] : drive.scan.windows) own.windows.push_back({low, high});
+    for (const RateScan::Rate& one : drive.scan.rates) (one.is_steady ? own.steady_rates : own.other_rates).push_back(one.rate);
+    if (!drive.of_devices.empty()) own.devices = devices_of(drive, cycling.rate);
+    if (!drive.cycles) continue;
+    own.status = to_string(drive.cycles->status);
+    own.message = drive.cycles->message;
+    for (const CycleFigures& one : drive.cycles->cycles) own.cycles.push_back({one.metrics});
+    own.waveforms = waveforms_of(given, drive, drive.cycles->times);
+    record.curves[own.name] = course_of(*drive.cycles);
+  }
+  return record;
+}
+
+json json_of(const CycleRecord& record) { return internal::record_json(record); }
+
+CycleRecord read_cycles(const json& from) { return internal::whole_record<CycleRecord>(from); }
+
+std::string text_of(const CycleRecord& r) {
+  Document document{.headline = finding(r),
+                    .doubt = r.status == "interrupted" ? "Interrupted: what follows is the part that was computed." : "",
+                    .sections = {},
+                    .warnings = r.warnings};
+  ReportSection rates{.id = "rates", .heading = "Rates", .parts = {rates_table(r)}};
+  rates.parts.emplace_back(Paragraph{fmt::format(
+      "A rate is steady where {} cycles close and open, and land within 5 % as fast and as high as the first one. The largest is "
+      "that below which every rate was steady, in steps of 5 %, at a duty of {}.",
+      r.cycles, percent(r.duty))});
+  const bool has_scan =
+      std::ranges::any_of(r.drives, [](const auto& d) { return !d.steady_rates.empty() || !d.other_rates.empty(); });
+  if (has_scan) document.sections.push_back(std::move(rates));
+  for (const CycleRecord::Drive& drive : r.drives) {
+    if (drive.cycles.empty()) continue;
+    document.sections.push_back({.id = "cycles-" + name_words(r, drive),
+                                 .heading = fmt::format("Cycles at {}, {}", quantity(r.rate, "Hz"), name_words(r, drive)),
+                                 .parts = {cycles_table(drive)}});
+    if (drive.message && !drive.message->empty()) document.sections.back().parts.emplace_back(Paragraph{*drive.message});
+  }
+  return terminal_text(document);
+}
+
+std::string svg_of(const CycleRecord& r) {
+  const double end = static_cast<double>(std::min<std::uint64_t>(r.cycles, told_cycles)) / r.rate;
+  const auto over_time = [&](const std::string& id, const std::string& title, const char* y_label, const char* y_unit,
+                             int height) {
+    internal::Chart chart{
+        .id = id, .title = title, .x_column = "time_s", .x_label = "Time", .x_unit = "s", .y_label = y_label, .y_unit = y_unit};
+    chart.x_home = chart.x_whole = {0, end};
+    chart.height = height;
+    return chart;
+  };
+  internal::Picture drawn;
+  internal::Chart gap = over_time("gap", "Gap: the first cycles", "Gap", "m", 320);
+  gap.zero_line = true;
+  gap.zero_label = "contact plane";
+  const auto role = [&](const CycleRecord::Drive& d) {
+    return &d == &r.drives.front() ? internal::Role::baseline : internal::Role::best;
+  };
+  for (const CycleRecord::Drive& d : r.drives) {
+    const auto course = r.curves.find(d.name);
+    if (course == r.curves.end()) continue;
+    const std::string table = name_words(r, d);
+    drawn.tables[table] = {{"time_s", course->second.time}, {"tip_gap_m", course->second.gap}};
+    gap.series.push_back({table, "tip_gap_m", table, role(d)});
+  }
+  drawn.charts.push_back(std::move(gap));
+  for (const CycleRecord::Drive& d : r.drives) {
+    std::size_t place = 1;  // of the drive's chart
+    for (const auto& [drive, points] : d.waveforms) {
+      const std::string table = name_words(r, d) + "/" + drive;
+      for (std::size_t n = 0; n < told_cycles; ++n) {
+        for (const auto& [time, voltage] : points) {
+          drawn.tables[table]["time_s"].push_back(time + static_cast<double>(n) / r.rate);
+          drawn.tables[table]["level"].push_back(voltage);
+        }
+      }
+      if (drawn.charts.size() == place)
+        drawn.charts.push_back(over_time("drive-" + drive, "Drive: " + drive, "Voltage", "V", 210));
+      drawn.charts[place++].series.push_back({table, "level", name_words(r, d), role(d)});
+    }
+  }
+  return svg_page(finding(r), title_of(r.origin), drawn, 1);
+}
+
+}  // namespace softland

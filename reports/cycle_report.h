@@ -1,0 +1,59 @@
+// What `softland cycle` found: JSON with SI units in the names, tables for a terminal, and a picture.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reports/closing_record.h"
+#include "reports/origin.h"
+#include "studies/devices/cycling.h"
+
+namespace softland {
+
+struct CycleRecord {
+  /// Rates of devices: quantiles, and the share that is steady at the rate that is told.
+  struct Devices {
+    std::uint64_t count = 0;
+    double at_5 = Metrics::unset, at_50 = Metrics::unset, at_95 = Metrics::unset;  ///< [Hz]
+    double steady = Metrics::unset;
+  };
+  struct Course {
+    std::vector<double> time, gap;  ///< [s], [m]
+  };
+  struct Cycle {
+    Metrics metrics;  ///< CycleFigures::metrics
+  };
+  struct Drive {
+    std::string name;
+    double largest = Metrics::unset;                ///< [Hz]
+    std::vector<std::array<double, 2>> windows;     ///< [Hz]
+    std::vector<double> steady_rates, other_rates;  ///< of the scan [Hz]
+    std::optional<Devices> devices;
+    std::optional<std::string> status, message;  ///< of the run at the rate that is told
+    std::vector<Cycle> cycles;
+    std::map<std::string, Points> waveforms;  ///< of one cycle, by drive: time [s] and level [V]
+  };
+  Origin origin;
+  std::string status;
+  double rate = Metrics::unset, duty = Metrics::unset;  ///< [Hz], 1
+  std::uint64_t cycles = 0, seed = 1;
+  double contact_gap = Metrics::unset;  ///< [m]
+  std::vector<Drive> drives;            ///< the plain one first
+  std::vector<std::string> warnings;    ///< of the scene
+
+  std::map<std::string, Course> curves;  ///< by drive; only files have them
+};
+[[nodiscard]] CycleRecord record_of(const PreparedScene& given, const Cycling& cycling, const std::string& command);
+
+[[nodiscard]] nlohmann::json json_of(const CycleRecord& record);
+[[nodiscard]] CycleRecord read_cycles(const nlohmann::json& from);
+[[nodiscard]] std::string text_of(const CycleRecord& record);
+/// Gap of the cycles that are told, and their drives; of a record that has the courses.
+[[nodiscard]] std::string svg_of(const CycleRecord& record);
+
+}  // namespace softland

@@ -1,0 +1,192 @@
+#include "studies/closing/open_command.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "studies/closing/hold.h"
+
+namespace softland {
+namespace {
+
+constexpr int most_samples = 4000;  // of a piece that is not straight
+constexpr int halvings = 40;
+constexpr double tail = 40;  // time constants after which a decay is over
+
+enum class OfJump { before, after };  // of a jump
+
+struct Instant {
+  double time;  // [s]
+  OfJump side;
+};
+
+std::vector<double> levels_at(const std::vector<Signal>& signals, const Instant& at) {
+  std::vector<double> levels;
+  for (const Signal& s : signals) levels.push_back(at.side == OfJump::before ? s.voltage_before(at.time) : s.voltage(at.time));
+  return levels;
+}
+
+// Parts of a piece over which nothing turns twice; 1 of a straight one.
+int parts_of(const Signal& signal, double begin, double end) {
+  const double step = signal.resolving_step(begin);
+  return std::isfinite(step) ? std::clamp(static_cast<int>(std::ceil((end - begin) / step)), 1, most_samples) : 1;
+}
+
+// When the drives are looked at, in order: at both sides of every breakpoint, and in between where they are not straight.
+std::vector<Instant> instants(const std::vector<Signal>& signals) {
+  std::vector<double> stops;
+  double end = 0;
+  for (const Signal& s : signals) {
+    std::ranges::copy(s.breakpoints(), std::back_inserter(stops));
+    const SignalPiece& last = s.pieces().back();
+    for (const SignalTerm& term : last.terms) end = std::max(end, last.begin + tail / term.decay);
+  }
+  if (std::isfinite(end)) stops.push_back(end);
+  std::ranges::sort(stops);
+  stops.erase(std::ranges::unique(stops).begin(), stops.end());
+  std::vector<Instant> all;
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    all.push_back({stops[i], OfJump::before});
+    all.push_back({stops[i], OfJump::after});
+    if (i + 1 == stops.size()) break;
+    int parts = 1;
+    for (const Signal& s : signals) parts = std::max(parts, parts_of(s, stops[i], stops[i + 1]));
+    for (int k = 1; k < parts; ++k)
+      all.push_back({std::lerp(stops[i], stops[i + 1], k / static_cast<double>(parts)), OfJump::after});
+  }
+  return all;
+}
+
+// Whether a drive is an electrode that pulls the beam to the contact.
+bool pulls(const Switch& model, std::size_t drive) {
+  return model.drive_kind(drive) == DriveKind::electrode && pulls_in(model.device(), drive);
+}
+
+// Whether something holds a closed switch at the levels of its drives.
+class Holding {
+ public:
+  Holding(const Switch& model, const std::vector<Signal>& signals)
+      : model_(model), signals_(signals), last_(hold_levels(signals)), lost_(last_) {}
+
+  [[nodiscard]] bool at(const Instant& instant) {
+    std::vector<double> levels = levels_at(signals_, instant);
+    if (is_weaker(levels, last_) || is_weaker(levels, lost_)) return false;
+    if (hold_under(model_, levels).is_held) return true;
+    lost_ = std::move(levels);  // what is looked at next is likely to be no more
+    return false;
+  }
+
+ private:
+  // Not more volts on any electrode that pulls the beam to the contact, and the same on every other drive.
+  [[nodiscard]] bool is_weaker(const std::vector<double>& levels, const std::vector<double>& than) const {
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+      if (levels[k] == than[k]) continue;
+      if (!pulls(model_, k) || !(model_.strength(k, levels[k]) <= model_.strength(k, than[k]))) return false;
+    }
+    return true;
+  }
+
+  const Switch& model_;
+  const std::vector<Signal>& signals_;
+  std::vector<double> last_, lost_;
+};
+
+// When the fall begins that brings an electrode to where it is just before `time`, or at a jump there; `time` where it does not
+// fall.
+double begin_of_fall(const Switch& model, std::size_t electrode, const Signal& signal, double time) {
+  if (signal.voltage_before(time) != signal.voltage(time)) return time;
+  const std::vector<SignalPiece>& pieces = signal.pieces();
+  std::size_t k = signal.piece_at(time);
+  if (pieces[k].begin == time && k > 0) --k;
+  for (;; --k) {
+    const SignalPiece& piece = pieces[k];
+    const auto strength = [&](double t) { return model.strength(electrode, piece.voltage(t)); };
+    const double end = time;
+    const int parts = parts_of(signal, piece.begin, end);
+    for (int i = parts - 1; i >= 0; --i) {
+      const double earlier = std::lerp(piece.begin, end, i / static_cast<double>(parts));
+      if (!(strength(earlier) > strength(time))) return time;
+      time = earlier;
+    }
+    if (k == 0 || signal.voltage_before(time) != signal.voltage(time)) return time;
+  }
+}
+
+// The crossing from where something holds the switch to where nothing does [s].
+std::optional<double> loses_hold(const Switch& model, const std::vector<Signal>& signals, StartState start) {
+  Holding holding(model, signals);
+  const std::vector<Instant> all = instants(signals);
+  std::optional<std::size_t> held;
+  if (start == StartState::closed) {
+    for (std::size_t i = 0; i < all.size() && holding.at(all[i]); ++i) held = i;
+  } else {
+    for (std::size_t i = all.size(); i-- > 1 && !held;) {  // what the drives are before t = 0 has closed nothing
+      if (holding.at(all[i])) held = i;
+    }
+  }
+  if (!held || *held + 1 == all.size()) return std::nullopt;
+  double last = all[*held].time, lost = all[*held + 1].time;
+  for (int i = 0; i < halvings && last < lost; ++i) {
+    const double middle = 0.5 * (last + lost);
+    (holding.at({middle, OfJump::after}) ? last : lost) = middle;
+  }
+  return lost;
+}
+
+OpenCommand command_at(const std::vector<Signal>& signals, double time) {
+  OpenCommand command{.time = time, .held = {}};
+  for (const Signal& s : signals) command.held.push_back(held_from(s, time));
+  return command;
+}
+
+}  // namespace
+
+std::optional<OpenCommand> open_command(const Switch& model, const std::vector<Signal>& signals, StartState start) {
+  if (!model.has_contact()) return std::nullopt;
+  const std::vector<double> last = hold_levels(signals);
+  if (hold_under(model, last).is_held || !model.open_equilibrium(last)) return std::nullopt;
+  const std::optional<double> lost = loses_hold(model, signals, start);
+  if (!lost) return std::nullopt;
+  double time = *lost;
+  for (std::size_t k = 0; k < signals.size(); ++k) {
+    if (pulls(model, k)) time = std::min(time, begin_of_fall(model, k, signals[k], *lost));
+  }
+  return command_at(signals, time);
+}
+
+std::optional<OpenCommand> open_command(const PreparedScene& prepared, const std::vector<Signal>& signals, double window) {
+  const double given = prepared.scene.simulate.open_at;
+  std::optional<OpenCommand> command =
+      std::isfinite(given) ? command_at(signals, given) : open_command(prepared.model, signals, prepared.start());
+  if (command && !(command->time < window)) command.reset();
+  return command;
+}
+
+PreparedScene closing_of(const PreparedScene& prepared) {
+  if (prepared.start() == StartState::closed) return prepared;
+  const std::optional<OpenCommand> command = open_command(prepared, prepared.signals());
+  PreparedScene closing = prepared;
+  if (command && command->time > 0) closing.duration = closing.held_from = command->time;
+  return closing;
+}
+
+double connection_deflection(const Switch& model, const Eigen::VectorXd& q) {
+  if (model.contacts() < 2) return model.contact_deflection(q.data());
+  std::vector<double> separations;
+  for (std::size_t c = 0; c < model.contacts(); ++c)
+    if (model.device().contacts[c].connects) separations.push_back(model.contact_gap(c) - model.contact_deflection(q.data(), c));
+  const auto [nearest, furthest] = std::ranges::minmax(separations);
+  return model.contact_gap() - (model.device().connection == Connection::all ? furthest : nearest);
+}
+
+MetricsOptions with_opening(MetricsOptions options, const Switch& model, const std::vector<Signal>& signals,
+                            const std::optional<OpenCommand>& command) {
+  if (!command) return options;
+  options.opening.time = command->time;
+  if (const auto open = model.open_equilibrium(hold_levels(signals)))
+    options.opening.open_position = connection_deflection(model, *open);
+  return options;
+}
+
+}  // namespace softland

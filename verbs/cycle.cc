@@ -1,0 +1,99 @@
+// Verb `cycle`: a switch that is closed and opened at a rate, and how high that may be.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "reports/cycle_report.h"
+#include "reports/record_file.h"
+#include "studies/closing/auto_settings.h"
+#include "studies/closing/open_command.h"
+#include "studies/devices/cycling.h"
+#include "verbs/study.h"
+
+namespace softland::verbs {
+namespace {
+
+Outcome shown(CycleRecord found) {
+  const auto record = std::make_shared<const CycleRecord>(std::move(found));
+  Outcome outcome{.json = without_curves(json_of(*record)), .text = text_of(*record)};
+  outcome.files = {{"cycle.json", [record] { return json_text(json_of(*record), 1) + "\n"; }, "cycle.json"}};
+  if (!record->curves.empty()) outcome.files.push_back({"cycle.svg", [record] { return svg_of(*record); }, "cycle.svg"});
+  return outcome;
+}
+
+struct CycleRequest : Usual {
+  static constexpr auto name = "cycle",
+                        about = "close and open the switch at a rate: how high it may be, and what every cycle does",
+                        python = "cycle", leaves = "folder for cycle.json and cycle.svg";
+  static constexpr auto remarks =
+      "A cycle is the closing waveform of the scene and, from duty / rate on, the drives at 0 V. A RESULT that begins closed, "
+      "as\n"
+      "release leaves it, gives the opening waveform, any other one the closing waveform. A scene whose own waveform opens the\n"
+      "switch on command gives both. The rates of plain switching are found beside them.\n"
+      "A rate is steady where all cycles close and open, and land within 5 % as fast and as high as the first one.\n"
+      "Examples:\n  softland cycle scenes/mem-gold.toml\n"
+      "  softland cycle optimized opened --rate \"2 kHz\" --duty \"40 %\" --out cycled";
+  static std::vector<std::string> files() { return {"cycle.json", "cycle.svg"}; }
+  static Outcome shown_again(const nlohmann::json& json) { return shown(read_cycles(json)); }
+
+  CyclingOptions options{.jobs = one_per_core()};
+  std::vector<std::string> results;  ///< with other waveforms
+};
+
+template <class Archive>
+void options(Archive& a, CycleRequest& r) {
+  CyclingOptions& o = r.options;
+  a.results("RESULT", r.results, "scene or result that gives the closing or the opening waveform");
+  a.quantity("rate", o.rate, {dimension::frequency, positive, "a rate above 0 Hz such as \"1 kHz\""}, "RATE",
+             "cycles per second that are told (default: the largest steady rate)");
+  a.quantity("duty", o.duty,
+             {dimension::none,
+              {.least = 0, .most = 1, .least_open = true, .most_open = true},
+              "a share of a cycle above 0 % and below 100 %, such as \"40 %\""},
+             "SHARE", "share of a cycle before the command to open (default: 50 %)");
+  a.unless("no-scan", o.scans, "omit the search for the largest steady rate, for cycles at one --rate alone");
+  a.whole("cycles", o.cycles, {.least = 2, .most = 1000}, "cycles at every rate (default: 10)");
+  samples_option(a, o.devices, {.least = 0, .most = SamplePoints::largest_size},
+                 "devices of [spread] whose rates are found too (default: 50; 0: none)");
+  seed_option(a, o.seed, "same devices");
+  jobs_option(a, o.jobs);
+}
+
+// The waveforms of a scene: of its closing, or of its opening where it begins closed, or of both where it opens on command.
+void take(CycleWaveforms& waveforms, const PreparedScene& scene) {
+  std::vector<Signal> told = scene.told(scene.waveforms());
+  if (scene.start() == StartState::closed) {
+    waveforms.opening = std::move(told);
+  } else if (const auto command = open_command(scene, told)) {
+    waveforms.closing = command->held;
+    waveforms.opening = part_from(told, command->time);
+  } else {
+    waveforms.closing = std::move(told);
+  }
+}
+
+Outcome run(const Setting& setting, const CycleRequest& request) {
+  require_request(request.options.scans || request.options.rate,
+                  [] { return requested("no-scan") + " needs " + requested("rate"); });
+  const auto given = setting.prepared(false);
+  CycleWaveforms waveforms{.name = setting.name, .closing = {}, .opening = {}};
+  take(waveforms, *given);
+  for (const std::string& result : request.results) {
+    const PreparedScene other = prepare(setting.load(result), false, {.stop = setting.watch.stop});
+    require(other.drive_names() == given->drive_names(),
+            [&] { return result + ": its switch has other drives than " + setting.name; });
+    take(waveforms, other);
+    waveforms.name += " and " + result;
+  }
+  complete(waveforms, *given);
+  const Cycling found = cycling(*given, waveforms, request.options, setting.watch);
+  Outcome outcome = shown(record_of(*given, found, setting.command));
+  outcome.ending = found.interrupted ? Ending::interrupted : found.rate > 0 ? Ending::done : Ending::no_success;
+  return outcome;
+}
+
+}  // namespace
+
+Study cycle_study() { return study_of<CycleRequest>(); }
+
+}  // namespace softland::verbs
