@@ -74,8 +74,8 @@ Metrics MetricsObserver::metrics(const Trajectory& end) {
   result.release_settling_time = opening.settling_time;
   result.overshoot_open = opening.overshoot;
   result.least_gap_open = opening.least_gap;
-  result.closed_time =
-      options_.opening.time - landing_->first_touch - result.separated + opening.opening_time - opening.separated;
+  const double apart = std::isfinite(result.separated) ? result.separated : 0;  // a run that began closed has none
+  result.closed_time = options_.opening.time - landing_->first_touch - apart + opening.opening_time - opening.separated;
   return result;
 }
 

@@ -18,7 +18,7 @@ namespace softland {
 struct AskedFigures {
   bool resistance = false;  ///< of a connection whose contacts have a resistivity
   bool electrical = false;  ///< of a device with Device::electrical
-  bool opening = false;     ///< of a run that opens on command
+  bool opening = false;     ///< a run opens on command
   bool operator==(const AskedFigures&) const = default;
 };
 /// Returns what a device asks for.
@@ -57,7 +57,7 @@ struct Metrics {
   double electrical_settling = unset;  ///< ElectricalOutcome::closed_from [s]
   int electrical_bounces = 0;          ///< ElectricalOutcome::openings; meaningless where it never closes
   AskedFigures asked = {};             ///< MetricsOptions::asked
-  // Of a switch that the drives command to open: see OpeningOnCommand.
+  // These are known where the drives command the switch to open: see OpeningOnCommand.
   double open_command = unset;           ///< [s]
   double opening_time = unset;           ///< from the command to the last break of the contact [s]
   int release_bounces = 0;               ///< meaningless where the contact is closed at the end

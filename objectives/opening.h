@@ -46,7 +46,7 @@ class BandFollower {
 struct OpeningCommand {
   double time = std::numeric_limits<double>::infinity();  ///< [s]
   double open_position =
-      std::numeric_limits<double>::quiet_NaN();  ///< of the contact point at rest under the levels that follow [m]; NaN: none
+      std::numeric_limits<double>::quiet_NaN();  ///< the contact point rests here under the levels that follow [m]; NaN: nowhere
 };
 
 /// How a closed switch opens on a command. Times count from the command; NaN throughout where it is closed at the end.

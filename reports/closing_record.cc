@@ -105,7 +105,7 @@ ClosingRecord begun(const char* kind, const PreparedScene& p, const std::string&
   r.scene = read_drawn_scene(r.origin.scene);
   const Eigen::VectorXd& frequencies = p.model.basis().angular_frequencies();
   r.natural_frequencies.assign(frequencies.begin(), frequencies.end());
-  if (p.model.has_contact()) r.closed_state = closed_state(p, p.signals());
+  if (p.model.has_contact()) r.closed_state = closed_state(p, until_command(p, p.signals()));
   if (p.effects) {
     r.effects = EffectsLeftOut{.left_out = {}, .influence = p.effects->choice.influence};
     for (const EffectAblation& o : p.effects->choice.left_out)

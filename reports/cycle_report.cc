@@ -23,8 +23,8 @@ using internal::percent;
 using internal::quantity;
 using nlohmann::json;
 
-constexpr std::size_t most_of_course = 4000;  // of a course
-constexpr double line_tolerance = 1e-4;       // of the largest voltage, where a drive is no straight line
+constexpr std::size_t most_of_course = 4000;  // a course has no more
+constexpr double line_tolerance = 1e-4;       // share of the largest voltage that lines may miss
 constexpr std::size_t told_cycles = 3;        // the first ones, and the last
 
 CycleRecord::Devices devices_of(const CycledDrive& drive, double rate) {
@@ -276,7 +276,7 @@ std::string svg_of(const CycleRecord& r) {
   }
   drawn.charts.push_back(std::move(gap));
   for (const CycleRecord::Drive& d : r.drives) {
-    std::size_t place = 1;  // of the drive's chart
+    std::size_t place = 1;  // which chart is the drive's
     for (const auto& [drive, points] : d.waveforms) {
       const std::string table = name_words(r, d) + "/" + drive;
       for (std::size_t n = 0; n < told_cycles; ++n) {

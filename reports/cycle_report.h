@@ -32,11 +32,11 @@ struct CycleRecord {
     std::string name;
     double largest = Metrics::unset;                ///< [Hz]
     std::vector<std::array<double, 2>> windows;     ///< [Hz]
-    std::vector<double> steady_rates, other_rates;  ///< of the scan [Hz]
+    std::vector<double> steady_rates, other_rates;  ///< those that the scan tried [Hz]
     std::optional<Devices> devices;
-    std::optional<std::string> status, message;  ///< of the run at the rate that is told
+    std::optional<std::string> status, message;  ///< how the run at the rate ended
     std::vector<Cycle> cycles;
-    std::map<std::string, Points> waveforms;  ///< of one cycle, by drive: time [s] and level [V]
+    std::map<std::string, Points> waveforms;  ///< one cycle, by drive: time [s] and level [V]
   };
   Origin origin;
   std::string status;
@@ -44,7 +44,7 @@ struct CycleRecord {
   std::uint64_t cycles = 0, seed = 1;
   double contact_gap = Metrics::unset;  ///< [m]
   std::vector<Drive> drives;            ///< the plain one first
-  std::vector<std::string> warnings;    ///< of the scene
+  std::vector<std::string> warnings;    ///< those that the scene has
 
   std::map<std::string, Course> curves;  ///< by drive; only files have them
 };

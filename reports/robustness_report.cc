@@ -63,7 +63,8 @@ std::vector<std::string> warnings(const RobustnessReport& report) {
   if (!report.unheld.empty()) all.push_back(report.unheld);
   if (!report.found.drives.empty()) {
     const DriveRobustness& last = report.found.drives.back();
-    const std::vector<Signal> signals = report.nominal.driven(report.nominal.in_drive_order(last.waveforms));
+    const std::vector<Signal> signals =
+        until_command(report.nominal, report.nominal.driven(report.nominal.in_drive_order(last.waveforms)));
     if (std::string few = few_summits_warning(report.nominal.model, signals); !few.empty()) all.push_back(std::move(few));
   }
   return all;
@@ -83,7 +84,7 @@ RobustnessRecord::Drive drive_of(const RobustnessReport& report, const Ensemble&
                                 .failures = {},
                                 .worst = {}};
   if (nominal.model.has_contact())
-    drive.closed_state = closed_state(nominal, nominal.driven(nominal.in_drive_order(d.waveforms)));
+    drive.closed_state = closed_state(nominal, until_command(nominal, nominal.driven(nominal.in_drive_order(d.waveforms))));
   for (const std::size_t k : d.worst) drive.worst.push_back(device_of(ensemble, d, k));
   for (const DeviceOutcome& o : d.outcomes) {
     if (!o.closed()) ++drive.failures[o.failure.empty() ? std::string(to_string(o.metrics.status)) : o.failure];
@@ -369,7 +370,8 @@ void add_details(RobustnessReport& report, bool other_ways_too, const Watch& wat
   report.derivatives = derivatives(report.nominal, internal::exactly_measured(report.nominal, last), {}, watch);
   report.windows = hold_windows(report.nominal, report.options, watch);
   if (report.nominal.model.has_contact()) {
-    const std::vector<Signal> signals = report.nominal.driven(report.nominal.in_drive_order(last.waveforms));
+    const std::vector<Signal> signals =
+        until_command(report.nominal, report.nominal.driven(report.nominal.in_drive_order(last.waveforms)));
     report.unheld = hold_warning(report.nominal.model, signals, closed_state(report.nominal, signals));
   }
   report.courses = device_courses(report.nominal, last, report.found, report.options);

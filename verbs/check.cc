@@ -343,15 +343,19 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   if (p.model.has_contact()) {
     record.stable_path = stable_path_of(p, watch);
     add("stable path", words_of(record.stable_path));
-    const ClosedState state = closed_state(p, p.signals());
+    if (const auto command = open_command(p, p.signals()))
+      add("command to open", fmt::format("at {}{}", given_quantity(command->time, "s", 4),
+                                         std::isfinite(p.scene.simulate.open_at) ? "" : ", as the drives tell it"));
+    const std::vector<Signal> held = until_command(p, p.signals());
+    const ClosedState state = closed_state(p, held);
     record.closed_state = state;
     add("closed state", closed_state_words(state));
     if (p.scene.device.lands_along_face()) add("", capacitance_words(p));
-    const Hold hold = hold_of(p.model, p.signals());
+    const Hold hold = hold_of(p.model, held);
     if (const auto summits = hold.closed ? summits_at_hold(p.model, *hold.closed) : std::nullopt)
       add("contact", summits_words(*summits));
-    if (std::string few = few_summits_warning(p.model, p.signals()); !few.empty()) few_summits.push_back(std::move(few));
-    if (std::string lost = hold_warning(p.model, p.signals(), state); !lost.empty() && !p.scene.begins_closed)
+    if (std::string few = few_summits_warning(p.model, held); !few.empty()) few_summits.push_back(std::move(few));
+    if (std::string lost = hold_warning(p.model, held, state); !lost.empty() && !p.scene.begins_closed)
       warnings.push_back(std::move(lost));
   }
   watch.throw_if_stopped();

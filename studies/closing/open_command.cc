@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "studies/closing/hold.h"
@@ -10,11 +11,11 @@
 namespace softland {
 namespace {
 
-constexpr int most_samples = 4000;  // of a piece that is not straight
+constexpr int most_samples = 4000;  // a curved piece is looked at so often
 constexpr int halvings = 40;
 constexpr double tail = 40;  // time constants after which a decay is over
 
-enum class OfJump { before, after };  // of a jump
+enum class OfJump { before, after };  // which side of a jump is meant
 
 struct Instant {
   double time;  // [s]
@@ -161,6 +162,12 @@ std::optional<OpenCommand> open_command(const PreparedScene& prepared, const std
       std::isfinite(given) ? command_at(signals, given) : open_command(prepared.model, signals, prepared.start());
   if (command && !(command->time < window)) command.reset();
   return command;
+}
+
+std::vector<Signal> until_command(const PreparedScene& prepared, std::vector<Signal> signals) {
+  if (prepared.start() == StartState::closed) return signals;
+  const std::optional<OpenCommand> command = open_command(prepared, signals, std::numeric_limits<double>::infinity());
+  return command ? command->held : signals;
 }
 
 PreparedScene closing_of(const PreparedScene& prepared) {

@@ -16,7 +16,7 @@ struct OpenCommand {
 };
 
 /// The command of these drives, one per drive of the switch, to the end of their waveforms: where their last fall begins into
-/// levels under which no closed state is stable and the open one is. Of a switch that starts closed it is the first such fall. A
+/// levels under which no closed state is stable and the open one is. A switch that starts closed has it in the first such fall. A
 /// fall lasts as long as the voltages of the electrodes that make it only go towards 0 V; that of a jump begins there. None where
 /// the hold levels keep the switch closed, or pull it through, and where the drives never would have held it.
 [[nodiscard]] std::optional<OpenCommand> open_command(const Switch& model, const std::vector<Signal>& signals, StartState start);
@@ -28,6 +28,9 @@ struct OpenCommand {
 [[nodiscard]] inline std::optional<OpenCommand> open_command(const PreparedScene& prepared, const std::vector<Signal>& signals) {
   return open_command(prepared, signals, prepared.duration);
 }
+
+/// These drives until they command the switch to open, and from then on at what they stood at; as they are where they do not.
+[[nodiscard]] std::vector<Signal> until_command(const PreparedScene& prepared, std::vector<Signal> signals);
 
 /// The scene until its drives command it to open: its window ends there, and its drives stay at what they are just before. The
 /// scene itself where they do not, and where it starts closed.

@@ -79,7 +79,7 @@ void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const st
 /// helps; the figures are then those of the tightest run. No run is its own judge, and no error is 0. Asked to stop, the status
 /// of the figures is interrupted: they are those of the last run that was complete, without errors, or of the part of the first
 /// one that was run. A switch that is not held (see set_hold()) has not settled, however quiet it is at the end of the window.
-/// Where the drives command the switch to open (open_command.h), the figures of the landing are those until then, with the hold
+/// A switch that its drives command to open (open_command.h) has the figures of its landing until then, with the hold
 /// force under what the drives stood at, and the opening has its own: the run is done where it landed and settled before, and is
 /// open and at rest at the end. A run that began closed (PreparedScene::start()) has no figures of a landing, and is done where
 /// it ends open and at rest. The status is collapsed_at_rest where the state that it is to begin in does not exist, and the

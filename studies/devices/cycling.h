@@ -33,7 +33,7 @@ struct CycleWaveforms {
 
 struct Cycles {
   CycleTimes times;
-  Status status = Status::not_run;   ///< of the run: done where it came to its end
+  Status status = Status::not_run;   ///< done where the run came to its end
   std::string message = {};          ///< why, where it did not
   std::vector<CycleFigures> cycles;  ///< those that ended
   /// Position of the contact point: time [s] and distance to the contact plane [m]; where it was asked for.
@@ -42,8 +42,8 @@ struct Cycles {
 
 /// What a cycle may differ by from the first one.
 struct CycleTolerances {
-  double share = 0.05;    ///< of the largest impact velocity, and of the highest rebound
-  double rebound = 1e-9;  ///< of the highest rebound at least [m]
+  double share = 0.05;    ///< what the largest impact velocity and the highest rebound may differ by
+  double rebound = 1e-9;  ///< what the highest rebound may always differ by [m]
 };
 
 /// Whether a cycle closes and opens, and lands as the first one does.
@@ -94,7 +94,7 @@ struct RateScan {
 struct ScanOptions {
   double duty = 0.5;         ///< share of a cycle before its command to open
   double step = 0.05;        ///< from one rate to the next
-  std::size_t cycles = 10;   ///< of which all but the first are compared with it
+  std::size_t cycles = 10;   ///< all but the first are compared with it
   bool beyond_first = true;  ///< goes on above the first rate that is not steady
   CycleTolerances tolerances = {};
 };
@@ -108,7 +108,7 @@ struct CyclingOptions {
   bool scans = true;                ///< else the cycles at that rate are all
   double duty = ScanOptions{}.duty;
   std::size_t cycles = ScanOptions{}.cycles;
-  std::uint64_t devices = 50;  ///< of [spread], whose rates are scanned too; 0: none
+  std::uint64_t devices = 50;  ///< so many of [spread] are scanned too; 0: none
   std::uint64_t seed = 1;
   int jobs = 1;
 };
@@ -116,9 +116,9 @@ struct CyclingOptions {
 /// A switch that is cycled by one pair of waveforms.
 struct CycledDrive {
   CycleWaveforms waveforms;
-  RateScan scan;                        ///< of the nominal design
+  RateScan scan;                        ///< rates of the nominal design
   std::vector<double> of_devices = {};  ///< RateScan::largest of each device, 0 where there is none [Hz]
-  std::optional<Cycles> cycles = {};    ///< of the nominal design, at the rate that is told
+  std::optional<Cycles> cycles = {};    ///< the nominal design at the rate that is told
 };
 
 struct Cycling {

@@ -259,7 +259,7 @@ class DeviceCloser {
   DeviceDrives device_drives_;
   std::optional<DeviceMeter> meter_;
   std::vector<std::vector<Signal>> nominal_signals_;              // of every drive
-  std::vector<std::optional<OpenCommand>> nominal_commands_;      // of every drive, where it may have one
+  std::vector<std::optional<OpenCommand>> nominal_commands_;      // one per drive, where it may have one
   std::vector<std::optional<ClosedEquilibrium>> nominal_closed_;  // under its hold levels
 };
 

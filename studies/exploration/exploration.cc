@@ -283,7 +283,9 @@ void Exploration::list_figures(const Watch& watch) {
       add(figure_of_key(key));
     return;
   }
-  asked_ = read_scene(plan_.base()).metrics.asked;
+  const Scene base = read_scene(plan_.base());
+  asked_ = base.metrics.asked;
+  asked_.opening = std::isfinite(base.simulate.open_at);
   switch (*study_) {
     case PointStudy::simulate:
       add_closing();

@@ -54,7 +54,7 @@ double pressed_to(double volts) {
 
 /// The plate let go at once from there: it swings about kc dt / (k + kc) until it leaves the contact.
 struct LetGo {
-  double time, speed;  // of the break [s], [m/s]
+  double time, speed;  // the break has these [s], [m/s]
 };
 LetGo let_go(double volts) {
   const double middle = kc * dt / (k + kc), w = std::sqrt((k + kc) / mass), from = pressed_to(volts) - middle;
@@ -87,7 +87,7 @@ simulate.duration = "400 us"
   EXPECT_EQ(m.release_bounce_height, 0);
   EXPECT_GT(m.steady_force_time, m.initial_contact_time);
   EXPECT_GT(m.hold_force, 0);
-  EXPECT_GT(m.release_settling_time, 4.21446e-6);  // by when half of the travel is done
+  EXPECT_GT(m.release_settling_time, 4.21446e-6);  // half of the travel is done by then
   for (const Rebound& rebound : c.rebounds) EXPECT_LT(rebound.end, 300e-6);
   EXPECT_TRUE(c.release_bounces.empty());
   EXPECT_LT(c.errors[&Metrics::opening_time], 1e-5 * m.opening_time);
@@ -234,6 +234,21 @@ TEST(OpenCommand, LeavesARunUnsettledThatHadNotSettledOrDoesNotComeToRest) {
   EXPECT_THAT(brief.warnings, testing::Contains(HasSubstr("not at rest in its open state")));
   // A window of its own shows the rest.
   EXPECT_EQ(simulate(prepare(plate(closing + "times = [\"300 us\"] }\n", 0.1)), true).metrics.status, Status::done);
+}
+
+TEST(OpenCommand, LeavesTheHoldForceOfTheClosing) {
+  const std::string_view rest = R"(
+waveform.main = { family = "pulse", levels = ["60 V", "0 V"], times = ["300 us"] }
+simulate.duration = "400 us"
+)";
+  const PreparedScene p = prepare(plate(rest, 0.1));
+  const std::vector<Signal> held = until_command(p, p.signals());
+  EXPECT_EQ(hold_levels(held), std::vector<double>{60});
+  EXPECT_EQ(held.front().voltage(1e-3), 60);
+  EXPECT_TRUE(closed_state(p, held).stable.value_or(false));
+  const Metrics m = simulate(p, true).metrics;
+  EXPECT_NEAR(m.hold_force, kc * (pressed_to(60) - dt), 1e-9 * m.hold_force);
+  EXPECT_NEAR(m.closed_time, m.open_command + m.opening_time - m.initial_contact_time - m.separated, 1e-15);
 }
 
 TEST(OpenCommand, BeforeTheFirstTouchIsNone) {
