@@ -110,7 +110,7 @@ ReportTable rates_table(const CycleRecord& r) {
   return table;
 }
 
-ReportTable cycles_table(const CycleRecord::Drive& drive) {
+ReportTable cycles_table(const CycleRecord::Drive& drive, const std::string& name) {
   struct Row {
     const char* name;
     Figure::Member member;
@@ -124,7 +124,7 @@ ReportTable cycles_table(const CycleRecord::Drive& drive) {
                         Row{"least gap after opening", &Metrics::least_gap_open},
                         Row{"time in touch", &Metrics::closed_time},
                         Row{"drive energy", &Metrics::drive_energy}};
-  ReportTable table{.head = {"cycle"}, .rows = {}};
+  ReportTable table{.head = {name + ", cycle"}, .rows = {}};
   std::vector<std::size_t> shown;
   for (std::size_t n = 0; n < drive.cycles.size(); ++n) {
     if (n < told_cycles || n + 1 == drive.cycles.size()) shown.push_back(n);
@@ -244,7 +244,7 @@ std::string text_of(const CycleRecord& r) {
     if (drive.cycles.empty()) continue;
     document.sections.push_back({.id = "cycles-" + name_words(r, drive),
                                  .heading = fmt::format("Cycles at {}, {}", quantity(r.rate, "Hz"), name_words(r, drive)),
-                                 .parts = {cycles_table(drive)}});
+                                 .parts = {cycles_table(drive, name_words(r, drive))}});
     if (drive.message && !drive.message->empty()) document.sections.back().parts.emplace_back(Paragraph{*drive.message});
   }
   return terminal_text(document);
