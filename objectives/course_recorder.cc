@@ -25,7 +25,9 @@ CourseRecorder::CourseRecorder(double contact_gap, const MetricsOptions& options
 
 void CourseRecorder::knot(const TrajectoryPoint& point) {
   figures_.knot(point);
-  finder_.knot(point, [this](const Rebound& rebound) { (opens_ ? release_bounces_ : rebounds_).push_back(rebound); });
+  finder_.knot(point, [this](const Rebound& rebound) {
+    if (!opens_) rebounds_.push_back(rebound);
+  });
   if (!opens_ && point.time >= options_.opening.time) {
     opens_ = true;
     if (finder_.under_way()) rebounds_.push_back(*finder_.under_way());

@@ -37,8 +37,6 @@ class CourseRecorder final : public ClosingObserver {
   [[nodiscard]] Metrics metrics(const Trajectory& end) { return figures_.metrics(end); }
   /// rebounds() of all knots until the command to open.
   [[nodiscard]] std::vector<Rebound> rebounds() const;
-  /// Separations that ended in a touch after it.
-  [[nodiscard]] const std::vector<Rebound>& release_bounces() const { return release_bounces_; }
   /// Whether some knots are left out.
   [[nodiscard]] bool is_thinned() const { return is_thinned_; }
   /// Figures and rebounds of one of several contacts, once the run has ended.
@@ -66,7 +64,7 @@ class CourseRecorder final : public ClosingObserver {
   std::size_t bucket_ = 1;         // knots in a full one
   std::size_t in_last_ = 0;        // knots since the last full one
   std::vector<Touch> touches_;
-  std::vector<Rebound> rebounds_, release_bounces_;
+  std::vector<Rebound> rebounds_;
   bool opens_ = false;  // the command to open is past
   std::vector<std::unique_ptr<CourseRecorder>> contacts_;
 };

@@ -75,6 +75,9 @@ struct Picture {
 /// All charts of a result, in the order of the page: gap, landing, drives, velocity, force, resistance, search. What has no data
 /// is left out.
 [[nodiscard]] Picture picture(const ClosingRecord& result);
+/// A chart without series over the time until `until` [s].
+[[nodiscard]] Chart chart_over_time(const std::string& id, const std::string& title, const std::string& y_label,
+                                    const std::string& y_unit, double until, int height);
 
 /// CurveTables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as integer steps
 /// of a unit fine enough to be invisible (one part in ten million of the largest value).

@@ -252,16 +252,8 @@ std::string text_of(const CycleRecord& r) {
 
 std::string svg_of(const CycleRecord& r) {
   const double end = static_cast<double>(std::min<std::uint64_t>(r.cycles, told_cycles)) / r.rate;
-  const auto over_time = [&](const std::string& id, const std::string& title, const char* y_label, const char* y_unit,
-                             int height) {
-    internal::Chart chart{
-        .id = id, .title = title, .x_column = "time_s", .x_label = "Time", .x_unit = "s", .y_label = y_label, .y_unit = y_unit};
-    chart.x_home = chart.x_whole = {0, end};
-    chart.height = height;
-    return chart;
-  };
   internal::Picture drawn;
-  internal::Chart gap = over_time("gap", "Gap: the first cycles", "Gap", "m", 320);
+  internal::Chart gap = internal::chart_over_time("gap", "Gap: the first cycles", "Gap", "m", end, 320);
   gap.zero_line = true;
   gap.zero_label = "contact plane";
   const auto role = [&](const CycleRecord::Drive& d) {
@@ -276,7 +268,7 @@ std::string svg_of(const CycleRecord& r) {
   }
   drawn.charts.push_back(std::move(gap));
   for (const CycleRecord::Drive& d : r.drives) {
-    std::size_t place = 1;  // which chart is the drive's
+    std::size_t place = 1;  // number of the drive's chart
     for (const auto& [drive, points] : d.waveforms) {
       const std::string table = name_words(r, d) + "/" + drive;
       for (std::size_t n = 0; n < told_cycles; ++n) {
@@ -286,7 +278,7 @@ std::string svg_of(const CycleRecord& r) {
         }
       }
       if (drawn.charts.size() == place)
-        drawn.charts.push_back(over_time("drive-" + drive, "Drive: " + drive, "Voltage", "V", 210));
+        drawn.charts.push_back(internal::chart_over_time("drive-" + drive, "Drive: " + drive, "Voltage", "V", end, 210));
       drawn.charts[place++].series.push_back({table, "level", name_words(r, d), role(d)});
     }
   }

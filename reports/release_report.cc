@@ -114,14 +114,6 @@ std::string remarks(const ReleaseRecord& r) {
   return words;
 }
 
-internal::Chart over_time(const std::string& id, const std::string& title, const char* y_label, const char* y_unit,
-                          double until) {
-  internal::Chart chart{
-      .id = id, .title = title, .x_column = "time_s", .x_label = "Time", .x_unit = "s", .y_label = y_label, .y_unit = y_unit};
-  chart.x_home = chart.x_whole = {0, until};
-  return chart;
-}
-
 // Until the braked switch is quiet and a little longer.
 double shown_until(const ReleaseRecord& r, double window) {
   constexpr double longer = 3;
@@ -305,10 +297,9 @@ std::string svg_of(const ReleaseRecord& r) {
   std::vector<Drawn> runs{{&r.plain, "plain", plain_words, internal::Role::baseline}};
   if (r.best) runs.push_back({&*r.best, "best", "found", internal::Role::best});
   internal::Picture drawn;
-  internal::Chart gap = over_time("gap", "Gap: the opening", "Gap", "m", shown);
+  internal::Chart gap = internal::chart_over_time("gap", "Gap: the opening", "Gap", "m", shown, 320);
   gap.zero_line = true;
   gap.zero_label = "contact plane";
-  gap.height = 320;
   for (const Drawn& run : runs) {
     const auto& [time, gap_then] = r.gaps.at(run.name);
     drawn.tables[run.name] = {{"time_s", time}, {"tip_gap_m", gap_then}};
@@ -330,8 +321,7 @@ std::string svg_of(const ReleaseRecord& r) {
         drawn.tables[table]["level"].push_back(voltage);
       }
       if (drawn.charts.size() == place) {
-        drawn.charts.push_back(over_time("drive-" + drive, "Drive: " + drive, "Voltage", "V", shown));
-        drawn.charts.back().height = 210;
+        drawn.charts.push_back(internal::chart_over_time("drive-" + drive, "Drive: " + drive, "Voltage", "V", shown, 210));
       }
       drawn.charts[place++].series.push_back({table, "level", run.words, run.role});
     }

@@ -66,7 +66,8 @@ void take(CycleWaveforms& waveforms, const PreparedScene& scene) {
     waveforms.opening = std::move(told);
   } else if (const auto command = open_command(scene, told)) {
     waveforms.closing = command->held;
-    waveforms.opening = part_from(told, command->time);
+    waveforms.opening.clear();
+    for (const Signal& s : told) waveforms.opening.push_back(part_from(s, command->time, s.voltage_before(command->time)));
   } else {
     waveforms.closing = std::move(told);
   }

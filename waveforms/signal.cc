@@ -320,6 +320,18 @@ Signal held_from(const Signal& signal, double time) {
   return Signal(std::move(pieces), signal.before());
 }
 
+Signal part_from(const Signal& signal, double time, double before) {
+  std::vector<SignalPiece> pieces;
+  for (std::size_t k = signal.piece_at(time); k < signal.pieces().size(); ++k) {
+    SignalPiece piece = signal.pieces()[k];
+    if (piece.begin < time) piece = {.begin = time, .value = signal.voltage(time)};
+    if (piece.oscillates()) piece.phase += piece.angular_frequency * time;
+    piece.begin -= time;
+    pieces.push_back(std::move(piece));
+  }
+  return Signal(std::move(pieces), before);
+}
+
 Signal scaled(const Signal& signal, double factor) {
   std::vector<SignalPiece> pieces = signal.pieces();
   for (SignalPiece& piece : pieces) {

@@ -87,6 +87,8 @@ class Signal {
 
 /// The signal until `time`, and from then on what it stands at just before: at 0 s what it is before t = 0 [s].
 [[nodiscard]] Signal held_from(const Signal& signal, double time);
+/// What follows a breakpoint [s] of a signal that stands still before it, counted from there; `before` it stands at this [V].
+[[nodiscard]] Signal part_from(const Signal& signal, double time, double before = 0);
 
 /// The signal times a factor, a finite number.
 [[nodiscard]] Signal scaled(const Signal& signal, double factor);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "studies/closing/hold.h"
@@ -156,17 +155,14 @@ std::optional<OpenCommand> open_command(const Switch& model, const std::vector<S
   return command_at(signals, time);
 }
 
-std::optional<OpenCommand> open_command(const PreparedScene& prepared, const std::vector<Signal>& signals, double window) {
+std::optional<OpenCommand> open_command(const PreparedScene& prepared, const std::vector<Signal>& signals) {
   const double given = prepared.scene.simulate.open_at;
-  std::optional<OpenCommand> command =
-      std::isfinite(given) ? command_at(signals, given) : open_command(prepared.model, signals, prepared.start());
-  if (command && !(command->time < window)) command.reset();
-  return command;
+  return std::isfinite(given) ? command_at(signals, given) : open_command(prepared.model, signals, prepared.start());
 }
 
 std::vector<Signal> until_command(const PreparedScene& prepared, std::vector<Signal> signals) {
   if (prepared.start() == StartState::closed) return signals;
-  const std::optional<OpenCommand> command = open_command(prepared, signals, std::numeric_limits<double>::infinity());
+  const std::optional<OpenCommand> command = open_command(prepared, signals);
   return command ? command->held : signals;
 }
 
@@ -174,7 +170,9 @@ PreparedScene closing_of(const PreparedScene& prepared) {
   if (prepared.start() == StartState::closed) return prepared;
   const std::optional<OpenCommand> command = open_command(prepared, prepared.signals());
   PreparedScene closing = prepared;
-  if (command && command->time > 0) closing.duration = closing.held_from = command->time;
+  if (!command || command->time == 0) return closing;
+  closing.held_from = command->time;
+  closing.duration = std::min(closing.duration, command->time);
   return closing;
 }
 

@@ -21,18 +21,14 @@ struct OpenCommand {
 /// the hold levels keep the switch closed, or pull it through, and where the drives never would have held it.
 [[nodiscard]] std::optional<OpenCommand> open_command(const Switch& model, const std::vector<Signal>& signals, StartState start);
 
-/// The command in a window of a scene [s], under these drives: that of simulate.open_at where the scene has it.
-[[nodiscard]] std::optional<OpenCommand> open_command(const PreparedScene& prepared, const std::vector<Signal>& signals,
-                                                      double window);
-/// In that of the scene.
-[[nodiscard]] inline std::optional<OpenCommand> open_command(const PreparedScene& prepared, const std::vector<Signal>& signals) {
-  return open_command(prepared, signals, prepared.duration);
-}
+/// The command of these drives of a scene: that of simulate.open_at where the scene has it. It may come after the window.
+[[nodiscard]] std::optional<OpenCommand> open_command(const PreparedScene& prepared, const std::vector<Signal>& signals);
 
 /// These drives until they command the switch to open, and from then on at what they stood at; as they are where they do not.
 [[nodiscard]] std::vector<Signal> until_command(const PreparedScene& prepared, std::vector<Signal> signals);
 
-/// The scene until its drives command it to open: its window ends there, and its drives stay at what they are just before. The
+/// The scene until its drives command it to open: its window ends there at the latest, and its drives stay at what they are just
+/// before. The
 /// scene itself where they do not, and where it starts closed.
 [[nodiscard]] PreparedScene closing_of(const PreparedScene& prepared);
 

@@ -10,8 +10,7 @@ namespace {
 
 Step step_to(const PreparedScene& given, const std::string& drive, double level) {
   const Drive& own = given.drives.at(drive);
-  const double slew = own.limits ? own.limits->max_slew : std::numeric_limits<double>::infinity();
-  return {.level = level, .rise_time = std::abs(level - own.value_before()) / slew};
+  return step_from(own, own.value_before(), level);
 }
 
 // To the hold level, or to what the closing is held at before a command to open.
@@ -23,6 +22,11 @@ Step step_of(const PreparedScene& given, const std::string& drive) {
 }
 
 }  // namespace
+
+Step step_from(const Drive& drive, double from, double level) {
+  const double slew = drive.limits ? drive.limits->max_slew : std::numeric_limits<double>::infinity();
+  return {.level = level, .rise_time = std::abs(level - from) / slew};
+}
 
 DriveWaveforms plain_step(const PreparedScene& prepared, Actuator actuator) {
   DriveWaveforms plain;

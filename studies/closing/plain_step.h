@@ -15,6 +15,9 @@ namespace softland {
 /// when it steps to its own. Throws InvalidInput where an electrode is needed and there is none that pulls in.
 [[nodiscard]] DriveWaveforms plain_step(const PreparedScene& prepared, Actuator actuator);
 
+/// A step of a drive from where it stands to a level [V], as steep as its driver permits.
+[[nodiscard]] Step step_from(const Drive& drive, double from, double level);
+
 /// Whether the signals are the same, one by one.
 [[nodiscard]] bool same_drives(const std::vector<Signal>& a, const std::vector<Signal>& b);
 

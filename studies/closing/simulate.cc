@@ -40,7 +40,7 @@ FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, do
 struct Run {
   Trajectory trajectory;
   Metrics metrics;
-  std::vector<Rebound> rebounds, release_bounces = {};
+  std::vector<Rebound> rebounds;
   std::vector<ContactClosing> contacts = {};
   bool is_thinned = false;
   double tolerance = 0;
@@ -149,14 +149,13 @@ void set_commanded_opening(Metrics& m, const Trajectory& run, const Switch& mode
 class ClosingRuns {
  public:
   ClosingRuns(const PreparedScene& prepared, const Watch& watch)
-      : prepared_(prepared),
-        watch_(watch),
-        signals_(prepared.signals()),
-        command_(open_command(prepared, signals_)),
-        open_(command_ ? prepared.model.open_equilibrium(hold_levels(signals_)) : std::nullopt) {}
+      : prepared_(prepared), watch_(watch), signals_(prepared.signals()), command_(open_command(prepared, signals_)) {}
 
   [[nodiscard]] const std::vector<Signal>& signals() const { return signals_; }
-  [[nodiscard]] const std::optional<OpenCommand>& command() const { return command_; }
+  /// The command to open, where it comes in the window.
+  [[nodiscard]] std::optional<OpenCommand> command() const {
+    return command_ && command_->time < prepared_.duration ? command_ : std::nullopt;
+  }
   /// Those of the closing: until the command to open.
   [[nodiscard]] const std::vector<Signal>& held() const {
     return command_ && prepared_.start() == StartState::open ? command_->held : signals_;
@@ -189,14 +188,15 @@ class ClosingRuns {
     const std::string what =
         count_++ == 0 ? "closing" : fmt::format("closing again at tolerance {}, for its errors", engineering(tolerance, "", 1));
     const Hold hold = hold_of(model, held());
-    CourseRecorder recorder = recorder_of(model);
+    const std::optional<OpenCommand> opens = command();
+    CourseRecorder recorder = recorder_of(model, opens);
     r.trajectory = observe_closing(model, signals_,
                                    {.duration = prepared_.duration,
                                     .tolerance = tolerance,
                                     .max_steps = max_steps,
                                     .steady_force = hold.steady_force(prepared_.scene.metrics),
                                     .start = prepared_.start(),
-                                    .opens_at = command_ ? command_->time : std::numeric_limits<double>::infinity(),
+                                    .opens_at = opens ? opens->time : std::numeric_limits<double>::infinity(),
                                     .stop = watch_.stop,
                                     .observer = observer(watch_, what, prepared_.duration)},
                                    recorder);
@@ -204,34 +204,35 @@ class ClosingRuns {
     was_interrupted_ = was_interrupted_ || r.trajectory.status == Status::interrupted;
     set_rest(r.trajectory, model, held(), hold);
     r.metrics = recorder.metrics(r.trajectory);
-    if (is_before_touch(r)) {
+    if (opens && is_before_touch(r, *opens)) {
       command_.reset();
       return run(model, tolerance, quadrature, max_steps);
     }
     r.rebounds = recorder.rebounds();
-    r.release_bounces = recorder.release_bounces();
     for (std::size_t c = 0; c < r.trajectory.contacts.size(); ++c)
       r.contacts.push_back({.metrics = recorder.metrics_of(c, r.trajectory), .rebounds = recorder.rebounds_of(c)});
     r.is_thinned = recorder.is_thinned();
     set_open_figures(r.metrics, r.trajectory, model, signals_);
-    if (command_) set_commanded_opening(r.metrics, r.trajectory, model);
+    if (opens) set_commanded_opening(r.metrics, r.trajectory, model);
     return r;
   }
 
   // A command counts after the first touch alone.
-  [[nodiscard]] bool is_before_touch(const Run& r) const {
-    return command_ && prepared_.start() == StartState::open && came_to_its_end(r.trajectory) &&
-           !(r.metrics.initial_contact_time < command_->time);
+  [[nodiscard]] bool is_before_touch(const Run& r, const OpenCommand& command) const {
+    return prepared_.start() == StartState::open && came_to_its_end(r.trajectory) &&
+           !(r.metrics.initial_contact_time < command.time);
   }
 
   // Follows the connection, and each of several contacts; what strikes a back stop is followed to the end.
-  [[nodiscard]] CourseRecorder recorder_of(const Switch& model) const {
+  [[nodiscard]] CourseRecorder recorder_of(const Switch& model, const std::optional<OpenCommand>& command) const {
     const MetricsOptions& plain = prepared_.scene.metrics;
-    const MetricsOptions options = with_opening(plain, model, signals_, command_);
+    const MetricsOptions options = with_opening(plain, model, signals_, command);
+    const auto open =
+        command && model.contacts() > 1 ? model.open_equilibrium(hold_levels(signals_)) : std::optional<Eigen::VectorXd>();
     CourseRecorder recorder(prepared_.scene.device.contact_gap(), options);
     for (std::size_t c = 0; c < model.contacts() && model.contacts() > 1; ++c) {
       MetricsOptions own = is_back_stop(model, c) ? plain : options;
-      if (std::isfinite(own.opening.open_position)) own.opening.open_position = model.contact_deflection(open_->data(), c);
+      if (open) own.opening.open_position = model.contact_deflection(open->data(), c);
       recorder.follow_contact(model.contact_gap(c), own);
     }
     return recorder;
@@ -241,7 +242,6 @@ class ClosingRuns {
   const Watch& watch_;
   std::vector<Signal> signals_;
   std::optional<OpenCommand> command_;
-  std::optional<Eigen::VectorXd> open_;  // after a command
   int count_ = 0;
   bool was_interrupted_ = false;
 };
@@ -446,7 +446,6 @@ Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watc
   }
   c.trajectory = std::move(best.trajectory);
   c.rebounds = std::move(best.rebounds);
-  c.release_bounces = std::move(best.release_bounces);
   c.contacts = std::move(best.contacts);
   c.is_thinned = best.is_thinned;
   c.tolerance = best.tolerance;

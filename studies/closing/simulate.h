@@ -36,9 +36,8 @@ struct ContactClosing {
 
 struct Closing {
   Trajectory trajectory;
-  bool is_thinned = false;                    ///< the trajectory lacks knots: it draws the picture, and no more (CourseRecorder)
-  std::vector<Rebound> rebounds = {};         ///< of all knots until the command to open, where there is one
-  std::vector<Rebound> release_bounces = {};  ///< separations after it that ended in a touch
+  bool is_thinned = false;             ///< the trajectory lacks knots: it draws the picture, and no more (CourseRecorder)
+  std::vector<Rebound> rebounds = {};  ///< of all knots until the command to open, where there is one
   Metrics metrics;
   std::optional<OpenCommand> command = {};    ///< where the drives command the switch to open
   std::vector<ContactClosing> contacts = {};  ///< in the order of Trajectory::contacts; empty where there is one

@@ -54,22 +54,6 @@ class KeptCourse final : public ClosingObserver {
 
 }  // namespace
 
-std::vector<Signal> part_from(const std::vector<Signal>& signals, double from) {
-  std::vector<Signal> parts;
-  for (const Signal& signal : signals) {
-    std::vector<SignalPiece> pieces;
-    for (std::size_t k = signal.piece_at(from); k < signal.pieces().size(); ++k) {
-      SignalPiece piece = signal.pieces()[k];
-      if (piece.begin < from) piece = {.begin = from, .value = signal.voltage(from)};
-      piece.phase += piece.angular_frequency * from;
-      piece.begin -= from;
-      pieces.push_back(std::move(piece));
-    }
-    parts.emplace_back(std::move(pieces), signal.voltage_before(from));
-  }
-  return parts;
-}
-
 std::vector<Signal> cycled(const CycleWaveforms& waveforms, const CycleTimes& times) {
   std::vector<Signal> all;
   for (std::size_t k = 0; k < waveforms.closing.size(); ++k) {
@@ -146,37 +130,31 @@ bool CycledSwitch::is_steady(const CycleTimes& times, const CycleTolerances& tol
   return is_steady;
 }
 
-CycledSwitch::RestTimes CycledSwitch::rest_times(const Watch& watch) const {
-  const double period = 2 * pi / model_.basis().angular_frequencies()[0];
-  const double on = std::max(driven_.duration, last_breakpoint(waveforms_.closing) + model_.basis().in_contact_period());
-  const double off = last_breakpoint(waveforms_.opening) + periods_of_opening * period;
+CycledSwitch::PartTimes CycledSwitch::part_times(const Watch& watch) const {
+  const double period = 2 * pi / model_.basis().angular_frequencies()[0], in_contact = model_.basis().in_contact_period();
+  const double close = last_breakpoint(waveforms_.closing), open = last_breakpoint(waveforms_.opening);
+  const double on = std::max(driven_.duration, close + in_contact), off = open + periods_of_opening * period;
+  PartTimes times;
   const Cycles one = run({.period = on + off, .on_time = on}, false, watch);
-  if (one.cycles.empty()) return {};
+  if (one.cycles.empty()) return times;
   const Metrics& m = one.cycles.front().metrics;
-  if (!m.settled || !std::isfinite(m.release_settling_time)) return {};
-  return {.on = std::max(m.permanent_contact_time + model_.basis().in_contact_period(), last_breakpoint(waveforms_.closing)),
-          .off = std::max(m.release_settling_time, last_breakpoint(waveforms_.opening)) + period};
-}
-
-CycledSwitch::RestTimes CycledSwitch::least_times(const Watch& watch) const {
-  const double on = std::max(driven_.duration, last_breakpoint(waveforms_.closing));
-  const Cycles one = run({.period = 2 * on, .on_time = on}, false, watch);
-  if (one.cycles.empty() || !one.cycles.front().metrics.touched()) return {};
-  return {.on = std::max(one.cycles.front().metrics.initial_contact_time, last_breakpoint(waveforms_.closing)),
-          .off = last_breakpoint(waveforms_.opening)};
+  if (m.touched()) times.least_on = std::max(m.initial_contact_time, close), times.least_off = open;
+  if (!m.settled || !std::isfinite(m.release_settling_time)) return times;
+  times.rest_on = std::max(m.permanent_contact_time + in_contact, close);
+  times.rest_off = std::max(m.release_settling_time, open) + period;
+  return times;
 }
 
 RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, const Watch& watch) {
   RateScan scan;
-  const auto rate_of = [&](const CycledSwitch::RestTimes& times) {
-    return 1 / std::max(times.on / options.duty, times.off / (1 - options.duty));
-  };
+  const auto rate_of = [&](double on, double off) { return 1 / std::max(on / options.duty, off / (1 - options.duty)); };
   const auto is_steady_at = [&](double rate) {
-    const CycleTimes times{.period = 1 / rate, .on_time = options.duty / rate, .cycles = options.cycles};
-    return cycled.is_steady(times, options.tolerances, {.stop = watch.stop});
+    return cycled.is_steady({.period = 1 / rate, .on_time = options.duty / rate, .cycles = options.cycles}, options.tolerances,
+                            {.stop = watch.stop});
   };
-  double lowest = rate_of(cycled.rest_times(watch));
-  const double highest = rate_of(cycled.least_times(watch));
+  const CycledSwitch::PartTimes times = cycled.part_times(watch);
+  double lowest = rate_of(times.rest_on, times.rest_off);
+  const double highest = rate_of(times.least_on, times.least_off);
   if (!(lowest > 0)) return scan;
   // What is left of the vibration at rest may still be felt.
   for (int k = 0; k < most_slower && !watch.stopped() && !is_steady_at(lowest); ++k) lowest /= slower;
@@ -199,11 +177,8 @@ RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, cons
 
 namespace {
 
-// As fast as its driver can.
 Signal step_between(const PreparedScene& given, std::size_t drive, double from, double level) {
-  const std::optional<DriverLimits>& limits = given.drives[drive].limits;
-  const double slew = limits ? limits->max_slew : std::numeric_limits<double>::infinity();
-  return Signal::piecewise_linear({{0, from}, {std::abs(level - from) / slew, level}}, from);
+  return signal(step_from(given.drives[drive], from, level), from);
 }
 
 }  // namespace

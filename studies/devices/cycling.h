@@ -25,9 +25,6 @@ struct CycleWaveforms {
   std::vector<Signal> closing, opening;
 };
 
-/// What follows in signals from a breakpoint on, at which they stand still before it [s].
-[[nodiscard]] std::vector<Signal> part_from(const std::vector<Signal>& signals, double from);
-
 /// The same again and again, from the rest before the first closing on.
 [[nodiscard]] std::vector<Signal> cycled(const CycleWaveforms& waveforms, const CycleTimes& times);
 
@@ -59,14 +56,13 @@ class CycledSwitch {
   [[nodiscard]] Cycles run(const CycleTimes& times, bool keeps_gap, const Watch& watch = {}) const;
   /// Whether all of these cycles land like the first one: given up at the first that does not.
   [[nodiscard]] bool is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Watch& watch = {}) const;
-  /// The times that one cycle takes from rest to rest: on and off [s]; infinite where it does not settle in the windows that a
-  /// closing and an opening are given.
-  struct RestTimes {
-    double on = std::numeric_limits<double>::infinity(), off = std::numeric_limits<double>::infinity();
+  /// What a cycle needs for its closing and for its opening [s]: to come to rest, in windows that show it, and at the least,
+  /// until the first touch or the end of the waveform. Infinite where it does not.
+  struct PartTimes {
+    double rest_on = std::numeric_limits<double>::infinity(), rest_off = std::numeric_limits<double>::infinity();
+    double least_on = std::numeric_limits<double>::infinity(), least_off = std::numeric_limits<double>::infinity();
   };
-  [[nodiscard]] RestTimes rest_times(const Watch& watch = {}) const;
-  /// The least times of one cycle: until the first touch, or the end of the waveform [s].
-  [[nodiscard]] RestTimes least_times(const Watch& watch = {}) const;
+  [[nodiscard]] PartTimes part_times(const Watch& watch = {}) const;
 
  private:
   // `is_enough` ends the run; may be null.

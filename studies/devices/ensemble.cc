@@ -451,8 +451,7 @@ DeviceCloser::DeviceCloser(const PreparedScene& nominal, const std::vector<Ensem
   if (is_measured) meter_.emplace(nominal, gauges);
   for (const EnsembleDrive& drive : drives) {
     std::vector<Signal> signals = nominal.driven(drive.waveforms);
-    nominal_commands_.push_back(run.opens_on_command ? open_command(nominal, signals, std::numeric_limits<double>::infinity())
-                                                     : std::nullopt);
+    nominal_commands_.push_back(run.opens_on_command ? open_command(nominal, signals) : std::nullopt);
     nominal_signals_.push_back(nominal_commands_.back() ? nominal_commands_.back()->held : std::move(signals));
     nominal_closed_.push_back(closed_equilibrium(nominal.model, hold_levels(nominal_signals_.back())));
   }

@@ -41,19 +41,6 @@ constexpr double watched_for = 3;           // the same, at least, of a run that
 // The source of a drive has stood at its hold level for so many of its time constants.
 constexpr double settled_after = 50;
 
-// What follows a breakpoint of a signal that stood still before it.
-Signal later_part(const Signal& signal, double from) {
-  std::vector<SignalPiece> pieces;
-  const std::size_t first = signal.piece_at(from);
-  for (std::size_t k = first; k < signal.pieces().size(); ++k) {
-    SignalPiece piece = signal.pieces()[k];
-    if (k == first && piece.begin < from) piece = {.begin = from, .value = signal.voltage(from)};
-    piece.begin -= from;
-    pieces.push_back(std::move(piece));
-  }
-  return Signal(std::move(pieces));
-}
-
 // A drive that may brake, and its parameters among those of a point.
 struct Brake {
   std::size_t drive = 0;
@@ -253,7 +240,7 @@ class ReleaseSearch {
     if (source.sample_rate) stands = std::ceil(stands * *source.sample_rate) / *source.sample_rate;
     for (auto& [time, voltage] : points) time += stands;
     points.insert(points.begin(), {0, points.front().second});
-    return later_part(given_.driven(k, Signal::piecewise_linear(points)), stands);
+    return part_from(given_.driven(k, Signal::piecewise_linear(points)), stands);
   }
 
   const PreparedScene& given_;

@@ -216,5 +216,23 @@ TEST(Signal, ScaledIsTheSameShapeAtAnotherLevel) {
   EXPECT_TRUE(scaled(sines, 0).is_zero());
 }
 
+TEST(Signal, IsHeldFromATimeAndGoesOnFromOne) {
+  const Signal whole({{.begin = 0, .value = 1, .amplitude = 2, .angular_frequency = 3e6, .phase = 0.4},
+                      {.begin = 2e-6, .value = 20},
+                      {.begin = 5e-6, .value = 20, .slope = -1e7, .amplitude = 1, .angular_frequency = 4e6, .phase = 0.2},
+                      {.begin = 7e-6, .value = 0}},
+                     1.5);
+  for (const double from : {1e-6, 5e-6, 6e-6}) {
+    const Signal held = held_from(whole, from);
+    for (const double t : {0.0, 0.7e-6, 0.9 * from}) EXPECT_EQ(held.voltage(t), whole.voltage(t));
+    for (const double t : {from, 1.1 * from, 1.0}) EXPECT_EQ(held.voltage(t), whole.voltage_before(from));
+    EXPECT_EQ(held.before(), 1.5);
+  }
+  EXPECT_EQ(held_from(whole, 0).voltage(3e-6), 1.5);
+  const Signal later = part_from(whole, 5e-6, 20);
+  EXPECT_EQ(later.before(), 20);
+  for (const double t : {0.0, 0.3e-6, 1.9e-6, 2e-6, 1.0}) EXPECT_NEAR(later.voltage(t), whole.voltage(5e-6 + t), 1e-9);
+}
+
 }  // namespace
 }  // namespace softland
