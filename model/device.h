@@ -128,6 +128,14 @@ struct ElectricalClosing {
   [[nodiscard]] double shortest_opening() const { return after >= 0 ? after : 0; }
 };
 
+/// The circuit that the connection switches: a source and a resistance in series with it.
+struct SwitchedLoad {
+  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< [V]
+  double resistance = std::numeric_limits<double>::quiet_NaN();  ///< [Ohm]
+
+  [[nodiscard]] bool is_given() const { return voltage > 0 && resistance > 0; }
+};
+
 struct Device {
   Structure structure = {};
   Gap gap = {};
@@ -136,6 +144,7 @@ struct Device {
   std::vector<Contact> contacts = {};  ///< the first one, of the near side, closes the switch; back stops come after the others
   Connection connection = Connection::all;
   ElectricalClosing electrical = {};
+  SwitchedLoad load = {};
   std::optional<Piezo> piezo = {};
   std::optional<Dispersion> dispersion = {};
   std::optional<Surface> surface = {};

@@ -28,6 +28,8 @@ struct Touch {
   double impact_velocity = 0;  ///< [m/s] at begin
   double peak_force = 0;       ///< [N]; NaN for a rigid contact, which has an impulse instead
   double peak_energy = 0;      ///< largest energy stored in the contact law, of a rigid one the kinetic energy at impact [J]
+  /// Largest pressure of the highest summit over the hardness (model/contact/summit_pressure.h); NaN where it is not known.
+  double pressure = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct Work {

@@ -21,6 +21,7 @@ void LandingFigures::touch(const Touch& touch) {
   if (std::isnan(touch.peak_force) || touch.peak_force > peak_force_) peak_force_ = touch.peak_force;
   impact_energy_ += touch.peak_energy;
   largest_impact_velocity_ = std::max(largest_impact_velocity_, touch.impact_velocity);
+  pressure_ = std::fmax(pressure_, touch.pressure);
 }
 
 void LandingFigures::rebound(const Rebound& rebound) {
@@ -45,6 +46,7 @@ LandingFigures::Course MetricsObserver::course() const {
 void MetricsObserver::knot(const TrajectoryPoint& point) {
   if (!rebounds_.touched()) closest_ = std::min(closest_, contact_gap_ - point.position);
   if (opening_) opening_->follow(last_, point);
+  charge_.follow(last_, point);
   rebounds_.knot(point, [this](const Rebound& rebound) { opening_ ? opening_->bounce(rebound) : figures_.rebound(rebound); });
   last_ = point;
   if (!opening_ && point.time >= options_.opening.time) begin_opening();
@@ -55,16 +57,24 @@ void MetricsObserver::begin_opening() {
   landing_ = course();
   if (landing_->above) figures_.rebound(*rebounds_.under_way());
   opening_.emplace(options_.opening, contact_gap_, options_.significant_rebound);
+  make_charge_ = charge_.charge();
 }
 
 Metrics MetricsObserver::metrics(const Trajectory& end) {
   if (!opening_) {
     if (rebounds_.under_way()) figures_.rebound(*rebounds_.under_way());
-    return figures_.metrics(end, course());
+    Metrics result = figures_.metrics(end, course());
+    if (result.is_complete() && result.touched()) result.make_charge = charge_.charge();
+    return result;
   }
   landing_->sound = rebounds_.usable();
   Metrics result = figures_.metrics(end, *landing_);
   result.asked.opening = true;
+  result.asked.break_charge = options_.asked.charge;
+  if (result.is_complete()) {
+    if (result.touched()) result.make_charge = make_charge_;
+    result.break_charge = charge_.charge() - make_charge_;
+  }
   result.end = rebounds_.last_time();
   const OpeningOnCommand opening = opening_->figures(rebounds_.under_way(), last_);
   result.open_command = opening.command;
@@ -116,6 +126,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   if (touched_) {
     result.peak_contact_force = peak_force_;
     result.impact_energy = impact_energy_;
+    result.pressure = pressure_;
     result.steady_force_time = end.steady_force_time;
     result.least_force_after_touch = end.least_force_after_touch;
   }

@@ -2,35 +2,46 @@
 // called in results, and in which unit, stands in objectives/figures.h.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "model/closing/observer.h"
+#include "model/contact/summit_pressure.h"
 #include "model/device.h"
 #include "model/trajectory.h"
 #include "objectives/opening.h"
 #include "objectives/rebounds.h"
+#include "objectives/transferred_charge.h"
 
 namespace softland {
 
 /// Figures that only some scenes ask for.
 struct AskedFigures {
-  bool resistance = false;  ///< of a connection whose contacts have a resistivity
-  bool electrical = false;  ///< of a device with Device::electrical
-  bool opening = false;     ///< a run opens on command
+  bool resistance = false;    ///< the contacts that make the connection have a resistivity
+  bool electrical = false;    ///< Device::electrical asks for them
+  bool opening = false;       ///< a run opens on command
+  bool pressure = false;      ///< a contact that makes the connection has summits and a hardness
+  bool charge = false;        ///< Device::load is given
+  bool break_charge = false;  ///< the same, and the run opens on command
   bool operator==(const AskedFigures&) const = default;
 };
 /// Returns what a device asks for.
 [[nodiscard]] inline AskedFigures asked_figures(const Device& device) {
-  return {.resistance = device.conducts(), .electrical = device.electrical.is_asked()};
+  return {.resistance = device.conducts(),
+          .electrical = device.electrical.is_asked(),
+          .pressure =
+              std::ranges::any_of(device.contacts, [](const Contact& c) { return c.connects && summit_pressure_scale(c) > 0; }),
+          .charge = device.load.is_given()};
 }
 
 struct MetricsOptions {
   double significant_rebound = 1e-9;  ///< a rebound counts when it is higher than this [m]
   double steady_force = 0.1;          ///< the contact force is steady from this share of the hold force on
   AskedFigures asked = {};
-  OpeningCommand opening = {};  ///< figures of the landing are those until then
+  OpeningCommand opening = {};    ///< figures of the landing are those until then
+  TransferOptions transfer = {};  ///< set where Device::load is given
 };
 
 struct Metrics {
@@ -56,7 +67,10 @@ struct Metrics {
   double electrical_contact = unset;   ///< ElectricalOutcome::first_closed [s]
   double electrical_settling = unset;  ///< ElectricalOutcome::closed_from [s]
   int electrical_bounces = 0;          ///< ElectricalOutcome::openings; meaningless where it never closes
-  AskedFigures asked = {};             ///< MetricsOptions::asked
+  double pressure = unset;             ///< Touch::pressure, the largest
+  double make_charge = unset;   ///< see objectives/transferred_charge.h: until the command to open, or the end of the run [C]
+  double break_charge = unset;  ///< the same from the command on [C]
+  AskedFigures asked = {};      ///< MetricsOptions::asked
   // These are known where the drives command the switch to open: see OpeningOnCommand.
   double open_command = unset;           ///< [s]
   double opening_time = unset;           ///< from the command to the last break of the contact [s]
@@ -118,7 +132,7 @@ class LandingFigures {
   Rebound latest_ = {};
   int significant_ = 0;
   bool touched_ = false;
-  double peak_force_ = 0, impact_energy_ = 0, largest_impact_velocity_ = 0;
+  double peak_force_ = 0, impact_energy_ = 0, largest_impact_velocity_ = 0, pressure_ = Metrics::unset;
 };
 
 /// Gathers the figures while a closing runs, and keeps nothing of its course.
@@ -126,7 +140,12 @@ class MetricsObserver final : public ClosingObserver {
  public:
   /// `contact_gap` [m]
   explicit MetricsObserver(double contact_gap, const MetricsOptions& options = {})
-      : options_(options), figures_(options), rebounds_(contact_gap), contact_gap_(contact_gap), closest_(contact_gap) {}
+      : options_(options),
+        figures_(options),
+        rebounds_(contact_gap),
+        charge_(options.transfer, contact_gap),
+        contact_gap_(contact_gap),
+        closest_(contact_gap) {}
   void knot(const TrajectoryPoint& point) override;
   void touch(const Touch& touch) override {
     if (touch.begin < options_.opening.time) figures_.touch(touch);
@@ -141,8 +160,10 @@ class MetricsObserver final : public ClosingObserver {
   MetricsOptions options_;
   LandingFigures figures_;
   ReboundFinder rebounds_;
+  TransferredCharge charge_;
   double contact_gap_, closest_;  // [m]
-  TrajectoryPoint last_;
+  TrajectoryPoint last_{.time = Metrics::unset};
+  double make_charge_ = Metrics::unset;            // once the opening has begun [C]
   std::optional<CommandedOpening> opening_;        // from the command on
   std::optional<LandingFigures::Course> landing_;  // until then
 };

@@ -59,6 +59,7 @@ RunRecord run(const PreparedScene& p, const Closing& closing, const MetricsOptio
   FigureValues figures(closing.metrics), errors = closing.errors;
   figures.asked = options.asked;
   figures.asked.opening = closing.metrics.asked.opening;
+  figures.asked.break_charge = closing.metrics.asked.break_charge;
   errors.asked = figures.asked;
   CurveRecord curve = curve_of(closing.trajectory, closing.rebounds, closing.is_thinned, options);
   curve.resistance = resistance_course(p.scene.device, closing.trajectory, curve.time);

@@ -114,10 +114,10 @@ const Key* Section::find(std::string_view key, std::string_view choice) const {
 
 const std::vector<Section>& schema() {
   static const std::vector<Section> sections{
-      title_section(),    structure_section(), gap_section(),          electrode_section(),
-      gas_section(),      contact_section(),   dispersion_section(),   surface_section(),
-      piezo_section(),    waveform_section(),  force_factor_section(), driver_section(),
-      simulate_section(), metrics_section(),   spread_section(),       calibration_section()};
+      title_section(),        structure_section(),  gap_section(),      electrode_section(), gas_section(),
+      contact_section(),      dispersion_section(), surface_section(),  piezo_section(),     waveform_section(),
+      force_factor_section(), driver_section(),     simulate_section(), load_section(),      metrics_section(),
+      spread_section(),       calibration_section()};
   return sections;
 }
 

@@ -110,6 +110,7 @@ inline constexpr std::string_view dielectric_advice =
 [[nodiscard]] Section calibration_section();
 [[nodiscard]] Section driver_section();
 [[nodiscard]] Section simulate_section();
+[[nodiscard]] Section load_section();
 [[nodiscard]] Section metrics_section();
 [[nodiscard]] Section spread_section();
 

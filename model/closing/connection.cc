@@ -134,6 +134,7 @@ void ConnectionTouches::take(const Touch& touch) {
   pending_.impact_velocity = std::max(pending_.impact_velocity, touch.impact_velocity);
   pending_.peak_force = std::max(pending_.peak_force, touch.peak_force);
   pending_.peak_energy += touch.peak_energy;
+  pending_.pressure = std::fmax(pending_.pressure, touch.pressure);
 }
 
 std::optional<Touch> ConnectionTouches::close(double time, double speed) {
@@ -148,6 +149,7 @@ std::optional<Touch> ConnectionTouches::finish() {
   last->impact_velocity = std::max(last->impact_velocity, pending_.impact_velocity);
   last->peak_force = pending_.peak_force;
   last->peak_energy = pending_.peak_energy;
+  last->pressure = pending_.pressure;
   pending_ = {};
   return last;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "model/contact/contact_law.h"
+#include "model/contact/summit_pressure.h"
 
 namespace softland {
 namespace {
@@ -26,6 +27,7 @@ TouchRecord::TouchRecord(const Switch& model, std::size_t contact, const Contact
       phase_(phase),
       observer_(observer),
       plane_(model.contact_gap(contact)),
+      pressure_scale_(model.has_contact() ? summit_pressure_scale(model.device().contacts[contact]) : none),
       first_begin_(none) {}
 
 void TouchRecord::begin(double time, double velocity) {
@@ -53,6 +55,7 @@ void TouchRecord::take(const TipMotion& tip, const TrajectoryPoint& from, const 
     touch_.peak_energy = std::max(touch_.peak_energy, stored_energy(model_.contact(contact_), d, phase_.law()));
   }
   deepest_ = std::max(deepest_, d);
+  if (pressure_scale_ > 0) touch_.pressure = std::fmax(touch_.pressure, pressure_scale_ * std::sqrt(std::max(d, 0.0)));
 }
 
 void TouchRecord::take(const Knot& begin, const Knot& end, StepMotion& step) {

@@ -42,7 +42,7 @@ class TouchRecord {
   std::size_t contact_;
   const ContactPhase& phase_;
   ClosingObserver& observer_;
-  double plane_;
+  double plane_, pressure_scale_;  // [m], see summit_pressure_scale()
   Touch touch_;
   long count_ = 0;
   double first_begin_, deepest_ = 0;

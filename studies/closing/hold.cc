@@ -85,6 +85,15 @@ Hold hold_under(const Switch& model, const std::vector<double>& levels, const st
   return hold;
 }
 
+MetricsOptions with_load(MetricsOptions options, const Switch& model, const std::vector<double>& holding) {
+  const Device& device = model.device();
+  if (!device.load.is_given()) return options;
+  options.transfer = {.load = device.load, .light_below = hold_under(model, holding).steady_force(options)};
+  const auto made_by = std::ranges::count_if(device.contacts, &Contact::connects);
+  if (made_by == 1 && device.conducts()) options.transfer.contact = contact_resistance(device, 0);
+  return options;
+}
+
 void set_hold(Trajectory& trajectory, const Hold& hold) {
   trajectory.hold_force = hold.force;
   trajectory.is_held = hold.is_held;

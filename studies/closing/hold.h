@@ -49,6 +49,9 @@ struct Hold {
 void set_hold(Trajectory& trajectory, const Hold& hold);
 /// The same, and the capacitance where the hold levels leave the switch.
 void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold);
+/// The same options for a run of this switch, whose contact these levels hold closed, one per drive [V]: with the load that it
+/// switches.
+[[nodiscard]] MetricsOptions with_load(MetricsOptions options, const Switch& model, const std::vector<double>& holding);
 /// Whether a run that began closed has left its contact for good.
 [[nodiscard]] bool has_opened(const Trajectory& run);
 

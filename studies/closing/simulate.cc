@@ -226,12 +226,15 @@ class ClosingRuns {
   // Follows the connection, and each of several contacts; what strikes a back stop is followed to the end.
   [[nodiscard]] CourseRecorder recorder_of(const Switch& model, const std::optional<OpenCommand>& command) const {
     const MetricsOptions& plain = prepared_.scene.metrics;
-    const MetricsOptions options = with_opening(plain, model, signals_, command);
+    const std::vector<double> holding =
+        prepared_.start() == StartState::closed ? values_before(signals_) : hold_levels(held());
+    const MetricsOptions options = with_load(with_opening(plain, model, signals_, command), model, holding);
     const auto open =
         command && model.contacts() > 1 ? model.open_equilibrium(hold_levels(signals_)) : std::optional<Eigen::VectorXd>();
     CourseRecorder recorder(prepared_.scene.device.contact_gap(), options);
     for (std::size_t c = 0; c < model.contacts() && model.contacts() > 1; ++c) {
       MetricsOptions own = is_back_stop(model, c) ? plain : options;
+      own.transfer = {};
       if (open) own.opening.open_position = model.contact_deflection(open->data(), c);
       recorder.follow_contact(model.contact_gap(c), own);
     }

@@ -12,6 +12,7 @@
 #include "base/require.h"
 #include "model/closing.h"
 #include "model/constants.h"
+#include "studies/closing/hold.h"
 #include "studies/closing/open_command.h"
 #include "studies/closing/plain_step.h"
 #include "studies/devices/ensemble.h"
@@ -79,7 +80,10 @@ bool lands_alike(const CycleFigures& cycle, const CycleFigures& first, const Cyc
 }
 
 CycledSwitch::CycledSwitch(const PreparedScene& driven, const Switch& model, const CycleWaveforms& waveforms)
-    : driven_(driven), model_(model), waveforms_(waveforms), options_(driven.scene.metrics) {
+    : driven_(driven),
+      model_(model),
+      waveforms_(waveforms),
+      options_(with_load(driven.scene.metrics, model, hold_levels(waveforms.closing))) {
   if (const auto open = model.open_equilibrium(hold_levels(waveforms.opening)))
     options_.opening.open_position = connection_deflection(model, *open);
 }

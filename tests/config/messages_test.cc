@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
     Edit{"pad_length", "roughness", R"(x.toml:19: contact.roughness = "5 um": unknown key; the roughness of a face is 'asperity_deviation' with model = "asperity-gaussian", and 'asperity_height' with model = "asperity-uniform")"},
     Edit{"title =", "titel =", R"(x.toml:1: titel = "small": unknown key (did you mean 'title'?))"},
     Edit{"[gas]", "[gass]", "x.toml:14: [gass]: unknown section (did you mean 'gas'?)"},
-    Edit{"[gas]", "[weather]", "x.toml:14: [weather]: unknown section (known: structure, gap, electrode, gas, contact, dispersion, surface, piezo, waveform, driver, simulate, metrics, spread, calibration)"},
+    Edit{"[gas]", "[weather]", "x.toml:14: [weather]: unknown section (known: structure, gap, electrode, gas, contact, dispersion, surface, piezo, waveform, driver, simulate, load, metrics, spread, calibration)"},
     Edit{R"(kind = "cantilever")", R"(kind = "cantilver")", R"(x.toml:3: structure.kind = "cantilver": unknown value (did you mean 'cantilever'?))"},
     Edit{R"(kind = "cantilever")", R"(kind = 1)", "x.toml:3: structure.kind = 1: expected one of cantilever, clamped-clamped, plate, modes"},
     Edit{R"(kind = "cantilever")", R"(kind = "clamped-clamped")", "x.toml:21: [piezo]: between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off its middle line; a layer needs a cantilever"},
@@ -181,6 +181,7 @@ const std::string casimir = "[dispersion]\nmodel = \"casimir\"\n";
 const std::string factor = "[waveform.dispersion]\nfamily = \"step\"\n";
 
 INSTANTIATE_TEST_SUITE_P(Surface, BadFile, testing::Values(
+    Edit{"[gas]", "[load]\nvoltage = \"5 V\"\n[gas]", "x.toml:14: [load]: missing key 'resistance' (a resistance such as \"50 ohm\")"},
     Edit{"[gas]", "[surface]\n[gas]", "x.toml:22: [piezo]: covers a face of the beam; [surface] is for a bare beam"},
     Edit{"[gas]", "[surface]\nelastic_modulus = \"-1 MN/m\"\n[gas]", "x.toml:14: [surface]: leaves a bending rigidity of -1.623e-10 N m^2"},
     Edit{"[gas]", "[surface]\nresidual_stress = \"10 N/m\"\ncantilever_load = \"compression\"\n[gas]", "x.toml:14: [surface]: leaves -5 MPa along the beam, which buckles at -4.106 MPa"}));

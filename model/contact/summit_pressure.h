@@ -1,0 +1,36 @@
+// Pressure of the highest summit of a contact, over the hardness of the softer surface.
+//
+//   p / H = 4 E* / (3 pi H) sqrt(d / R)
+//
+// p mean pressure of an elastic spot [Pa]; H hardness [Pa]; E* effective modulus [Pa]; d interference of the contact, which that
+// summit has from first touch on [m]; R radius of the summits [m]. Source: Hertz 1882.
+//
+// Limits: a summit yields from p / H = 0.4 on (Chang, Etsion & Bogy 1987, with their K = 0.6), and its pressure is the hardness
+// from about 1 on: beyond 0.4 the number tells how far it is dented, in proportion to the square root of d.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include "model/constants.h"
+#include "model/contact/contact.h"
+
+namespace softland {
+
+/// Returns p / H over the square root of the interference [1/m^0.5]; NaN for a law without summits and where no hardness is known.
+[[nodiscard]] inline double summit_pressure_scale(const Contact& contact) {
+  return std::visit(
+      [&]<class Law>(const Law& law) {
+        double scale = std::numeric_limits<double>::quiet_NaN();
+        if constexpr (requires { law.summits; }) {
+          double hardness = contact.conduction.hardness;
+          if constexpr (requires { law.hardness; }) hardness = law.hardness;
+          scale = 4 * law.summits.effective_modulus / (3 * pi * hardness * std::sqrt(law.summits.radius));
+        }
+        return scale;
+      },
+      contact.model);
+}
+
+}  // namespace softland
