@@ -76,6 +76,27 @@ std::string leave(ResultFolder& folder, const verbs::Outcome& outcome) {
   return text;
 }
 
+void declare(Verb& verb, const OptionRow& option, Given& given) {
+  const std::string name = spelled(option.name);
+  switch (option.kind) {
+    case OptionRow::Kind::flag:
+      return verb.flag(name.c_str(), given.flags[option.name], option.about);
+    case OptionRow::Kind::repeated:
+      return verb.repeated(name.c_str(), given.repeated[option.name], option.word.c_str(), option.about);
+    case OptionRow::Kind::further:
+      return verb.more(option.name.c_str(), given.repeated[option.name], option.about);
+    case OptionRow::Kind::text:
+    case OptionRow::Kind::object:
+      break;
+  }
+  if (option.may_be_empty)
+    verb.optional(name.c_str(), given.optional[option.name], option.word.c_str(), option.about);
+  else
+    verb.option(name.c_str(), given.texts[option.name], option.word.c_str(), option.about);
+}
+
+}  // namespace
+
 int run_study(const verbs::Study& study, const Common& c, const verbs::Told& told) {
   const auto run = study.ask(told);
   if (study.leaving != nullptr)
@@ -107,27 +128,6 @@ int run_study(const verbs::Study& study, const Common& c, const verbs::Told& tol
   if (!found.fault.empty()) say(found.fault);
   return exit_status_of(found.ending);
 }
-
-void declare(Verb& verb, const OptionRow& option, Given& given) {
-  const std::string name = spelled(option.name);
-  switch (option.kind) {
-    case OptionRow::Kind::flag:
-      return verb.flag(name.c_str(), given.flags[option.name], option.about);
-    case OptionRow::Kind::repeated:
-      return verb.repeated(name.c_str(), given.repeated[option.name], option.word.c_str(), option.about);
-    case OptionRow::Kind::further:
-      return verb.more(option.name.c_str(), given.repeated[option.name], option.about);
-    case OptionRow::Kind::text:
-    case OptionRow::Kind::object:
-      break;
-  }
-  if (option.may_be_empty)
-    verb.optional(name.c_str(), given.optional[option.name], option.word.c_str(), option.about);
-  else
-    verb.option(name.c_str(), given.texts[option.name], option.word.c_str(), option.about);
-}
-
-}  // namespace
 
 void add_study(Verb& verb, const verbs::Study& study, RunTold run) {
   const auto given = std::make_shared<Given>();

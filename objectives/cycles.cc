@@ -19,6 +19,7 @@ void CycleRecorder::knot(const TrajectoryPoint& point) {
   if (current_ == cycles_.size()) return;
   cycles_[current_].metrics.knot(point);
   if (point.time < times_.begin(current_ + 1)) return;
+  cycles_[current_].end = point;
   if (++current_ == cycles_.size()) return;
   cycles_[current_].began_open = point.position < contact_gap_;
   cycles_[current_].metrics.knot(point);
@@ -51,6 +52,7 @@ CycleFigures CycleRecorder::figures(std::size_t cycle, const Trajectory& run) {
     f.metrics.*time -= begin;
   f.closes = own.began_open && f.metrics.initial_contact_time < times_.on_time;
   f.opens = std::isfinite(f.metrics.opening_time);
+  f.end = own.end;
   return f;
 }
 

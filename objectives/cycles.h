@@ -25,6 +25,7 @@ struct CycleFigures {
   Metrics metrics;
   bool closes = false;  ///< it begins open, and touches before the command
   bool opens = false;   ///< it is open at the end
+  TrajectoryPoint end;  ///< what the contact point does where the next cycle begins
 };
 
 class CycleRecorder final : public ClosingObserver {
@@ -47,6 +48,7 @@ class CycleRecorder final : public ClosingObserver {
     MetricsObserver metrics;
     double source_work = Metrics::unset;  // [J]
     bool began_open = false;
+    TrajectoryPoint end = {};
   };
 
   double contact_gap_;

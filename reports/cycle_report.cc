@@ -68,11 +68,34 @@ const CycleRecord::Drive& found_of(const CycleRecord& r) { return r.drives.back(
 
 std::string rate_words(double rate) { return std::isfinite(rate) ? quantity(rate, "Hz") : std::string("none"); }
 
+// The hardest of the cycles that were told.
+double hardest(const CycleRecord::Drive& drive, double Metrics::*figure) {
+  double most = 0;
+  for (const CycleRecord::Cycle& cycle : drive.cycles) most = std::fmax(most, cycle.metrics.*figure);
+  return most;
+}
+
+// Both pairs of waveforms at the rate that is told.
+std::string comparison(const CycleRecord& r) {
+  const auto words = [&](const CycleRecord::Drive& drive) {
+    const bool sticks = std::ranges::any_of(drive.cycles, [](const auto& c) { return !std::isfinite(c.metrics.opening_time); });
+    const bool misses = std::ranges::any_of(drive.cycles, [](const auto& c) { return !c.metrics.touched(); });
+    if (drive.cycles.empty()) return std::string("cannot be followed");
+    if (misses || sticks) return fmt::format("does not {} in every cycle", misses ? "close" : "open");
+    const double height = hardest(drive, &Metrics::major_bounce_height);
+    return fmt::format("touches at up to {} and {}", quantity(hardest(drive, &Metrics::largest_impact_velocity), "m/s"),
+                       height > 0 ? "rebounds by up to " + quantity(height, "m") : std::string("does not rebound"));
+  };
+  return fmt::format("At {} the switch {} with these waveforms; switched plainly, it {}.", quantity(r.rate, "Hz"),
+                     words(r.drives.back()), words(r.drives.front()));
+}
+
 std::string finding(const CycleRecord& r) {
   if (r.drives.empty()) return "No rate was tried.";
   const CycleRecord::Drive &plain = r.drives.front(), &found = found_of(r);
   if (found.steady_rates.empty() && found.other_rates.empty()) {
     if (!std::isfinite(r.rate)) return "The switch does not close and come back to rest: there is no rate to scan.";
+    if (r.drives.size() > 1) return comparison(r);
     const bool sticks = std::ranges::any_of(found.cycles, [](const auto& c) { return !std::isfinite(c.metrics.opening_time); });
     return fmt::format("Cycles at {}{}.", quantity(r.rate, "Hz"), sticks ? "; the switch is closed when a cycle ends" : "");
   }
@@ -123,6 +146,10 @@ ReportTable cycles_table(const CycleRecord::Drive& drive, const std::string& nam
                         Row{"bounces on opening", &Metrics::release_bounces},
                         Row{"least gap after opening", &Metrics::least_gap_open},
                         Row{"time in touch", &Metrics::closed_time},
+                        Row{"impact energy", &Metrics::impact_energy},
+                        Row{"contact pressure over hardness", &Metrics::pressure},
+                        Row{"charge at make", &Metrics::make_charge},
+                        Row{"charge at break", &Metrics::break_charge},
                         Row{"drive energy", &Metrics::drive_energy}};
   ReportTable table{.head = {name + ", cycle"}, .rows = {}};
   std::vector<std::size_t> shown;
@@ -132,6 +159,7 @@ ReportTable cycles_table(const CycleRecord::Drive& drive, const std::string& nam
   for (const std::size_t n : shown) table.head.push_back(std::to_string(n + 1));
   for (const Row& row : rows) {
     const Figure& figure = figure_of(row.member);
+    if (!figure.is_asked(drive.cycles.front().metrics.asked)) continue;
     TableRow cells{row.name};
     for (const std::size_t n : shown) {
       const double value = figure.value(drive.cycles[n].metrics);
@@ -182,6 +210,16 @@ void members(A& a, CycleRecord::Course& course) {
 }
 
 template <class A>
+void members(A& a, CycleRecord::Search& search) {
+  a("target", search.target);
+  a("family", search.family);
+  a("evaluations", search.evaluations);
+  a("cost", search.cost);
+  a("plain_cost", search.plain_cost);
+  a("parameters", search.parameters);
+}
+
+template <class A>
 void members(A& a, CycleRecord& r) {
   members(a, r.origin);
   a("status", r.status);
@@ -191,6 +229,7 @@ void members(A& a, CycleRecord& r) {
   a("seed", r.seed);
   a("contact_gap_m", r.contact_gap);
   a("drives", r.drives);
+  if (a.has(r.search.has_value())) a("search", r.search);
   a("warnings", r.warnings);
   if (a.has(!r.curves.empty())) a("curves", r.curves);
 }
@@ -223,6 +262,29 @@ CycleRecord record_of(const PreparedScene& given, const Cycling& cycling, const 
   return record;
 }
 
+CycleRecord record_of(const CycleSearchResult& found, const CycleSearchOptions& options, const std::string& command) {
+  CycleRecord record = record_of(found.given, found.cycling, command);
+  record.search = {.target = options.target.text(),
+                   .family = found.family,
+                   .evaluations = static_cast<std::uint64_t>(found.evaluations),
+                   .cost = found.cost,
+                   .plain_cost = found.plain_cost,
+                   .parameters = found.parameters};
+  return record;
+}
+
+std::string cycle_csv(const CycleSearchResult& found) {
+  CycleTimes once = found.cycling.drives.back().cycles->times;
+  once.cycles = 1;
+  const std::vector<Signal> signals = cycled(found.cycling.drives.back().waveforms, once);
+  const std::vector<std::string> names = found.given.drive_names();
+  std::map<std::string, Signal> driven;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] != dispersion_drive) driven.emplace(names[k], signals[k]);
+  }
+  return csv(driven, once.period);
+}
+
 json json_of(const CycleRecord& record) { return internal::record_json(record); }
 
 CycleRecord read_cycles(const json& from) { return internal::whole_record<CycleRecord>(from); }
@@ -232,11 +294,18 @@ std::string text_of(const CycleRecord& r) {
                     .doubt = r.status == "interrupted" ? "Interrupted: what follows is the part that was computed." : "",
                     .sections = {},
                     .warnings = r.warnings};
+  if (r.search && std::isfinite(r.search->cost)) {
+    document.headline += fmt::format(
+        " The cost of the worst of the first cycles is {:.4f} instead of {:.4f}, after {} evaluations of pairs (target {}, "
+        "closing "
+        "by the family {}).",
+        r.search->cost, r.search->plain_cost, r.search->evaluations, r.search->target, r.search->family);
+  }
   ReportSection rates{.id = "rates", .heading = "Rates", .parts = {rates_table(r)}};
   rates.parts.emplace_back(Paragraph{fmt::format(
       "A rate is steady where {} cycles close and open, and land within 5 % as fast and as high as the first one. The largest is "
-      "that below which every rate was steady, in steps of 5 %, at a duty of {}.",
-      r.cycles, percent(r.duty))});
+      "that below which every rate was steady, in steps of 5 %, at a duty of {}\u00a0%.",
+      r.cycles, internal::plain_number(100 * r.duty, 3))});
   const bool has_scan =
       std::ranges::any_of(r.drives, [](const auto& d) { return !d.steady_rates.empty() || !d.other_rates.empty(); });
   if (has_scan) document.sections.push_back(std::move(rates));

@@ -12,6 +12,7 @@
 #include "reports/closing_record.h"
 #include "reports/origin.h"
 #include "studies/devices/cycling.h"
+#include "studies/search/cycle_search.h"
 
 namespace softland {
 
@@ -38,17 +39,29 @@ struct CycleRecord {
     std::vector<Cycle> cycles;
     std::map<std::string, Points> waveforms;  ///< one cycle, by drive: time [s] and level [V]
   };
+  /// How the waveforms were found for this rate.
+  struct Search {
+    std::string target, family;  ///< family of the closing
+    std::uint64_t evaluations = 0;
+    double cost = Metrics::unset, plain_cost = Metrics::unset;
+    std::map<std::string, double> parameters;
+  };
   Origin origin;
   std::string status;
   double rate = Metrics::unset, duty = Metrics::unset;  ///< [Hz], 1
   std::uint64_t cycles = 0, seed = 1;
   double contact_gap = Metrics::unset;  ///< [m]
   std::vector<Drive> drives;            ///< the plain one first
+  std::optional<Search> search;         ///< none where the waveforms were given
   std::vector<std::string> warnings;    ///< those that the scene has
 
   std::map<std::string, Course> curves;  ///< by drive; only files have them
 };
 [[nodiscard]] CycleRecord record_of(const PreparedScene& given, const Cycling& cycling, const std::string& command);
+[[nodiscard]] CycleRecord record_of(const CycleSearchResult& found, const CycleSearchOptions& options,
+                                    const std::string& command);
+/// The waveforms of a search as CSV: see csv() in waveforms/export.h.
+[[nodiscard]] std::string cycle_csv(const CycleSearchResult& found);
 
 [[nodiscard]] nlohmann::json json_of(const CycleRecord& record);
 [[nodiscard]] CycleRecord read_cycles(const nlohmann::json& from);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "config/aim.h"
 #include "reports/cycle_report.h"
 #include "reports/record_file.h"
 #include "studies/closing/auto_settings.h"
@@ -24,20 +25,28 @@ Outcome shown(CycleRecord found) {
 struct CycleRequest : Usual {
   static constexpr auto name = "cycle",
                         about = "close and open the switch at a rate: how high it may be, and what every cycle does",
-                        python = "cycle", leaves = "folder for cycle.json and cycle.svg";
+                        python = "cycle",
+                        leaves = "folder for cycle.json and cycle.svg, and with --search best.toml and best.csv";
   static constexpr auto remarks =
       "A cycle is the closing waveform of the scene and, from duty / rate on, the drives at 0 V. A RESULT that begins closed, "
       "as\n"
       "release.toml of release does, gives the opening waveform, any other one the closing waveform. A scene whose own\n"
       "waveform opens the switch on command gives both. The rates of plain switching are found beside them.\n"
       "A rate is steady where all cycles close and open, and land within 5 % as fast and as high as the first one.\n"
+      "With --search both waveforms are found for one rate, at which a cycle begins with the vibration that the one before has\n"
+      "left. best.toml then has one cycle of both.\n"
       "Examples:\n  softland cycle scenes/mem-gold.toml\n"
-      "  softland cycle optimized opened/release.toml --rate \"2 kHz\" --duty \"40 %\" --out cycled";
-  static std::vector<std::string> files() { return {"cycle.json", "cycle.svg"}; }
+      "  softland cycle optimized opened/release.toml --rate \"2 kHz\" --duty \"40 %\" --out cycled\n"
+      "  softland cycle scenes/mem-gold.toml --rate \"2 kHz\" --search --out cycled";
+  static std::vector<std::string> files() { return {"cycle.json", "cycle.svg", "best.toml", "best.csv"}; }
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_cycles(json)); }
 
   CyclingOptions options{.jobs = one_per_core()};
   std::vector<std::string> results;  ///< with other waveforms
+  bool searches = false;             ///< both waveforms, for the rate
+  std::string target = "bounce", waveform = {};
+  Actuator actuator = Actuator::electrostatic;
+  long budget = CycleSearchOptions{}.max_evaluations;
 };
 
 template <class Archive>
@@ -53,6 +62,13 @@ void options(Archive& a, CycleRequest& r) {
              "SHARE", "share of a cycle before the command to open (default: 50 %)");
   a.unless("no-scan", o.scans, "omit the search for the largest steady rate, for cycles at one --rate alone");
   a.whole("cycles", o.cycles, {.least = 2, .most = 1000}, "cycles at every rate (default: 10)");
+  a.flag("search", r.searches,
+         "search the closing and the opening waveform for this --rate together: what optimize --cycle RATE does");
+  a.text("target", r.target, "NAME", "what a search minimises in the worst cycle, as optimize has it (default: bounce)");
+  a.choice("actuator", r.actuator, actuators, "drives that a search may shape");
+  a.text("waveform", r.waveform, "NAME", "family of the closing that is searched, as optimize has it (default: the usual ones)");
+  a.whole("budget", r.budget, {.least = 30},
+          "evaluations of a search: a third each for the closing, the opening, and both (default: 3000)");
   samples_option(a, o.devices, {.least = 0, .most = SamplePoints::largest_size},
                  "devices of [spread] whose rates are found too (default: 50; 0: none)");
   seed_option(a, o.seed, "same devices");
@@ -73,7 +89,29 @@ void take(CycleWaveforms& waveforms, const PreparedScene& scene) {
   }
 }
 
+Outcome searched(const Setting& setting, const CycleRequest& request) {
+  require_request(request.options.rate.has_value(), [] { return requested("search") + " needs " + requested("rate"); });
+  require_request(request.results.empty(), [] { return requested("search") + " finds both waveforms, and takes no RESULT"; });
+  const CycleSearchOptions options{.rate = *request.options.rate,
+                                   .duty = request.options.duty,
+                                   .target = parse_aim(request.target),
+                                   .actuator = request.actuator,
+                                   .family = request.waveform,
+                                   .max_evaluations = request.budget,
+                                   .cycles = request.options.cycles,
+                                   .seed = request.options.seed,
+                                   .jobs = request.options.jobs};
+  const auto found = std::make_shared<const CycleSearchResult>(search_cycle(setting.scene, options, setting.watch));
+  Outcome outcome = shown(record_of(*found, options, setting.command));
+  outcome.files.push_back({"best.csv", [found] { return cycle_csv(*found); }, "best.csv"});
+  outcome.files.push_back({"best.toml", [found] { return found->scene.text(); }, "best.toml"});
+  if (!found->interrupted) outcome.next = "\nFor a generator:\n  softland export {}\n";
+  outcome.ending = found->interrupted ? Ending::interrupted : found->is_better() ? Ending::done : Ending::no_success;
+  return outcome;
+}
+
 Outcome run(const Setting& setting, const CycleRequest& request) {
+  if (request.searches) return searched(setting, request);
   require_request(request.options.scans || request.options.rate,
                   [] { return requested("no-scan") + " needs " + requested("rate"); });
   const auto given = setting.prepared(false);

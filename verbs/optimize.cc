@@ -56,6 +56,7 @@ struct OptimizeVerb : Usual, OptimizeRequest {
            "worse.\n" +
            optimizer_help() +
            "\nExamples:\n  softland optimize --target bounce --actuator pzt\n"
+           "  softland optimize scenes/mem-gold.toml --cycle \"2 kHz\"\n"
            "  softland optimize scenes/mem-gold.toml --seeds 8 --out seeds\n"
            "  softland optimize --resume --out seeds --budget 5000\n"
            "  softland optimize my.toml --start run1/best.toml --out run2\n"
@@ -135,6 +136,10 @@ void options(Archive& a, OptimizeVerb& r) {
       "resume", r.resume,
       "go on with the search in the folder of --out that was interrupted, or ended by its budget; what it has evaluated is not "
       "simulated again, and options that are not given are those it began with");
+  a.program().text("cycle", r.cycle, "RATE",
+                   "search the closing and the opening waveform of a switch that is cycled at this rate, together: \"2 kHz\"; as "
+                   "softland cycle --search does, with its files");
+  a.program().text("duty", r.duty, "SHARE", "with --cycle, share of a cycle before the command to open (default: 50 %)");
   a.program().flag(
       "limit", r.limit,
       fmt::format(

@@ -16,6 +16,8 @@ inline constexpr long evaluations_worth_a_limit = 1000;
 struct OptimizeRequest : SearchRequest {
   std::vector<std::string> starts;  ///< results and scenes to begin with
   int jobs = one_per_core();
+  std::string cycle = {};  ///< rate at which the pair of waveforms is searched, "2 kHz"; see the verb cycle
+  std::string duty = {};   ///< of that
   bool resume = false;
   bool limit = false;  ///< compare the winner with the least time of any waveform, however long that takes
 };

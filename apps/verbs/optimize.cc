@@ -21,6 +21,7 @@
 #include "apps/search_run.h"
 #include "apps/stores.h"
 #include "apps/streams.h"
+#include "apps/studies.h"
 #include "apps/verbs/verbs.h"
 #include "base/read_file.h"
 #include "base/shell_word.h"
@@ -262,12 +263,27 @@ void tell_of_another_scene(const fs::path& folder, const SceneFile& scene) {
   }
 }
 
+// The search for a pair of waveforms is that of `cycle`.
+int run_cycle_search(const Common& c, const verbs::Told& told) {
+  static const verbs::Study cycle = verbs::cycle_study();
+  verbs::Told own{{"search", {""}}};
+  for (const auto& [name, words] : told) {
+    const std::string as = name == "cycle" ? "rate" : name;
+    require(std::ranges::find(cycle.options, as, &verbs::OptionRow::name) != cycle.options.end(),
+            [&] { return fmt::format("--cycle takes no --{}", name); });
+    own[as] = words;
+  }
+  return run_study(cycle, c, own);
+}
+
 }  // namespace
 
 int run_optimize(const Common& given, const verbs::Told& told) {
   const verbs::OptimizeRequest request = verbs::optimize_request(told);
   Common c = given;
   if (c.scene.empty() && !request.resume) c.scene = shipped_scene("mem-gold-pzt.toml").string();
+  if (!request.cycle.empty()) return run_cycle_search(c, told);
+  require(request.duty.empty(), "--duty belongs to --cycle");
   std::optional<KnownSearch> known;
   StoredSearch search = asked_or_known(c, request, known);
   const SearchOutput output = output_of(c);

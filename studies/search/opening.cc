@@ -21,15 +21,13 @@
 #include "studies/closing/closed_state.h"
 #include "studies/closing/simulate.h"
 #include "studies/devices/ensemble.h"
+#include "studies/search/brake_pulses.h"
 #include "studies/search/search_setting.h"
 #include "studies/search/verification.h"
 
 namespace softland {
 namespace {
 
-using Line = std::vector<std::pair<double, double>>;  // [s, V]
-
-constexpr int pulses = 2;                   // of every drive that brakes
 constexpr double time_share = 0.3;          // of the time in periods, beside the vibration in contact gaps
 constexpr double outside_share = 5;         // of the vibration beyond the band, on top
 constexpr double stays_closed = 10;         // cost of a switch that stays closed
@@ -41,13 +39,6 @@ constexpr double watched_for = 3;           // the same, at least, of a run that
 // The source of a drive has stood at its hold level for so many of its time constants.
 constexpr double settled_after = 50;
 
-// A drive that may brake, and its parameters among those of a point.
-struct Brake {
-  std::size_t drive = 0;
-  std::size_t first = 0;  // of its parameters: edge, then wait, level, duration of every pulse
-  DriverLimits limits;
-};
-
 class ReleaseSearch {
  public:
   ReleaseSearch(const PreparedScene& given, const OpeningOptions& options)
@@ -55,44 +46,32 @@ class ReleaseSearch {
         options_(options),
         gap_(given.scene.device.contact_gap()),
         period_(2 * pi / given.model.basis().angular_frequencies()[0]),
-        names_(given.drive_names()),
-        told_holds_(hold_levels(signals_of(given.waveforms()))) {
-    add_brakes();
-    for (std::size_t k = 0; k < names_.size(); ++k) {
-      told_plain_.push_back({{0, told_holds_[k]}, {fall_time(k, told_holds_[k]), 0}});
-      plain_.push_back(driven(k, told_plain_.back()));
-    }
-  }
+        pulses_(given, options.actuator, hold_levels(signals_of(given.waveforms())), "release"),
+        plain_(driven(pulses_.plain())) {}
 
   /// Every drive to 0 V at once.
   [[nodiscard]] const std::vector<Signal>& plain() const { return plain_; }
-  [[nodiscard]] std::vector<Signal> signals(std::span<const double> x) const {
-    std::vector<Signal> all = plain_;
-    for (const Brake& brake : brakes_) all[brake.drive] = driven(brake.drive, points(brake, x));
-    return all;
-  }
+  [[nodiscard]] std::vector<Signal> signals(std::span<const double> x) const { return driven(pulses_.told(x)); }
 
   /// The scene with what its drives are told, each from its hold level on; of no point that of the plain opening.
   [[nodiscard]] SceneFile scene(std::span<const double> x) const {
-    std::vector<Line> told = told_plain_;
-    for (const Brake& brake : brakes_) {
-      if (!x.empty()) told[brake.drive] = points(brake, x);
-    }
+    const std::vector<Corners> told = x.empty() ? pulses_.plain() : pulses_.told(x);
+    const std::vector<std::string> names = given_.drive_names();
     DriveWaveforms waveforms;
-    for (std::size_t k = 0; k < names_.size(); ++k) {
-      if (names_[k] == dispersion_drive) continue;  // which no source drives
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (names[k] == dispersion_drive) continue;  // which no source drives
       Table table;
       for (const auto& [time, voltage] : told[k]) {
         table.time.push_back(time);
         table.voltage.push_back(voltage);
       }
-      waveforms[names_[k]] = std::move(table);
+      waveforms[names[k]] = std::move(table);
     }
     SceneFile file = with_waveforms(given_, waveforms);
-    for (std::size_t k = 0; k < names_.size(); ++k) {
-      if (!waveforms.contains(names_[k])) continue;
-      file.set(fmt::format("waveform.{}.before=\"{} V\"", names_[k], told_holds_[k]));
-      file.set(fmt::format("waveform.{}.before_state=closed", names_[k]));
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (!waveforms.contains(names[k])) continue;
+      file.set(fmt::format("waveform.{}.before=\"{} V\"", names[k], pulses_.holds()[k]));
+      file.set(fmt::format("waveform.{}.before_state=closed", names[k]));
     }
     return file;
   }
@@ -124,8 +103,8 @@ class ReleaseSearch {
   [[nodiscard]] OptimizerResult run(std::span<const double> closed, const Watch& watch) const {
     std::atomic<long> done = 0;
     Problem problem;
-    problem.variables = variables_;
-    problem.starts = starts();
+    problem.variables = pulses_.variables();
+    problem.starts = pulses_.starts();
     problem.objective = [&](std::span<const double> x) {
       const double value = cost(open(given_.model, closed, signals(x), opening_tolerance, OpeningFigures::unset, watch.stop));
       ++done;
@@ -141,96 +120,19 @@ class ReleaseSearch {
 
   [[nodiscard]] std::map<std::string, double> named(const std::vector<double>& x) const {
     std::map<std::string, double> all;
-    for (std::size_t k = 0; k < x.size(); ++k) all[variables_[k].name] = x[k];
+    for (std::size_t k = 0; k < x.size(); ++k) all[pulses_.variables()[k].name] = x[k];
     return all;
   }
 
  private:
-  void add_brakes() {
-    const Device& device = given_.scene.device;
-    const bool electrodes = options_.actuator != Actuator::pzt, piezo = options_.actuator != Actuator::electrostatic;
-    const std::string asked = "release " + requested("actuator");
-    require_request(!electrodes || !device.electrodes.empty(),
-                    [&] { return asked + " electrostatic|both needs an electrode, and the scene has none"; });
-    require_request(!piezo || device.piezo, [&] { return asked + " pzt|both needs a [piezo] section, and the scene has none"; });
-    for (std::size_t k = 0; k < names_.size(); ++k) {
-      const bool is_electrode = k < device.electrodes.size();
-      if (!(is_electrode ? electrodes : piezo && names_[k] == piezo_drive)) continue;
-      const std::optional<DriverLimits>& limits = given_.drives[k].limits;
-      if (is_electrode && !limits) continue;
-      require_request(limits.has_value(), [&] {
-        return asked + " pzt|both needs limits for the piezo: write min_voltage and max_voltage under [driver.piezo]";
-      });
-      add_brake(k, names_[k], *limits);
-    }
-    require(!brakes_.empty(), "release needs a drive with limits: write max_voltage under [driver.NAME] of an electrode");
-  }
-
-  void add_brake(std::size_t drive, const std::string& name, const DriverLimits& limits) {
-    brakes_.push_back({.drive = drive, .first = variables_.size(), .limits = limits});
-    const double span = std::max(std::abs(limits.min_voltage), std::abs(limits.max_voltage));
-    const double shortest = std::max(0.005 * period_, std::max(std::abs(told_holds_[drive]), span) / limits.max_slew);
-    variables_.push_back({name + ".edge", shortest, std::max(0.1 * period_, 2 * shortest)});
-    for (int k = 1; k <= pulses; ++k) {
-      variables_.push_back({fmt::format("{}.wait_{}", name, k), 0, period_});
-      variables_.push_back({fmt::format("{}.level_{}", name, k), limits.min_voltage, limits.max_voltage});
-      variables_.push_back({fmt::format("{}.duration_{}", name, k), 0.01 * period_, period_});
-    }
-  }
-
-  // One drive brakes while the others stay at 0 V: by one pulse, or pushes first and brakes then, at different times and levels.
-  [[nodiscard]] std::vector<std::vector<double>> starts() const {
-    std::vector<std::vector<double>> all;
-    for (const Brake& b : brakes_) {
-      const double most = b.limits.max_voltage, least = b.limits.min_voltage;
-      for (const double duration : {0.1, 0.25}) {
-        for (const double level : {most, most / 2, least}) {
-          if (level == 0) continue;
-          for (const double wait : {0.1, 0.2, 0.3}) all.push_back(start(b, {wait, level, duration, 0.1, 0, 0.1}));
-        }
-        if (!(least < 0)) continue;
-        for (const double first : {0.1, 0.25}) {
-          all.push_back(start(b, {0, most, first, 0, least, duration}));
-          all.push_back(start(b, {0, least, first, 0, most, duration}));
-        }
-      }
-    }
+  [[nodiscard]] std::vector<Signal> driven(const std::vector<Corners>& told) const {
+    std::vector<Signal> all;
+    for (std::size_t k = 0; k < told.size(); ++k) all.push_back(driven(k, told[k]));
     return all;
-  }
-  // Times in periods.
-  [[nodiscard]] std::vector<double> start(const Brake& braking, const std::array<double, 6>& pulse_train) const {
-    std::vector<double> x;
-    for (const Brake& b : brakes_) {
-      const bool brakes = b.drive == braking.drive;
-      const auto& [wait, level, duration, next_wait, next_level, next_duration] = pulse_train;
-      x.insert(x.end(), {variables_[b.first].lower, wait * period_, brakes ? level : 0, duration * period_, next_wait * period_,
-                         brakes ? next_level : 0, next_duration * period_});
-    }
-    return x;
-  }
-
-  [[nodiscard]] Line points(const Brake& brake, std::span<const double> x) const {
-    const double edge = x[brake.first];
-    double t = edge;
-    Line all{{0, told_holds_[brake.drive]}, {t, 0}};
-    for (std::size_t k = 0; k < pulses; ++k) {
-      const auto own = x.subspan(brake.first + 1 + 3 * k, 3);
-      const double level = own[1];
-      for (const auto& [lasts, value] : {std::pair{own[0], 0.0}, {edge, level}, {own[2], level}, {edge, 0.0}}) {
-        t += lasts;
-        all.emplace_back(t, value);
-      }
-    }
-    return all;
-  }
-
-  [[nodiscard]] double fall_time(std::size_t k, double from) const {
-    const std::optional<DriverLimits>& limits = given_.drives[k].limits;
-    return limits ? std::abs(from) / limits->max_slew : 0;
   }
 
   // What the source of drive k gives when it is told these points after it has stood at the first one for long.
-  [[nodiscard]] Signal driven(std::size_t k, Line points) const {
+  [[nodiscard]] Signal driven(std::size_t k, Corners points) const {
     const DriverModel& source = given_.drives[k].source;
     const SourceErrors& errors = given_.drives[k].errors;
     if (source.is_ideal() && errors.are_none()) return Signal::piecewise_linear(points);
@@ -246,12 +148,8 @@ class ReleaseSearch {
   const PreparedScene& given_;
   const OpeningOptions& options_;
   double gap_, period_;
-  std::vector<std::string> names_;  // of the drives
-  std::vector<double> told_holds_;  // [V]
-  std::vector<Line> told_plain_;
+  BrakePulses pulses_;
   std::vector<Signal> plain_;
-  std::vector<Brake> brakes_;
-  std::vector<Variable> variables_;
 };
 
 bool is_open_with_drives(const OpeningFigures& f, double band) {

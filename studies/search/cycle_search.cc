@@ -1,0 +1,269 @@
+#include "studies/search/cycle_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/engineering.h"
+#include "base/require.h"
+#include "studies/closing/open_command.h"
+#include "studies/search/brake_pulses.h"
+#include "studies/search/optimize.h"
+#include "studies/search/search_setting.h"
+#include "waveforms/export.h"
+
+namespace softland {
+namespace {
+
+constexpr std::size_t searched_cycles = 4;  // of a candidate
+constexpr double line_tolerance = 1e-5;     // of the peak, by which the lines of a scene file may miss a curve
+
+class PairSearch {
+ public:
+  PairSearch(const SearchSetting& setting, const CycleSearchOptions& options, const Watch& watch)
+      : setting_(setting),
+        options_(options),
+        watch_(watch),
+        coarse_(setting.given),
+        pulses_(setting.given, options.actuator, hold_levels(setting.given.told(setting.given.waveforms())), "optimize"),
+        closing_(setting.space.variables().size()),
+        scale_(setting.scale),
+        rest_(connection_deflection(coarse_.model, *coarse_.model.rest())) {
+    coarse_.tolerance = setting.run.tolerance;
+    scale_.score_window = std::max(times(1).on_time - scale_.step.initial_contact_time, 0.1 * times(1).on_time);
+  }
+
+  [[nodiscard]] CycleTimes times(std::size_t cycles) const {
+    return {.period = 1 / options_.rate, .on_time = options_.duty / options_.rate, .cycles = cycles};
+  }
+  [[nodiscard]] std::size_t closing_parameters() const { return closing_; }
+  [[nodiscard]] const BrakePulses& pulses() const { return pulses_; }
+  [[nodiscard]] long evaluations() const { return evaluations_; }
+
+  /// The pair of a point, of which the parameters of the closing come first; without those of the opening the drives then go to
+  /// 0 V at once. None where a drive leaves its limits, or a waveform does not fit into its part of a cycle.
+  [[nodiscard]] std::optional<CycleWaveforms> pair(std::span<const double> x) const {
+    std::optional<std::vector<Signal>> closing = setting_.allowed_told(setting_.space.waveforms(x.first(closing_)));
+    if (!closing) return std::nullopt;
+    CycleWaveforms waveforms{.name = "found", .closing = std::move(*closing), .opening = {}};
+    for (const Corners& corners : x.size() > closing_ ? pulses_.told(x.subspan(closing_)) : pulses_.plain())
+      waveforms.opening.push_back(Signal::piecewise_linear(corners, corners.front().second));
+    const CycleTimes one = times(1);
+    const bool fits =
+        last_breakpoint(waveforms.closing) < one.on_time && last_breakpoint(waveforms.opening) < one.period - one.on_time;
+    return fits ? std::optional(std::move(waveforms)) : std::nullopt;
+  }
+
+  /// Of the worst of so many cycles; infinite where they cannot be followed.
+  [[nodiscard]] double cost(const CycleWaveforms& waveforms, std::size_t cycles = searched_cycles) const {
+    const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(cycles), false, {.stop = watch_.stop});
+    if (run.cycles.size() < cycles) return std::numeric_limits<double>::infinity();
+    double worst = 0;
+    for (const CycleFigures& cycle : run.cycles) {
+      double own =
+          cycle.closes ? softland::cost(options_.target, cycle.metrics, scale_, setting_.given.scene.metrics) : never_touched + 1;
+      if (!cycle.opens) own += never_touched;
+      worst = std::max(worst, own);
+    }
+    return worst;
+  }
+
+  /// How far from its rest the contact point is at the end of the first cycle, as an amplitude of its first mode over the contact
+  /// gap.
+  [[nodiscard]] double unrest(const CycleWaveforms& waveforms) const {
+    const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(1), false, {.stop = watch_.stop});
+    if (run.cycles.empty()) return std::numeric_limits<double>::infinity();
+    const CycleFigures& cycle = run.cycles.front();
+    if (!cycle.opens) return never_touched;
+    return std::hypot(cycle.end.position - rest_, cycle.end.velocity / coarse_.model.basis().angular_frequencies()[0]) /
+           scale_.contact_gap;
+  }
+
+  using Price = double (PairSearch::*)(const CycleWaveforms& waveforms) const;
+  [[nodiscard]] double price(Price by, std::span<const double> x) const {
+    ++evaluations_;
+    const std::optional<CycleWaveforms> waveforms = pair(x);
+    return waveforms ? (this->*by)(*waveforms) : std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] double cost_of_cycles(const CycleWaveforms& waveforms) const { return cost(waveforms); }
+
+  /// Improves the parameters from `first` on; those before stay those of `from`.
+  [[nodiscard]] OptimizerResult improve(const char* what, Price by, std::size_t first, const std::vector<double>& from,
+                                        std::vector<std::vector<double>> starts) const {
+    Problem problem;
+    const std::vector<Variable> all = variables();
+    problem.variables.assign(all.begin() + static_cast<std::ptrdiff_t>(first), all.end());
+    problem.starts = std::move(starts);
+    const auto whole = [&](std::span<const double> x) {
+      std::vector<double> point(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(first));
+      point.insert(point.end(), x.begin(), x.end());
+      return point;
+    };
+    problem.objective = [&](std::span<const double> x) { return price(by, whole(x)); };
+    OptimizerOptions how{
+        .max_evaluations = std::max(1L, options_.max_evaluations / 3), .seed = options_.seed, .jobs = options_.jobs};
+    how.stop = watch_.stop;
+    std::atomic<long> done = 0;
+    how.on_evaluation = [&](const Evaluation&) {
+      watch_.tell(what, static_cast<double>(++done) / static_cast<double>(how.max_evaluations));
+    };
+    OptimizerResult found = minimize(problem, how);
+    if (!found.x.empty()) found.x = whole(found.x);
+    return found;
+  }
+
+  [[nodiscard]] std::vector<Variable> variables() const {
+    std::vector<Variable> all;
+    for (const auto& [part, own] : {std::pair{"closing.", setting_.space.variables()}, {"opening.", pulses_.variables()}}) {
+      for (const Variable& v : own) all.push_back({part + v.name, v.lower, v.upper});
+    }
+    return all;
+  }
+
+ private:
+  const SearchSetting& setting_;
+  const CycleSearchOptions& options_;
+  const Watch& watch_;
+  PreparedScene coarse_;
+  BrakePulses pulses_;
+  std::size_t closing_;  // parameters
+  CostScale scale_;
+  double rest_;  // of the contact point in the open state [m]
+  mutable std::atomic<long> evaluations_ = 0;
+};
+
+// One cycle of these waveforms, as a scene that opens on command.
+SceneFile scene_of_cycle(const PreparedScene& given, const CycleWaveforms& waveforms, const CycleTimes& times) {
+  const std::vector<Signal> signals = cycled(waveforms, times);
+  const std::vector<std::string> names = given.drive_names();
+  DriveWaveforms tables;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] == dispersion_drive) continue;  // which no source drives
+    Table table;
+    const double tolerance = line_tolerance * std::max(signals[k].peak(), 1e-9);
+    for (const auto& [time, voltage] : polyline(signals[k], times.period, tolerance, 0)) {
+      table.time.push_back(time);
+      table.voltage.push_back(voltage);
+    }
+    tables[names[k]] = std::move(table);
+  }
+  SceneFile file = with_waveforms(given, tables);
+  file.set(fmt::format("simulate.open_at=\"{} s\"", times.on_time));
+  file.set(fmt::format("simulate.duration=\"{} s\"", times.period));
+  return file;
+}
+
+// The pair that a scene of one cycle says, to the last bit that its text keeps.
+CycleWaveforms read_again(const SceneFile& file, const PreparedScene& given, const CycleTimes& times) {
+  const PreparedScene read = read_back(file, "best.toml", given);
+  CycleWaveforms waveforms{.name = "found", .closing = {}, .opening = {}};
+  for (const Signal& s : read.told(read.waveforms())) {
+    waveforms.closing.push_back(held_from(s, times.on_time));
+    waveforms.opening.push_back(part_from(s, times.on_time, s.voltage_before(times.on_time)));
+  }
+  return waveforms;
+}
+
+// The search for the closing alone.
+OptimizeResult closing_alone(const SceneFile& file, const CycleSearchOptions& options, const Watch& watch) {
+  OptimizeOptions how = usual_options(file, options.target, options.actuator);
+  if (!options.family.empty()) how.family = options.family;
+  how.max_evaluations = std::max(1L, options.max_evaluations / 3);
+  how.seed = options.seed;
+  how.jobs = options.jobs;
+  how.stop = watch.stop;
+  how.on_preparation = watch.progress;
+  how.on_evaluation = [&](const Evaluation&, const OptimizeProgress& now) {
+    watch.tell("closings", static_cast<double>(now.evaluations) / static_cast<double>(how.max_evaluations));
+  };
+  return optimize(file, how);
+}
+
+}  // namespace
+
+CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& options, const Watch& watch) {
+  require(options.rate > 0 && options.duty > 0 && options.duty < 1, "a rate must be above 0 Hz, and a duty above 0 and below 1");
+  const OptimizeResult alone = closing_alone(file, options, watch);
+  const SearchSetting setting = search_setting(file, options.target, options.actuator, alone.family, {.stop = watch.stop});
+  const PreparedScene& given = setting.given;
+  require(given.rest().has_value(), "with every drive at 0 V the switch has no stable open state: it cannot be opened");
+  const PairSearch search(setting, options, watch);
+
+  // Closings to begin with: the one that was found alone, and those of the family, as far as they fit.
+  std::vector<std::vector<double>> closings = setting.space.starts();
+  if (alone.best_scene) {
+    const DriveWaveforms found = setting.space.searched(alone.best_scene->drives.waveforms());
+    if (setting.space.misfit(found).empty()) closings.insert(closings.begin(), setting.space.nearest(found));
+  }
+  std::erase_if(closings, [&](const std::vector<double>& x) { return !search.pair(x); });
+  require(!closings.empty(), [&] {
+    return fmt::format("at {} and a duty of {:g} % no waveform of the family \"{}\" fits into its part of a cycle, or no opening",
+                       engineering(options.rate, "Hz", 4), 100 * options.duty, alone.family);
+  });
+  // The best of them from rest.
+  std::vector<double> best = closings.front();
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>& x : closings) {
+    if (watch.stopped()) break;
+    const double own = search.cost(*search.pair(x), 1);
+    if (own < least) least = own, best = x;
+  }
+
+  CycleSearchResult result{.given = given,
+                           .cycling = {.options = {.rate = options.rate,
+                                                   .scans = false,
+                                                   .duty = options.duty,
+                                                   .cycles = options.cycles,
+                                                   .devices = 0,
+                                                   .seed = options.seed,
+                                                   .jobs = options.jobs},
+                                       .rate = options.rate,
+                                       .drives = {}},
+                           .family = alone.family,
+                           .parameters = {},
+                           .scene = file};
+  const std::size_t closing = search.closing_parameters();
+  const auto with = [&](const std::vector<double>& x, const std::vector<double>& opening) {
+    std::vector<double> both(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(closing));
+    both.insert(both.end(), opening.begin() + static_cast<std::ptrdiff_t>(closing), opening.end());
+    return both;
+  };
+  if (!watch.stopped()) {
+    const OptimizerResult calm = search.improve("openings", &PairSearch::unrest, closing, best, search.pulses().starts());
+    if (!calm.x.empty()) best = calm.x;
+  }
+  if (!watch.stopped() && best.size() > closing) {
+    std::vector<std::vector<double>> pairs{best};
+    for (const std::vector<double>& x : closings) pairs.push_back(with(x, best));
+    const OptimizerResult both = search.improve("pairs", &PairSearch::cost_of_cycles, 0, best, std::move(pairs));
+    if (!both.x.empty()) best = both.x;
+  }
+  result.evaluations = search.evaluations();
+
+  const CycleTimes one = search.times(1);
+  CycleWaveforms found = *search.pair(best);
+  result.scene = scene_of_cycle(given, found, one);
+  found = read_again(result.scene, given, one);
+  const std::vector<Variable> variables = search.variables();
+  for (std::size_t k = 0; k < best.size(); ++k) result.parameters[variables[k].name] = best[k];
+  const CycleWaveforms plain = plain_cycle(given, found);
+  if (!watch.stopped()) {
+    result.plain_cost = search.cost(plain);
+    result.cost = search.cost(found);
+  }
+  for (const CycleWaveforms& waveforms : {plain, found}) {
+    CycledDrive& drive = result.cycling.drives.emplace_back();
+    drive.waveforms = waveforms;
+    drive.cycles = CycledSwitch(given, given.model, waveforms).run(search.times(options.cycles), true, {.stop = watch.stop});
+  }
+  result.interrupted = result.cycling.interrupted = watch.stopped();
+  return result;
+}
+
+}  // namespace softland
