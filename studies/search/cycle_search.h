@@ -1,9 +1,9 @@
 // The search for the closing and the opening waveform of a switch that is cycled at a rate: together, since each begins with the
 // vibration that the other one leaves.
 //
-// A waveform for the closing alone is found first (optimize.h), then pulses that brake the opening (brake_pulses.h), so that the
-// contact point is as near to its rest as can be at the end of the cycle, and then both are improved together. The cost of a pair
-// is that of its worst cycle, of the first ones in a run from rest: of the closing as in every search (objectives/cost.h), scored
+// A waveform for the closing alone is found first (optimize.h). Then pulses are found that brake the opening (brake_pulses.h), so
+// that the contact point is near its rest at the end of the cycle. Then both are improved together. The cost of a pair is that of
+// its worst cycle, of the first ones in a run from rest: of the closing as in every search (objectives/cost.h), scored
 // until the command to open. What does not close, or is closed at the end of a cycle, costs more than all that do. Drives keep
 // the limits of [driver.*].
 #pragma once
@@ -29,7 +29,7 @@ struct CycleSearchOptions {
   Actuator actuator = Actuator::electrostatic;  ///< drives that both waveforms may shape
   std::string family = {};                      ///< families of the closing: families_of(); empty: the usual ones
   long max_evaluations = 3000;                  ///< a third each for the closing, the opening, and both
-  std::size_t cycles = 10;                      ///< that the pair is told with
+  std::size_t cycles = 10;                      ///< they are told of the pair that is found
   std::uint64_t seed = 1;
   int jobs = 1;
 };
@@ -37,10 +37,10 @@ struct CycleSearchOptions {
 struct CycleSearchResult {
   PreparedScene given;
   Cycling cycling;                                         ///< the cycles of the plain pair, and of the best where there is one
-  std::string family;                                      ///< of the closing
-  std::map<std::string, double> parameters;                ///< of the best, by closing.drive.name and opening.drive.name
-  double cost = std::numeric_limits<double>::quiet_NaN();  ///< of the best
-  double plain_cost = std::numeric_limits<double>::quiet_NaN();  ///< of the plain pair
+  std::string family;                                      ///< the closing is of this family
+  std::map<std::string, double> parameters;                ///< the best has these, by closing.drive.name and opening.drive.name
+  double cost = std::numeric_limits<double>::quiet_NaN();  ///< the best has this cost
+  double plain_cost = std::numeric_limits<double>::quiet_NaN();  ///< the plain pair has this cost
   long evaluations = 0;                                          ///< of pairs
   /// One cycle of the best: closes, and opens on command. The plain one where no pair was feasible.
   SceneFile scene;
@@ -49,8 +49,8 @@ struct CycleSearchResult {
   [[nodiscard]] bool is_better() const { return cost < plain_cost; }
 };
 
-/// Throws InvalidInput for a scene that cannot be searched, or has no open or no closed state, as optimize() and search_opening()
-/// do, and for a rate at which no waveform of the family fits into its part of a cycle.
+/// Throws InvalidInput as optimize() does, for a scene without an open state, and for a rate at which no waveform of the family
+/// fits into its part of a cycle.
 [[nodiscard]] CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& options, const Watch& watch = {});
 
 }  // namespace softland

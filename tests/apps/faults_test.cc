@@ -69,7 +69,7 @@ std::map<std::string, Call> calls() {
         gold + in_volts + std::vector<std::string>{"--budget", "10000000"}}},
       {"cycle",
        {gold + in_volts + short_window + std::vector<std::string>{"--rate", "5 kHz", "--no-scan", "--cycles", "2"},
-        gold + in_volts + std::vector<std::string>{"--samples", "100000"}}},
+        gold + in_volts + std::vector<std::string>{"--rate", "1 kHz", "--search", "--budget", "10000000"}}},
       {"robustness",
        {gold + in_volts + short_window + std::vector<std::string>{"--samples", "10"},
         gold + in_volts + std::vector<std::string>{"--samples", "1000000"}}},

@@ -251,6 +251,7 @@ def choice_cases(program, scenes):
                                                "--json", "robustness.json", *fast])], weight=4)
     yield Case("limit.curves", [Step(["limit", plate, "--out", "out", "--json", "limit.json"])], weight=4)
     yield Case("cycle.rates", [Step(["cycle", gold, "--samples", "4", "--cycles", "4", "--jobs", "1", "--json", "cycle.json", "--out", "out", "--set", "structure.modes=1", "--quiet"])])
+    yield Case("cycle.search", [Step(["cycle", gold, "--rate", "1 kHz", "--search", "--budget", "60", "--cycles", "3", "--jobs", "1", "--out", "out", "--quiet"])])
     yield Case("cycle.rate", [Step(["cycle", pzt, "--rate", "2 kHz", "--no-scan", "--duty", "40 %", "--cycles", "3", "--quiet"])])
     yield Case("release.band", [Step(["release", pzt, "--actuator", "both", "--band", "2 %", "--budget", "80", "--seed", "5", "--jobs", "1",
                                       "--json", "-", "--quiet", *fast])])

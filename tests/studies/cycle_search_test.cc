@@ -49,7 +49,7 @@ TEST(CycleSearch, LandsEveryCycleSofterThanThePlainPair) {
   EXPECT_FALSE(found.interrupted);
 }
 
-// What best.toml says is the pair that was told, to the bit.
+// best.toml says the pair that was told, to the bit.
 TEST(CycleSearch, LeavesASceneOfOneCycle) {
   const CycleSearchResult found = search_cycle(plate(), at(8e3));
   const PreparedScene p = prepare(found.scene.again("best.toml"));
