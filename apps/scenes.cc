@@ -1,8 +1,10 @@
 #include "apps/scenes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -32,12 +34,13 @@ nlohmann::json load_result(const fs::path& path) { return parse_closing(read_fil
 SceneFile scene_of_result(const std::string& result) {
   fs::path path = result;
   if (is_folder(path)) {
-    const auto here = [&](const char* name) {
+    constexpr std::array names{"result.json", "best.toml", "release.toml"};
+    const auto* const found = std::ranges::find_if(names, [&](const char* name) {
       std::error_code ignored;
-      return fs::exists(fs::path(result) / name, ignored);
-    };
-    require(here("best.toml") || here("result.json"), fmt::format("{}: holds neither best.toml nor result.json", result));
-    path /= here("result.json") ? "result.json" : "best.toml";
+      return fs::exists(path / name, ignored);
+    });
+    require(found != names.end(), fmt::format("{}: holds none of {}", result, fmt::join(names, ", ")));
+    path /= *found;
   }
   if (path.extension() != ".json") return SceneFile::load(path);
   const nlohmann::json j = load_result(path);

@@ -30,13 +30,13 @@ struct CycleRequest : Usual {
   static constexpr auto remarks =
       "A cycle is the closing waveform of the scene and, from duty / rate on, the drives at 0 V. A RESULT that begins closed, "
       "as\n"
-      "release.toml of release does, gives the opening waveform, any other one the closing waveform. A scene whose own\n"
+      "that of release does, gives the opening waveform, any other one the closing waveform. A scene whose own\n"
       "waveform opens the switch on command gives both. The rates of plain switching are found beside them.\n"
       "A rate is steady where all cycles close and open, and land within 5 % as fast and as high as the first one.\n"
       "With --search both waveforms are found for one rate, at which a cycle begins with the vibration that the one before has\n"
       "left. best.toml then has one cycle of both.\n"
       "Examples:\n  softland cycle scenes/mem-gold.toml\n"
-      "  softland cycle optimized opened/release.toml --rate \"2 kHz\" --duty \"40 %\" --out cycled\n"
+      "  softland cycle optimized opened --rate \"2 kHz\" --duty \"40 %\" --out cycled\n"
       "  softland cycle scenes/mem-gold.toml --rate \"2 kHz\" --search --out cycled";
   static std::vector<std::string> files() { return {"cycle.json", "cycle.svg", "best.toml", "best.csv"}; }
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_cycles(json)); }

@@ -194,7 +194,7 @@ TEST_F(BadInput, SceneFiles) {
       {{"simulate", "none.toml"}, "none.toml: cannot be read: No such file or directory"},
       {{"modes", "none.toml"}, "none.toml: cannot be read: No such file or directory"},
       {{"optimize", "none.toml"}, "none.toml: cannot be read: No such file or directory"},
-      {{"simulate", "folder"}, "folder: holds neither best.toml nor result.json"},
+      {{"simulate", "folder"}, "folder: holds none of result.json, best.toml, release.toml"},
       {{"fit", "folder", "--data", "bench.toml"}, "folder: is a folder, it must be a regular file"},
       {{"simulate", "broken.toml"}, "broken.toml:1:11: not TOML: Error while parsing table header: expected ']', saw '\\n'"},
       {{"simulate", "empty.toml"}, "empty.toml: section [structure] is missing"},
@@ -307,7 +307,7 @@ TEST_F(BadInput, Results) {
       {{"export", "nonsense.json"}, "nonsense.json: is not a result of softland"},
       {{"export", "empty.json"}, "empty.json: is not a result of softland"},
       {{"export", "none"}, "none: cannot be read: No such file or directory"},
-      {{"export", "folder"}, "folder: holds neither best.toml nor result.json"},
+      {{"export", "folder"}, "folder: holds none of result.json, best.toml, release.toml"},
       {{"export", "gold.toml", "--format", "wav"},
        "--format wav: must be one of csv, spice-pwl, codes, spice-model, spice-bench, verilog-a, keysight-arb, siglent-csv, "
        "tektronix-csv, rigol-csv, digilent-csv"},

@@ -990,7 +990,7 @@ TEST(Scenes, AreTakenFromResults_optimized) {
   fs::create_directory(here.path() / "empty");
   const Outcome empty = here.run({"simulate", "empty"});
   EXPECT_EQ(empty.status, 2);
-  EXPECT_THAT(empty.err, HasSubstr("empty: holds neither best.toml nor result.json"));
+  EXPECT_THAT(empty.err, HasSubstr("empty: holds none of result.json, best.toml, release.toml"));
 }
 
 // Of every name that the model, SPICE or Verilog-A has for something else the pin is another, and that is told.

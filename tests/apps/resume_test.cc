@@ -228,7 +228,7 @@ TEST_F(Start, RefusesWhatTheSearchCannotBeginWith) {
   refused(with("none.toml"), "none.toml: cannot be read: No such file or directory");
   refused(with(""), "--start: must not be empty");
   fs::create_directory(at("folder"));
-  refused(with("folder"), "folder: holds neither best.toml nor result.json");
+  refused(with("folder"), "folder: holds none of result.json, best.toml, release.toml");
   EXPECT_FALSE(fs::exists(at("out"))) << "nothing is begun";
 }
 

@@ -1,0 +1,109 @@
+#!/usr/bin/python3
+"""How fast the shipped switches may be cycled, plainly and with found waveforms.
+
+    bench/run_cycles.py BUILD/apps/softland results
+
+Writes cycles.md into the folder. Takes about half an hour.
+"""
+import datetime
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+from tables import machine, prefixed, revision
+
+SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
+SWITCHES = (("mem-gold", "electrostatic"), ("mem-gold-pzt", "electrostatic"), ("mem-gold-pzt", "both"), ("ohmic-gold", "electrostatic"),
+            ("two-electrodes", "electrostatic"), ("gap-closing-actuator", "electrostatic"), ("nem-tin", "electrostatic"),
+            ("capacitive-bridge", "electrostatic"))
+QUICK = {"capacitive-bridge": 150}  # evaluations, where a closing takes a second
+FASTER = 2  # the rate of the second table, over the larger rate of the first
+
+
+def run(program, *words):
+    begin = time.monotonic()
+    done = subprocess.run([program, *words, "--quiet"], capture_output=True, text=True, check=False)
+    if done.returncode not in (0, 4):
+        sys.exit(f"{' '.join(map(str, words))}: exit status {done.returncode}\n{done.stderr}")
+    return time.monotonic() - begin
+
+
+def rate(value):
+    if value is None:
+        return "none"
+    for factor, prefix in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
+        if value >= factor:
+            return f"{value / factor:.3g} {prefix}Hz"
+    return f"{value:.3g} Hz"
+
+
+def hardest(drive):
+    """The largest impact velocity and the highest rebound of all cycles; words where one does not close or open."""
+    cycles = drive["cycles"]
+    if any(c["initial_contact_time_s"] is None for c in cycles):
+        return "stays open"
+    if any(c["opening_time_s"] is None for c in cycles):
+        return "stays closed"
+    velocity, height = (max(c[key] for c in cycles) for key in ("largest_impact_velocity_m_s", "major_bounce_height_m"))
+    return f"{prefixed(velocity, 'm/s')}, {prefixed(height, 'm')}" if height > 0 else f"{prefixed(velocity, 'm/s')}, none"
+
+
+def energy(drive):
+    return prefixed(drive["cycles"][-1]["drive_energy_J"], "J") if drive["cycles"] else "-"
+
+
+def main():
+    program, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
+    rates, pairs = [], []
+    for scene, actuator in SWITCHES:
+        file, drives = SCENES / f"{scene}.toml", ["--actuator", actuator]
+        budget = ["--budget", str(QUICK[scene])] if scene in QUICK else []
+        name = f"{scene}, {actuator}"
+        with tempfile.TemporaryDirectory() as place:
+            out = pathlib.Path(place)
+            run(program, "optimize", file, "--robust", "none", *drives, *budget, "--out", out / "closed")
+            run(program, "release", file, *drives, *budget, "--out", out / "opened")
+            devices = "0" if scene in QUICK else "50"
+            run(program, "cycle", file, out / "closed/best.toml", out / "opened/release.toml", "--samples", devices, "--out", out / "cycled")
+            found = json.loads((out / "cycled/cycle.json").read_text(encoding="utf-8"))
+            plain, ours = found["drives"]
+            of = [rate(d["devices"]["largest_rate_5_Hz"]) if d["devices"] else "-" for d in (plain, ours)]
+            rates.append(f"| {name} | {rate(plain['largest_rate_Hz'])} | {rate(ours['largest_rate_Hz'])} | {of[0]} | {of[1]} | "
+                         f"{energy(plain)} | {energy(ours)} |")
+            print(rates[-1], file=sys.stderr, flush=True)
+            largest = [d["largest_rate_Hz"] for d in (plain, ours) if d["largest_rate_Hz"]]
+            if not largest:
+                continue
+            hertz = f"{FASTER * max(largest):.3g} Hz"
+            seconds = run(program, "optimize", file, "--cycle", hertz, *drives, *budget, "--out", out / "pair")
+            run(program, "cycle", file, out / "closed/best.toml", out / "opened/release.toml", "--rate", hertz, "--no-scan", "--out", out / "apart")
+            pair = json.loads((out / "pair/cycle.json").read_text(encoding="utf-8"))
+            apart = json.loads((out / "apart/cycle.json").read_text(encoding="utf-8"))
+            pairs.append(f"| {name} | {rate(pair['rate_Hz'])} | {hardest(pair['drives'][0])} | {hardest(apart['drives'][1])} | "
+                         f"{hardest(pair['drives'][1])} | {pair['search']['plain_cost']:.3g} | {pair['search']['cost']:.3g} | {seconds:.0f} s |")
+            print(pairs[-1], file=sys.stderr, flush=True)
+    text = [f"""# How fast a switch may be cycled
+
+`softland cycle SCENE closed/best.toml opened/release.toml`, where `closed` is of `softland optimize SCENE --robust none` and `opened` of `softland release SCENE`, with the defaults (bridge: --budget {QUICK['capacitive-bridge']}) and a duty of 50 %.
+A rate is steady where ten cycles close and open, and land within 5 % as fast and as high as the first. The largest is that below which every rate of the scan was steady, in steps of 5 %. The energy is that of the sources in the last
+cycle at the rate of the waveforms. See [docs/figures.md](../docs/figures.md#cycles).
+
+- made by `bench/run_cycles.py BUILD/apps/softland results`, {datetime.date.today()}, revision {revision()}
+- machine: {machine()}
+
+| switch, drives | plain | waveforms | 95 % of 50 devices: plain | waveforms | energy: plain | waveforms |
+|---|---|---|---|---|---|---|""", *rates, f"""
+## Faster than that
+
+At {FASTER} times the larger of the two rates a cycle begins with the vibration that the one before has left. `softland optimize SCENE --cycle RATE` searches both waveforms for it. The table has the largest impact velocity and the highest rebound of ten cycles.
+
+| switch, drives | rate | plain | waveforms found apart | pair for the rate | cost: plain | pair | search |
+|---|---|---|---|---|---|---|---|""", *pairs]
+    (folder / "cycles.md").write_text("\n".join(text) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
