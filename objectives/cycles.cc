@@ -1,11 +1,12 @@
 #include "objectives/cycles.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace softland {
 
 CycleRecorder::CycleRecorder(double contact_gap, const MetricsOptions& options, const CycleTimes& times)
-    : contact_gap_(contact_gap), times_(times) {
+    : contact_gap_(contact_gap), open_position_(options.opening.open_position), times_(times) {
   for (std::size_t n = 0; n < times.cycles; ++n) {
     MetricsOptions own = options;
     own.opening.time = times.command(n);
@@ -18,8 +19,12 @@ CycleRecorder::CycleRecorder(double contact_gap, const MetricsOptions& options, 
 void CycleRecorder::knot(const TrajectoryPoint& point) {
   if (current_ == cycles_.size()) return;
   cycles_[current_].metrics.knot(point);
+  constexpr double last_part = 1.0 / 3;  // of the time after the command
+  if (times_.begin(current_ + 1) - point.time <= last_part * (times_.period - times_.on_time)) {
+    double& swing = cycles_[current_].swing;
+    swing = std::max(swing, std::abs(point.position - open_position_));
+  }
   if (point.time < times_.begin(current_ + 1)) return;
-  cycles_[current_].end = point;
   if (++current_ == cycles_.size()) return;
   cycles_[current_].began_open = point.position < contact_gap_;
   cycles_[current_].metrics.knot(point);
@@ -52,7 +57,7 @@ CycleFigures CycleRecorder::figures(std::size_t cycle, const Trajectory& run) {
     f.metrics.*time -= begin;
   f.closes = own.began_open && f.metrics.initial_contact_time < times_.on_time;
   f.opens = std::isfinite(f.metrics.opening_time);
-  f.end = own.end;
+  f.swing = own.swing;
   return f;
 }
 

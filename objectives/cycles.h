@@ -25,7 +25,7 @@ struct CycleFigures {
   Metrics metrics;
   bool closes = false;  ///< it begins open, and touches before the command
   bool opens = false;   ///< it is open at the end
-  TrajectoryPoint end;  ///< what the contact point does where the next cycle begins
+  double swing = 0;     ///< furthest from the open position in the last third of the time after the command [m]
 };
 
 class CycleRecorder final : public ClosingObserver {
@@ -48,10 +48,10 @@ class CycleRecorder final : public ClosingObserver {
     MetricsObserver metrics;
     double source_work = Metrics::unset;  // [J]
     bool began_open = false;
-    TrajectoryPoint end = {};
+    double swing = 0;  // [m]
   };
 
-  double contact_gap_;
+  double contact_gap_, open_position_;  // [m]
   CycleTimes times_;
   std::vector<Cycle> cycles_;
   std::size_t current_ = 0;

@@ -12,7 +12,6 @@
 
 #include "base/engineering.h"
 #include "base/require.h"
-#include "studies/closing/open_command.h"
 #include "studies/search/brake_pulses.h"
 #include "studies/search/optimize.h"
 #include "studies/search/search_setting.h"
@@ -33,8 +32,7 @@ class PairSearch {
         coarse_(setting.given),
         pulses_(setting.given, options.actuator, hold_levels(setting.given.told(setting.given.waveforms())), "optimize"),
         closing_(setting.space.variables().size()),
-        scale_(setting.scale),
-        rest_(connection_deflection(coarse_.model, *coarse_.model.rest())) {
+        scale_(setting.scale) {
     coarse_.tolerance = setting.run.tolerance;
     scale_.score_window = std::max(times(1).on_time - scale_.step.initial_contact_time, 0.1 * times(1).on_time);
   }
@@ -74,15 +72,13 @@ class PairSearch {
     return worst;
   }
 
-  /// How far from its rest the contact point is at the end of the first cycle, as an amplitude of its first mode over the contact
-  /// gap.
+  /// Returns how far the contact point swings from its rest before the second cycle begins, over the contact gap.
   [[nodiscard]] double unrest(const CycleWaveforms& waveforms) const {
     const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(1), false, {.stop = watch_.stop});
     if (run.cycles.empty()) return std::numeric_limits<double>::infinity();
     const CycleFigures& cycle = run.cycles.front();
     if (!cycle.opens) return never_touched;
-    return std::hypot(cycle.end.position - rest_, cycle.end.velocity / coarse_.model.basis().angular_frequencies()[0]) /
-           scale_.contact_gap;
+    return cycle.swing / scale_.contact_gap;
   }
 
   using Price = double (PairSearch::*)(const CycleWaveforms& waveforms) const;
@@ -134,7 +130,6 @@ class PairSearch {
   BrakePulses pulses_;
   std::size_t closing_;  // parameters
   CostScale scale_;
-  double rest_;  // of the contact point in the open state [m]
   mutable std::atomic<long> evaluations_ = 0;
 };
 

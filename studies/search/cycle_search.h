@@ -2,10 +2,10 @@
 // vibration that the other one leaves.
 //
 // A waveform for the closing alone is found first (optimize.h). Then pulses are found that brake the opening (brake_pulses.h), so
-// that the contact point is near its rest at the end of the cycle. Then both are improved together. The cost of a pair is that of
-// its worst cycle, of the first ones in a run from rest: of the closing as in every search (objectives/cost.h), scored
-// until the command to open. What does not close, or is closed at the end of a cycle, costs more than all that do. Drives keep
-// the limits of [driver.*].
+// that the contact point hardly swings in the last third of the time that is left for it. Then both are improved together. The
+// cost of a pair is that of its worst cycle, of the first ones in a run from rest: of the closing as in every search
+// (objectives/cost.h), scored until the command to open. What does not close, or is closed at the end of a cycle, costs more than
+// all that do. Drives keep the limits of [driver.*].
 #pragma once
 
 #include <cstdint>
