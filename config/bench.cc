@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/csv.h"
@@ -217,11 +218,11 @@ class MeasurementReader {
 
  public:
   [[nodiscard]] ContactTraceKeys contact_keys() const {
-    if (!has("threshold")) fail("missing key 'threshold': the voltage beyond which the contact is closed, such as \"1.5 V\"");
     const std::string closed = has("closed") ? text("closed") : "above";
     refuse_where(closed != "above" && closed != "below", "closed", "must be \"above\" or \"below\"");
     ContactTraceKeys keys{.file = keys_of_file(), .shift = time_shift(), .contact = {}};
-    keys.contact = {.threshold = quantity("threshold", {dimension::voltage}).value,
+    keys.contact = {.threshold = has("threshold") ? quantity("threshold", {dimension::voltage}).value
+                                                  : std::numeric_limits<double>::quiet_NaN(),
                     .hysteresis = not_negative("hysteresis", dimension::voltage),
                     .is_closed_below = closed == "below",
                     .merge = not_negative("merge", dimension::time)};

@@ -21,6 +21,9 @@ namespace {
 
 constexpr std::string_view own_format = "softland CSV";
 
+// "closed", "left_closed": the states of a contact in a record of our own, whose rows of one time are a jump.
+bool is_contact_state(std::string_view name) { return name == "closed" || name.ends_with("_closed"); }
+
 /// Makes a recording of columns of numbers and what is known of them.
 class RecordingMaker {
  public:
@@ -218,7 +221,8 @@ void RecordingMaker::add_channel(std::size_t k, bool is_only) {
   if (channel.name.empty()) channel.name = fmt::format("column {}", channel.column);
   std::optional<Unit> unit = unit_of_column(k);
   if (!unit) unit = preamble_.vertical_unit;
-  if (!unit && made_.format == own_format) unit = unit_of("V");
+  channel.is_state = made_.format == own_format && is_contact_state(channel.name);
+  if (!unit && made_.format == own_format && !channel.is_state) unit = unit_of("V");
   if (unit) {
     channel.unit = unit->symbol;
     channel.is_voltage = unit->measure == Measure::voltage;
@@ -251,6 +255,7 @@ Recording RecordingMaker::make() {
     add_channel(k, block_.columns.size() == (place ? 2U : 1U));
   }
   if (made_.channels.empty()) fail("there is a column of times and none of values");
+  made_.is_breakpoints = std::ranges::any_of(made_.channels, &Channel::is_state);
   scale_codes();
   refuse_logic_states();
   return std::move(made_);

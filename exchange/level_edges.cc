@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -55,9 +57,20 @@ void shift_times(Trace& trace, const TimeShift& shift) {
 }
 
 std::vector<LevelEdge> contact_edges(const std::string& file, const ContactTraceKeys& keys) {
-  Trace trace = trace_of(read_recording(file, keys.file), keys.file, "contact");
+  constexpr const char* usual = "contact";
+  constexpr double between_states = 0.5;
+  const Recording recording = read_recording(file, keys.file);
+  ThresholdKeys contact = keys.contact;
+  if (std::isnan(contact.threshold)) {
+    const bool has_states = std::ranges::any_of(recording.channels, &Channel::is_state);
+    require(has_states && channel_of(recording, keys.file, usual).is_state, [&] {
+      return file + ": missing key 'threshold': the voltage beyond which the contact is closed, such as \"1.5 V\"";
+    });
+    contact.threshold = between_states;
+  }
+  Trace trace = trace_of(recording, keys.file, usual);
   shift_times(trace, keys.shift);
-  return contact_edges(trace, keys.contact, file);
+  return contact_edges(trace, contact, file);
 }
 
 std::vector<LevelEdge> contact_edges(const Trace& trace, const ThresholdKeys& keys, const std::string& name) {

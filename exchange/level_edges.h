@@ -14,7 +14,8 @@
 namespace softland {
 
 struct ThresholdKeys {
-  double threshold = 0;          ///< [unit of the trace]
+  /// [unit of the trace]; NaN where nobody says it: contact_edges() takes a half for a channel of states.
+  double threshold = 0;
   double hysteresis = 0;         ///< [unit of the trace], not negative
   bool is_closed_below = false;  ///< rather than above
   double merge = 0;              ///< [s]
@@ -41,7 +42,8 @@ struct ContactTraceKeys {
   ThresholdKeys contact;
 };
 /// The edges from t = 0 on, when the drives begin, of a voltage that the file of an instrument holds. Throws what
-/// read_recording() and trace_of() throw, and InvalidInput for a contact that is closed at t = 0 already.
+/// read_recording() and trace_of() throw, and InvalidInput for a contact that is closed at t = 0 already, or without a threshold
+/// for a channel that is no state.
 [[nodiscard]] std::vector<LevelEdge> contact_edges(const std::string& file, const ContactTraceKeys& keys);
 /// The same of a trace; `name` stands for it in messages.
 [[nodiscard]] std::vector<LevelEdge> contact_edges(const Trace& trace, const ThresholdKeys& keys, const std::string& name);

@@ -139,10 +139,11 @@ Heading heading_of(std::string_view text) {
   if (text.size() > 5 && same_letters(text.substr(0, 5), "time_")) {
     if (auto heading = split_heading(text, 4, text.substr(5))) return *heading;
   }
-  // "main_mV"
-  if (const std::size_t at = text.rfind('_'); at != std::string_view::npos && at > 0 && text.ends_with('V')) {
-    if (auto heading = split_heading(text, at, text.substr(at + 1)); heading && heading->unit->measure == Measure::voltage)
-      return *heading;
+  // "main_mV", "resistance_ohm"
+  if (const std::size_t at = text.rfind('_');
+      at != std::string_view::npos && at > 0 && (text.ends_with('V') || text.ends_with("_ohm"))) {
+    auto heading = split_heading(text, at, text.substr(at + 1));
+    if (heading && (heading->unit->measure == Measure::voltage || heading->unit->symbol == "ohm")) return *heading;
   }
   Heading heading{.name = std::string(text), .unit = {}};
   // "CH1V"

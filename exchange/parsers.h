@@ -9,8 +9,7 @@
 
 namespace softland::internal {
 
-/// Why a content is no record over time though it is of a known kind: a mesh, a capture of logic states; empty where it is not
-/// known.
+/// Why a content is no record over time though it is of a known kind: a mesh, a picture; empty where it is not known.
 [[nodiscard]] std::string refused_kind(std::string_view text);
 
 /// Columns, or rows, of numbers.
@@ -19,6 +18,10 @@ namespace softland::internal {
 /// Whether a text is breakpoints as sources of SPICE have them, rather than columns of plain numbers.
 [[nodiscard]] bool is_spice_pwl(std::string_view text);
 [[nodiscard]] Recording read_spice_pwl(std::string_view text, const std::string& file, const ReadKeys& keys);
+
+/// Returns whether a text begins as a value change dump.
+[[nodiscard]] bool is_vcd(std::string_view text);
+[[nodiscard]] Recording read_vcd(std::string_view text, const std::string& file, const ReadKeys& keys);
 
 /// Whether bytes begin as the Universal File Format does.
 [[nodiscard]] bool is_uff(std::string_view content);

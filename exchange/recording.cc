@@ -51,8 +51,9 @@ Recording parse_recording(std::string_view content, const std::string& file, con
   require(!internal::is_binary(text), [&] {
     return file + ": binary data; what is read are exports as text, and data sets 58b of the Universal File Format";
   });
-  Recording made =
-      internal::is_spice_pwl(text) ? internal::read_spice_pwl(text, file, keys) : internal::read_columns(text, file, keys);
+  Recording made = internal::is_vcd(text)         ? internal::read_vcd(text, file, keys)
+                   : internal::is_spice_pwl(text) ? internal::read_spice_pwl(text, file, keys)
+                                                  : internal::read_columns(text, file, keys);
   made.left_out.insert(made.left_out.begin(), left_out.begin(), left_out.end());
   if (keys.interval) take_even_times(made, *keys.interval);
   return made;

@@ -1,9 +1,9 @@
 // What the file of an instrument or a simulator holds: a time axis and channels of numbers with names and units.
 //
 // Read are: columns of numbers as oscilloscopes, loggers and spreadsheets write them (any separator and decimal sign, lines above
-// the numbers, a row of units, rows instead of columns), sources of SPICE (PWL), and data sets 58 and 58b of the Universal File
-// Format. Nothing is guessed in silence: what is left out is told, and what can be read in two ways is refused with the key that
-// decides.
+// the numbers, a row of units, rows instead of columns), sources of SPICE (PWL), value change dumps (VCD), and data sets 58 and
+// 58b of the Universal File Format. Nothing is guessed in silence: what is left out is told, and what can be read in two ways is
+// refused with the key that decides.
 #pragma once
 
 #include <cstddef>
@@ -42,6 +42,7 @@ struct Channel {
   std::string heading;  ///< all of it
   std::string unit;     ///< as usual, "V", "mV"; empty where the file names none
   bool is_voltage = false;
+  bool is_state = false;       ///< 0 or 1, of logic or of a contact: a number without a unit
   double per_si = 1;           ///< how many of the unit are one SI unit
   int column = 0;              ///< in the file, from 1
   std::vector<double> values;  ///< [unit], one per row; NaN where it is missing
@@ -72,7 +73,7 @@ struct Recording {
 [[nodiscard]] const Channel& channel_of(const Recording& recording, const ReadKeys& keys, const std::string& usual);
 
 /// Reads a file. Throws InvalidInput with file, line, column and rule for what cannot be read, for what is no record over time (a
-/// spectrum, a capture of logic states, a mesh), and for what can be read in two ways.
+/// spectrum, rows of logic states, a mesh), and for what can be read in two ways.
 [[nodiscard]] Recording read_recording(const std::string& file, const ReadKeys& keys = {});
 /// The same for the content of a file; `file` stands for it in messages.
 [[nodiscard]] Recording parse_recording(std::string_view content, const std::string& file, const ReadKeys& keys = {});

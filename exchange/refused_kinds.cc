@@ -12,8 +12,6 @@ struct KindRow {
   std::string_view what;
 };
 constexpr std::array kinds{
-    KindRow{"$timescale", "a capture of logic states (VCD)"},
-    KindRow{"$date", "a capture of logic states (VCD)"},
     KindRow{"% Model", "a field on the nodes of a mesh (COMSOL)"},
     KindRow{"1C", "a mesh with results (CalculiX)"},
     KindRow{"1UUSER", "a mesh with results (CalculiX)"},

@@ -35,7 +35,7 @@ double volts_divisor(const Recording& recording, const Channel& channel, const R
     return unit->per_si;
   }
   if (channel.unit.empty()) {
-    if (!any_unit) told += "; the file names no unit: V taken";
+    if (!any_unit && !channel.is_state) told += "; the file names no unit: V taken";
     return 1;
   }
   require(channel.is_voltage || any_unit, [&] {

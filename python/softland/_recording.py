@@ -106,7 +106,7 @@ def read(
     time_unit: str | None = None,
     decimal: Literal[".", ","] | None = None,
 ) -> Recording:
-    """What a file of an oscilloscope, a generator, a logger or a simulator holds, as `softland read`: CSV of twelve makers, SPICE PWL, UFF 58 (docs/files.md).
+    """What a file of an oscilloscope, a generator, a logger or a simulator holds, as `softland read`: CSV of twelve makers, SPICE PWL, VCD, UFF 58 (docs/files.md).
 
     column: name or place, from 1, of the channel that is wanted; time_column: the same of the times. interval: between samples [s], where the file does not
     say it, or "uneven". skip: lines at the beginning that are left out. time_unit: "us". decimal: the decimal sign.

@@ -440,9 +440,20 @@ TEST_F(TuneVerb, TakesTheFileOfAnOscilloscope_optimized) {
     EXPECT_NEAR(edges[k][0].get<double>(), due[k], 1e-12);
     EXPECT_EQ(edges[k][1], k % 2 == 0 ? 1 : 0);
   }
-  EXPECT_THAT(here.run(words({"--contact", "closed=below"})).err, HasSubstr("--contact: missing key 'threshold'"));
+  EXPECT_THAT(here.run(words({"--contact", "closed=below"})).err, HasSubstr("scope.csv: missing key 'threshold'"));
   EXPECT_THAT(here.run({"tune", "plate.toml", "--device", "x", "--contact", "threshold=1 V"}).err,
               HasSubstr("--contact says how files are read that --by-hand is told of"));
+}
+
+TEST_F(TuneVerb, TakesTheCaptureOfALogicAnalyser_optimized) {
+  write(here.path() / "capture.vcd",
+        "$timescale 1 us $end $var wire 1 ! D0 $end $var wire 1 \" D1 $end $enddefinitions $end\n"
+        "#0 0! 1\"\n#21 1!\n#25 0!\n#27 1!\n");
+  write(here.path() / "stdin.txt", "file capture.vcd\nstop\n");
+  const Outcome o = here.run({"tune", "plate.toml", "--by-hand", "--effort", "0.2", "--jobs", "1", "--out", "out", "--quiet",
+                              "--contact", "column=D0"});
+  EXPECT_EQ(o.status, 4) << o.err;
+  EXPECT_EQ(tune_json()["closings"][0]["record"]["edges_s"], json::parse("[[21e-6, 1], [25e-6, 0], [27e-6, 1]]"));
 }
 
 // A switch of nanoseconds: the errors of its instruments follow it.

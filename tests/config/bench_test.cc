@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <string>
 
@@ -126,6 +127,8 @@ TEST(Bench, ReadsWhatInstrumentsWrite) {
   std::ofstream(folder.path() / "scope.csv") << scope_file;
   std::ofstream(folder.path() / "tip.uff") << vibrometer_file;
   std::ofstream(folder.path() / "decoder.csv") << "time (us),decoder (mV)\n-1,0\n0,0\n1,100\n2,300\n";
+  std::ofstream(folder.path() / "capture.vcd")
+      << "$timescale 1 ns $end $var wire 1 ! D0 $end $enddefinitions $end\n#0 1!\n#3000 0!\n#4000 1!\n";
   const Bench bench = parse_bench(R"(
 [[measurement]]
 quantity = "contact"
@@ -164,6 +167,13 @@ file = "decoder.csv"
 per_volt = "2 um"
 level = "20 V"
 error = "1 nm"
+[[measurement]]
+quantity = "contact"
+file = "capture.vcd"
+closed = "below"
+level = "20 V"
+edges = 2
+error = "1 ns"
 )",
                                   "bench.toml", folder.path());
   constexpr double rounding = 1e-15;
@@ -178,6 +188,7 @@ error = "1 nm"
   expect_near(bench.measurements[3].values, {0, 1.5, 4, 9}, rounding);
   expect_near(bench.measurements[4].times, {0, 1e-6, 2e-6}, rounding);
   expect_near(bench.measurements[4].values, {0, 0.2e-6, 0.6e-6}, rounding);
+  expect_near(bench.measurements[5].values, {3e-6, 4e-6}, rounding);
 }
 TEST(Bench, NamesTheKeyThatAFileOfAnInstrumentLacks) {
   const test::TemporaryFolder folder;
@@ -227,8 +238,7 @@ TEST(Bench, ContactKeysOfAnOptionAreThoseOfAMeasurement) {
     return {};
   };
   EXPECT_EQ(refused({"threshold"}), "--contact threshold: must be KEY=VALUE, such as \"threshold=1.5 V\"");
-  EXPECT_EQ(refused({"closed=below"}),
-            "--contact: missing key 'threshold': the voltage beyond which the contact is closed, such as \"1.5 V\"");
+  EXPECT_TRUE(std::isnan(contact_trace_keys({"column=D0"}).contact.threshold)) << "of a channel of states";
   EXPECT_EQ(refused({"threshold=1.5 A"}), "--contact: threshold = \"1.5 A\": expected a voltage [V], got a current [A]");
   EXPECT_NE(refused({"threshold=1 V", "thershold=1 V"}).find("did you mean 'threshold'?"), std::string::npos);
 }
