@@ -362,8 +362,9 @@ void VcdReader::make_rows() {
   for (const std::size_t k : chosen_) {
     bytes += sizeof(double) * rows + of_channel + 2 * (scopes_[variables_[k].scope].length + variables_[k].name.size());
     require(bytes <= most_bytes, [&] {
+      const std::string name = names[variables_[k].name] > 1 ? path(variables_[k]) : variables_[k].name;
       return fmt::format("{}: {} variables that change at {} times are more than is read at once; column = \"{}\" takes one",
-                         made_.file, chosen_.size(), moments_.size(), printable_line(shortened(variables_[k].name)));
+                         made_.file, chosen_.size(), moments_.size(), printable_line(shortened(name)));
     });
   }
   for (std::size_t m = 0; m < moments_.size(); ++m) {

@@ -164,7 +164,7 @@ class Run {
     const FieldFigures field = parts_.equations.field(here().state.data());
     const TrajectoryPoint before = parts_.first().course.last(), now = parts_.point(parts_.first(), here());
     if (now.time > before.time && !parts_.closing_is_over) parts_.first().force.take_line(before, now);
-    if (parts_.electrical && !parts_.closing_is_over)
+    if (parts_.follows_state())
       parts_.electrical->take_rest(before.time, now.time, [&](double t) { return parts_.plate.press(here(), t); });
     parts_.first().course.push(now);
     if (stay.leaves) pass({.time = stay.until, .edge = Edge{.level = plane_, .side = 1, .next = Phase::flight}});

@@ -47,6 +47,16 @@ std::string shown(double value, const Channel& channel) {
                                   : quantity(value, "", digits) + (channel.unit.empty() ? "" : " " + channel.unit);
 }
 
+// The rows without those inside a stretch that stands still: few rows of steps are drawn as steps.
+std::vector<std::size_t> corners(const std::vector<double>& values) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const bool is_inside = i > 0 && i + 1 < values.size() && values[i - 1] == values[i] && values[i] == values[i + 1];
+    if (!is_inside) rows.push_back(i);
+  }
+  return rows;
+}
+
 }  // namespace
 
 nlohmann::json recording_json(const Recording& recording) {
@@ -98,7 +108,11 @@ std::string recording_svg(const Recording& recording) {
   for (std::size_t k = 0; k < recording.channels.size(); ++k) {
     const Channel& channel = recording.channels[k];
     const std::string table = fmt::format("channel-{}", k + 1), name = printable_line(channel.name);
-    for (const std::size_t row : internal::downsampled({&channel.values}, most_rows)) {
+    const std::vector<std::size_t> turns = corners(channel.values);
+    std::vector<double> values;
+    for (const std::size_t row : turns) values.push_back(channel.values[row]);
+    for (const std::size_t turn : internal::downsampled({&values}, most_rows)) {
+      const std::size_t row = turns[turn];
       drawn.tables[table]["x"].push_back(x[row]);
       drawn.tables[table]["y"].push_back(channel.values[row] / (channel.is_voltage ? channel.per_si : 1));
     }

@@ -1,8 +1,11 @@
-// Verb `export`: the waveforms of a result for a generator or a circuit simulator.
+// Verb `export`: the waveforms of a result for a generator or a circuit simulator, or the states of its contact.
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <string>
 #include <system_error>
 
+#include "reports/contact_states_file.h"
 #include "reports/scene_export.h"
 #include "verbs/study.h"
 
@@ -10,7 +13,8 @@ namespace softland::verbs {
 namespace {
 
 struct ExportVerb : Usual, ExportRequest {
-  static constexpr auto name = "export", about = "print the waveforms of a result for a generator or a circuit simulator",
+  static constexpr auto name = "export",
+                        about = "print the waveforms of a result, or the states of its contact, for other programs",
                         python = "export", returns = "str", progress = "False", subject = "RESULT",
                         scene = "folder that --out named, result.json, or a scene file";
   static constexpr auto in_python =
@@ -21,7 +25,11 @@ struct ExportVerb : Usual, ExportRequest {
       "  softland export softland-out --drive piezo --format keysight-arb --sample-rate \"25 MHz\" --bits 14 --amplifier 20 > "
       "piezo.arb\n"
       "  softland export softland-out --measured \"Vdp=14.6 V,frequency=10.2 kHz\" > device-17.csv\n"
-      "  softland export softland-out --measured \"Vdp=14.6 V,frequency=10.2 kHz,piezo=1.6 %/V\" > device-17.csv";
+      "  softland export softland-out --measured \"Vdp=14.6 V,frequency=10.2 kHz,piezo=1.6 %/V\" > device-17.csv\n"
+      "  softland export softland-out --contact-record vcd > contact.vcd\n"
+      "  softland export softland-out --contact-record pwl --devices 20 > contacts.cir";
+
+  ContactStatesRequest record;
 
   ExportVerb() { jobs = one_per_core(); }
 };
@@ -60,10 +68,36 @@ void options(Archive& a, ExportVerb& r) {
   a.program().text("device-vdp", r.device_pull_in, "VOLTAGE", "the same as --measured \"Vdp=VOLTAGE\"");
   a.program().text("device-frequency", r.device_frequency, "FREQUENCY",
                    "the same as --measured \"frequency=FREQUENCY\": the first natural frequency");
+  a.text(
+      "contact-record", r.record.format, "NAME",
+      "csv, vcd (a value change dump) or pwl (sources of SPICE): when the contact is closed and open, and its resistance, in the "
+      "place of the waveforms");
+  a.whole("devices", r.record.devices, {.least = 1, .most = 10'000},
+          "contact record of N devices of [spread], each a channel, in the place of the nominal design");
+  seed_option(a, r.record.seed, "same devices");
   jobs_option(a.python(), r.jobs, "threads (default: one per core)");
 }
 
+bool is_of_waveforms(const ExportVerb& r) {
+  const Sampling& s = r.sampling;
+  return r.format != ExportRequest{}.format || r.signal != ExportRequest{}.signal || !r.measured.empty() || r.device_pull_in ||
+         r.device_frequency || s.rate || s.bits || !s.drive.empty() || s.amplifier || s.marker;
+}
+
+Outcome contact_record(const Setting& setting, const ExportVerb& request) {
+  require_field(!is_of_waveforms(request), "contact-record", request.record.format,
+                [] { return "is of the contact, and takes no option of waveforms"; });
+  ContactStatesRequest record = request.record;
+  record.jobs = request.jobs;
+  return {.text = contact_states_text(
+              setting.scene, record, setting.watch, setting.note ? setting.note : [](const std::string&) {})};
+}
+
 Outcome run(const Setting& setting, const ExportVerb& request) {
+  if (!request.record.format.empty()) return contact_record(setting, request);
+  require_request(!request.record.devices && !request.record.seed, [] {
+    return fmt::format("{}, {}: belong to {}", requested("devices"), requested("seed"), requested("contact-record"));
+  });
   std::error_code ignored;
   if (setting.note && std::filesystem::exists(std::filesystem::path(setting.name) / "tune.json", ignored))
     setting.note(

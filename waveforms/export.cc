@@ -180,11 +180,11 @@ std::string spice_name(const std::string& drive) {
   return name;
 }
 
-std::string spice_pwl(const std::map<std::string, Signal>& signals, double end) {
+std::string spice_pwl(const std::map<std::string, Signal>& signals, double end, std::string_view about) {
   require_signals(signals);
   // Far below any time a switch knows, and resolved by the 17 digits of a time of a second.
   const double jump_time = std::min(1e-12, 1e-7 * end);
-  std::string text = "* Drive waveforms, one subcircuit each: Xname plus minus softland_drive\n";
+  std::string text = fmt::format("* {}\n", about);
   std::set<std::string> names;
   for (const auto& [drive, signal] : signals) {
     const std::string name = "softland_" + spice_name(drive);

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -45,7 +46,9 @@ struct Coded {
 /// A SPICE file with one subcircuit `softland_<drive> plus minus` per drive, which holds one PWL voltage source; usable with
 /// .include in ngspice, LTspice, HSPICE. Jumps take 1 ps, or a ten-millionth of `end` or a thousandth of the interval after them
 /// if that is shorter; curves as in csv(). Letters of a name become lower case and what is neither letter nor digit an
-/// underscore. Throws InvalidInput as csv(), and when two drives get the same name.
-[[nodiscard]] std::string spice_pwl(const std::map<std::string, Signal>& signals, double end);
+/// underscore. `about` stands in the first line. Throws InvalidInput as csv(), and when two drives get the same name.
+[[nodiscard]] std::string spice_pwl(
+    const std::map<std::string, Signal>& signals, double end,
+    std::string_view about = "Drive waveforms, one subcircuit each: Xname plus minus softland_drive");
 
 }  // namespace softland

@@ -9,8 +9,11 @@
 
 namespace softland {
 
-ElectricalRecord::ElectricalRecord(const Switch& model)
-    : model_(model), closing_(model.device().electrical), followed_(model.contacts() > 1 ? 1 + model.contacts() : 1) {
+ElectricalRecord::ElectricalRecord(const Switch& model, ClosingObserver& observer)
+    : model_(model),
+      observer_(observer),
+      closing_(model.device().electrical),
+      followed_(model.contacts() > 1 ? 1 + model.contacts() : 1) {
   for (std::size_t c = 0; c < model.contacts(); ++c) resistances_.push_back(contact_resistance(model.device(), c));
 }
 
@@ -128,6 +131,8 @@ void ElectricalRecord::follow_way(Followed& followed, const Margin& at, double b
 void ElectricalRecord::set(Followed& followed, bool is_closed, double time) const {
   if (followed.is_closed == is_closed) return;
   followed.is_closed = is_closed;
+  if (observer_.follows_state()) tell(followed, time);
+  if (is_finished_) return;
   if (!is_closed) {
     followed.opened_at = time;
     return;
@@ -141,12 +146,18 @@ void ElectricalRecord::set(Followed& followed, bool is_closed, double time) cons
   }
 }
 
+void ElectricalRecord::tell(const Followed& followed, double time) const {
+  const auto place = static_cast<std::size_t>(&followed - followed_.data());
+  observer_.state(place > 0 ? std::optional(place - 1) : std::nullopt, followed.is_closed, time);
+}
+
 bool ElectricalRecord::counts(const Followed& followed, double until) const {
   constexpr double rounding = 1e-12;  // of the time, at which two steps meet
   return until - followed.opened_at > std::max(closing_.shortest_opening(), rounding * until);
 }
 
 void ElectricalRecord::finish(double time) {
+  is_finished_ = true;
   for (Followed& followed : followed_) {
     if (followed.is_closed || std::isnan(followed.outcome.first_closed)) continue;
     if (counts(followed, time)) ++followed.outcome.openings;

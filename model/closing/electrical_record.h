@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "model/closing/observer.h"
 #include "model/closing/step_motion.h"
 #include "model/contact/contact_state.h"
 #include "model/contact/resistance.h"
@@ -36,14 +37,14 @@ struct ContactInStep {
 
 class ElectricalRecord {
  public:
-  /// Keeps a reference. The device must ask for it.
-  explicit ElectricalRecord(const Switch& model);
+  /// Keeps references. An observer that follows the state is told every change of it.
+  ElectricalRecord(const Switch& model, ClosingObserver& observer);
 
   /// Takes a step between two times [s] in which every contact stays in the state of its law.
   void take(double begin, double end, std::span<const ContactInStep> contacts);
   /// Takes a time [s] in which the plate rests on its rigid contact, under a force [N] that is a function of the time.
   void take_rest(double begin, double end, const std::function<double(double)>& force);
-  /// The run has ended at this time [s].
+  /// The closing has ended at this time [s]: what is taken after it changes no outcome.
   void finish(double time);
 
   [[nodiscard]] const ElectricalOutcome& connection() const { return followed_.front().outcome; }
@@ -73,12 +74,15 @@ class ElectricalRecord {
   template <class Margin>
   void follow_way(Followed& followed, const Margin& at, double begin, double from, double end, double to) const;
   void set(Followed& followed, bool is_closed, double time) const;
+  void tell(const Followed& followed, double time) const;
   [[nodiscard]] bool counts(const Followed& followed, double until) const;
 
   const Switch& model_;
+  ClosingObserver& observer_;
   ElectricalClosing closing_;
   std::vector<ContactResistance> resistances_;
   std::vector<Followed> followed_;  // the connection, and of several contacts each
+  bool is_finished_ = false;
 };
 
 }  // namespace softland

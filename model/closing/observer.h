@@ -1,6 +1,9 @@
 // Who receives the course of a closing: all of it, or only what figures are made of.
 #pragma once
 
+#include <cstddef>
+#include <optional>
+
 #include "model/closing/knot.h"
 #include "model/contact/contact_law.h"
 #include "model/trajectory.h"
@@ -31,6 +34,11 @@ class ClosingObserver {
   /// Who receives knots and touches of one contact of several, while this observer receives those of the connection that they
   /// make; null: nobody does. A switch with one contact does not ask.
   [[nodiscard]] virtual ClosingObserver* contact(std::size_t /*number*/) { return nullptr; }
+  /// Returns whether the observer asks when the switch is electrically closed (model/closing/electrical_record.h).
+  [[nodiscard]] virtual bool follows_state() const { return false; }
+  /// From this time [s] on the connection, or of several contacts the one of this number, is closed or open. It is open until
+  /// the first call. The calls of each are in order of time, and go on after ClosingOptions::opens_at.
+  virtual void state(std::optional<std::size_t> /*contact*/, bool /*is_closed*/, double /*time*/) {}
   /// Whether the observer follows the motion of all modes; then it is told every step and what happens between steps, in order
   /// of time. Of several contacts it is told the state of the first, which does not say all that acts.
   [[nodiscard]] virtual bool follows_motion() const { return false; }

@@ -186,7 +186,7 @@ void Stepping::account(const FieldFigures& field, EnergyAudit& audit) {
     if (c.end.time > from.time) parts_.record(c, TipMotion(c.motion, from, c.end), from, c.end);
     c.touches.take(here_, next_, c.motion);
   }
-  if (parts_.electrical && !parts_.closing_is_over) {
+  if (parts_.follows_state()) {
     std::vector<ContactInStep> contacts;
     for (FollowedContact& c : parts_.contacts)
       contacts.push_back({c.motion, c.course.last(), c.end, c.phase.law(), c.phase.in_contact()});

@@ -64,7 +64,7 @@ struct ClosingParts {
   RestingPlate plate;
   std::optional<ConnectionCourse> connection;  ///< of several contacts
   std::vector<FollowedContact> contacts;       ///< at least one: see ContactPhases
-  std::optional<ElectricalRecord> electrical;  ///< where the device asks for it
+  std::optional<ElectricalRecord> electrical;  ///< if the device or the observer asks for it
   ClosingObserver& observer;
   bool closing_is_over = false;  ///< ClosingOptions::opens_at is past
 
@@ -79,7 +79,8 @@ struct ClosingParts {
         plate(model, drives, equations),
         observer(closing_observer) {
     if (model.contacts() > 1) connection.emplace(model, observer);
-    if (model.has_contact() && model.device().electrical.is_asked()) electrical.emplace(model);
+    if (model.has_contact() && (model.device().electrical.is_asked() || observer.follows_state()))
+      electrical.emplace(model, observer);
     contacts.reserve(phases.size());
     for (std::size_t c = 0; c < phases.size(); ++c)
       contacts.emplace_back(model, c, phases[c], options, connection ? connection->contact(c) : observer);
@@ -95,6 +96,8 @@ struct ClosingParts {
   ClosingParts& operator=(const ClosingParts&) = delete;
 
   [[nodiscard]] FollowedContact& first() { return contacts.front(); }
+  /// Returns whether the electrical state is followed: after the closing is over only for an observer who asks.
+  [[nodiscard]] bool follows_state() const { return electrical && (!closing_is_over || observer.follows_state()); }
   /// Takes what follows for an opening [s].
   void end_closing(double time) {
     if (electrical && !closing_is_over) electrical->finish(time);

@@ -36,8 +36,13 @@ class ContactCourse {
 
 }  // namespace
 
-std::vector<double> resistance_course(const Device& device, const Trajectory& run, std::span<const double> times) {
-  if (!device.conducts()) return {};
+bool conducts(const Device& device, std::optional<std::size_t> contact) {
+  return contact ? device.contacts[*contact].conduction.is_given() : device.conducts();
+}
+
+std::vector<double> resistance_course(const Device& device, const Trajectory& run, std::span<const double> times,
+                                      std::optional<std::size_t> contact) {
+  if (!conducts(device, contact)) return {};
   std::vector<ContactCourse> contacts;
   if (run.contacts.empty()) {
     contacts.emplace_back(device, 0, run.contact_gap, run.points);
@@ -45,12 +50,12 @@ std::vector<double> resistance_course(const Device& device, const Trajectory& ru
     for (std::size_t c = 0; c < run.contacts.size(); ++c)
       contacts.emplace_back(device, c, run.contacts[c].gap, run.contacts[c].points);
   }
-  for (const ContactCourse& contact : contacts)
-    if (!contact.is_kept()) return {};
+  for (const ContactCourse& one : contacts)
+    if (!one.is_kept()) return {};
   std::vector<double> course, conductances(contacts.size());
   for (const double time : times) {
     for (std::size_t c = 0; c < contacts.size(); ++c) conductances[c] = contacts[c].conductance(time);
-    course.push_back(resistance_of(connection_conductance(device, conductances)));
+    course.push_back(resistance_of(contact ? conductances[*contact] : connection_conductance(device, conductances)));
   }
   return course;
 }

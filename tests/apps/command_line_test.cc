@@ -1053,6 +1053,46 @@ TEST(Export, OfTheSwitchForACircuitClosesAsItDoes_slow) {
   EXPECT_NEAR(measured("v_i"), speed, 1e-3 * speed);
 }
 
+TEST(Export, OfTheContactIsARecordThatIsReadBack_optimized) {
+  const Workplace here;
+  const std::string scene = std::string(SOFTLAND_SOURCE_DIR) + "/scenes/ohmic-gold.toml";
+  const auto run = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> words{"export", scene};
+    words.insert(words.end(), options.begin(), options.end());
+    return here.run(words);
+  };
+  for (const std::string format : {"csv", "vcd", "pwl"}) {
+    const Outcome one = run({"--contact-record", format});
+    EXPECT_EQ(one.status, 0) << one.err;
+    EXPECT_EQ(one.err, "");
+    write(here.path() / ("contact." + format), one.out);
+    const std::string column = format == "pwl" ? "softland_closed.Vdrive" : "closed";
+    const Outcome back = here.run({"read", "contact." + format, "--set", "column=" + column, "--json", "-"});
+    ASSERT_EQ(back.status, 0) << back.err;
+    const json channel = json::parse(back.out)["channels"][0];
+    EXPECT_EQ(channel["first"], 0);
+    EXPECT_EQ(channel["last"], 1);
+  }
+  const auto of_three = [&](const std::string& seed) {
+    return run({"--contact-record", "vcd", "--devices", "3", "--seed", seed}).out;
+  };
+  const Outcome devices = run({"--contact-record", "vcd", "--devices", "3"});
+  EXPECT_EQ(devices.out, of_three("1"));
+  EXPECT_NE(devices.out, of_three("2"));
+  EXPECT_THAT(devices.out, HasSubstr("$scope module device_2 $end"));
+  for (const auto& [words, said] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"--contact-record", "wav"}, "--contact-record wav: must be csv, vcd or pwl"},
+           {{"--devices", "3"}, "--devices, --seed: belong to --contact-record"},
+           {{"--contact-record", "csv", "--seed", "3"}, "--seed: chooses devices: give --devices as well"},
+           {{"--contact-record", "csv", "--bits", "3"},
+            "--contact-record csv: is of the contact, and takes no option of waveforms"},
+           {{"--contact-record", "csv", "--devices", "0"}, "--devices 0: must be"}}) {
+    const Outcome refused = run(words);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_THAT(refused.err, HasSubstr(said));
+  }
+}
+
 TEST(Export, TakesWhatWasMeasuredAndSaysWhatIsStrange_optimized) {
   const Workplace here;
   const auto run = [&](const std::string& measured) { return here.run({"export", "gold.toml", "--measured", measured}); };

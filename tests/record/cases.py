@@ -105,6 +105,7 @@ def scene_cases(name, text):
         step("simulate", "--json", "simulate.json", "--out", "out"), Step(["report", "out", "--out", "again"]), Step(["export", "out"]),
         Step(["export", "out", "--format", "spice-pwl"]), Step(["export", "out", "--device-vdp", "20 V", "--device-frequency", "30 kHz"]),
         Step(["export", "out", "--measured", "frequency=30 kHz"]),
+        *[Step(["export", "out", "--contact-record", kind]) for kind in ("csv", "vcd", "pwl") if name == "ohmic-gold"],
         step("simulate", "--quiet", "--json", "-", *fast),
         step("simulate", "--set", "simulate.effects=auto", *fast),
         step("simulate", "--set", "structure.modes=auto", "--set", "simulate.accuracy=1e-3", *(["--set", "gas.model=strip"] if film else []))],
@@ -419,6 +420,7 @@ def mistake_cases(program, verbs, scenes):
         ["explore", gold, "--vary", "gap.contact=1 um:2 um", "--sample", "halton:3"], ["explore", gold, "--vary", "gap.contact=1 um:2 um:2",
         "--pareto", "softness"], ["explore", "none.sqlite", "--resume"], ["robustness", gold, "--calibrate", "Vdp:99 %"],
         ["calibrate", gold, "--error", "mass:1 %"], ["calibrate", gold, "--steps", "1.2,1.1"], ["export", gold, "--format", "wav"],
+        ["export", gold, "--contact-record", "wav"], ["export", gold, "--contact-record", "csv", "--devices", "2"],
         ["export", gold, "--device-vdp", "3 A"], ["new", "magnet"], ["merge", "none.sqlite", "--out", "x.sqlite"], ["status", "none.sqlite"],
         ["slurm", gold, "--tasks", "0"], ["table", "none.sqlite", "--where", "1"]]
     yield Case("mistakes.options", each(*options), inputs={"folder/kept": "kept\n"}, brief=True, weight=2)

@@ -1,0 +1,38 @@
+// The states of contacts as files that simulators of circuits and of firmware read: CSV, a value change dump, sources of SPICE.
+//
+// A channel is called "closed", of one of several contacts "left_closed", of a device "device_12_closed", and is 1 where the
+// contact is closed, 0 where it is open. Its resistance, where that is known, stands beside it: "resistance_ohm".
+//
+// CSV: a jump is two rows of one time; the resistance goes in straight lines, and has no number where the contact is open.
+// VCD: in steps of 1 ps; a resistance is a step of at most 5 %, and open_resistance where the contact is open. Each device is a
+// module. There is no date: the same record has the same bytes.
+// PWL: a source of 0 V and 1 V per channel, whose edges take 1 ns about the time of the change, or a half of the shortest state
+// beside them; one of a volt per ohm for a resistance.
+#pragma once
+
+#include <string>
+
+#include "studies/devices/contact_states.h"
+
+namespace softland {
+
+/// Of an open contact, in VCD and PWL [Ohm].
+inline constexpr double open_resistance = 1e12;
+
+/// Throws InvalidInput where the table has more than 5e7 numbers.
+[[nodiscard]] std::string contact_states_csv(const StateRecord& record);
+[[nodiscard]] std::string contact_states_vcd(const StateRecord& record);
+[[nodiscard]] std::string contact_states_pwl(const StateRecord& record);
+
+struct ContactStatesRequest {
+  std::string format;                         ///< csv, vcd or pwl
+  std::optional<std::uint64_t> devices = {};  ///< none: the scene itself
+  std::optional<std::uint64_t> seed = {};
+  int jobs = 1;
+};
+/// The text of the file for a scene. A scene without [spread] whose devices are asked for gets the usual one. `say` is told, in
+/// lines, what is to be known of it. Throws InvalidRequest, Interrupted.
+[[nodiscard]] std::string contact_states_text(const SceneFile& file, const ContactStatesRequest& request, const Watch& watch,
+                                              const SayLine& say);
+
+}  // namespace softland
