@@ -35,6 +35,17 @@ void CycleRecorder::touch(const Touch& touch) {
   if (cycle < cycles_.size()) cycles_[cycle].metrics.touch(touch);
 }
 
+// A time in which the switch is closed may go on from one cycle to the next.
+void CycleRecorder::state(std::optional<std::size_t> contact, bool is_closed, double time) {
+  if (contact) return;
+  for (std::size_t n = 0; closed_from_ && n < cycles_.size(); ++n) cycles_[n].on_time += closed_in(n, time);
+  closed_from_ = is_closed ? std::optional(time) : std::nullopt;
+}
+
+double CycleRecorder::closed_in(std::size_t cycle, double until) const {
+  return std::max(0.0, std::min(until, times_.begin(cycle + 1)) - std::max(*closed_from_, times_.begin(cycle)));
+}
+
 void CycleRecorder::energies(double time, const EnergyBalance& balance) {
   if (counted_ == cycles_.size() || time < times_.begin(counted_ + 1)) return;
   cycles_[counted_++].source_work = balance.source_work - work_before_;
@@ -58,6 +69,7 @@ CycleFigures CycleRecorder::figures(std::size_t cycle, const Trajectory& run) {
   f.closes = own.began_open && f.metrics.initial_contact_time < times_.on_time;
   f.opens = std::isfinite(f.metrics.opening_time);
   f.swing = own.swing;
+  f.on_time = own.on_time + (closed_from_ ? closed_in(cycle, times_.begin(cycle + 1)) : 0);
   return f;
 }
 

@@ -2,6 +2,7 @@
 // the one before has left the switch.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "objectives/metrics.h"
@@ -25,6 +26,7 @@ struct CycleFigures {
   Metrics metrics;
   bool closes = false;  ///< it begins open, and touches before the command
   bool opens = false;   ///< it is open at the end
+  double on_time = 0;   ///< time in which the switch is electrically closed [s], of an observer that hands on state()
   double swing = 0;     ///< furthest from the open position in the last third of the time after the command [m]
 };
 
@@ -35,6 +37,7 @@ class CycleRecorder final : public ClosingObserver {
 
   void knot(const TrajectoryPoint& point) override;
   void touch(const Touch& touch) override;
+  void state(std::optional<std::size_t> contact, bool is_closed, double time) override;
   [[nodiscard]] bool takes_energies() const override { return true; }
   void energies(double time, const EnergyBalance& balance) override;
 
@@ -48,8 +51,11 @@ class CycleRecorder final : public ClosingObserver {
     MetricsObserver metrics;
     double source_work = Metrics::unset;  // [J]
     bool began_open = false;
-    double swing = 0;  // [m]
+    double swing = 0, on_time = 0;  // [m], [s]
   };
+
+  // Returns the part of the cycle in which the switch is closed, as it is now, until then [s].
+  [[nodiscard]] double closed_in(std::size_t cycle, double until) const;
 
   double contact_gap_, open_position_;  // [m]
   CycleTimes times_;
@@ -57,6 +63,7 @@ class CycleRecorder final : public ClosingObserver {
   std::size_t current_ = 0;
   double work_before_ = 0;  // at the begin of the current cycle [J]
   std::size_t counted_ = 0;
+  std::optional<double> closed_from_ = {};  // the switch is electrically closed since then [s]
 };
 
 }  // namespace softland

@@ -169,6 +169,9 @@ ReportTable cycles_table(const CycleRecord::Drive& drive, const std::string& nam
     }
     table.rows.push_back(std::move(cells));
   }
+  TableRow on_times{"electrically closed"};
+  for (const std::size_t n : shown) on_times.push_back(quantity(drive.cycles[n].on_time, "s"));
+  table.rows.push_back(std::move(on_times));
   return table;
 }
 
@@ -187,6 +190,7 @@ template <class A>
 void members(A& a, CycleRecord::Cycle& cycle) {
   members(a, cycle.metrics);
   a(key_of(&Metrics::largest_impact_velocity), cycle.metrics.largest_impact_velocity);
+  a("on_time_s", cycle.on_time);
 }
 
 template <class A>
@@ -255,7 +259,7 @@ CycleRecord record_of(const PreparedScene& given, const Cycling& cycling, const 
     if (!drive.cycles) continue;
     own.status = to_string(drive.cycles->status);
     own.message = drive.cycles->message;
-    for (const CycleFigures& one : drive.cycles->cycles) own.cycles.push_back({one.metrics});
+    for (const CycleFigures& one : drive.cycles->cycles) own.cycles.push_back({.metrics = one.metrics, .on_time = one.on_time});
     own.waveforms = waveforms_of(given, drive, drive.cycles->times);
     record.curves[own.name] = course_of(*drive.cycles);
   }

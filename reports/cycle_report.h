@@ -27,7 +27,8 @@ struct CycleRecord {
     std::vector<double> time, gap;  ///< [s], [m]
   };
   struct Cycle {
-    Metrics metrics;  ///< CycleFigures::metrics
+    Metrics metrics;                  ///< CycleFigures::metrics
+    double on_time = Metrics::unset;  ///< CycleFigures::on_time [s]
   };
   struct Drive {
     std::string name;

@@ -43,6 +43,10 @@ class KeptCourse final : public ClosingObserver {
     gap.emplace_back(point.time, contact_gap_ - point.position);
   }
   void touch(const Touch& touch) override { recorder_.touch(touch); }
+  [[nodiscard]] bool follows_state() const override { return true; }
+  void state(std::optional<std::size_t> contact, bool is_closed, double time) override {
+    recorder_.state(contact, is_closed, time);
+  }
   [[nodiscard]] bool takes_energies() const override { return true; }
   void energies(double time, const EnergyBalance& balance) override { recorder_.energies(time, balance); }
 

@@ -79,6 +79,29 @@ TEST(Cycling, BeginsLikeTheClosingAloneAndSharesTheEnergyOfTheRun) {
   }
 }
 
+// Without an electrical rule the switch is electrically closed while it is in touch.
+TEST(Cycling, IsElectricallyClosedWhileItIsInTouch) {
+  const PreparedScene p = prepare(plate("simulate = { duration = \"40 us\", tolerance = 1e-9 }\n"));
+  const CycleWaveforms waveforms = ramps();
+  const Cycles found = CycledSwitch(p, p.model, waveforms).run({.period = 80e-6, .on_time = 40e-6, .cycles = 3}, true);
+  ASSERT_EQ(found.cycles.size(), 3u);
+  for (const CycleFigures& cycle : found.cycles) {
+    EXPECT_GT(cycle.metrics.bounce_count, 0);
+    EXPECT_NEAR(cycle.on_time, cycle.metrics.closed_time, 1e-9 * cycle.on_time);
+  }
+}
+
+TEST(Cycling, IsClosedThroughoutWhereItsDrivesNeverLetGo) {
+  const PreparedScene p = prepare(plate("simulate.duration = \"40 us\"\n"));
+  const CycleWaveforms held{.name = "held",
+                            .closing = {Signal::piecewise_linear({{0, 0}, {1e-7, 45}})},
+                            .opening = {Signal::piecewise_linear({{0, 45}, {1e-7, 44}}, 45)}};
+  const Cycles found = CycledSwitch(p, p.model, held).run({.period = 80e-6, .on_time = 40e-6, .cycles = 3}, true);
+  ASSERT_EQ(found.cycles.size(), 3u);
+  EXPECT_NEAR(found.cycles[1].on_time, 80e-6, 1e-18);
+  EXPECT_NEAR(found.cycles[2].on_time, 80e-6, 1e-18) << "the run ends closed";
+}
+
 TEST(Cycling, KeepsTheWaveformOfEveryCycle) {
   CycleWaveforms waveforms;
   waveforms.closing = {Signal(
