@@ -12,16 +12,21 @@ ModeShapes mode_shapes(const Switch& model, int places) {
   if (structure.is_rigid())
     return {.places = model.quadrature().positions().head(model.quadrature().points()),
             .shapes = model.quadrature().shapes().topRows(model.quadrature().points())};
-  ModeShapes all{.places = Eigen::VectorXd::LinSpaced(places, 0, structure.length),
-                 .shapes = Eigen::MatrixXd(places, model.modes())};
+  const Eigen::VectorXd along = Eigen::VectorXd::LinSpaced(places, 0, structure.length);
+  return {.places = along, .shapes = mode_shapes_at(model, along)};
+}
+
+Eigen::MatrixXd mode_shapes_at(const Switch& model, const Eigen::VectorXd& places) {
+  const Device& device = model.device();
+  Eigen::MatrixXd shapes(places.size(), model.modes());
   std::visit(
       [&](const auto& kind) {
         const auto modes = kind.modes(device, nullptr);
-        for (Eigen::Index i = 0; i < places; ++i)
-          all.shapes.row(i) = modes.scale() * modes.normalised()->value(all.places[i] / structure.length).transpose();
+        for (Eigen::Index i = 0; i < places.size(); ++i)
+          shapes.row(i) = modes.scale() * modes.normalised()->value(places[i] / device.structure.length).transpose();
       },
-      structure.kind);
-  return all;
+      device.structure.kind);
+  return shapes;
 }
 
 }  // namespace softland

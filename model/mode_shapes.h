@@ -15,5 +15,7 @@ struct ModeShapes {
 /// Of a beam, and of a structure from a table of modes, at so many places from end to end; of a plate at the quadrature points of
 /// the switch. Throws InvalidInput for fewer than two.
 [[nodiscard]] ModeShapes mode_shapes(const Switch& model, int places);
+/// phi_i of any structure at these places from 0 to its length [m], a row per place [kg^(-1/2)].
+[[nodiscard]] Eigen::MatrixXd mode_shapes_at(const Switch& model, const Eigen::VectorXd& places);
 
 }  // namespace softland

@@ -167,6 +167,9 @@ std::set<std::string> add_time_tables(const ClosingRecord& result, double window
     const RunRecord& run = run_of(result, drawn);
     CurveTable table = curve_table(run.curve);
     if (!table.empty()) out.tables[drawn.name] = std::move(table);
+    if (run.curve.closed) out.tables[fmt::format("closed/{}", drawn.name)] = closed_table(*run.curve.closed, window);
+    for (const auto& [contact, closed] : run.curve.closed_contacts)
+      out.tables[fmt::format("closed/{}/{}", drawn.name, contact)] = closed_table(closed, window);
     for (const auto& [drive, waveform] : run.waveforms) {
       const Points points = whole_waveform(waveform, drive_scale(drive).rest, window);
       if (points.size() < 2) continue;
@@ -199,6 +202,7 @@ class TimeCharts {
       if (mark.y < readable * largest(out_.tables, "tip_gap_m")) mark.text.clear();
     }
     keep(std::move(gap));
+    add_bars();
 
     near.id = "landing";
     near.zero_label_left = true;
@@ -207,6 +211,28 @@ class TimeCharts {
     near.x_home = {0, landing_};
     near.y_home = plane_band(result_, out_.tables, landing_);
     if (near.y_home) keep(std::move(near));
+  }
+
+  /// When contacts are closed: of several the connection, and each.
+  void add_bars() {
+    Chart bars = over_time("contact", "Contact: closed and open", contact_caption(result_));
+    bars.x_home = bars.x_whole;
+    bars.is_of_bars = true;
+    for (const Drawn& drawn : runs) {
+      const CurveRecord& curve = run_of(result_, drawn).curve;
+      if (!curve.closed) continue;
+      const std::string whose = !result_.search ? "" : drawn.role == Role::best ? best_label(result_) : baseline_label();
+      const bool is_alone = curve.closed_contacts.empty();
+      const auto add = [&](const std::string& table, const std::string& what) {
+        const std::string label = whose.empty() || what.empty() ? whose + what : fmt::format("{}, {}", whose, what);
+        bars.series.push_back({table, "closed", label, drawn.role});
+      };
+      const std::string table = fmt::format("closed/{}", drawn.name);
+      add(table, !is_alone ? "connection" : whose.empty() ? "contact" : "");
+      for (const auto& [contact, closed] : curve.closed_contacts) add(fmt::format("{}/{}", table, contact), contact);
+    }
+    bars.height = bar_height * static_cast<int>(bars.series.size());
+    keep(std::move(bars));
   }
 
   void add_drive(const std::string& drive, int index) {
@@ -344,6 +370,21 @@ void add_search_chart(const ClosingRecord& result, const SearchRecord& search, P
 }
 
 }  // namespace
+
+CurveTable closed_table(const std::vector<ClosedStretch>& closed, double window) {
+  Points points{{0, 0}};
+  for (const ClosedStretch& one : closed) {
+    const double begin = std::max(points.back()[0], drawable(one.begin)), end = std::isnan(one.end) ? window : drawable(one.end);
+    if (!(begin <= end && end <= window)) continue;
+    const double level = one.touches > 1 ? 0.5 : 1;
+    points.insert(points.end(), {{begin, 0}, {begin, level}, {end, level}});
+    if (!std::isnan(one.end)) points.push_back({end, 0});
+  }
+  if (points.back()[0] < window) points.push_back({window, points.back()[1]});
+  CurveTable table;
+  add_columns(table, "time_s", "closed", points);
+  return table;
+}
 
 Chart chart_over_time(const std::string& id, const std::string& title, const std::string& y_label, const std::string& y_unit,
                       double until, int height) {

@@ -65,20 +65,28 @@ struct Chart {
   std::vector<Series> series;
   std::vector<Mark> marks;
   std::vector<Band> bands = {};  ///< below the curves, on static pictures alone
+  /// Each series is a bar, one below the other: full where its value is 1, pale where it is between, nothing where it is 0.
+  bool is_of_bars = false;
 };
+inline constexpr int bar_height = 24;  ///< the height of one bar [px]
 
 struct Picture {
   CurveTables tables;
   std::vector<Chart> charts;
 };
 
-/// All charts of a result, in the order of the page: gap, landing, drives, velocity, force, resistance, search. What has no data
-/// is left out.
+/// All charts of a result, in the order of the page: gap, contact, landing, drives, velocity, force, resistance, search. What has
+/// no data is left out.
 [[nodiscard]] Picture picture(const ClosingRecord& result);
+/// When a contact is closed, over the time until `window` [s]: columns time_s and closed, for a chart of bars.
+[[nodiscard]] CurveTable closed_table(const std::vector<ClosedStretch>& closed, double window);
 /// A chart without series over the time until `until` [s].
 [[nodiscard]] Chart chart_over_time(const std::string& id, const std::string& title, const std::string& y_label,
                                     const std::string& y_unit, double until, int height);
 
+/// {"unit": u, "steps": [...]}: value k is u times the sum of steps 0 ... k; null stands for a value that is not available and
+/// adds nothing.
+[[nodiscard]] nlohmann::json packed(const std::vector<double>& column, double unit);
 /// CurveTables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as integer steps
 /// of a unit fine enough to be invisible (one part in ten million of the largest value).
 [[nodiscard]] nlohmann::json chart_json(const Picture& picture, std::size_t rows);

@@ -39,36 +39,38 @@ const char* role_name(Role role) {
 
 const char* scale_name(Scale scale) { return scale == Scale::linear ? "linear" : "log"; }
 
-/// {"unit": u, "steps": [...]}: value k is u times the sum of steps 0 ... k; null stands for a value that is not available and
-/// adds nothing.
-json packed(const std::vector<double>& column, const std::vector<std::size_t>& rows, bool logarithmic) {
+// Rows of a column, packed but for values over many decades: these are numbers of six digits.
+json rows_json(const std::vector<double>& column, const std::vector<std::size_t>& rows, bool logarithmic) {
+  std::vector<double> kept;
   double largest = 0;
   for (const std::size_t row : rows) {
+    kept.push_back(column[row]);
     if (std::isfinite(column[row])) largest = std::max(largest, std::abs(column[row]));
   }
-  json steps = json::array();
-  if (logarithmic) {  // values over many decades: as numbers of six digits
-    for (const std::size_t row : rows) {
-      steps.push_back(std::isfinite(column[row]) ? json::parse(fmt::format("{:.6g}", column[row])) : json());
-    }
-    return {{"values", steps}};
-  }
   constexpr double resolution = 1e-7;
-  const double unit = largest > 0 ? largest * resolution : 1;
+  if (!logarithmic) return packed(kept, largest * resolution);
+  json values = json::array();
+  for (const double value : kept) values.push_back(std::isfinite(value) ? json::parse(fmt::format("{:.6g}", value)) : json());
+  return {{"values", values}};
+}
+
+}  // namespace
+
+json packed(const std::vector<double>& column, double unit) {
+  if (!(unit > 0)) unit = 1;
+  json steps = json::array();
   long long before = 0;
-  for (const std::size_t row : rows) {
-    if (!std::isfinite(column[row])) {
+  for (const double value : column) {
+    if (!std::isfinite(value)) {
       steps.push_back(nullptr);
       continue;
     }
-    const long long now = std::llround(column[row] / unit);
+    const long long now = std::llround(value / unit);
     steps.push_back(now - before);
     before = now;
   }
   return {{"unit", unit}, {"steps", steps}};
 }
-
-}  // namespace
 
 json chart_json(const Picture& picture, std::size_t rows) {
   json tables = json::object();
@@ -82,7 +84,8 @@ json chart_json(const Picture& picture, std::size_t rows) {
     for (const auto& [key, column] : table) columns.push_back(&column);
     const std::vector<std::size_t> kept = downsampled(columns, rows);
     for (const auto& [key, column] : table)
-      tables[name][key] = packed(column, kept, logarithmic.contains(name) || key == "value" || key == "contact_resistance_ohm");
+      tables[name][key] =
+          rows_json(column, kept, logarithmic.contains(name) || key == "value" || key == "contact_resistance_ohm");
   }
   json charts = json::array();
   for (const Chart& chart : picture.charts) {
@@ -109,6 +112,7 @@ json chart_json(const Picture& picture, std::size_t rows) {
                         {"unit", chart.y_unit},
                         {"least", resolution(chart.y_unit)},
                         {"scale", scale_name(chart.scale)}}},
+                      {"bars", chart.is_of_bars},
                       {"zero", chart.zero_line},
                       {"zeroLabel", chart.zero_label},
                       {"zeroLabelLeft", chart.zero_label_left},

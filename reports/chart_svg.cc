@@ -158,7 +158,8 @@ Axes axes_of(const CurveTables& tables, const Chart& chart, double width, double
   x.pixel_high = width - right;
   Axis y;
   y.scale = chart.scale;
-  const std::array<double, 2> range = chart.y_home.value_or(range_in_view(tables, chart));
+  const std::array<double, 2> range =
+      chart.is_of_bars ? std::array{0.0, 1.0} : chart.y_home.value_or(range_in_view(tables, chart));
   y.low = range[0];
   y.high = range[1];
   y.pixel_low = top + above + chart.height;
@@ -168,6 +169,7 @@ Axes axes_of(const CurveTables& tables, const Chart& chart, double width, double
 
 std::string chart_legend(const Chart& chart, double top) {
   std::string out;
+  if (chart.is_of_bars) return out;  // they bear their names
   double legend_x = left;
   for (const Series& one : chart.series) {
     if (one.label.empty()) continue;
@@ -195,7 +197,7 @@ std::string chart_scales(const Chart& chart, const Axes& axes) {
     out += label(at_pixel, y.pixel_low + 17, "middle", muted, 12, tick_text(tick / x_prefix.factor));
   }
   const Prefix y_prefix = chart.y_unit.empty() ? Prefix{} : prefix_for(std::max(std::abs(y.low), std::abs(y.high)) / 1.1);
-  for (const double tick : ticks(y, std::max(3, chart.height / 45))) {
+  for (const double tick : chart.is_of_bars ? std::vector<double>() : ticks(y, std::max(3, chart.height / 45))) {
     const double at_pixel = y.pixel(tick);
     out += line(left, at_pixel, x.pixel_high, at_pixel, grid);
     out += label(left - 8, at_pixel + 4, "end", muted, 12, tick_text(tick / y_prefix.factor));
@@ -252,6 +254,32 @@ std::string chart_curve(const CurveTable& table, const Chart& chart, const Serie
       path, pen.colour, pen.width, *pen.dash ? pen.dash : "none");
 }
 
+// A stretch of a bar that is shorter than a pixel is drawn as one of a pixel, and two that are nearer are drawn as one.
+std::string chart_bar(const CurveTable& table, const Chart& chart, std::size_t number, const Axes& axes) {
+  const Series& one = chart.series[number];
+  const std::vector<double>&xs = table.at(chart.x_column), &ys = table.at(one.column);
+  constexpr double pixel = 1;
+  std::array<std::string, 2> paths;  // pale, full
+  std::array<double, 2> ends{-1, -1};
+  const double middle = axes.y.pixel_high + bar_height * (static_cast<double>(number) + 0.5);
+  for (std::size_t row = 1; row < xs.size(); ++row) {
+    if (!(ys[row] > 0 && ys[row] == ys[row - 1]) || xs[row] < axes.x.low || xs[row - 1] > axes.x.high) continue;
+    const std::size_t kind = ys[row] < 1 ? 0 : 1;
+    const double begin = std::max(axes.x.pixel(xs[row - 1]), ends[kind]), end = axes.x.pixel(xs[row]);
+    if (end <= ends[kind]) continue;
+    const double until = std::max(end, begin + pixel);
+    paths[kind] += fmt::format("M{:.1f} {:.1f}H{:.1f}", begin, middle, until);
+    ends[kind] = until;
+  }
+  std::string out;
+  for (const std::size_t kind : {0U, 1U}) {
+    if (!paths[kind].empty())
+      out += fmt::format("<path d=\"{}\" stroke=\"{}\" stroke-width=\"{}\" stroke-opacity=\"{}\"/>\n", paths[kind],
+                         stroke(one.role).colour, bar_height - 8, kind == 0 ? 0.45 : 1);
+  }
+  return chart.series.size() == 1 ? out : out + label(axes.x.pixel_low + 6, middle + 4, "start", ink, 12, one.label, halo);
+}
+
 std::string chart_band(const CurveTables& tables, const Chart& chart, const Band& band, const Axes& axes) {
   const CurveTable& table = tables.at(band.table);
   const std::vector<double>& xs = table.at(chart.x_column);
@@ -287,7 +315,11 @@ std::string chart_svg(const CurveTables& tables, const Chart& chart, double widt
                      chart.id, left, axes.y.pixel_high, axes.x.pixel_high - axes.x.pixel_low, chart.height);
   out += fmt::format("<g clip-path=\"url(#clip-{})\">\n", chart.id);
   for (const Band& band : chart.bands) out += chart_band(tables, chart, band, axes);
-  for (const Series& one : chart.series) out += chart_curve(tables.at(one.table), chart, one, axes);
+  for (std::size_t k = 0; k < chart.series.size(); ++k) {
+    const Series& one = chart.series[k];
+    out +=
+        chart.is_of_bars ? chart_bar(tables.at(one.table), chart, k, axes) : chart_curve(tables.at(one.table), chart, one, axes);
+  }
   for (const Mark& mark : chart.marks) out += chart_mark(mark, axes);
   return out + "</g>\n";
 }

@@ -13,6 +13,7 @@
 #include "reports/drive_demand.h"
 #include "reports/figure_text.h"
 #include "reports/quantity.h"
+#include "reports/record.h"
 
 namespace softland::internal {
 namespace {
@@ -198,6 +199,26 @@ std::string gap_caption(const ClosingRecord& result) {
   const std::string own = landing_clause(result.search ? own_subject : "the switch", result.best);
   const std::string found = joined(result.search ? landing_clause(step_subject, result.baseline()) : "", own);
   return found.empty() ? what : what + " " + found;
+}
+
+std::string contact_caption(const ClosingRecord& result) {
+  std::string words = "Filled while the contact point touches.";
+  const auto holds_several = [](const RunRecord& run) {
+    const auto several = [](const std::vector<ClosedStretch>& all) {
+      return std::ranges::any_of(all, [](const ClosedStretch& one) { return one.touches > 1; });
+    };
+    return (run.curve.closed && several(*run.curve.closed)) ||
+           std::ranges::any_of(run.curve.closed_contacts, [&](const auto& one) { return several(one.second); });
+  };
+  if (holds_several(result.best) || holds_several(result.baseline()))
+    words += " A pale stretch holds several touches, between which the contact opens for too short a time to be told.";
+  const JsonReader metrics(JsonReader(result.origin.scene).at("metrics"));
+  for (const char* rule : {"closed_force", "closed_resistance", "closed_after"}) {
+    if (metrics.at(rule).is_null()) continue;
+    words += fmt::format(" The connection counts as electrically closed by metrics.{}, which this does not show.", rule);
+    break;
+  }
+  return words;
 }
 
 std::string landing_caption(const ClosingRecord& result) {

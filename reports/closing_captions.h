@@ -27,6 +27,7 @@ struct Headline {
 
 /// One sentence or two under each chart.
 [[nodiscard]] std::string gap_caption(const ClosingRecord& result);
+[[nodiscard]] std::string contact_caption(const ClosingRecord& result);
 [[nodiscard]] std::string landing_caption(const ClosingRecord& result);
 [[nodiscard]] std::string force_caption(const ClosingRecord& result);
 [[nodiscard]] std::string velocity_caption(const ClosingRecord& result);

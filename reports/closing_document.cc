@@ -14,6 +14,7 @@
 #include "reports/drive_demand.h"
 #include "reports/escape.h"
 #include "reports/figure_text.h"
+#include "reports/motion_figure.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/record.h"
@@ -171,8 +172,8 @@ ReportSection figures_section(const ClosingRecord& result) {
   return section;
 }
 
-// Charts of one time share their zoom.
-std::string closing_charts(const Picture& drawn) {
+// Charts of one time share their zoom, and their cursor with the moving switch.
+std::string closing_charts(const ClosingRecord& result, const Picture& drawn) {
   std::string charts;
   for (const Chart& chart : drawn.charts) {
     if (!chart.group.empty()) charts += figure_html(drawn.tables, chart);
@@ -184,7 +185,7 @@ std::string closing_charts(const Picture& drawn) {
          "<button type=\"button\" data-view=\"whole\" aria-pressed=\"false\">Whole window</button></span>"
          "<span class=\"hint\">Drag to zoom, double-click to go back. With a chart focused: ← → read, + − zoom, 0 "
          "back.</span></div>\n" +
-         charts;
+         motion_figure(result) + charts;
 }
 
 std::string search_charts(const Picture& drawn) {
@@ -383,7 +384,9 @@ Document closing_document(const ClosingRecord& result) {
   document.sections.push_back({.id = "sketch", .heading = "The switch at rest", .parts = {Drawing{[&result](const Picture&) {
                                                                                   return drawn_switch(result);
                                                                                 }}}});
-  document.sections.push_back({.id = "charts", .heading = "The closing", .parts = {Drawing{closing_charts}}});
+  document.sections.push_back({.id = "charts", .heading = "The closing", .parts = {Drawing{[&result](const Picture& drawn) {
+                                                                           return closing_charts(result, drawn);
+                                                                         }}}});
   for (ReportSection& section : std::array{figures_section(result), checks_section(result), search_section(result)}) {
     if (devices != nullptr) section.shown = ShownIn::page;
     document.sections.push_back(std::move(section));

@@ -39,6 +39,39 @@ std::vector<Rebound> internal::read_rebounds(const json& rows) {
   return all;
 }
 
+// [begin, end, touches]
+json internal::closed_json(const std::optional<std::vector<ClosedStretch>>& closed) {
+  json rows = json::array();
+  for (const ClosedStretch& one : *closed) rows.push_back({one.begin, json_number(one.end), one.touches});
+  return rows;
+}
+
+std::optional<std::vector<ClosedStretch>> internal::read_closed(const json& rows) {
+  if (!rows.is_array()) return std::nullopt;
+  std::vector<ClosedStretch> all;
+  for (const json& row : rows) {
+    if (row.is_array() && row.size() == 3)
+      all.push_back({.begin = JsonReader::read<double>(row[0]),
+                     .end = JsonReader::read<double>(row[1]),
+                     .touches = JsonReader::read<std::uint64_t>(row[2])});
+  }
+  return all;
+}
+
+json internal::closed_contacts_json(const std::map<std::string, std::vector<ClosedStretch>>& closed) {
+  json all = json::object();
+  for (const auto& [name, stretches] : closed) all[name] = closed_json(stretches);
+  return all;
+}
+
+std::map<std::string, std::vector<ClosedStretch>> internal::read_closed_contacts(const json& closed) {
+  std::map<std::string, std::vector<ClosedStretch>> all;
+  for (const auto& [name, rows] : JsonReader::read<std::map<std::string, json>>(closed)) {
+    if (auto stretches = read_closed(rows)) all[name] = std::move(*stretches);
+  }
+  return all;
+}
+
 // [x, y] with x a whole number.
 json internal::counted_json(const Points& points) {
   json all = json::array();

@@ -49,6 +49,10 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] bool is_of_search(const nlohmann::json& record);
 [[nodiscard]] nlohmann::json rebounds_json(const std::vector<Rebound>& rebounds);
 [[nodiscard]] std::vector<Rebound> read_rebounds(const nlohmann::json& rows);
+[[nodiscard]] nlohmann::json closed_json(const std::optional<std::vector<ClosedStretch>>& closed);
+[[nodiscard]] std::optional<std::vector<ClosedStretch>> read_closed(const nlohmann::json& rows);
+[[nodiscard]] nlohmann::json closed_contacts_json(const std::map<std::string, std::vector<ClosedStretch>>& closed);
+[[nodiscard]] std::map<std::string, std::vector<ClosedStretch>> read_closed_contacts(const nlohmann::json& closed);
 [[nodiscard]] nlohmann::json counted_json(const Points& points);
 [[nodiscard]] Points read_points(const nlohmann::json& points);
 [[nodiscard]] nlohmann::json pull_in_json(const std::map<std::string, PullInOfElectrode>& pull_in);
@@ -95,6 +99,32 @@ void members(A& a, Origin& origin) {
 }
 
 template <class A>
+void members(A& a, ShownMotion::Contact& contact) {
+  a("name", contact.name);
+  a("at_m", contact.at);
+  a("gap_m", contact.gap);
+  a("far_side", contact.far_side);
+}
+template <class A>
+void members(A& a, ShownMotion::Pad& pad) {
+  a("electrode", pad.electrode);
+  a("begin_m", pad.begin);
+  a("end_m", pad.end);
+  a("gap_m", pad.gap);
+  a("far_side", pad.far_side);
+}
+template <class A>
+void members(A& a, ShownMotion& motion) {
+  a("time_s", motion.time);
+  a("amplitudes_m", motion.amplitudes);
+  a("x_m", motion.places);
+  a("rest_m", motion.rest);
+  a("shapes", motion.shapes);
+  a("contacts", motion.contacts);
+  a("electrodes", motion.electrodes);
+}
+
+template <class A>
 void members(A& a, CurveRecord& curve) {
   a("time_s", curve.time);
   a("tip_gap_m", curve.gap);
@@ -102,6 +132,10 @@ void members(A& a, CurveRecord& curve) {
   a("contact_force_N", curve.force);
   if (a.has(!curve.resistance.empty())) a("contact_resistance_ohm", curve.resistance);
   a.custom("rebounds", curve.rebounds, internal::rebounds_json, internal::read_rebounds);
+  if (a.has(curve.closed.has_value())) a.custom("closed", curve.closed, internal::closed_json, internal::read_closed);
+  if (a.has(!curve.closed_contacts.empty()))
+    a.custom("closed_contacts", curve.closed_contacts, internal::closed_contacts_json, internal::read_closed_contacts);
+  a("motion", curve.motion);
 }
 
 template <class A>

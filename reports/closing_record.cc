@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -63,6 +64,9 @@ RunRecord run(const PreparedScene& p, const Closing& closing, const MetricsOptio
   errors.asked = figures.asked;
   CurveRecord curve = curve_of(closing.trajectory, closing.rebounds, closing.is_thinned, options);
   curve.resistance = resistance_course(p.scene.device, closing.trajectory, curve.time);
+  curve.closed = closed_stretches(closing.trajectory.touches);
+  for (const ContactOutcome& own : closing.trajectory.contacts) curve.closed_contacts[own.name] = closed_stretches(own.touches);
+  curve.motion = shown_motion(p, closing);
   return {.status = std::string(to_string(closing.metrics.status)),
           .figures = finite(figures),
           .errors = finite(errors),
@@ -173,6 +177,28 @@ CurveRecord curve_of(const Trajectory& t, const std::vector<Rebound>& all_reboun
   keep_most_rows(c);
   keep_highest(c.rebounds);
   return c;
+}
+
+std::vector<ClosedStretch> closed_stretches(const std::vector<Touch>& touches, std::size_t most) {
+  std::vector<double> openings;
+  for (std::size_t k = 1; k < touches.size(); ++k) openings.push_back(touches[k].begin - touches[k - 1].end);
+  double joined = -std::numeric_limits<double>::infinity();  // openings up to this long [s]
+  if (touches.size() > most) {
+    std::vector<double> by_length = openings;
+    const auto last = by_length.begin() + static_cast<std::ptrdiff_t>(touches.size() - most - 1);
+    std::ranges::nth_element(by_length, last);
+    joined = *last;
+  }
+  std::vector<ClosedStretch> all;
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    if (k > 0 && openings[k - 1] <= joined) {
+      all.back().end = touches[k].end;
+      ++all.back().touches;
+    } else {
+      all.push_back({.begin = touches[k].begin, .end = touches[k].end});
+    }
+  }
+  return all;
 }
 
 Points drawn_evaluations(Points all) {

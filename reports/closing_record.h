@@ -66,6 +66,11 @@ struct ClosingRecord {
 [[nodiscard]] CurveRecord curve_of(const Trajectory& trajectory, const std::vector<Rebound>& rebounds, bool is_thinned,
                                    const MetricsOptions& options);
 
+/// The touches of a run as times in which the contact is closed. Where there are very many, those between the shortest openings
+/// are one.
+[[nodiscard]] std::vector<ClosedStretch> closed_stretches(const std::vector<Touch>& touches,
+                                                          std::size_t most = most_closed_stretches);
+
 /// The evaluations of a long search of which most_evaluations draw the same picture.
 [[nodiscard]] Points drawn_evaluations(Points all);
 

@@ -58,7 +58,8 @@ std::string chart_scripts(const Picture& drawn) {
   return filled(page_file("page/scripts.html"),
                 {{"chart_js", std::string(page_file("uplot/uPlot.iife.min.js"))},
                  {"chart_licence", std::string(page_file("uplot/LICENSE"))},
-                 {"js", std::string(page_file("page/words.js")) + std::string(page_file("page/page.js"))},
+                 {"js", std::string(page_file("page/words.js")) + std::string(page_file("page/page.js")) +
+                            std::string(page_file("page/animation.js"))},
                  {"data", script_json(chart_json(drawn, rows_per_curve))}});
 }
 

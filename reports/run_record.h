@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,11 +12,19 @@
 
 #include "model/closing.h"
 #include "objectives/figures.h"
+#include "studies/closing/shown_motion.h"
 
 namespace softland {
 
 /// Points [x, y] in order.
 using Points = std::vector<std::array<double, 2>>;
+
+/// A time in which a contact is closed.
+struct ClosedStretch {
+  double begin = 0;                                       ///< [s]
+  double end = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: the contact is closed at the end of the window
+  std::uint64_t touches = 1;                              ///< more than one: the openings between them are left out
+};
 
 /// The motion of a run at the contact point. A column that is not as long as `time` is damaged, or missing.
 struct CurveRecord {
@@ -25,6 +35,9 @@ struct CurveRecord {
   /// Of the connection, NaN while it is open [Ohm]; empty where the contacts have no resistivity.
   std::vector<double> resistance = {};
   std::vector<Rebound> rebounds;
+  std::optional<std::vector<ClosedStretch>> closed = {};                   ///< the contact, or the connection of several
+  std::map<std::string, std::vector<ClosedStretch>> closed_contacts = {};  ///< each of several, by name
+  std::optional<ShownMotion> motion = {};  ///< all places move so; none where the run did not come to its end
 };
 
 /// The winner or the single run, or the baseline.
@@ -44,8 +57,9 @@ struct ContactFigures {
   FigureValues figures;
 };
 
-/// Rows of a curve, rebounds, and evaluations of a search that a result holds at most: its file stays readable (base/read_file.h)
-/// however long a run is.
-inline constexpr std::size_t most_curve_rows = 20'000, most_rebounds = 20'000, most_evaluations = 100'000;
+/// Rows of a curve, rebounds, evaluations of a search and times in which a contact is closed that a result holds at most: its
+/// file stays readable (base/read_file.h) however long a run is.
+inline constexpr std::size_t most_curve_rows = 20'000, most_rebounds = 20'000, most_evaluations = 100'000,
+                             most_closed_stretches = 1000;
 
 }  // namespace softland

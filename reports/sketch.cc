@@ -11,44 +11,17 @@
 #include "reports/drive_demand.h"
 #include "reports/escape.h"
 #include "reports/quantity.h"
+#include "reports/side_view.h"
 
 namespace softland::internal {
 namespace {
 
 constexpr double width = 740;  // with the words beside the measures of a plate between its anchors
 
-std::string rectangle(double left, double top, double wide, double high, const char* what) {
-  return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"{}\"/>\n", left, top, wide, high,
-                     what);
-}
-
-std::string drawn_line(double x1, double y1, double x2, double y2, const char* what) {
-  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" class=\"{}\"/>\n", x1, y1, x2, y2, what);
-}
-
-std::string words(double x, double y, const char* anchor, const std::string& text) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, escaped(text));
-}
-
 /// A measure between two heights, with its words to the right.
 std::string height_measure(double x, double top, double bottom, const std::string& text) {
   return drawn_line(x, top, x, bottom, "measure") + drawn_line(x - 4, top, x + 4, top, "measure") +
-         drawn_line(x - 4, bottom, x + 4, bottom, "measure") + words(x + 8, (top + bottom) / 2 + 4, "start", text);
-}
-
-std::string spring(double left, double right, double y) {
-  std::string path = fmt::format("M{:.1f} {:.1f}", left, y);
-  constexpr int turns = 6;
-  for (int i = 1; i < 2 * turns; ++i)
-    path += fmt::format(" L{:.1f} {:.1f}", left + (right - left) * i / (2 * turns), y + (i % 2 == 0 ? -6 : 6));
-  return fmt::format("<path d=\"{} L{:.1f} {:.1f}\" class=\"measure\"/>\n", path, right, y);
-}
-
-/// Begin and end of a span as shares of the length; the whole length where none is given.
-std::array<double, 2> shares(const DrawnScene::Span& span, double length) {
-  if (!span) return {0, 1};
-  const std::array<double, 2> share{(*span)[0] / length, (*span)[1] / length};
-  return share[0] >= 0 && share[1] <= 1.000001 && share[0] < share[1] ? share : std::array<double, 2>{0, 1};
+         drawn_line(x - 4, bottom, x + 4, bottom, "measure") + drawn_words(x + 8, (top + bottom) / 2 + 4, "start", text);
 }
 
 // What the parameters of a waveform are, where a drawing can show them.
@@ -85,64 +58,29 @@ Described described_parameters(const ClosingRecord& result, const std::string& d
   return known ? d : Described{};
 }
 
-/// Where a sketch has what [px].
-struct SideView {
-  static constexpr double left = 60, right = 440, thick = 14, gap = 60, electrode = 10, layer = 7;
-  bool plate, both_ends;
-  double length, top, bottom = top + thick, floor = bottom + gap;
-
-  [[nodiscard]] double x_at(double share) const { return left + share * (right - left); }
-};
-
 /// The beam or plate, what holds it, and its layer.
 std::string drawn_beam(const DrawnScene& scene, const SideView& view) {
-  constexpr double left = SideView::left, right = SideView::right, thick = SideView::thick, layer = SideView::layer;
-  const double top = view.top;
-  std::string out;
-  if (view.plate) {
-    out += spring(left - 40, left, top + thick / 2) + spring(right, right + 40, top + thick / 2);
-    out += rectangle(left - 50, top - 14, 10, thick + 28, "anchor") + rectangle(right + 40, top - 14, 10, thick + 28, "anchor");
-  } else {
-    out += rectangle(left - 40, top - 8, 40, view.floor - top + 18, "anchor");
-    if (view.both_ends) out += rectangle(right, top - 8, 40, view.floor - top + 18, "anchor");
-  }
-  out += rectangle(left, top, right - left, thick, "beam");
-  out += words((left + right) / 2, top + 11, "middle", view.plate ? "plate" : "beam");
+  constexpr double left = SideView::left, thick = SideView::thick, layer = SideView::layer;
+  const double top = view.top, right = view.right;
+  std::string out = drawn_supports(view);
+  out += drawn_rectangle(left, top, right - left, thick, "beam");
+  out += drawn_words((left + right) / 2, top + 11, "middle", view.plate ? "plate" : "beam");
   if (!view.plate && scene.length > 0) {
     const double above = top - (scene.piezo ? 22 : 12);
     out += drawn_line(left, above, right, above, "measure") + drawn_line(left, above - 4, left, above + 4, "measure") +
            drawn_line(right, above - 4, right, above + 4, "measure") +
-           words((left + right) / 2, above - 6, "middle", "length " + given_quantity(scene.length, "m"));
+           drawn_words((left + right) / 2, above - 6, "middle", "length " + given_quantity(scene.length, "m"));
   }
   if (scene.piezo) {
-    const auto [begin, end] = shares(scene.piezo->span, view.length);
-    out += rectangle(view.x_at(begin), top - layer, view.x_at(end) - view.x_at(begin), layer, "piezo") +
-           words(view.x_at(end) + 6, top - 2, "start", "piezo layer");
-  }
-  return out;
-}
-
-std::string drawn_electrodes(const DrawnScene& scene, const SideView& view) {
-  constexpr double left = SideView::left, right = SideView::right, electrode = SideView::electrode;
-  const double floor = view.floor;
-  std::string out;
-  for (const DrawnScene::Electrode& one : scene.electrodes) {
-    const auto [begin, end] = shares(one.span, view.length);
-    const double y = one.far_side ? view.top - SideView::gap * 0.75 - electrode : floor;
-    out += rectangle(view.x_at(begin), y, view.x_at(end) - view.x_at(begin), electrode, "electrode");
-    const std::string note = one.far_side && one.gap > 0 ? ", gap " + given_quantity(one.gap, "m") : "";
-    out += words((view.x_at(begin) + view.x_at(end)) / 2, one.far_side ? y - 5 : floor + electrode + 14, "middle",
-                 "electrode " + one.name + note);
-  }
-  if (scene.electrodes.empty()) {
-    out += rectangle(left, floor, right - left, electrode, "electrode") +
-           words((left + right) / 2, floor + electrode + 14, "middle", "ground");
+    const auto [begin, end] = shares_of(scene.piezo->span, view.length);
+    out += drawn_rectangle(view.x_at(begin), top - layer, view.x_at(end) - view.x_at(begin), layer, "piezo") +
+           drawn_words(view.x_at(end) + 6, top - 2, "start", "piezo layer");
   }
   return out;
 }
 
 double plane_of(const SideView& view, const DrawnScene& scene, double gap) {
-  return view.bottom + SideView::gap * std::min(1.0, gap / scene.electrode_gap);
+  return view.bottom + view.gap * std::min(1.0, gap / scene.electrode_gap);
 }
 
 /// Contacts that have names stand at their places, those of the far side hang above the beam; gaps beside them.
@@ -150,22 +88,22 @@ std::string drawn_contacts(const DrawnScene& scene, const SideView& view) {
   constexpr double wide = 12, foot = SideView::electrode;
   const double usual = view.plate || view.both_ends ? 0.5 : 1;
   std::string out;
-  double below = view.floor + foot + 14, above = view.top - SideView::gap * 0.75 - foot - 5;
+  double below = view.floor + foot + 14, above = view.top - view.far - foot - 5;
   for (const DrawnScene::Contact& one : scene.contacts) {
     if (!(one.gap > 0)) continue;
     const double share = std::isfinite(one.at) ? std::clamp(one.at / view.length, 0.0, 1.0) : usual;
-    const double x = std::min(view.x_at(share) - wide / 2, SideView::right - wide);
+    const double x = std::min(view.x_at(share) - wide / 2, view.right - wide);
     const std::string text = one.name + ", gap " + given_quantity(one.gap, "m");
     if (one.far_side) {
-      const double plane = view.top - std::min(0.75, one.gap / scene.electrode_gap) * SideView::gap;
-      const double ceiling = view.top - SideView::gap * 0.75 - foot;
-      out += rectangle(x, ceiling, wide, plane - ceiling, "contact") + words(x + wide / 2, above, "middle", text);
+      const double plane = view.top - std::min(0.75, one.gap / scene.electrode_gap) * view.gap;
+      const double ceiling = view.top - view.far - foot;
+      out += drawn_rectangle(x, ceiling, wide, plane - ceiling, "contact") + drawn_words(x + wide / 2, above, "middle", text);
       above -= 14;
     } else {
       const double plane = plane_of(view, scene, one.gap);
-      out += rectangle(x, plane, wide, view.floor + foot - plane, "contact") +
+      out += drawn_rectangle(x, plane, wide, view.floor + foot - plane, "contact") +
              drawn_line(x + wide / 2, view.floor + foot, x + wide / 2, below + 4, "guide") +
-             words(x + wide / 2, below + 16, "middle", text);
+             drawn_words(x + wide / 2, below + 16, "middle", text);
       below += 14;
     }
   }
@@ -182,11 +120,11 @@ std::string sketch(const DrawnScene& scene) {
     return {};
   const double length = scene.length > 0 ? scene.length : 1;
 
-  constexpr double right = SideView::right, electrode = SideView::electrode;
+  constexpr double electrode = SideView::electrode;
   const auto is_far = [](const auto& one) { return one.far_side; };
   const bool far_side = std::ranges::any_of(scene.electrodes, is_far) || std::ranges::any_of(scene.contacts, is_far);
   const SideView view{.plate = plate, .both_ends = both_ends, .length = length, .top = far_side ? 86.0 : 46.0};
-  const double bottom = view.bottom, floor = view.floor;
+  const double right = view.right, bottom = view.bottom, floor = view.floor;
 
   std::string out = drawn_beam(scene, view) + drawn_electrodes(scene, view) + drawn_contacts(scene, view);
   const double measure = both_ends || plate ? right + 64 : right + 16;
@@ -198,12 +136,12 @@ std::string sketch(const DrawnScene& scene) {
     constexpr double contact_wide = 16;
     const double contact_left =
         std::min(view.x_at(contact_at) - contact_wide / 2, plate || both_ends ? right : right - contact_wide);
-    out += rectangle(contact_left, plane, contact_wide, floor + electrode - plane, "contact");
+    out += drawn_rectangle(contact_left, plane, contact_wide, floor + electrode - plane, "contact");
     out += drawn_line(contact_left + contact_wide, plane, measure + 6, plane, "guide") +
            drawn_line(right, bottom, measure + 6, bottom, "guide");
     out += height_measure(measure, bottom, plane, "to the contact " + given_quantity(scene.contact_gap, "m"));
   }
-  out += words(measure + 8, floor + electrode, "start", "to the electrode " + given_quantity(scene.electrode_gap, "m"));
+  out += drawn_words(measure + 8, floor + electrode, "start", "to the electrode " + given_quantity(scene.electrode_gap, "m"));
   const auto near_contacts = std::ranges::count_if(scene.contacts, [](const auto& one) { return !one.far_side; });
   const double height = floor + electrode + 26 + 14 * static_cast<double>(near_contacts);
   return fmt::format(
@@ -231,12 +169,12 @@ std::string parameter_drawing(const ClosingRecord& result, const std::string& dr
   const auto y = [&](double level) { return bottom - (level - lowest) / (highest - lowest) * (bottom - top); };
   std::string path;
   for (const auto& [time, level] : points) path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", x(time), y(level));
-  std::string out = drawn_line(left, y(0), right, y(0), "guide") + words(left - 6, y(0) + 4, "end", "0");
+  std::string out = drawn_line(left, y(0), right, y(0), "guide") + drawn_words(left - 6, y(0) + 4, "end", "0");
   double below = bottom + row;
   for (const auto& [name, from, to] : spans) {
     for (const double time : {from, to}) out += drawn_line(x(time), top, x(time), below + 4, "guide");
     out += drawn_line(x(from), below, x(to), below, "measure") + drawn_line(x(from), below - 4, x(from), below + 4, "measure") +
-           drawn_line(x(to), below - 4, x(to), below + 4, "measure") + words(x(to) + 8, below + 4, "start", name);
+           drawn_line(x(to), below - 4, x(to), below + 4, "measure") + drawn_words(x(to) + 8, below + 4, "start", name);
     below += row;
   }
   out += fmt::format("<path d=\"{}\" class=\"wave\"/>\n", path);
@@ -245,7 +183,7 @@ std::string parameter_drawing(const ClosingRecord& result, const std::string& dr
     for (std::size_t i = 1; i < points.size(); ++i) {
       if (points[i - 1][0] <= time && time <= points[i][0]) level = points[i - 1][1];
     }
-    out += words(x(time), (levels.size() == 1 ? top : y(level)) - 7, "middle", name);
+    out += drawn_words(x(time), (levels.size() == 1 ? top : y(level)) - 7, "middle", name);
   }
   return fmt::format(
       "<svg class=\"sketch\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"What the parameters of {} "

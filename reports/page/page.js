@@ -1,15 +1,9 @@
 // Draws the charts of the report with uPlot and keeps the time charts in step.
 (() => {
   "use strict";
-  const {prefix, quantity, tickText, colour, font, makeCards} = softland;
+  const {prefix, quantity, tickText, column, colour, font, makeCards} = softland;
   const {tables, charts} = JSON.parse(document.getElementById("data").textContent);
 
-  // Columns come as integer steps of a unit, or as plain values.
-  const column = ({unit, steps, values}) => {
-    if (values) return values;
-    let sum = 0;
-    return steps.map((step) => (step === null ? null : (sum += step) * unit));
-  };
   for (const table of Object.values(tables)) {
     for (const key of Object.keys(table)) table[key] = column(table[key]);
   }
@@ -96,6 +90,7 @@
   };
   const spread = (range) => {
     for (const chart of timeCharts()) setRange(chart, range(chart));
+    time.viewed();
   };
   const show = (view) => {
     const landing = charts.find(({id}) => id === "landing");
@@ -116,6 +111,20 @@
     } else {
       setRange(chart, range);
     }
+  };
+  // What moves with the time charts is told the time of their cursor [s] by `follow` and another view by `viewed`, and sets the cursor.
+  const time = {
+    tables,
+    follow: () => {},
+    viewed: () => {},
+    range: () => wanted.get(timeCharts()[0]?.id),
+    point: (at) => {
+      for (const chart of timeCharts()) {
+        const u = drawn.get(chart.id);
+        const isShown = at >= u.scales.x.min && at <= u.scales.x.max;
+        u.setCursor({left: isShown ? u.valToPos(at, "x") : -10, top: isShown ? u.bbox.height / uPlot.pxRatio / 2 : -10}, false, false);
+      }
+    },
   };
   // The next sample to the left or right that lies some pixels away.
   const step = (chart, direction) => {
@@ -139,6 +148,35 @@
     ctx.fillText(words, at, down);
   };
 
+  // A bar for each series, from its own knots: an instant is a pixel wide.
+  const states = {0: "open", 0.5: "in turn", 1: "closed"};
+  const drawBars = (u, chart) => {
+    const {ctx, bbox} = u;
+    const row = bbox.height / chart.series.length;
+    chart.series.forEach(({table, column: key, role, label}, number) => {
+      const [xs, ys] = [tables[table][chart.x.column], tables[table][key]];
+      if (!u.series[1 + number].show) return;
+      const top = bbox.top + (number + 0.17) * row;
+      ctx.fillStyle = colour(role);
+      for (let i = 1; i < xs.length; ++i) {
+        if (!(ys[i] > 0 && ys[i] === ys[i - 1]) || xs[i] < u.scales.x.min || xs[i - 1] > u.scales.x.max) continue;
+        const [begin, end] = [u.valToPos(xs[i - 1], "x", true), u.valToPos(xs[i], "x", true)];
+        ctx.globalAlpha = ys[i] < 1 ? 0.45 : 1;
+        ctx.fillRect(begin, top, Math.max(uPlot.pxRatio, end - begin), 0.66 * row);
+      }
+      ctx.globalAlpha = 1;
+      if (chart.series.length === 1) return;
+      ctx.fillStyle = colour("ink");
+      ctx.font = font(12 * uPlot.pxRatio);
+      ctx.textBaseline = "middle";
+      ctx.textAlign = "left";
+      ctx.lineJoin = "round";
+      ctx.lineWidth = 4 * uPlot.pxRatio;
+      ctx.strokeStyle = colour("paper");
+      for (const act of ["strokeText", "fillText"]) ctx[act](label, bbox.left + 6 * uPlot.pxRatio, top + 0.35 * row);
+    });
+  };
+
   const decorate = (chart) => (u) => {
     const {ctx, bbox} = u;
     const ratio = uPlot.pxRatio;
@@ -146,6 +184,7 @@
     ctx.beginPath();
     ctx.rect(bbox.left, bbox.top - 1, bbox.width, bbox.height + 2);
     ctx.clip();
+    if (chart.bars) drawBars(u, chart);
     if (chart.zero) {
       const y = Math.round(u.valToPos(0, "y", true));
       ctx.strokeStyle = ctx.fillStyle = colour("ink");
@@ -201,15 +240,15 @@
       const below = chart.zeroLabel ? Math.max(margin, (0.1 * (high - low) * 240) / chart.height) : margin;  // room for its words
       return [low < 0 || chart.zero ? low - below : low, high + margin];
     };
-    const range = y.home ? y.home : y.scale === "linear" ? padded : (u, min, max) => [min / 1.5, max * 1.5];
+    const range = chart.bars ? [0, 1] : y.home ? y.home : y.scale === "linear" ? padded : (u, min, max) => [min / 1.5, max * 1.5];
     return {
       width,
-      height: narrow ? Math.min(chart.height, 240) : chart.height,
+      height: chart.bars ? chart.height + 66 : narrow ? Math.min(chart.height, 240) : chart.height,
       padding: [10, 24, 0, 4],
       cursor: {
         y: false,
         drag: {x: true, y: false, setScale: true},
-        points: {size: 7},
+        points: {show: !chart.bars, size: 7},
         ...(chart.group ? {sync: {key: chart.group, setSeries: false, scales: ["x", null], filters: {pub: (type) => type === "mousemove" || type === "mouseleave"}}} : {}),
         bind: {dblclick: () => () => goHome(chart)},
       },
@@ -226,7 +265,8 @@
         }),
         axis("y", y.unit, {
           label: (u) => (y.unit ? `${y.label} (${yPrefix(u)[1]}${y.unit})` : y.label),
-          values: (u, splits) => splits.map(ticks(yPrefix(u)[0])),
+          values: (u, splits) => splits.map(chart.bars ? () => null : ticks(yPrefix(u)[0])),
+          grid: {show: !chart.bars, stroke: colour("grid"), width: 1},
           labelSize: 20,
           size: roomFor,
           space: 36,
@@ -244,12 +284,13 @@
           pxAlign: 0,
           points: role === "evaluations" ? {show: true, size: narrow ? 2.5 : 3.5, width: 0, fill: colour(role), space: 0}
             : {show: !joined, size: 5, width: 0, fill: colour(role), space: 0},
-          ...(role === "evaluations" ? {paths: () => null} : {}),
-          value: (u, value) => (x.scale === "log" && value > 0 ? value.toExponential(1) : quantity(value, y.unit, y.least)),
+          ...(role === "evaluations" || chart.bars ? {paths: () => null} : {}),
+          value: (u, value) => (chart.bars ? states[value] || "" : x.scale === "log" && value > 0 ? value.toExponential(1) : quantity(value, y.unit, y.least)),
         })),
       ],
       hooks: {
         draw: [decorate(chart)],
+        setCursor: [(u) => chart.group === "time" && u.cursor.left >= 0 && time.follow(u.posToVal(u.cursor.left, "x"))],
         setScale: [
           (u, key) => {
             const {min, max} = u.scales.x;
@@ -326,6 +367,7 @@
     width = innerWidth;
     for (const [id, u] of drawn) u.setSize({width: document.querySelector(`[data-chart="${id}"]`).clientWidth, height: u.height});
   });
+  softland.time = time;
   const details = () => document.querySelectorAll("details");
   addEventListener("beforeprint", () => details().forEach((one) => (one.open = true)));
 })();

@@ -22,6 +22,12 @@ const softland = (() => {
     if (value > 0 && Math.abs(exponent) > 3.5 && Math.abs(exponent - Math.round(exponent)) < 1e-9) return superscript(Math.round(exponent));
     return minus(+value.toPrecision(6));
   };
+  // Columns come as integer steps of a unit, or as plain values.
+  const column = ({unit, steps, values}) => {
+    if (values) return values;
+    let sum = 0;
+    return steps.map((step) => (step === null ? null : (sum += step) * unit));
+  };
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
   const font = (size) => size + 'px system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
   // On a narrow screen every row of a wide table is a card whose numbers bear the heading of their column.
@@ -33,5 +39,5 @@ const softland = (() => {
       for (const row of table.tBodies[0].rows) [...row.cells].forEach((cell, i) => (cell.dataset.label = headings[i]));
     }
   };
-  return {noBreak, prefix, minus, quantity, tickText, colour, font, makeCards};
+  return {noBreak, prefix, minus, quantity, tickText, column, colour, font, makeCards};
 })();

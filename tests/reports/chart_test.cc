@@ -115,6 +115,45 @@ TEST(Charts, DrawAForceFactorFromOneWithoutAUnit) {
   EXPECT_EQ(chart->caption, "Force factor of the drive “dispersion”. Both waveforms stay at 1.25.");
 }
 
+TEST(Charts, ShowWhenTheContactIsClosedBelowTheGap) {
+  json result = softland::test::sample_optimize_result(600);
+  result["curves"]["best"]["closed"] = {{44.5e-6, nullptr, 1}};
+  result["curves"]["baseline"]["closed"] = {{20e-6, 21e-6, 1}, {30e-6, 40e-6, 7}};
+  const Picture drawn = picture(read_closing(result));
+  EXPECT_EQ(ids(drawn)[1], "contact");
+  const Chart& chart = drawn.charts[1];
+  ASSERT_EQ(chart.series.size(), 2U);
+  EXPECT_EQ(chart.height, 2 * bar_height);
+  EXPECT_NE(chart.caption.find("A pale stretch holds several touches"), std::string::npos);
+  const CurveTable& best = drawn.tables.at("closed/best");
+  EXPECT_EQ(best.at("time_s"), (std::vector<double>{0, 44.5e-6, 44.5e-6, 600e-6}));
+  EXPECT_EQ(best.at("closed"), (std::vector<double>{0, 0, 1, 1}));
+  EXPECT_EQ(drawn.tables.at("closed/baseline").at("closed"), (std::vector<double>{0, 0, 1, 1, 0, 0, 0.5, 0.5, 0, 0}));
+  const std::string svg = chart_svg(drawn.tables, chart, 960, 0);
+  EXPECT_NE(svg.find("stroke-opacity=\"0.45\""), std::string::npos);
+  EXPECT_NE(svg.find(">plain step</text>"), std::string::npos);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+}
+
+TEST(Charts, NameEachOfSeveralContacts) {
+  json result = softland::test::sample_simulate_result(600);
+  result["curves"]["best"]["closed"] = {{30e-6, 40e-6, 1}};
+  result["curves"]["best"]["closed_contacts"] = {{"left", {{25e-6, 40e-6, 1}}}, {"right", {{30e-6, 45e-6, 1}}}};
+  const Picture drawn = picture(read_closing(result));
+  std::vector<std::string> labels;
+  for (const Series& one : drawn.charts[1].series) labels.push_back(one.label);
+  EXPECT_EQ(labels, (std::vector<std::string>{"connection", "left", "right"}));
+}
+
+TEST(Charts, SayWhereTheElectricalStateHasARuleOfItsOwn) {
+  json result = softland::test::sample_simulate_result(600);
+  result["curves"]["best"]["closed"] = json::array();
+  const auto caption = [&] { return picture(read_closing(result)).charts.at(1).caption; };
+  EXPECT_EQ(caption().find("electrically"), std::string::npos);
+  result["scene"]["metrics"]["closed_force"] = "0.1 uN";
+  EXPECT_NE(caption().find("counts as electrically closed by metrics.closed_force"), std::string::npos);
+}
+
 TEST(Charts, SurvivePackingToOnePartInTenMillion) {
   const Picture drawn = picture(read_closing(softland::test::sample_optimize_result(5000)));
   const json packed = chart_json(drawn, 6000);

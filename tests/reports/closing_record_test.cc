@@ -64,6 +64,33 @@ TEST(ResultOf, EachOfSeveralContactsHasItsFigures) {
     EXPECT_THAT(page, testing::HasSubstr(words));
 }
 
+TEST(ResultOf, ItsCurvesHoldTheMotionAndWhenTheContactIsClosed) {
+  const PreparedScene prepared = prepare(shipped("mem-gold.toml", {}));
+  const Closing closing = simulate(prepared, false);
+  const json best = json_of(record_of(prepared, closing, command))["curves"]["best"];
+  EXPECT_EQ(best["closed"].size(), closing.trajectory.touches.size());
+  EXPECT_EQ(best["closed"][0], json({closing.trajectory.touches[0].begin, closing.trajectory.touches[0].end, 1}));
+  EXPECT_TRUE(best["closed"].back()[1].is_null()) << "it stays closed";
+  EXPECT_EQ(best["motion"]["amplitudes_m"].size(), best["motion"]["shapes"].size());
+  EXPECT_FALSE(summary_json(json_of(record_of(prepared, closing, command))).contains("curves"));
+}
+
+TEST(ClosedStretches, JoinTouchesBetweenTheShortestOpenings) {
+  const std::vector<Touch> touches{{.begin = 1, .end = 2},
+                                   {.begin = 2.5, .end = 3},
+                                   {.begin = 3.1, .end = 4},
+                                   {.begin = 6, .end = 7},
+                                   {.begin = 7.2, .end = Metrics::unset}};
+  EXPECT_EQ(closed_stretches(touches).size(), 5U);
+  const std::vector<ClosedStretch> joined = closed_stretches(touches, 3);
+  ASSERT_EQ(joined.size(), 3U);
+  EXPECT_EQ(joined[0].touches, 1U);
+  EXPECT_EQ(joined[1].begin, 2.5);
+  EXPECT_EQ(joined[1].end, 4);
+  EXPECT_EQ(joined[1].touches, 2U);
+  EXPECT_TRUE(std::isnan(joined[2].end));
+}
+
 TEST(ResultOf, AContactThatConductsIsReportedLikeItsJson) {
   const char* const keys[] = {"resistance_ohm", "electrical_contact_time_s", "electrical_settling_time_s",
                               "electrical_bounce_count"};
