@@ -7,10 +7,13 @@
 #include <string_view>
 #include <utility>
 
+#include "reports/axis.h"
 #include "reports/chart.h"
 #include "reports/document.h"
 #include "reports/downsample.h"
+#include "reports/page.h"
 #include "reports/quantity.h"
+#include "reports/side_view.h"
 #include "reports/study_members.h"
 #include "reports/svg.h"
 #include "sampling/statistics.h"
@@ -26,6 +29,7 @@ using nlohmann::json;
 constexpr std::size_t most_of_course = 4000;  // a course has no more
 constexpr double line_tolerance = 1e-4;       // share of the largest voltage that lines may miss
 constexpr std::size_t told_cycles = 3;        // the first ones, and the last
+constexpr std::size_t most_drawn_cycles = 200;
 
 CycleRecord::Devices devices_of(const CycledDrive& drive, double rate) {
   const std::vector<double>& rates = drive.of_devices;
@@ -61,6 +65,7 @@ CycleRecord::Course course_of(const Cycles& cycles) {
     course.time.push_back(time[row]);
     course.gap.push_back(gap[row]);
   }
+  course.closed = closed_stretches(cycles.touches);
   return course;
 }
 
@@ -211,6 +216,7 @@ template <class A>
 void members(A& a, CycleRecord::Course& course) {
   a("time_s", course.time);
   a("tip_gap_m", course.gap);
+  a.custom("closed", course.closed, internal::closed_json, internal::read_closed);
 }
 
 template <class A>
@@ -239,7 +245,7 @@ void members(A& a, CycleRecord& r) {
 }
 
 CycleRecord record_of(const PreparedScene& given, const Cycling& cycling, const std::string& command) {
-  CycleRecord record{.origin = origin_of("cycle", given, command),
+  CycleRecord record{.origin = whole_origin_of("cycle", given, command),
                      .status = cycling.interrupted ? "interrupted" : "done",
                      .rate = cycling.rate,
                      .duty = cycling.options.duty,
@@ -293,23 +299,154 @@ json json_of(const CycleRecord& record) { return internal::record_json(record); 
 
 CycleRecord read_cycles(const json& from) { return internal::whole_record<CycleRecord>(from); }
 
-std::string text_of(const CycleRecord& r) {
-  Document document{.headline = finding(r),
+namespace {
+
+internal::Role role_of(const CycleRecord& r, const CycleRecord::Drive& d) {
+  return &d == &r.drives.front() ? internal::Role::baseline : internal::Role::best;
+}
+
+// Charts over the time of the cycles, which share their zoom; the first ones are shown at first.
+internal::Picture picture_of(const CycleRecord& r) {
+  using internal::Chart;
+  const double period = 1 / r.rate, first = period * static_cast<double>(std::min<std::uint64_t>(r.cycles, told_cycles));
+  const std::size_t cycles = std::min<std::uint64_t>(r.cycles, most_drawn_cycles);
+  const double end = period * static_cast<double>(cycles);
+  internal::Picture drawn;
+  const auto chart = [&](const std::string& id, const std::string& title, const char* y_label, const char* unit, int height) {
+    Chart one = internal::chart_over_time(id, title, y_label, unit, first, height);
+    one.x_whole = {0, end};
+    one.group = "time";
+    return one;
+  };
+  Chart gap = chart("gap", "Gap", "Gap", "m", 320), bars = chart("contact", "Contact: closed and open", "", "", 0);
+  gap.caption = "Distance of the contact point to the contact plane (positive: open).";
+  gap.zero_line = true;
+  gap.zero_label = "contact plane";
+  bars.caption = "Filled while the contact point touches.";
+  bars.is_of_bars = true;
+  std::map<std::string, Chart> drives;
+  for (const CycleRecord::Drive& d : r.drives) {
+    const auto found = r.curves.find(d.name);
+    if (found == r.curves.end()) continue;
+    const CycleRecord::Course& course = found->second;
+    const std::string name = name_words(r, d);
+    drawn.tables[name] = {{"time_s", course.time}, {"tip_gap_m", course.gap}};
+    gap.series.push_back({name, "tip_gap_m", name, role_of(r, d)});
+    if (course.closed) {
+      drawn.tables["closed/" + name] = internal::closed_table(*course.closed, end);
+      bars.series.push_back({"closed/" + name, "closed", name, role_of(r, d)});
+    }
+    for (const auto& [drive, points] : d.waveforms) {
+      const std::string table = name + "/" + drive;
+      for (std::size_t n = 0; n < cycles; ++n) {
+        for (const auto& [time, voltage] : points) {
+          drawn.tables[table]["time_s"].push_back(time + static_cast<double>(n) * period);
+          drawn.tables[table]["level"].push_back(voltage);
+        }
+      }
+      const std::string id = fmt::format("drive-{}", drives.size());
+      const auto one = drives.try_emplace(drive, chart(id, "Drive: " + drive, "Voltage", "V", 210)).first;
+      one->second.series.push_back({table, "level", name, role_of(r, d)});
+    }
+  }
+  bars.height = internal::bar_height * static_cast<int>(bars.series.size());
+  drawn.charts.push_back(std::move(gap));
+  if (!bars.series.empty()) drawn.charts.push_back(std::move(bars));
+  for (auto& [drive, one] : drives) drawn.charts.push_back(std::move(one));
+  return drawn;
+}
+
+std::string cycle_charts(const internal::Picture& drawn) {
+  std::string charts =
+      "<div class=\"tools\" hidden><span role=\"group\" aria-label=\"Time shown\">"
+      "<button type=\"button\" data-view=\"home\" aria-pressed=\"true\">First cycles</button>"
+      "<button type=\"button\" data-view=\"whole\" aria-pressed=\"false\">All cycles</button></span>"
+      "<span class=\"hint\">Drag to zoom, double-click to go back. With a chart focused: ← → read, + − zoom, 0 "
+      "back.</span></div>\n";
+  for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);
+  return charts;
+}
+
+// The rates that were tried, a row for each drive: a dot is steady, a ring is not.
+std::string drawn_rates(const CycleRecord& r) {
+  constexpr double left = 110, right = 780, row = 26;
+  internal::Axis axis{.scale = internal::Scale::logarithmic, .low = 1e300, .high = 0, .pixel_low = left, .pixel_high = right};
+  for (const CycleRecord::Drive& d : r.drives) {
+    for (const std::vector<double>* rates : {&d.steady_rates, &d.other_rates}) {
+      for (const double rate : *rates) axis.low = std::fmin(axis.low, rate / 1.1), axis.high = std::fmax(axis.high, 1.1 * rate);
+    }
+  }
+  if (!(axis.low > 0 && axis.low < axis.high)) return {};
+  std::string out;
+  double y = 16;
+  for (const CycleRecord::Drive& d : r.drives) {
+    out += internal::drawn_line(left, y, right, y, "guide") + internal::drawn_words(0, y + 4, "start", name_words(r, d));
+    const auto add = [&](const std::vector<double>& rates, const char* style) {
+      for (const double rate : rates)
+        out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" class=\"{}\"/>\n", axis.pixel(rate), y, style);
+    };
+    add(d.steady_rates, "steady");
+    add(d.other_rates, "unsteady");
+    y += row;
+  }
+  for (const double rate : {1.1 * axis.low, std::sqrt(axis.low * axis.high), axis.high / 1.1})
+    out += internal::drawn_words(axis.pixel(rate), y + 4, "middle", quantity(rate, "Hz"));
+  return fmt::format(
+      "<svg class=\"sketch\" viewBox=\"0 0 820 {:.0f}\" role=\"img\" aria-label=\"The rates that were "
+      "tried\">\n{}</svg>\n<p class=\"below\">The rates that were tried: a dot is steady, a ring is not.</p>\n",
+      y + 12, out);
+}
+
+std::vector<KeyNumber> keys_of(const CycleRecord& r) {
+  std::vector<KeyNumber> keys;
+  if (r.drives.empty()) return keys;
+  const CycleRecord::Drive &plain = r.drives.front(), &found = found_of(r);
+  const auto add = [&](const char* name, const std::string& before, const std::string& value) {
+    keys.push_back({.name = name, .value = value, .before = r.drives.size() > 1 ? before : ""});
+  };
+  if (!found.steady_rates.empty() || !found.other_rates.empty())
+    add("Largest steady rate", rate_words(plain.largest), rate_words(found.largest));
+  const auto largest = [](const CycleRecord::Drive& drive, double Metrics::*member, std::string_view unit) {
+    double most = Metrics::unset;
+    for (const CycleRecord::Cycle& cycle : drive.cycles) most = std::fmax(most, cycle.metrics.*member);
+    return quantity(most, unit);
+  };
+  if (found.cycles.empty()) return keys;
+  keys.push_back({.name = "Cycles at", .value = quantity(r.rate, "Hz")});
+  add("Largest impact speed", largest(plain, &Metrics::largest_impact_velocity, "m/s"),
+      largest(found, &Metrics::largest_impact_velocity, "m/s"));
+  add("Highest rebound", largest(plain, &Metrics::major_bounce_height, "m"), largest(found, &Metrics::major_bounce_height, "m"));
+  return keys;
+}
+
+}  // namespace
+
+Document document_of(const CycleRecord& r) {
+  Document document{.title = title_of(r.origin),
+                    .origin = r.origin.kind,
+                    .headline = finding(r),
                     .doubt = r.status == "interrupted" ? "Interrupted: what follows is the part that was computed." : "",
+                    .keys = keys_of(r),
                     .sections = {},
-                    .warnings = r.warnings};
+                    .warnings = r.warnings,
+                    .made = {.origin = r.origin, .seed = r.seed}};
   if (r.search && std::isfinite(r.search->cost)) {
-    document.headline += fmt::format(
+    document.headline_rest = fmt::format(
         " The cost of the worst of the first cycles is {:.4f} instead of {:.4f}, after {} evaluations of pairs (target {}, "
-        "closing "
-        "by the family {}).",
+        "closing by "
+        "the family {}).",
         r.search->cost, r.search->plain_cost, r.search->evaluations, r.search->target, r.search->family);
+  }
+  if (!r.curves.empty()) {
+    document.draw = [&r] { return picture_of(r); };
+    document.sections.push_back({.id = "charts", .heading = "The cycles", .parts = {Drawing{cycle_charts}}});
   }
   ReportSection rates{.id = "rates", .heading = "Rates", .parts = {rates_table(r)}};
   rates.parts.emplace_back(Paragraph{fmt::format(
       "A rate is steady where {} cycles close and open, and land within 5 % as fast and as high as the first one. The largest is "
       "that below which every rate was steady, in steps of 5 %, at a duty of {}\u00a0%.",
       r.cycles, internal::plain_number(100 * r.duty, 3))});
+  rates.parts.emplace_back(Drawing{[&r](const internal::Picture&) { return drawn_rates(r); }});
   const bool has_scan =
       std::ranges::any_of(r.drives, [](const auto& d) { return !d.steady_rates.empty() || !d.other_rates.empty(); });
   if (has_scan) document.sections.push_back(std::move(rates));
@@ -320,42 +457,9 @@ std::string text_of(const CycleRecord& r) {
                                  .parts = {cycles_table(drive, name_words(r, drive))}});
     if (drive.message && !drive.message->empty()) document.sections.back().parts.emplace_back(Paragraph{*drive.message});
   }
-  return terminal_text(document);
+  return document;
 }
 
-std::string svg_of(const CycleRecord& r) {
-  const double end = static_cast<double>(std::min<std::uint64_t>(r.cycles, told_cycles)) / r.rate;
-  internal::Picture drawn;
-  internal::Chart gap = internal::chart_over_time("gap", "Gap: the first cycles", "Gap", "m", end, 320);
-  gap.zero_line = true;
-  gap.zero_label = "contact plane";
-  const auto role = [&](const CycleRecord::Drive& d) {
-    return &d == &r.drives.front() ? internal::Role::baseline : internal::Role::best;
-  };
-  for (const CycleRecord::Drive& d : r.drives) {
-    const auto course = r.curves.find(d.name);
-    if (course == r.curves.end()) continue;
-    const std::string table = name_words(r, d);
-    drawn.tables[table] = {{"time_s", course->second.time}, {"tip_gap_m", course->second.gap}};
-    gap.series.push_back({table, "tip_gap_m", table, role(d)});
-  }
-  drawn.charts.push_back(std::move(gap));
-  for (const CycleRecord::Drive& d : r.drives) {
-    std::size_t place = 1;  // number of the drive's chart
-    for (const auto& [drive, points] : d.waveforms) {
-      const std::string table = name_words(r, d) + "/" + drive;
-      for (std::size_t n = 0; n < told_cycles; ++n) {
-        for (const auto& [time, voltage] : points) {
-          drawn.tables[table]["time_s"].push_back(time + static_cast<double>(n) / r.rate);
-          drawn.tables[table]["level"].push_back(voltage);
-        }
-      }
-      if (drawn.charts.size() == place)
-        drawn.charts.push_back(internal::chart_over_time("drive-" + drive, "Drive: " + drive, "Voltage", "V", end, 210));
-      drawn.charts[place++].series.push_back({table, "level", name_words(r, d), role(d)});
-    }
-  }
-  return svg_page(finding(r), title_of(r.origin), drawn, 1);
-}
+std::string svg_of(const CycleRecord& r) { return svg_page(finding(r), title_of(r.origin), picture_of(r), 1); }
 
 }  // namespace softland

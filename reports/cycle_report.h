@@ -1,4 +1,4 @@
-// What `softland cycle` found: JSON with SI units in the names, tables for a terminal, and a picture.
+// The findings of `softland cycle`: JSON with SI units in the names, tables for a terminal, a page and a picture.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "reports/closing_record.h"
+#include "reports/document.h"
 #include "reports/origin.h"
 #include "studies/devices/cycling.h"
 #include "studies/search/cycle_search.h"
@@ -24,7 +25,8 @@ struct CycleRecord {
     double steady = Metrics::unset;
   };
   struct Course {
-    std::vector<double> time, gap;  ///< [s], [m]
+    std::vector<double> time, gap;                     ///< [s], [m]
+    std::optional<std::vector<ClosedStretch>> closed;  ///< the times in which the contact touches
   };
   struct Cycle {
     Metrics metrics;                  ///< CycleFigures::metrics
@@ -66,8 +68,9 @@ struct CycleRecord {
 
 [[nodiscard]] nlohmann::json json_of(const CycleRecord& record);
 [[nodiscard]] CycleRecord read_cycles(const nlohmann::json& from);
-[[nodiscard]] std::string text_of(const CycleRecord& record);
-/// Gap of the cycles that are told, and their drives; of a record that has the courses.
+/// Sentences, tables, and where the record has the courses charts of them. It refers to the record.
+[[nodiscard]] Document document_of(const CycleRecord& record);
+/// Gap of the first cycles, when the contact is closed, and their drives; for a record that has the courses.
 [[nodiscard]] std::string svg_of(const CycleRecord& record);
 
 }  // namespace softland

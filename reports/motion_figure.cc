@@ -244,7 +244,9 @@ std::vector<std::pair<double, std::string>> told_instants(const CurveRecord& cur
   if (closes && curve.closed->front().begin > 0) all.emplace_back(curve.closed->front().begin, "first touch");
   const auto highest = std::ranges::max_element(curve.rebounds, {}, &Rebound::height);
   if (highest != curve.rebounds.end()) all.emplace_back(highest->time_of_height, "highest rebound");
-  all.emplace_back(curve.motion->time.back(), closes && std::isnan(curve.closed->back().end) ? "held at the end" : "at the end");
+  const double end = curve.motion->time.back();
+  if (end > all.back().first)
+    all.emplace_back(end, closes && std::isnan(curve.closed->back().end) ? "held at the end" : "at the end");
   return all;
 }
 

@@ -16,9 +16,11 @@ namespace {
 
 Outcome shown(CycleRecord found) {
   const auto record = std::make_shared<const CycleRecord>(std::move(found));
-  Outcome outcome{.json = without_curves(json_of(*record)), .text = text_of(*record)};
+  Outcome outcome{.json = without_curves(json_of(*record)), .text = terminal_text(document_of(*record))};
   outcome.files = {{"cycle.json", [record] { return json_text(json_of(*record), 1) + "\n"; }, "cycle.json"}};
-  if (!record->curves.empty()) outcome.files.push_back({"cycle.svg", [record] { return svg_of(*record); }, "cycle.svg"});
+  if (record->curves.empty()) return outcome;
+  outcome.files.push_back({"report.html", [record] { return page_html(document_of(*record)); }, "report.html"});
+  outcome.files.push_back({"cycle.svg", [record] { return svg_of(*record); }, "cycle.svg"});
   return outcome;
 }
 
@@ -26,7 +28,7 @@ struct CycleRequest : Usual {
   static constexpr auto name = "cycle",
                         about = "close and open the switch at a rate: how high it may be, and what every cycle does",
                         python = "cycle",
-                        leaves = "folder for cycle.json and cycle.svg, and with --search best.toml and best.csv";
+                        leaves = "folder for report.html, cycle.json and cycle.svg, and with --search best.toml and best.csv";
   static constexpr auto remarks =
       "A cycle is the closing waveform of the scene and, from duty / rate on, the drives at 0 V. A RESULT that begins closed, "
       "as\n"
@@ -38,7 +40,7 @@ struct CycleRequest : Usual {
       "Examples:\n  softland cycle scenes/mem-gold.toml\n"
       "  softland cycle optimized opened --rate \"2 kHz\" --duty \"40 %\" --out cycled\n"
       "  softland cycle scenes/mem-gold.toml --rate \"2 kHz\" --search --out cycled";
-  static std::vector<std::string> files() { return {"cycle.json", "cycle.svg", "best.toml", "best.csv"}; }
+  static std::vector<std::string> files() { return {"report.html", "cycle.json", "cycle.svg", "best.toml", "best.csv"}; }
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_cycles(json)); }
 
   CyclingOptions options{.jobs = one_per_core()};

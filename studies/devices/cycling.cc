@@ -42,7 +42,10 @@ class KeptCourse final : public ClosingObserver {
     recorder_.knot(point);
     gap.emplace_back(point.time, contact_gap_ - point.position);
   }
-  void touch(const Touch& touch) override { recorder_.touch(touch); }
+  void touch(const Touch& touch) override {
+    recorder_.touch(touch);
+    touches.push_back(touch);
+  }
   [[nodiscard]] bool follows_state() const override { return true; }
   void state(std::optional<std::size_t> contact, bool is_closed, double time) override {
     recorder_.state(contact, is_closed, time);
@@ -51,6 +54,7 @@ class KeptCourse final : public ClosingObserver {
   void energies(double time, const EnergyBalance& balance) override { recorder_.energies(time, balance); }
 
   std::vector<std::pair<double, double>> gap;
+  std::vector<Touch> touches;
 
  private:
   CycleRecorder& recorder_;
@@ -110,7 +114,12 @@ Cycles CycledSwitch::run(const CycleTimes& times, bool keeps_gap, const Watch& w
   CycleRecorder recorder(model_.contact_gap(), options_, times);
   KeptCourse course(recorder, model_.contact_gap());
   const Trajectory run = keeps_gap ? observe(times, course, watch, {}) : observe(times, recorder, watch, {});
-  Cycles found{.times = times, .status = run.status, .message = run.message, .cycles = {}, .gap = std::move(course.gap)};
+  Cycles found{.times = times,
+               .status = run.status,
+               .message = run.message,
+               .cycles = {},
+               .gap = std::move(course.gap),
+               .touches = std::move(course.touches)};
   for (std::size_t n = 0; n < recorder.ended(); ++n) found.cycles.push_back(recorder.figures(n, run));
   return found;
 }

@@ -35,6 +35,7 @@ struct Cycles {
   std::vector<CycleFigures> cycles;  ///< those that ended
   /// Position of the contact point: time [s] and distance to the contact plane [m]; where it was asked for.
   std::vector<std::pair<double, double>> gap = {};
+  std::vector<Touch> touches = {};  ///< those of the course
 };
 
 /// What a cycle may differ by from the first one.

@@ -203,6 +203,16 @@ TEST(ModeShapes, OfAPlateAreItsMotion) {
   EXPECT_EQ(shapes.shapes.cols(), 1);
   for (const double shape : shapes.shapes.reshaped())
     EXPECT_DOUBLE_EQ(shape, 1 / std::sqrt(part_of<Plate>(plate.structure).mass));
+  EXPECT_EQ(mode_shapes_at(Switch(plate), Eigen::Vector3d(0, 1e-6, plate.structure.length)),
+            Eigen::Vector3d::Constant(shapes.shapes(0, 0)));
+}
+
+TEST(ModeShapes, AtThePlaceOfTheContactAreThoseOfTheSwitch) {
+  constexpr double rounding = 1e-12;
+  const Device device = test::gold_cantilever();
+  const Switch model(device);
+  const Eigen::RowVectorXd there = mode_shapes_at(model, Eigen::VectorXd::Constant(1, device.contact_position()));
+  EXPECT_LT((there.transpose() - model.contact_shape()).norm(), rounding * there.norm());
 }
 
 TEST(TabulatedModes, AreRefusedWithTheRule) {
