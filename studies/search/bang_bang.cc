@@ -7,8 +7,8 @@
 namespace softland {
 namespace {
 
-/// Time [s] from rest at `rest` to `to`, or back, where `fallen(x)` is the energy that has become motion at x. Near rest the
-/// speed grows as the root of the way: in u with x = rest + (to - rest) u^2 the integrand is smooth.
+/// Computes the time [s] from rest at `rest` to `to`, or back; `fallen(x)` is the energy that has become motion at x. The speed
+/// grows as the root of the distance near rest: the integrand is smooth in u with x = rest + (to - rest) u^2.
 double time_from_rest(const std::function<double(double)>& fallen, double mass, double rest, double to) {
   static const GaussRule rule = gauss_rule(40);
   const double way = to - rest;
@@ -25,7 +25,7 @@ double time_from_rest(const std::function<double(double)>& fallen, double mass, 
 
 std::optional<double> switching_position(const Potential& driven, const Potential& coasting, double from, double contact) {
   const double at_start = driven(from), at_contact = coasting(contact);
-  // What is left of the motion at the contact, when the drive ends at x.
+  // Kinetic energy at the contact if the drive ends at x; negative if the switch does not get there.
   const auto left = [&](double x) { return at_start - driven(x) - (at_contact - coasting(x)); };
   if (!(left(from) < 0) || !(left(contact) > 0)) return std::nullopt;
   double low = from, high = contact;
@@ -43,7 +43,7 @@ std::optional<BangBang> bang_bang(const Potential& driven, const Potential& coas
   const BangBang found{.switching_position = *at,
                        .driven_time = time_from_rest([&](double x) { return at_start - driven(x); }, mass, from, *at),
                        .coasting_time = time_from_rest([&](double x) { return at_contact - coasting(x); }, mass, contact, *at)};
-  // Where something holds the switch on its way, a speed is not a number.
+  // The speed is not a number where something holds the switch on its way.
   if (!std::isfinite(found.driven_time) || !std::isfinite(found.coasting_time)) return std::nullopt;
   return found;
 }

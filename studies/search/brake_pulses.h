@@ -1,5 +1,5 @@
-// Waveforms that open a closed switch and stop it in its open position: from its hold level every drive goes to 0 V, and those
-// that the actuator may shape give two pulses after that, each after a wait at 0 V, within the limits of [driver.*].
+// Waveforms that open a closed switch and stop it in its open position. Every drive goes from its hold level to 0 V. The drives
+// that the actuator may shape then give two pulses, each after a wait at 0 V, within the limits of [driver.*].
 #pragma once
 
 #include <array>
@@ -21,24 +21,26 @@ using Corners = std::vector<std::pair<double, double>>;
 
 class BrakePulses {
  public:
-  /// Keeps a reference. `holds`: what the drives are told at the command, in the order of the switch [V]; `asker` begins the
-  /// messages. Throws InvalidRequest where the scene lacks the actuator, InvalidInput where none of its drives has limits.
+  /// Keeps a reference to `given`. `holds` are the commanded voltages before the command to open, in the order of the switch
+  /// [V]; `asker` begins the messages. Throws InvalidRequest if the scene lacks the actuator, InvalidInput if none of its
+  /// drives has limits.
   BrakePulses(const PreparedScene& given, Actuator actuator, std::vector<double> holds, std::string_view asker);
 
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
-  /// One drive brakes while the others stay at 0 V: by one pulse, or pushes first and brakes then, at different times and levels.
+  /// Starting points: one drive brakes, by one pulse or by a push and then a braking pulse, at different times and levels. The
+  /// others stay at 0 V.
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
-  /// What the drives are told at a point, one per drive of the switch.
+  /// Commanded voltages at a point, one per drive of the switch.
   [[nodiscard]] std::vector<Corners> told(std::span<const double> x) const;
-  /// Every drive goes to 0 V at once, or as fast as its driver can.
+  /// Commanded voltages of the plain opening: every drive goes to 0 V at once, or as fast as its driver can.
   [[nodiscard]] const std::vector<Corners>& plain() const { return plain_; }
   [[nodiscard]] const std::vector<double>& holds() const { return holds_; }
 
  private:
-  // A drive that may brake, and its parameters among those of a point.
+  // A drive that may brake, and the place of its parameters in a point.
   struct Brake {
     std::size_t drive = 0;
-    std::size_t first = 0;  // of its parameters: edge, then wait, level, duration of every pulse
+    std::size_t first = 0;  // index of its first parameter: edge, then wait, level, duration of every pulse
     DriverLimits limits;
   };
 
@@ -47,8 +49,8 @@ class BrakePulses {
   [[nodiscard]] Corners corners(const Brake& brake, std::span<const double> x) const;
 
   const PreparedScene& given_;
-  double period_;              // of the first mode [s]
-  std::vector<double> holds_;  // [V]
+  double period_;              // period of the first mode [s]
+  std::vector<double> holds_;  // hold levels [V]
   std::vector<Corners> plain_;
   std::vector<Brake> brakes_;
   std::vector<Variable> variables_;

@@ -9,7 +9,7 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t remembered = 14;  // candidates that the next one is compared with
+constexpr std::size_t remembered = 14;  // number of earlier candidates that the next one is compared with
 constexpr std::size_t fewest_remembered = 5;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// A search over devices from one start: CMA-ES, whose candidates are tried on ever more devices, and given up where they do worse
-// on the first of them than the median of the candidates before.
+// A search over devices from one start by CMA-ES. Candidates are tried on ever more devices. One that does worse on the first
+// of them than the median of the candidates before is given up.
 //
 // Source for the races: O. Maron & A. W. Moore, "Hoeffding races", NIPS 1993 (the idea; our test is the median of the candidates
 // before).
@@ -18,20 +18,19 @@
 
 namespace softland {
 
-/// What a candidate costs on devices, found in stages: on 8, on 32, on all that are asked for.
+/// The cost of a candidate on devices, found in stages: on 8, on 32, on all that are asked for.
 class StagedCost {
  public:
-  /// Keeps references to `setting`, `cost` and `aim`. `memory` may be null; `seed` tells it which devices and which aim these
-  /// are.
+  /// Keeps references to `setting`, `cost` and `aim`. `memory` may be null; `seed` identifies the devices and the aim in it.
   StagedCost(const SearchSetting& setting, const RobustCost& cost, const RobustAim& aim, EvaluationMemory* memory,
              std::uint64_t seed)
       : setting_(setting), cost_(cost), aim_(aim), memory_(memory), seed_(seed) {}
 
   struct Tried {
-    double cost = std::numeric_limits<double>::infinity();  ///< infinite where a driver cannot give the waveform
+    double cost = std::numeric_limits<double>::infinity();  ///< infinite if a driver cannot give the waveform
     long closings = 0;
   };
-  /// On the first `devices`, or on as many as it takes to see that it costs more than `hopeless`.
+  /// Evaluates on the first `devices`, or on as many as it takes to see that the cost exceeds `hopeless`.
   [[nodiscard]] Tried tried(const std::vector<double>& x, std::size_t devices,
                             double hopeless = std::numeric_limits<double>::infinity(), int jobs = 1) const;
 
@@ -43,24 +42,24 @@ class StagedCost {
   std::uint64_t seed_;
 };
 
-/// Devices at which a candidate may be given up.
+/// Numbers of devices after which a candidate may be given up.
 inline constexpr std::array<std::size_t, 2> stages{8, 32};
 
 struct Chain {
   std::vector<double> start;
   std::size_t devices = 0;
-  long closings = 0;      ///< at the most
-  double step = 0.1;      ///< first one, of the box
-  double population = 1;  ///< of a generation, over the usual number
+  long closings = 0;      ///< most closings of the chain
+  double step = 0.1;      ///< first step size, as a part of the box
+  double population = 1;  ///< population of a generation, over the usual number
   std::uint64_t seed = 1;
-  int jobs = 1;  ///< for one candidate; does not change the result
+  int jobs = 1;  ///< threads for one candidate; does not change the result
 };
 struct ChainEnd {
   std::vector<double> x = {};                             ///< the best point; empty where none was feasible
-  double cost = std::numeric_limits<double>::infinity();  ///< there
+  double cost = std::numeric_limits<double>::infinity();  ///< cost of the best point
   long closings = 0;
 };
-/// `told` hears of every candidate and the closings that it took; where it answers true, the chain ends.
+/// Calls `told` with every candidate and the closings that it took. The chain ends when it returns true.
 [[nodiscard]] ChainEnd search_chain(const StagedCost& cost, const std::vector<Variable>& variables, const Chain& chain,
                                     const std::function<bool(const std::vector<double>& x, double cost, long closings)>& told);
 

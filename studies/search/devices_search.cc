@@ -22,39 +22,39 @@ namespace softland {
 namespace {
 
 constexpr std::uint64_t devices_of_choice = 512, least_of_verdict = 500;
-constexpr std::size_t most_of_race = 3;                       // placed, by either measure
-constexpr double most_times = 5, most_times_of_landings = 7;  // the plain step's closing time, of 95 %
-constexpr double margin = 0.98;                               // of the step's figures, in the choice
-constexpr double more_open = 0.005;                           // of the devices
-constexpr double ranked_by_share = 0.25;                      // of the devices land without a rebound
-constexpr std::uint64_t measured_devices = 128;               // of a search in measured units
-constexpr double coarse_error = 0.01, fine_error = 0.002;     // of measurements, relative
+constexpr std::size_t most_of_race = 3;                       // most candidates that a race places, by either measure
+constexpr double most_times = 5, most_times_of_landings = 7;  // multiples of the plain step's 95th percentile closing time
+constexpr double margin = 0.98;                               // share of the step's figures, in the choice
+constexpr double more_open = 0.005;                           // permitted excess of the share of open devices
+constexpr double ranked_by_share = 0.25;                      // bounce-free share from which on it ranks
+constexpr std::uint64_t measured_devices = 128;               // devices of a search with a per-device calibration
+constexpr double coarse_error = 0.01, fine_error = 0.002;     // relative errors of measurements
 constexpr double least_times_of_error = 20;
 constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative
-constexpr double most_rows = 4;                                                   // in measured units
-constexpr std::size_t devices_by_error = 256;                                     // of the verdict
+constexpr double most_rows = 4;                                                   // rows with a per-device calibration
+constexpr std::size_t devices_by_error = 256;                                     // first devices of the verdict
 constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2;
-constexpr double least_of_race = 0.4, end_of_race = 0.75;  // of a budget of time
+constexpr double least_of_race = 0.4, end_of_race = 0.75;  // shares of a budget of time
 constexpr std::string_view quasi_static_short = "quasi-static:2",
-                           approaches = "+quasi-static+quasi-static:2";  // that are searched where there is a stable path
+                           approaches = "+quasi-static+quasi-static:2";  // families searched where there is a stable path
 constexpr std::string_view usual_prefix = "usual_limit.";
-constexpr double alike = 1.05;               // times the least cost, which the devices of the choice do not tell from it
-constexpr double little_more = 1.25;         // times the least cost, for which a sooner waveform is preferred where there is none
-constexpr std::uint64_t path_devices = 512;  // of which it is told how many have a stable path
-// Paces of the quasi-static approach, over the time for which the plain step bounces: in half of it, in all of it, in twice as
-// much.
+constexpr double alike = 1.05;               // multiple of the least cost that the devices of the choice do not tell from it
+constexpr double little_more = 1.25;         // multiple of the least cost up to which a sooner waveform wins without a path
+constexpr std::uint64_t path_devices = 512;  // devices that tell the share with a stable path
+// Paces of the quasi-static approach: the time to a steady contact, in units of that of the plain step. The approach takes half
+// of it, all of it, or twice as much.
 constexpr double fast = 0.49, slow = 1.96;
-constexpr double usual_closings_at_pace = 30'000;  // of a search at one of them: waveforms that last longer take fewer
+constexpr double usual_closings_at_pace = 30'000;  // closings of a search at one of them: longer waveforms get fewer
 
 bool closes(const DeviceOutcome& o) { return o.closed(); }
 
-// Whether a condition says until when devices have to close.
+// True for a condition that bounds a time from above.
 bool is_about_time(const Criterion& one) {
   const bool is_upper = one.comparison == Comparison::below || one.comparison == Comparison::at_most;
   return is_upper && one.figure.unit == "s" && one.limit > 0;
 }
 
-// The settings of the families that the scene has room for, and their names joined by +.
+// Returns the settings of the families that the scene has room for, and their names joined by +.
 std::pair<std::vector<SearchSetting>, std::string> settings_of_race(const SceneFile& file, const OptimizeOptions& options,
                                                                     const ForDevicesOptions& devices, const Watch& watch) {
   const bool chosen = !devices.families.empty();
@@ -128,7 +128,7 @@ DevicesSearch::DevicesSearch(const SceneFile& file, const OptimizeOptions& optio
   const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, families);
   settings_ = begins_gently(gentle, options.starts) ? gentle : std::move(settings);
   names_ = families_of(families);
-  // Those of the race first: the others are searched at paces of their own.
+  // Raced families come first: the others are searched at paces of their own.
   while (raced_ < names_.size() && !is_quasi_static(names_[raced_])) ++raced_;
   if (raced_ < names_.size()) approach_ = settings_[raced_].space.quasi_static()->approach();
   if (!devices_.is_of_before) usual_room_ = within_usual_room(raced_settings(), options_.actuator, names_);
@@ -136,8 +136,9 @@ DevicesSearch::DevicesSearch(const SceneFile& file, const OptimizeOptions& optio
   fit_budget();
 }
 
-// A race has as many of the usual closings as its work allows, and so many that its searches tell something; a verdict has as
-// many devices as that share of the race, and so many that their 95th percentiles tell something.
+// Sets the closings of the race and the devices of the verdict. The race gets the usual closings scaled to the work of one, but
+// never too few for a search to be meaningful. The verdict shrinks in proportion, but keeps enough devices for its 95th
+// percentiles.
 void DevicesSearch::fit_budget() {
   race_length_ = devices_.closings;
   verdict_ = devices_.verdict;
@@ -170,7 +171,7 @@ FamilyColumns DevicesSearch::columns() const {
   std::string families;
   for (const std::string& name : names_) families += (families.empty() ? "" : "+") + name;
   FamilyColumns all = searched_columns(settings_, families);
-  // Those within the usual limits stand behind the others.
+  // Append the families within the usual limits after the others.
   for (std::size_t k = 0; k < usual_room_.size(); ++k) {
     all.families.push_back(all.families[k]);
     for (std::string& name : all.families.back()) name.insert(0, usual_prefix);
@@ -221,7 +222,8 @@ std::vector<SearchSetting> DevicesSearch::raced_settings() const {
   return {settings_.begin(), settings_.begin() + static_cast<std::ptrdiff_t>(raced_)};
 }
 
-// More volts make a search begin with what usual ones give: it would miss that in a wider box.
+// Races within the usual limits first if the scene's are wider. The wider race begins with their winner, which it could miss by
+// itself.
 void DevicesSearch::race_all() {
   const std::vector<SearchSetting> raced = raced_settings();
   RaceOptions own = race_options();
@@ -242,7 +244,7 @@ void DevicesSearch::race_all() {
 }
 
 std::vector<Pace> DevicesSearch::paces_of_search() const {
-  // Each by the shaper that suits it, where both are searched.
+  // Each pace uses the shaper that suits it, if both are searched.
   const auto of = [this](double times) {
     constexpr double short_below = 0.75;
     const bool is_short = times < short_below && names_.back() == quasi_static_short;
@@ -256,7 +258,7 @@ std::vector<Pace> DevicesSearch::paces_of_search() const {
   return {of(1), of(fast), of(slow)};
 }
 
-// The quasi-static approach at three paces.
+// Searches the quasi-static approach at each pace.
 void DevicesSearch::search_paces() {
   if (raced_ == settings_.size()) return;
   share_with_path_ = softland::share_with_path(first().given, *approach_, path_devices, options_.seed, options_.jobs, watch_);
@@ -292,7 +294,7 @@ void DevicesSearch::make_aims(const std::vector<DeviceOutcome>& step, const Free
   const double step_time = quantile_95(step, key_of(&Metrics::initial_contact_time));
   const std::span<const Figure> figures = device_figures;
   tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
-  // A bound of the user's on time takes the place of the price.
+  // A bound on time in the user's conditions takes the place of the price.
   free_ = free;
   tail_aim_.free = free;
   if (std::ranges::any_of(conditions_, is_about_time)) tail_aim_.free.until = std::numeric_limits<double>::infinity();
@@ -306,15 +308,16 @@ void DevicesSearch::make_aims(const std::vector<DeviceOutcome>& step, const Free
   aims_.share.conditions.push_back(bound(most_times_of_landings));
 }
 
-// A condition of the user's takes the place of the usual bound.
+// True if a condition of the user bounds the first touch; it takes the place of the usual bound.
 bool DevicesSearch::says_when_to_close() const {
   return std::ranges::any_of(
       conditions_, [](const Criterion& one) { return one.figure.member == Figure::Member(&Metrics::initial_contact_time); });
 }
 
-// Of a budget of time the searches leave what the verdict takes, where they keep a part; `closing`: of one device [s].
+// Ends the searches early enough within a budget of time that the verdict fits into it. They keep a part of the budget in any
+// case. `closing` is the time that one device takes [s].
 void DevicesSearch::reserve_for_verdict(double closing, double reserved) {
-  constexpr double rows = 20;  // over a search's window: three over the whole one, three in measured units, and the front
+  constexpr double rows = 20;  // work of the verdict in windows of a search: three whole ones, three calibrated rows, the front
   const double verdict = rows * static_cast<double>(verdict_) * closing, all = options_.max_seconds;
   race_end_ = std::clamp(all - verdict, least_of_race * all, end_of_race * all) - reserved;
 }
@@ -351,7 +354,7 @@ ChosenFrom DevicesSearch::candidate_of(const Racer& racer) const {
   return c;
 }
 
-// The best of a race by either measure.
+// Adds the best of a race by either measure to the pool.
 void DevicesSearch::take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool is_in_usual_room) const {
   for (const bool by_share : {false, true}) {
     std::ranges::stable_sort(raced.racers, {}, [&](const Racer& r) { return by_share ? r.share : r.tail; });
@@ -364,7 +367,7 @@ void DevicesSearch::take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool 
   }
 }
 
-// Places the ends of the races on other devices, beside the plain step.
+// Places the winners of the races on the devices of the choice.
 void DevicesSearch::choose() {
   watch_.tell("choosing on other devices", 0);
   std::vector<ChosenFrom> pool;
@@ -374,7 +377,7 @@ void DevicesSearch::choose() {
   for (ChosenFrom& one : pool) place(std::move(one));
 }
 
-// What the search has come to so far. Tells of it where it leads, and is no harder than the plain step.
+// Judges an intermediate candidate on the devices of the choice. Reports it if it leads and is no harder than the plain step.
 void DevicesSearch::look(const Racer& racer) {
   if (gave_up_ || devices_.is_of_before || watch_.stopped()) return;
   std::vector<DeviceOutcome> outcomes = on_others(racer.waveforms);
@@ -425,7 +428,7 @@ std::vector<DeviceOutcome> DevicesSearch::on_others(const DriveWaveforms& wavefo
 // Judges a candidate by its outcomes on the devices of the choice.
 DevicesSearch::Placed DevicesSearch::judged(ChosenFrom one, const std::vector<DeviceOutcome>& outcomes) const {
   RobustAim aim = aims_.tail;
-  if (approach_) aim.conditions = conditions_;  // a slow touch is no fault where it is soft
+  if (approach_) aim.conditions = conditions_;  // a slow touch does no harm if it is soft
   one.bounce_free = share_of(outcomes, is_bounce_free);
   one.tail = others_->value(outcomes, aim);
   one.measured = others_->measured(outcomes, aim);
@@ -446,8 +449,8 @@ bool DevicesSearch::Placed::is_before(const Placed& other) const {
   return rank < other.rank;
 }
 
-// The soonest candidate comes first among those that cost a little more than the least. Volts beyond the usual ones find sooner
-// candidates at that cost: none of them goes before the winner within usual volts when it costs more.
+// Moves the soonest candidate to the front among those that cost a little more than the least. Voltages beyond the usual limits
+// find sooner candidates at that cost: none of them goes before the winner within the usual limits if it costs more.
 void DevicesSearch::prefer_sooner(std::vector<Placed>& sorted) {
   const auto soonest = [&](double most, bool in_usual_room) {
     double least = std::numeric_limits<double>::infinity();
@@ -470,10 +473,10 @@ void DevicesSearch::prefer_sooner(std::vector<Placed>& sorted) {
 std::vector<ChosenFrom> DevicesSearch::placed() const {
   std::vector<Placed> sorted = placed_;
   std::ranges::stable_sort(sorted, [](const Placed& a, const Placed& b) { return a.is_before(b); });
-  // Without a stable path the fall from the fold is the limit: waiting longer gains little there.
+  // Without a stable path the fall from the fold sets the limit, so that waiting longer gains little.
   if (!approach_ && free_.until > 0 && !sorted.empty() && sorted.front().candidate.is_good_enough && !sorted.front().lands_half)
     prefer_sooner(sorted);
-  // A few devices without a path make costs alike: of what they do not tell apart the softest for 95 % is preferred.
+  // The few devices without a path make costs alike: prefer the candidate with the softest 95th percentile among those.
   if (approach_ && !sorted.empty() && sorted.front().candidate.is_good_enough) {
     auto softest = sorted.begin();
     for (auto one = sorted.begin(); one != sorted.end(); ++one) {
@@ -491,18 +494,19 @@ std::size_t DevicesSearch::good_enough() const {
   return static_cast<std::size_t>(std::ranges::count_if(placed_, [](const Placed& one) { return one.candidate.is_good_enough; }));
 }
 
-// What rows in measured units will ask of the devices of the verdict.
+// Measures ahead what the rows with a per-device calibration need of the devices of the verdict.
 void DevicesSearch::measure_ahead() {
   try {
     meter_.emplace(first().given, Gauges{.closing_time = true});
   } catch (const InvalidInput&) {
-    return;  // no electrode that pulls in
+    return;  // no electrode pulls in
   }
   (void)gauged({.pull_in_error = coarse_error});
   if (tells_time()) (void)gauged({.time_error = usual_time_error});
 }
 
-// A recipe for what is known precisely: of a switch too quick for the instrument it has to be searched apart.
+// True if the closing time resolves the device. A switch that is too quick for the instrument needs a recipe for a more precise
+// Vdp and period.
 bool DevicesSearch::tells_time() const { return meter_->closing_time() > least_times_of_error * usual_time_error; }
 
 InMeasuredUnits DevicesSearch::in_measured_units(const ChosenFrom& winner, const DriveWaveforms& drawing) {
@@ -532,7 +536,7 @@ InMeasuredUnits DevicesSearch::in_measured_units(const ChosenFrom& winner, const
   return all;
 }
 
-// For each of these calibrations, side by side; none where a search came to nothing.
+// Searches for each of these calibrations, side by side. None if a search found nothing.
 std::array<DevicesSearch::Found, 2> DevicesSearch::searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
                                                                const std::array<Calibration, 2>& calibrations) {
   const auto family = std::ranges::find(names_, winner.family);
@@ -548,7 +552,7 @@ std::array<DevicesSearch::Found, 2> DevicesSearch::searched_in(const ChosenFrom&
             first(), aims_.tail,
             own_devices(first(), known[i], measured_devices, options_.seed, which_measured, options_.jobs, watch_));
         RaceOptions own = race_options();
-        own.memory = nullptr;  // whose keys do not tell units
+        own.memory = nullptr;  // its keys do not distinguish units
         own.progress = [&, i](double part) {
           parts[i] = part;
           watch_.tell("searching for devices that are measured", (parts[0] + parts[1]) / 2);
@@ -572,7 +576,7 @@ std::array<DevicesSearch::Found, 2> DevicesSearch::searched_in(const ChosenFrom&
 
 RaceResult DevicesSearch::searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family, RaceOptions options,
                                            long& closings) const {
-  constexpr long shorter = 3;  // than in volts
+  constexpr long shorter = 3;  // divisor of the closings of a search in volts
   RobustAim aim = tail_aim_;
   aim.free = free_;
   for (const Criterion& one : aims.tail.conditions) {
@@ -587,7 +591,7 @@ RaceResult DevicesSearch::searched_at_pace(const RobustCost& cost, const RaceAim
   return all;
 }
 
-// On the devices of a search in measured units.
+// True if the waveforms are harder than the plain step on the devices of a search with a per-device calibration.
 bool DevicesSearch::is_harder_than_step(const RobustCost& cost, const DriveWaveforms& waveforms) const {
   const std::vector<DeviceOutcome> outcomes = cost.close(first().drives(waveforms), 0, cost.devices(), 1);
   return !hold(no_harder_than_step_, outcomes);
@@ -613,7 +617,7 @@ DevicesRow DevicesSearch::row_of(const char* name, const DriveWaveforms& wavefor
                                          std::move(outcomes))};
 }
 
-// What the best of these waveforms reaches where Vdp is known with ever larger errors; the one in volts needs no Vdp.
+// Computes the results of the best of these waveforms for ever larger errors of Vdp. The waveform in volts needs no Vdp.
 std::vector<KnownVdp> DevicesSearch::judged_by_error(const std::vector<DriveWaveforms>& waveforms,
                                                      const DriveWaveforms& in_volts) {
   std::vector<KnownVdp> judged;
@@ -644,7 +648,7 @@ RobustCost DevicesSearch::verdict_devices(const KnownUnits& known) {
   return {first(), aims_.tail, known_as(gauged(known.calibration()), known, options_.seed)};
 }
 
-// The devices of the verdict, gauged once for all that is known of them.
+// Returns the devices of the verdict, measured once for all calibrations.
 const GaugedEnsemble& DevicesSearch::gauged(const Calibration& knowledge) {
   std::optional<GaugedEnsemble>& all = knowledge.time_error ? gauged_by_time_ : gauged_by_pull_in_;
   if (!all)

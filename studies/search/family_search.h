@@ -25,8 +25,8 @@ class FamilySearch {
   FamilySearch(const SearchSetting& setting, const OptimizeOptions& options,
                std::function<void(const Evaluation&)> on_evaluation);
 
-  /// Begins with these waveforms, or with those of the family that differ least from them, before what it would begin with
-  /// by itself. Those that it cannot begin with are passed over.
+  /// Begins with these waveforms, or with those of the family that differ least from them, before its own starts. Waveforms
+  /// that it cannot begin with are skipped.
   void begin_at(const DriveWaveforms& waveforms);
   /// Begins at this point before the others.
   void begin_at_point(const std::vector<double>& x);
@@ -40,9 +40,9 @@ class FamilySearch {
     return setting_.space.parameters(waveforms);
   }
   [[nodiscard]] DriveWaveforms waveforms(const Evaluation& e) const { return setting_.space.waveforms(e.x); }
-  /// Ready to run.
+  /// The scene of an evaluation, ready to run.
   [[nodiscard]] PreparedScene prepared(const Evaluation& e) const { return setting_.prepared(waveforms(e)); }
-  /// None where a scene cannot hold the waveforms.
+  /// None if a scene file cannot hold the waveforms.
   [[nodiscard]] std::optional<SceneFile> scene(const Evaluation& e) const;
   /// The parameters by drive.name.
   [[nodiscard]] std::map<std::string, double> named(const Evaluation& e) const;

@@ -17,22 +17,21 @@ namespace softland {
 namespace {
 
 constexpr std::size_t scouted_on = 16, ranked_on = 64;  // devices: candidates of the nominal search
-constexpr std::size_t kept_of_scouted = 24;             // by either measure
-constexpr std::size_t most_of_ranked = 2;               // by either measure
+constexpr std::size_t kept_of_scouted = 24;             // candidates, by either measure
+constexpr std::size_t most_of_ranked = 2;               // candidates, by either measure
 constexpr std::size_t most_judged = 3;                  // winners, until one is not worse than the plain step
 constexpr std::size_t most_of_front = 6;
-constexpr double end_of_drawing = 0.3;  // of a budget of time
+constexpr double end_of_drawing = 0.3;  // share of a budget of time
 
 constexpr const char *fast_row = "fast", *soft_row = "soft";
-// What devices of a choice may wait for a steady contact, over what they wait under the plain step.
+// Time that devices of a choice may take until a steady contact, over that under the plain step.
 constexpr double fast_within = 0.5, usual_within = 1, soft_within = 2;
-constexpr double by_chance = 1.02;  // devices of another sample wait so much longer at the most
-constexpr double worth_choosing =
-    0.9;  // of the impact velocity of the default, or of its time: what is nearer is no other choice
+constexpr double by_chance = 1.02;      // most that devices of another sample wait longer, as a factor
+constexpr double worth_choosing = 0.9;  // a choice below this share of the default's impact velocity or time is another one
 constexpr double fewer_bounce_free = 0.05;
 constexpr std::size_t drawn_devices = 50, instants_of_course = 240;
-constexpr double units_of_gap = 5000;  // in the gap of the contact
-constexpr double after_steady = 1.1;   // times that until which courses are drawn
+constexpr double units_of_gap = 5000;  // units in the contact gap
+constexpr double after_steady = 1.1;   // multiple of the time until steady contact up to which courses are drawn
 
 DevicesFindings::Row told(const DevicesRow& row) {
   const DriveRobustness& drive = row.judged;
@@ -81,10 +80,10 @@ class DevicesStudy {
         choose_of_all();
         judge();
       }
-    } catch (const Interrupted&) {  // what there is stands
+    } catch (const Interrupted&) {  // the results so far stand
     }
     searched_.give_up();
-    if (beside_.valid()) beside_.wait();  // what it has found is read from here on
+    if (beside_.valid()) beside_.wait();  // its findings are read from here on
     if (stopped() && result_->rows.empty()) take_leader();
     result_->interrupted = stopped();
     if (!result_->rows.empty()) tell_findings();
@@ -94,7 +93,7 @@ class DevicesStudy {
  private:
   [[nodiscard]] const SearchSetting& first() const { return searched_.first(); }
   [[nodiscard]] bool stopped() const { return options_.stop != nullptr && *options_.stop; }
-  // While the drawing is searched for, that is what is told.
+  // Tells the progress of the search for the nominal design alone while that runs.
   void tell(std::string_view what, double part) const {
     if (options_.on_preparation && !searches_drawing_) options_.on_preparation(what, part);
   }
@@ -111,7 +110,8 @@ class DevicesStudy {
     }
   }
 
-  // The nominal search keeps what devices may do better with, and tells of its parameters among those of all searches.
+  // Options of the nominal search. It keeps the waveforms that may do better on devices, and names its parameters among those
+  // of all searches.
   OptimizeOptions options_of_drawing() {
     OptimizeOptions own = options_;
     own.keep_tried = true;
@@ -125,14 +125,14 @@ class DevicesStudy {
       FamilyColumns all = of_drawing;
       std::ranges::copy(searched_.columns().families, std::back_inserter(all.families));
       if (options_.on_start) options_.on_start(all);
-      drawing_options_.memory = options_.memory;  // which may be there from now on only
+      drawing_options_.memory = options_.memory;  // the memory may exist only from now on
       search_beside(of_drawing.families.size());
     };
     return own;
   }
 
-  // Devices come first: the search for the drawing begins when a first waveform was looked at on them. It leaves a core idle at
-  // times.
+  // Starts the search over devices first. The search for the nominal design begins when a first waveform was judged on devices,
+  // which leaves a core idle at times.
   void search_beside(std::size_t before) {
     const bool is_beside = options_.jobs > 1, is_timed = std::isfinite(options_.max_seconds);
     const double of_drawing = is_timed ? end_of_drawing * options_.max_seconds : 0;
@@ -140,7 +140,7 @@ class DevicesStudy {
     const std::future<void> look = looked.get_future();
     beside_ = std::async(is_beside ? std::launch::async : std::launch::deferred,
                          [this, before, reserved = is_beside ? 0 : of_drawing, given = std::move(looked)]() mutable {
-                           std::promise<void> own = std::move(given);  // nobody waits longer than for the end of this
+                           std::promise<void> own = std::move(given);  // nobody waits beyond the end of this
                            searched_.run(
                                before, [&own] { own.set_value(); }, reserved);
                          });
@@ -154,7 +154,7 @@ class DevicesStudy {
     searches_drawing_ = true;
   }
 
-  // The search was stopped before the verdict: what led by then.
+  // Takes what led when the search was stopped before the verdict.
   void take_leader() {
     const ChosenFrom* leader = searched_.leader();
     if (leader == nullptr) return;
@@ -183,7 +183,7 @@ class DevicesStudy {
     return first().space.searched(result_->drawing.best_scene->drives.waveforms());
   }
 
-  // Of what the nominal search has tried the best on devices.
+  // Ranks what the nominal search has tried on devices.
   std::vector<ChosenFrom> ranked_again() {
     std::vector<ChosenFrom> all;
     for (TriedWaveform& one : result_->drawing.tried)
@@ -201,7 +201,7 @@ class DevicesStudy {
     return all;
   }
 
-  // The best `kept` by either measure.
+  // Returns the best `kept` by either measure.
   std::vector<ChosenFrom> best_on(std::vector<ChosenFrom> all, std::size_t devices, std::size_t kept) {
     struct Ranked {
       double tail, share;
@@ -243,7 +243,7 @@ class DevicesStudy {
       if (one.name != default_choice) drives.push_back(named(one.name.c_str(), one.candidate));
     }
     if (undelayed_) drives.push_back(named(undelayed_row, *undelayed_));
-    drives.push_back(of_candidate(0));  // the last one is what their report is about
+    drives.push_back(of_candidate(0));  // the report is about the last one
     result_->verdict = robustness(result_->varied, drives, verdict_options(), watch_);
     result_->interrupted = result_->verdict.interrupted;
     add_row(plain_step_row, plain_step(first().given, options_.actuator));
@@ -258,7 +258,8 @@ class DevicesStudy {
     result_->findings.windows = hold_windows(first().given, verdict_options(), watch_);
   }
 
-  // The softest of them whose devices wait at most so long, over the plain step; null where there is none.
+  // Returns the softest candidate whose devices wait at most `times` as long as under the plain step; null if no candidate
+  // does.
   [[nodiscard]] const ChosenFrom* softest_within(double times, const std::vector<ChosenFrom>& candidates) const {
     const ChosenFrom* best = nullptr;
     for (const ChosenFrom& one : candidates) {
@@ -273,7 +274,7 @@ class DevicesStudy {
     return same_drives(given.told(first().drives(a.waveforms)), given.told(first().drives(b.waveforms)));
   }
 
-  // The default is the first candidate; beside it a sooner and a softer one, where they are others.
+  // Makes the first candidate the default, and adds a sooner and a softer one where they differ from it.
   void make_choices() {
     const ChosenFrom& usual = result_->candidates.front();
     const double until = searched_.free().until, tau = usual.waited / until;
@@ -303,7 +304,8 @@ class DevicesStudy {
     return {.name = name, .waveforms = searched_.all_drives(one.waveforms), .calibration = searched_.known().calibration()};
   }
 
-  // A window that holds the whole of every waveform that is judged, and as long after it as the plain step bounces.
+  // Returns the scene over a window that holds the whole of every waveform that is judged, and is at least as long as the plain
+  // step bounces.
   [[nodiscard]] PreparedScene over_whole_window(PreparedScene given) const {
     double last = 0;
     const auto consider = [&](const ChosenFrom& one) {
@@ -321,7 +323,7 @@ class DevicesStudy {
     return given;
   }
 
-  // Who knows more of a device may drive it as one who knows less, and does where that lands better.
+  // Takes the waveform of a row with less knowledge of the device if it lands better: more knowledge allows it too.
   static void inherit(DevicesRow& row, const DevicesRow& other) {
     const auto includes = [](const std::optional<double>& more, const std::optional<double>& less) {
       return !less || (more && *more <= *less);
@@ -374,7 +376,7 @@ class DevicesStudy {
   }
   [[nodiscard]] NamedDrive of_candidate(std::size_t n) const { return named(for_the_devices, result_->candidates[n]); }
 
-  // The row of a drive that is judged, by its name or as one that is driven alike.
+  // Adds the row of a judged drive, found by its name or by equal signals.
   void add_row(const char* name, const DriveWaveforms& waveforms) {
     const std::vector<DriveRobustness>& drives = result_->verdict.drives;
     auto found = std::ranges::find(drives, std::string_view(name), &DriveRobustness::name);
@@ -392,7 +394,7 @@ class DevicesStudy {
     return *std::ranges::find(result_->rows, std::string_view(for_the_devices), &DevicesRow::name);
   }
 
-  // The first candidate that is not worse than the plain step wins; where there is none, the step does.
+  // Decides the winner: the first candidate that is not worse than the plain step, else the step itself.
   void decide() {
     const double significant = first().given.scene.metrics.significant_rebound;
     std::vector<DriveRobustness>& drives = result_->verdict.drives;
@@ -430,7 +432,7 @@ class DevicesStudy {
       findings().conditions.push_back(fulfilled(row_of_devices().judged.outcomes, condition));
   }
 
-  // A sooner choice that is no worse than the winner, and than the plain step, takes its place.
+  // Replaces the winner by a sooner choice that is not worse than it, nor than the plain step.
   void prefer_sooner(const DriveRobustness& step) {
     const double significant = first().given.scene.metrics.significant_rebound;
     const auto fast = std::ranges::find(result_->choices, std::string_view(fast_row), &DeviceChoice::name);
@@ -492,7 +494,7 @@ class DevicesStudy {
     result_->choices = std::move(kept);
   }
 
-  // In volts, over the window of the verdict.
+  // Returns the scene of these waveforms in volts, over the window of the verdict.
   [[nodiscard]] SceneFile scene_of(const DriveWaveforms& waveforms) const {
     SceneFile file = with_waveforms(result_->drawing.baseline_scene, waveforms);
     if (result_->varied.duration > first().given.duration)
@@ -500,7 +502,7 @@ class DevicesStudy {
     return file;
   }
 
-  // On the nominal device.
+  // Simulates and confirms the winner on the nominal device.
   void win(const DriveWaveforms& waveforms) {
     OptimizeResult& best = result_->best;
     const OptimizeResult& drawing = result_->drawing;
@@ -518,7 +520,7 @@ class DevicesStudy {
     best.baseline_cost = searched_.cost().value(result_->verdict.drives.front().outcomes, searched_.aims().tail);
   }
 
-  // Until both carry a steady force, where they do.
+  // Draws the courses until both drives carry a steady force, if they do.
   void draw_courses() {
     if (result_->best.plain_step_wins) return;
     const DriveRobustness &step = result_->verdict.drives.front(), &own = row_of_devices().judged;
@@ -539,7 +541,7 @@ class DevicesStudy {
     findings().courses = {.end = end, .unit = unit, .step = courses(step), .own = courses(own)};
   }
 
-  // The candidates of which none closes sooner and more softly, on the devices of the verdict.
+  // Finds the candidates that no other beats in both time and softness, and judges them on the devices of the verdict.
   void front() {
     std::vector<const ChosenFrom*> kept;
     for (const ChosenFrom& one : result_->candidates) {
@@ -562,7 +564,7 @@ class DevicesStudy {
     std::ranges::stable_sort(findings().front, {}, &FrontPoint::first_touch);
   }
 
-  // What the reports tell, beside what was noted on the way.
+  // Collects the findings that were not noted on the way.
   void tell_findings() {
     DevicesFindings& d = findings();
     const std::optional<Closing>& drawn = result_->drawing.best;
@@ -613,16 +615,16 @@ class DevicesStudy {
   std::atomic<bool> searches_drawing_ = false;
   DevicesSearch searched_;
   OptimizeOptions drawing_options_;
-  std::optional<ForDevicesResult> result_;  // once there is a drawing
-  std::optional<ChosenFrom> undelayed_;     // the best whose electrode steps at t = 0, where others may step later
-  long closings_ = 0;                       // of devices, beside those that searched_ counts
-  std::future<void> beside_;                // the last: what it uses outlives it
+  std::optional<ForDevicesResult> result_;  // none before the search for the nominal design
+  std::optional<ChosenFrom> undelayed_;     // the best whose electrode steps at t = 0, if others may step later
+  long closings_ = 0;                       // closings of devices beside those that searched_ counts
+  std::future<void> beside_;                // the last member: what it uses outlives it
 };
 
 }  // namespace
 
 void share_budget(OptimizeOptions& options, ForDevicesOptions& devices) {
-  constexpr long share_of_drawing = 5;  // one part of so many
+  constexpr long share_of_drawing = 5;  // divisor
   const long all = options.max_evaluations;
   options.max_evaluations = std::max(1L, all / share_of_drawing);
   devices.closings = all - options.max_evaluations;

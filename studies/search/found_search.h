@@ -1,4 +1,4 @@
-// What a search came to, whatever its kind.
+// The result of a search of any kind.
 #pragma once
 
 #include <variant>
@@ -14,12 +14,12 @@ struct FoundSearch {
   [[nodiscard]] const OptimizeResult& best() const;
   [[nodiscard]] OptimizeResult& best();
   [[nodiscard]] bool interrupted() const { return best().search.termination == Termination::interrupted; }
-  /// Better than the plain step, on the nominal device or, where devices were judged, on these.
+  /// True if better than the plain step, on the devices where these were judged, else on the nominal device.
   [[nodiscard]] bool is_success() const;
 };
 
-/// Runs the search, with the first of its seeds. Of one over devices whose scene has no [spread] one is assumed: assume_spread().
-/// Throws InvalidInput as optimize() does.
+/// Runs the search with the first of its seeds. A search over devices assumes a spread if the scene has no [spread]:
+/// assume_spread(). Throws InvalidInput as optimize() does.
 [[nodiscard]] FoundSearch run(PlannedSearch& search);
 
 }  // namespace softland

@@ -89,7 +89,7 @@ void FreeFlight::add_free(const PreparedScene& prepared, const std::string& name
     pull = up ? bound.upper : bound.lower;
     release = up ? bound.lower : bound.upper;
   } else {
-    // Voltages are counted from where the electrode does not pull, those that ramp from 0 V.
+    // Voltages are counted from the one where the electrode does not pull; ramped ones from 0 V.
     const double neutral = ramps_ ? 0 : model_.neutral_voltage(drive);
     f.sign = std::abs(low - neutral) > std::abs(high - neutral) ? -1 : 1;
     const double most = f.sign > 0 ? std::min(high, peak) - neutral : neutral - std::max(low, -peak);
@@ -123,7 +123,7 @@ std::vector<double> FreeFlight::strengths(const VectorXd& c) const {
   return all;
 }
 
-// Without the bounds.
+// Computes a control without the bounds.
 double FreeFlight::control(const Free& f, double volts) const {
   const bool squared = !ramps_ && model_.drive_kind(f.drive) == DriveKind::electrode;
   return (squared ? model_.strength(f.drive, volts) : f.sign * volts) / f.largest;
@@ -192,14 +192,15 @@ std::map<std::string, double> FreeFlight::volts(const VectorXd& c) const {
   return all;
 }
 
-// What every drive holds, of the free ones this share.
+// Returns the hold levels of all drives, with this share of those of the free ones.
 std::vector<double> FreeFlight::held_levels(double share_of_free) const {
   std::vector<double> all = hold_;
   for (const Free& f : free_) all[f.drive] *= share_of_free;
   return all;
 }
 
-// Of a switch that is closed at share 1. Its closed equilibrium goes where the share falls below that of its release.
+// Least share of the free hold levels that keeps a switch closed which is closed at share 1. Its closed equilibrium vanishes
+// where the share falls below that of its release.
 double FreeFlight::least_closing_share() const {
   constexpr double precision = 1e-9;
   const auto closes = [&](double share) { return keeps_closed(model_, closed_equilibrium(model_, held_levels(share))); };
@@ -259,7 +260,7 @@ std::optional<ControlledCourse> FreeFlight::swing(double longest) const {
 
 std::optional<ControlledCourse> FreeFlight::flown(std::span<const Signal> signals, int intervals, double longest) const {
   constexpr double tolerance = 1e-6;
-  constexpr int looks = 16;  // at a signal in an interval
+  constexpr int looks = 16;  // samples of a signal in an interval
   std::vector<double> times{0};
   std::vector<VectorXd> states{start_};
   ClosingOptions options{.duration = longest, .tolerance = tolerance, .after_contact = 0};

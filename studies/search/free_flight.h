@@ -1,12 +1,12 @@
-// A switch on its way to the first touch, as a system to be steered in the least time: states and controls without units.
+// A switch on its way to the first touch, as a dimensionless system that is to be steered in the least time.
 //
 //   z_i = q_i s_i / g        u_i = q_i' s_i / (g omega_i)        time in 1 / omega_1
 //
-// q modal coordinates, omega natural frequencies, g contact gap, s_i what mode i moves at the contact point (of a mode with a
-// node there a tenth of the largest): z_i is the part of mode i in the way to the contact. A control is the strength of a drive
-// over its largest (of an electrode that of Switch::strength(), V of the piezo), so that the motion is linear in it and the
-// quickest control jumps between its bounds; where the driver's slew is limited it is the voltage over its largest, and linear
-// between knots.
+// q are modal coordinates, omega natural frequencies, g is the contact gap, s_i the displacement of the contact point by mode i
+// (a tenth of the largest for a mode with a node there). z_i is the part of mode i in the way to the contact. A control is the
+// strength of a drive over its largest: that of Switch::strength() for an electrode, the voltage of a piezo. The motion is
+// linear in it, and the quickest control jumps between its bounds. If the driver's slew is limited, the control is the voltage
+// over its largest, and linear between knots.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,9 +27,9 @@ namespace softland {
 
 class FreeFlight final : public ControlledSystem {
  public:
-  /// The drives that the actuator shapes are free within their limits, with electrodes up to `peak` volts where that is less than
-  /// the driver gives; the others stand at what they hold in the plain step. Keeps a reference. Throws InvalidInput for a scene
-  /// that lacks the drive or its limits, whose gas film is compressible, or that does not rest above its contact.
+  /// Keeps a reference. The drives that the actuator shapes are free within their limits, electrodes only up to `peak` volts if
+  /// the driver gives more. The other drives stand at their values in the plain step. Throws InvalidInput for a scene that
+  /// lacks the drive or its limits, whose gas film is compressible, or that does not rest above its contact.
   FreeFlight(const PreparedScene& prepared, Actuator actuator, double peak = std::numeric_limits<double>::infinity());
 
   [[nodiscard]] Eigen::Index states() const override { return 2 * modes_; }
@@ -42,7 +42,7 @@ class FreeFlight final : public ControlledSystem {
   [[nodiscard]] const std::vector<ControlBound>& bounds() const { return bounds_; }
   [[nodiscard]] bool ramps() const { return ramps_; }
   [[nodiscard]] double time_unit() const { return 1 / omega_[0]; }  ///< [s]
-  /// Of the contact point in gaps and gaps per unit of time: rows of a state.
+  /// Position and velocity of the contact point in gaps and gaps per unit of time, as rows over a state.
   [[nodiscard]] const Eigen::VectorXd& tip() const { return tip_; }
   [[nodiscard]] const Eigen::VectorXd& tip_speed() const { return tip_speed_; }
   [[nodiscard]] double speed_unit() const { return gap_ * omega_[0]; }  ///< [m/s]
@@ -50,22 +50,22 @@ class FreeFlight final : public ControlledSystem {
   struct Landing {
     Eigen::VectorXd state, controls;
   };
-  /// The beam at rest on the contact plane under what every drive holds; none where the contact would have to pull. Where the
-  /// slew is limited, under the least share of the free drives' hold levels that keeps the switch closed: with more of it, a
-  /// contact point that comes to rest on the plane would have come from behind it.
+  /// The beam at rest on the contact plane under the hold levels of all drives; none if the contact would have to pull. If the
+  /// slew is limited, the free drives hold only the least share that keeps the switch closed. A larger share would bring a
+  /// contact point to rest on the plane from behind it.
   [[nodiscard]] std::optional<Landing> landing() const;
 
-  /// Full pull, and from a time on full release, so that the contact point turns back as it arrives: the quickest way of a single
-  /// swing. None where full pull does not reach the contact within `longest` [s].
+  /// The quickest way by a single swing: full pull, and from a time on full release, so that the contact point turns back as it
+  /// arrives. None if full pull does not reach the contact within `longest` [s].
   [[nodiscard]] std::optional<ControlledCourse> swing(double longest) const;
-  /// The flight under signals of all drives until it first touches, as a course of so many intervals of the controls, which are
-  /// those of the free drives as far as they are within their bounds. None where it does not touch within `longest` [s].
+  /// The flight under signals of all drives until it first touches, as a course of `intervals` intervals of the controls. The
+  /// controls are the signals of the free drives, clamped to their bounds. None if it does not touch within `longest` [s].
   [[nodiscard]] std::optional<ControlledCourse> flown(std::span<const Signal> signals, int intervals, double longest) const;
-  /// The free drives [V] at a control.
+  /// The voltages of the free drives at a control [V].
   [[nodiscard]] std::map<std::string, double> volts(const Eigen::VectorXd& c) const;
-  /// Of the driver of a free drive [V/s].
+  /// The slew limit of a free drive's driver [V/s].
   [[nodiscard]] double max_slew(const std::string& drive) const;
-  /// Controls that pull most, and that release most.
+  /// The controls that pull most, and that release most.
   [[nodiscard]] const Eigen::VectorXd& pull() const { return pull_; }
 
  private:

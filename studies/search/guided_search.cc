@@ -11,7 +11,7 @@ namespace softland {
 namespace {
 
 constexpr std::size_t starts_of_the_second = 8;
-constexpr double separation = 0.05;  // of two such starts in some variable, as a part of its bounds' distance
+constexpr double separation = 0.05;  // least distance of two such starts in some variable, as a part of its range
 
 }  // namespace
 
@@ -42,7 +42,7 @@ OptimizerResult GuidedSearch::stage(Problem problem, OptimizerOptions options, b
     {
       const std::scoped_lock lock(mutex_);
       const auto found = known_.find(e.x);
-      own.value = found == known_.end() ? std::numeric_limits<double>::quiet_NaN() : found->second.own;  // it threw
+      own.value = found == known_.end() ? std::numeric_limits<double>::quiet_NaN() : found->second.own;  // the evaluation threw
     }
     on_evaluation_(own);
     log_.emplace(own.index, std::move(own));
@@ -126,7 +126,7 @@ OptimizerResult GuidedSearch::run(Problem problem, OptimizerOptions options, Cos
   OptimizerResult result = stage(problem, first, costs == Costs::both || costs == Costs::leading);
   const bool goes_on = result.termination != Termination::interrupted && result.termination != Termination::failure;
   OptimizerOptions second = options;
-  second.seed = ~options.seed;  // other points than the first stage sampled
+  second.seed = ~options.seed;  // sample other points than the first stage
   second.goes_on = options.goes_on || costs == Costs::both;
   second.smooth = costs == Costs::both;
   second.max_evaluations -= result.evaluations;

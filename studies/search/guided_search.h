@@ -1,6 +1,6 @@
-// A search in two stages: two thirds of the budget by a leading cost, which finds the right valleys, then the rest by the
-// search's own cost, from the best points so far. Both stages are logged by the own cost, as one search. Where the two costs are
-// the same there is one stage.
+// A search in two stages. Two thirds of the budget go by a leading cost, which finds the right valleys; the rest goes by the
+// search's own cost, from the best points so far. Both stages are logged by the own cost, as one search. There is one stage if
+// the two costs are the same.
 #pragma once
 
 #include <functional>
@@ -16,55 +16,57 @@
 
 namespace softland {
 
-/// Two costs of one point; infinite where it is infeasible.
+/// Two costs of one point; infinite if it is infeasible.
 struct SearchCosts {
   double leading = std::numeric_limits<double>::infinity();
   double own = std::numeric_limits<double>::infinity();
-  bool lands = false;  ///< without a significant rebound
-  /// The same under conditions: costs without what broken ones add, and each g of Conditions.
+  bool lands = false;  ///< true for a closing without a significant rebound
+  /// The same under conditions: costs without the penalty of broken ones, and each g of Conditions.
   struct Apart {
     double leading, own;
     std::vector<double> excess;
   };
-  std::optional<Apart> apart = {};  ///< none without conditions, and where the prices are remembered from another search
+  std::optional<Apart> apart = {};  ///< none without conditions, and if the prices are remembered from another search
 };
 
-/// Gradients of the two costs as Problem::gradient, null where there is none; under conditions as Conditions::gradients.
+/// Gradients of the two costs as Problem::gradient, or null; under conditions as Conditions::gradients.
 struct PriceSlopes {
   std::function<std::vector<double>(std::span<const double>)> leading, own;
   std::size_t conditions = 0;
-  /// Of a point, whatever is remembered.
+  /// The costs of a point, computed again whatever is remembered.
   std::function<SearchCosts::Apart(std::span<const double>)> apart = {};
 };
 
-/// What a run minimises: the two costs are the same, the leading one, the own one, or two thirds of the budget the leading one
+/// The cost that a run minimises: the common one, the leading one, the own one, or the leading one for two thirds of the budget
 /// and then the own.
 enum class Costs { same, leading, own, both };
 
-/// The budget of a target with a cost of its own is divided by this: so much of it goes to that cost.
+/// Divisor of the budget: such a part of it goes to the own cost of a target that has one.
 inline constexpr long own_share = 3;
 
 class GuidedSearch {
  public:
-  /// `price` as Problem::objective; `on_evaluation` as OptimizerOptions::on_evaluation, with the own cost as value.
+  /// `price` is as Problem::objective; `on_evaluation` as OptimizerOptions::on_evaluation, with the own cost as value.
   GuidedSearch(std::function<SearchCosts(std::span<const double>)> price, std::function<void(const Evaluation&)> on_evaluation,
                PriceSlopes slopes = {})
       : price_(std::move(price)), on_evaluation_(std::move(on_evaluation)), slopes_(std::move(slopes)) {}
 
-  /// Minimises over the variables of `problem` from its starts; its objective is not used, nor are the callbacks of `options`.
-  /// Throws as minimize() does. Result, improvements and indices, from `first_index` on, are those of one search by the own cost.
-  /// Where both costs are the same and no point lands, a second stage of `more` evaluations goes on from the best points. So does
-  /// a further run, which begins at starts that were not tried as well, and whose result is that of all.
+  /// Minimises over the variables of `problem` from its starts. Its objective and the callbacks of `options` are not used.
+  /// Throws as minimize() does. Result, improvements and indices, from `first_index` on, are those of one search by the own
+  /// cost. If both costs are the same and no point lands, a second stage of `more` evaluations goes on from the best points. A
+  /// further run goes on from them too. It begins at starts that were not tried as well, and its result is that of all runs.
   [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, Costs costs, long more = 0, long first_index = 0);
   struct Best {
     Evaluation evaluation;  ///< with the own cost as value
     double cost = 0;        ///< the leading or the own one
   };
-  /// Of every evaluation that of the least cost, the own or, for Costs::leading, the leading one. Nothing where none is feasible.
+  /// Returns the evaluation with the lowest cost: by the leading cost for Costs::leading, by the own one otherwise. Nothing if
+  /// none is feasible.
   [[nodiscard]] std::optional<Best> best(Costs costs) const;
   /// Every evaluation, by index, with the own cost as value.
   [[nodiscard]] const std::map<long, Evaluation>& log() const { return log_; }
-  /// Of the points whose own cost is below `own`, and that differ from the `others`, the one of the least leading cost.
+  /// Returns the point with the least leading cost, among those whose own cost is below `own` and that differ from the
+  /// `others`.
   [[nodiscard]] std::optional<Evaluation> surest_below(double own, const std::vector<std::vector<double>>& others) const;
 
  private:
@@ -79,7 +81,7 @@ class GuidedSearch {
   std::mutex mutex_;
   std::map<std::vector<double>, SearchCosts> known_;
   std::map<long, Evaluation> log_;  ///< by index
-  long first_index_ = 0;            ///< of the stage
+  long first_index_ = 0;            ///< index of the stage's first evaluation
 };
 
 }  // namespace softland

@@ -31,15 +31,15 @@
 namespace softland {
 namespace {
 
-constexpr double widest_change = 0.25;  // of the logarithm of a factor
-constexpr double first_step = 0.005;    // of the search, of the logarithm of a factor
+constexpr double widest_change = 0.25;  // bound of the logarithm of a factor
+constexpr double first_step = 0.005;    // first step of the search, in the logarithm of a factor
 constexpr long closings_of_a_factor = 40;
-constexpr double periods_of_step = 5;  // in which it closes a switch
+constexpr double periods_of_step = 5;  // window of a step that closes a switch
 constexpr double probability = 0.95;
 
 constexpr double unknown = Metrics::unset;
 
-// Tasks over devices, whose progress is told.
+// Runs tasks over devices, and reports their progress.
 template <class Task>
 void over_devices(std::size_t devices, int jobs, const char* what, const Watch& watch, const Task& task) {
   std::atomic<std::size_t> done = 0;
@@ -55,7 +55,7 @@ void over_devices(std::size_t devices, int jobs, const char* what, const Watch& 
       watch.stop);
 }
 
-// What is measured, and how.
+// A figure to measure, its error, and the way to read it.
 struct Gauge {
   std::string name, unit;
   double error;
@@ -82,7 +82,7 @@ std::vector<Gauge> instruments(const PreparedScene& nominal, const DeviceMeter& 
   return all;
 }
 
-// A figure that no device varies in, or that the nominal one does not have, tells nothing.
+// False for a figure that no device varies in, or that the nominal device does not have.
 bool tells(const MeasurableFigure& figure) {
   if (!(figure.nominal > 0)) return false;
   return std::any_of(figure.values.begin(), figure.values.end(),
@@ -109,15 +109,15 @@ std::vector<MeasurableFigure> measure(const std::vector<Gauge>& all, const Switc
   return figures;
 }
 
-// What a recipe is multiplied by.
+// A factor of a recipe.
 using Factor = double DeviceUnits::*;
 constexpr std::array all_factors{&DeviceUnits::volts, &DeviceUnits::time, &DeviceUnits::piezo};
-// Of a recipe: that of a piezo comes last, and only where it is driven.
+// Returns the factors of a recipe: that of a piezo comes last, and only if it is driven.
 std::span<const Factor> factors_of(bool drives_piezo) { return std::span(all_factors).first(drives_piezo ? 3 : 2); }
 
 constexpr DeviceUnits no_factors{.volts = unknown, .time = unknown};
 
-// The best factors of a device, searched from its own units.
+// Searches the best factors of a device from its own units.
 DeviceUnits best_factors(const RobustCost& cost, const std::vector<Waveform>& recipe, std::size_t k, const DeviceUnits& own,
                          std::span<const Factor> factors) {
   const auto units_at = [&](std::span<const double> x) {
@@ -146,7 +146,7 @@ DeviceUnits best_factors(const RobustCost& cost, const std::vector<Waveform>& re
   return found.x.empty() || least >= RobustCost::not_closed ? no_factors : units_at(found.x);
 }
 
-// Rows 1, ln x_1 ... of the devices; NaN where a figure is not there.
+// Returns rows 1, ln x_1 ... of the devices; NaN for a figure that is missing.
 Eigen::MatrixXd regressors(const std::vector<MeasurableFigure>& figures, const std::vector<std::size_t>& used,
                            std::uint64_t seed) {
   const auto devices = static_cast<Eigen::Index>(figures.empty() ? 0 : figures.front().values.size());
@@ -154,7 +154,7 @@ Eigen::MatrixXd regressors(const std::vector<MeasurableFigure>& figures, const s
   for (std::size_t i = 0; i < used.size(); ++i) {
     const MeasurableFigure& f = figures[used[i]];
     for (Eigen::Index k = 0; k < devices; ++k) {
-      constexpr std::uint64_t room = 64;  // for figures, in the numbers of a device
+      constexpr std::uint64_t room = 64;  // numbers reserved for the figures of a device
       const double error = f.error * random_normal(seed, Stream::measurement, static_cast<std::uint64_t>(k) * room + used[i]);
       x(k, static_cast<Eigen::Index>(i) + 1) = std::log(f.values[static_cast<std::size_t>(k)] / f.nominal * (1 + error));
     }
@@ -162,7 +162,7 @@ Eigen::MatrixXd regressors(const std::vector<MeasurableFigure>& figures, const s
   return x;
 }
 
-// The factors of every device, told by a fit to the half that it is not in.
+// Predicts the factors of every device by a fit to the half that it is not in.
 std::vector<DeviceUnits> told_factors(const Eigen::MatrixXd& x, const std::vector<DeviceUnits>& best,
                                       std::span<const Factor> factors) {
   const Eigen::Index devices = x.rows(), middle = devices / 2, count = static_cast<Eigen::Index>(factors.size());
@@ -174,7 +174,7 @@ std::vector<DeviceUnits> told_factors(const Eigen::MatrixXd& x, const std::vecto
       const bool inside = k >= begin && k < end;
       if (!inside && x.row(k).allFinite() && std::isfinite(best[static_cast<std::size_t>(k)].volts)) fitted.push_back(k);
     }
-    if (static_cast<Eigen::Index>(fitted.size()) < x.cols() + 2) continue;  // nothing can be told
+    if (static_cast<Eigen::Index>(fitted.size()) < x.cols() + 2) continue;  // too few devices for a fit
     Eigen::MatrixXd logarithms(fitted.size(), count);
     for (std::size_t i = 0; i < fitted.size(); ++i) {
       const DeviceUnits& units = best[static_cast<std::size_t>(fitted[i])];
@@ -193,7 +193,7 @@ std::vector<DeviceUnits> told_factors(const Eigen::MatrixXd& x, const std::vecto
   return units;
 }
 
-// Root mean square of what is missed, and its square over the variance.
+// Returns the root mean square error of the prediction, and its square over the variance.
 std::pair<double, double> misses(const std::vector<DeviceUnits>& told, const std::vector<DeviceUnits>& best, Factor factor) {
   std::vector<double> wanted;
   double square = 0;
@@ -208,7 +208,7 @@ std::pair<double, double> misses(const std::vector<DeviceUnits>& told, const std
   return {std::sqrt(mean_square), deviation > 0 ? mean_square / (deviation * deviation) : unknown};
 }
 
-// A prediction together with what it tells.
+// A prediction, and the factors that it predicts.
 struct Told {
   Prediction prediction;
   std::vector<DeviceUnits> units;
@@ -224,7 +224,7 @@ Told fitted(const IdentificationStudy& study, std::uint64_t seed, std::string na
   return told;
 }
 
-// What bounds the predictions from below and from above, and the units that recipes are given in.
+// Returns the bounds of the predictions from below and above, and the units that recipes are given in.
 std::vector<Told> told_for_reference(const IdentificationStudy& study, std::uint64_t seed) {
   std::vector<Told> all;
   const auto given = [&](std::string name, std::vector<DeviceUnits> units) {
@@ -257,7 +257,7 @@ std::vector<Told> told_for_reference(const IdentificationStudy& study, std::uint
   return all;
 }
 
-// Every figure, and every two of them.
+// Returns the predictions from every figure, and from every two of them.
 std::vector<Told> told_by_figures(const IdentificationStudy& study, std::uint64_t seed) {
   std::vector<Told> all;
   const std::vector<MeasurableFigure>& figures = study.figures;

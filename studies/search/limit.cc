@@ -25,18 +25,18 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr int first_knots = 48;       // intervals of the controls before they are refined
-constexpr double piece_angle = 0.75;  // of the fastest mode in a piece of the mesh
-// Of the optimum and a simulation: relative, of the time of the touch, or of the gap as far as one misses it.
+constexpr double piece_angle = 0.75;  // phase of the fastest mode in a piece of the mesh
+// Agreement of the optimum with a simulation, relative to the time of the touch, or to the gap if one misses it.
 constexpr double agreement = 1e-4;
 constexpr double longest_swing = 3;       // periods of the first mode
-constexpr double softness = 0.2;          // of the permitted speed: how much faster a simulation may touch
-constexpr double catch_tolerance = 1e-6;  // of the integrator, where catches are compared
-constexpr int refinements = 3;            // of the knots: each halves their shortest interval
-constexpr int most_meshes = 3;            // each half as wide as the one before
+constexpr double softness = 0.2;          // part of the permitted speed by which a simulation may touch faster
+constexpr double catch_tolerance = 1e-6;  // tolerance of the integrator for comparing catches
+constexpr int refinements = 3;            // knot refinements: each halves their shortest interval
+constexpr int most_meshes = 3;            // meshes: each is half as wide as the one before
 
-// Of the gap: how near every mode comes to its place in the closed equilibrium.
+// Distances of every mode from its place in the closed equilibrium, in gaps; they shrink step by step.
 constexpr std::array rest_rooms = {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003};
-constexpr long nearing_iterations = 100;  // of Ipopt from one to the next: where there is a way it takes about thirty
+constexpr long nearing_iterations = 100;  // Ipopt iterations per distance: about thirty if a way exists
 
 std::vector<double> uniform_knots(int intervals) {
   std::vector<double> knots;
@@ -44,7 +44,7 @@ std::vector<double> uniform_knots(int intervals) {
   return knots;
 }
 
-// The controls as tables of volts against time, which pull from the touch on.
+// Returns the controls as tables of volts against time, which pull from the touch on.
 DriveWaveforms tables_of(const FreeFlight& flight, const ControlledCourse& course) {
   const double end = course.time * flight.time_unit();
   std::map<std::string, Table> tables;
@@ -60,7 +60,7 @@ DriveWaveforms tables_of(const FreeFlight& flight, const ControlledCourse& cours
   if (flight.ramps()) {
     for (Index k = 0; k < columns; ++k) add(course.knots[static_cast<std::size_t>(k)] * end, at(k));
   } else {
-    // What differs by less than the solver's own error is one level.
+    // Differences below the solver's own error make one level.
     constexpr double same = 1e-9;
     Index level = 0;
     add(0, at(0));
@@ -78,9 +78,9 @@ DriveWaveforms tables_of(const FreeFlight& flight, const ControlledCourse& cours
   return waveforms;
 }
 
-// What follows the touch: full pull from one time to another [s], then the hold levels.
+// The phase after the touch: full pull from one time to another [s], then the hold levels.
 struct Catch {
-  double begin = 0, end = 0;  // after the touch
+  double begin = 0, end = 0;  // times after the touch
 };
 
 DriveWaveforms with_catch(const FreeFlight& flight, const LeastTime& found, const Catch& pulled, const DriveWaveforms& held) {
@@ -102,7 +102,7 @@ DriveWaveforms with_catch(const FreeFlight& flight, const LeastTime& found, cons
   return caught;
 }
 
-// The drives under searched waveforms; what is not searched is that of the plain step, else of the scene.
+// Returns the drives under searched waveforms. Other drives have the plain step, else the waveform of the scene.
 std::vector<Signal> driven(const PreparedScene& prepared, DriveWaveforms searched, const DriveWaveforms& plain) {
   searched.insert(plain.begin(), plain.end());
   return prepared.driven(prepared.waveforms(searched));
@@ -119,7 +119,7 @@ Arrival arrival(const PreparedScene& prepared, const DriveWaveforms& searched, A
   return {m.initial_contact_time, m.impact_velocity};
 }
 
-// One search for a least time: the problem, its best course so far, and what is told of it.
+// One search for a least time: the problem, its best course so far, and its progress.
 class LeastTimeSearch {
  public:
   LeastTimeSearch(const PreparedScene& prepared, const LeastTimeOptions& options)
@@ -136,7 +136,8 @@ class LeastTimeSearch {
     return from(std::move(*swing), longest_time());
   }
 
-  // Waveforms of courses ever nearer to rest, on the first knots and mesh; from the touch on they hold as the plain ones.
+  // Returns waveforms of courses ever nearer to rest, on the first knots and mesh. They hold as the plain ones from the touch
+  // on.
   std::vector<DriveWaveforms> ways_to_rest(const DriveWaveforms& plain) {
     std::vector<DriveWaveforms> all;
     std::optional<ControlledCourse> swing = flight_.swing(longest_time());
@@ -200,12 +201,12 @@ class LeastTimeSearch {
         .knots = uniform_knots(first_knots),
         .longest_piece = piece_angle / (fastest * course_.time),
         .stop = options_.watch.stop};
-    // A beam stays at rest where the drives have come to the levels under which it does.
+    // A beam stays at rest only if the drives end at the levels under which it rests.
     for (Index k = 0; landing && flight_.ramps() && k < flight_.controls(); ++k)
       problem_.bounds[static_cast<std::size_t>(k)].after = landing->controls[k];
   }
 
-  // A failure leaves the last course.
+  // Solves from the last course, which a failure leaves as it is.
   Status improve() {
     ControlledCourse course = solve(problem_, course_);
     result_.message = course.message;
@@ -225,7 +226,7 @@ class LeastTimeSearch {
     }
   }
 
-  // The modes are brought to rest little by little: at once Ipopt finds no way.
+  // Brings the modes to rest little by little: Ipopt finds no way in one go.
   Status come_to_rest(const VectorXd& landed, const std::function<void()>& nearer = {}) {
     const Index n = flight_.states();
     for (Index r = 0; r < n; ++r) problem_.at_the_end.push_back({.row = VectorXd::Unit(n, r)});
@@ -252,7 +253,7 @@ class LeastTimeSearch {
     return Status::done;
   }
 
-  // On finer meshes, until a simulation of the waveform touches when and as softly as the optimum does.
+  // Solves on finer meshes, until a simulation of the waveform touches when and as softly as the optimum does.
   LeastTime refine_until_simulated() {
     for (int mesh = 1;; ++mesh) {
       result_.course = course_;
@@ -267,7 +268,7 @@ class LeastTimeSearch {
       const double missed = apart * std::max(touch.velocity, result_.impact_velocity);
       bool near = apart <= agreement * result_.time || missed <= agreement * prepared_.scene.device.contact_gap();
       const bool as_soft = touch.velocity <= result_.impact_velocity + softness * options_.impact_velocity;
-      // A contact point that comes to rest beside its plane may graze it before.
+      // A contact point that comes to rest beside its plane may graze it earlier.
       near = near || (options_.at_rest && as_soft && touch.time < result_.time);
       if ((near && as_soft) || (near && mesh == most_meshes)) return ended(Status::done, {});
       if (mesh == most_meshes) return ended(Status::numerical_failure, "a simulation of the waveform touches at another time");
@@ -319,7 +320,7 @@ std::vector<DriveWaveforms> landings_at_rest(const PreparedScene& prepared, Actu
       const LeastTimeOptions options{.actuator = actuator, .impact_velocity = impact_velocity, .watch = own};
       std::ranges::move(LeastTimeSearch(smooth, options).ways_to_rest(plain_step(prepared, actuator)), std::back_inserter(found));
     } catch (const InvalidInput&) {
-      return {};  // free_flight.h says of what
+      return {};  // a scene that free_flight.h does not follow
     }
   }
   return found;
@@ -327,10 +328,11 @@ std::vector<DriveWaveforms> landings_at_rest(const PreparedScene& prepared, Actu
 
 namespace {
 
-// A catch that begins at once presses a beam whose modes are just swinging back from the contact: times that of the touch.
+// Delays of the catch after the touch, in times of the touch. A catch without delay presses a beam whose modes are just
+// swinging back from the contact.
 constexpr std::array catch_delays = {0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04};
 
-// What can follow the touch of a way to it.
+// The phases that can follow the touch of a way to it.
 class AfterTouch {
  public:
   AfterTouch(const PreparedScene& prepared, const LeastTime& way, Actuator actuator)
@@ -342,9 +344,10 @@ class AfterTouch {
     until_touch_.waveforms = tables_of(flight_, way.course);
   }
 
-  // The one that rebounds least, of those that begin after a delay and end up to a few times the time of the touch later.
+  // Returns the catch that rebounds least, among those that begin after `delay` and end up to a few times the time of the touch
+  // later.
   [[nodiscard]] Catch best_catch(double delay, const Watch& watch) const {
-    constexpr double longest = 3, step = 0.1;  // times that of the touch
+    constexpr double longest = 3, step = 0.1;  // multiples of the time of the touch
     const double period = 2 * pi / prepared_.model.basis().angular_frequencies()[0];
     Catch best;
     double least = std::numeric_limits<double>::infinity();
@@ -381,7 +384,7 @@ class AfterTouch {
   FreeFlight flight_;
   DriveWaveforms plain_;
   const LeastTime& way_;
-  LeastTime until_touch_;  // with waveforms that end there
+  LeastTime until_touch_;  // the way, with waveforms that end at the touch
 };
 
 bool goes_before(const LimitLanding& a, const std::optional<LimitLanding>& b) {
@@ -392,7 +395,7 @@ bool goes_before(const LimitLanding& a, const std::optional<LimitLanding>& b) {
                        : own.major_bounce_height < other.major_bounce_height;
 }
 
-// All least times and landings of one limit, each told as it begins.
+// All least times and landings of one limit; each is reported as it begins.
 class LimitStudy {
  public:
   LimitStudy(Limit& result, const Watch& watch)
@@ -426,11 +429,11 @@ class LimitStudy {
   }
 
  private:
-  static constexpr std::array quicker = {10.0, 3.0};  // times the permitted speed
+  static constexpr std::array quicker = {10.0, 3.0};  // multiples of the permitted speed
   static constexpr std::array speeds = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
   static constexpr std::array peaks = {0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95};
 
-  // A speed that was asked for holds for the landing too.
+  // A speed that the user gave holds for the landing too.
   [[nodiscard]] bool may_be_quicker() const { return !result_.options.impact_velocity; }
   [[nodiscard]] bool has_peaks() const { return result_.options.curves && result_.options.actuator != Actuator::pzt; }
 
@@ -447,7 +450,7 @@ class LimitStudy {
     return known_.emplace(share, least_time(result_.given, other)).first->second;
   }
 
-  // Of several catches the first whose landing is confirmed.
+  // Lands with the first of several catches whose landing is confirmed.
   void land(const LeastTime& way, bool catches) {
     if (way.status != Status::done) return;
     const AfterTouch after(result_.given, way, result_.options.actuator);
@@ -474,14 +477,15 @@ class LimitStudy {
   const Watch& watch_;
   LeastTimeOptions usual_;
   double parts_, done_ = 0;
-  std::map<double, LeastTime> known_;  // by the speed over the permitted one
+  std::map<double, LeastTime> known_;  // results by the speed over the permitted one
 };
 
 }  // namespace
 
 namespace {
 
-// An electrode with a face on either side whose far face is the nearer one pushes the switch off its contact at any voltage.
+// Refuses an electrode with a face on either side whose far face is nearer: it pushes the switch off its contact at any
+// voltage.
 void refuse_what_pulls_away(const PreparedScene& given, Actuator actuator) {
   if (actuator == Actuator::pzt || !has_pulling_electrode(given.scene.device)) return;
   const std::size_t k = searched_drive(given.scene.device);
@@ -513,7 +517,7 @@ Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& wat
   watch.throw_if_stopped();
   if (!prepared.scene.spread.empty()) result.approach = stable_approach(prepared, options.actuator);
   if (result.approach) result.quasi_static = quasi_static_speed(*result.approach, prepared, result.step.steady_force_time);
-  constexpr double soft = 0.01;  // of the plain step's impact velocity
+  constexpr double soft = 0.01;  // share of the plain step's impact velocity
   require_request(options.impact_velocity || std::isfinite(result.step.impact_velocity),
                   [] { return "the plain step does not touch: give " + requested("impact-velocity"); });
   result.impact_velocity = options.impact_velocity.value_or(soft * result.step.impact_velocity);

@@ -11,7 +11,7 @@
 namespace softland {
 namespace {
 
-// The limits, and whether any differs from those of the drivers.
+// Sets the limits, and returns true if any differs from those of the drivers.
 bool make_gentle(SearchSetting& setting) {
   const double shortest_period = 2 * pi / setting.given.model.basis().angular_frequencies().maxCoeff();
   bool changes = false;

@@ -28,15 +28,15 @@
 namespace softland {
 namespace {
 
-constexpr double time_share = 0.3;          // of the time in periods, beside the vibration in contact gaps
-constexpr double outside_share = 5;         // of the vibration beyond the band, on top
+constexpr double time_share = 0.3;          // weight of the time in periods, beside the vibration in contact gaps
+constexpr double outside_share = 5;         // extra weight of the vibration beyond the band
 constexpr double stays_closed = 10;         // cost of a switch that stays closed
 constexpr double touched_again = 0.5;       // cost of every touch after the switch has let go
-constexpr double opening_tolerance = 1e-5;  // of the integrator
-constexpr double seen_for = 1;              // periods after the drives stand in which a candidate's vibration is measured
-constexpr double watched_for = 3;           // the same, at least, of a run that is believed
+constexpr double opening_tolerance = 1e-5;  // tolerance of the integrator
+constexpr double seen_for = 1;              // periods in which a candidate's vibration is measured, after the drives stand
+constexpr double watched_for = 3;           // the same for a run that verifies the winner, at least
 
-// The source of a drive has stood at its hold level for so many of its time constants.
+// Number of time constants for which the source of a drive has stood at its hold level.
 constexpr double settled_after = 50;
 
 class ReleaseSearch {
@@ -49,17 +49,18 @@ class ReleaseSearch {
         pulses_(given, options.actuator, hold_levels(signals_of(given.waveforms())), "release"),
         plain_(driven(pulses_.plain())) {}
 
-  /// Every drive to 0 V at once.
+  /// Signals of the plain opening: every drive goes to 0 V at once.
   [[nodiscard]] const std::vector<Signal>& plain() const { return plain_; }
   [[nodiscard]] std::vector<Signal> signals(std::span<const double> x) const { return driven(pulses_.told(x)); }
 
-  /// The scene with what its drives are told, each from its hold level on; of no point that of the plain opening.
+  /// Returns the scene with the commanded voltages of all drives, each from its hold level on; with those of the plain opening
+  /// if `x` is empty.
   [[nodiscard]] SceneFile scene(std::span<const double> x) const {
     const std::vector<Corners> told = x.empty() ? pulses_.plain() : pulses_.told(x);
     const std::vector<std::string> names = given_.drive_names();
     DriveWaveforms waveforms;
     for (std::size_t k = 0; k < names.size(); ++k) {
-      if (names[k] == dispersion_drive) continue;  // which no source drives
+      if (names[k] == dispersion_drive) continue;  // no source drives it
       Table table;
       for (const auto& [time, voltage] : told[k]) {
         table.time.push_back(time);
@@ -76,7 +77,7 @@ class ReleaseSearch {
     return file;
   }
 
-  /// An opening of a switch, which may be a richer one of the same scene.
+  /// Simulates an opening of a switch, which may be a richer one of the same scene.
   [[nodiscard]] Opening open(const Switch& model, std::span<const double> closed, std::vector<Signal> signals, double tolerance,
                              double window, const std::atomic<bool>* stop = nullptr) const {
     Opening o{.signals = std::move(signals), .voltages_end = 0, .trajectory = {}, .figures = {}};
@@ -131,7 +132,7 @@ class ReleaseSearch {
     return all;
   }
 
-  // What the source of drive k gives when it is told these points after it has stood at the first one for long.
+  // Returns the output of the source of drive k for these commanded points, after it has stood at the first one for long.
   [[nodiscard]] Signal driven(std::size_t k, Corners points) const {
     const DriverModel& source = given_.drives[k].source;
     const SourceErrors& errors = given_.drives[k].errors;
@@ -156,7 +157,7 @@ bool is_open_with_drives(const OpeningFigures& f, double band) {
   return f.status == Status::done && f.residual_vibration <= band;
 }
 
-// Sooner open for good; with equal ends, or none, by the vibration that is left.
+// True if `a` is open for good sooner; with equal times, or none, if it leaves less vibration.
 bool better(const OpeningFigures& a, const OpeningFigures& b) {
   if (!std::isfinite(a.release_time)) return false;
   if (!std::isfinite(b.release_time)) return true;
@@ -185,7 +186,7 @@ DeviceOpenings summarised(const std::vector<OpeningFigures>& openings, double ba
           .overshoot = quantile_95(openings, &OpeningFigures::overshoot)};
 }
 
-// Both openings on devices; none where no device is held closed.
+// Returns the openings on devices; none if no device is held closed.
 std::optional<OpeningsOnDevices> on_devices(const ReleaseSearch& search, const OpeningResult& r, const Watch& watch) {
   SceneFile file = r.given.scene.file;
   OpeningsOnDevices found{.spread_assumed = assume_spread(file), .plain = {}, .best = {}};

@@ -22,26 +22,26 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t most_candidates = 8;  // of the search, verified at the most
-constexpr std::size_t most_sure = 4;        // more, where those did not stand up
-constexpr std::size_t most_of_family = 4;   // of each family, where none was confirmed
-constexpr long fewest_for_landings = 1000;  // evaluations, for which landings at rest are worth their seconds
+constexpr std::size_t most_candidates = 8;  // most candidates of the search that are verified
+constexpr std::size_t most_sure = 4;        // most further ones, if those failed
+constexpr std::size_t most_of_family = 4;   // candidates of each family, if none was confirmed
+constexpr long fewest_for_landings = 1000;  // evaluations from which on landings at rest are worth their seconds
 constexpr double least_for_landings = 60;   // [s], likewise
-// When, in parts of a budget in seconds, the search ends, that with gentler edges, and that by the worst of beams: the rest is
-// for what verifies the winner.
+// Ends of the search, of that with gentler edges, and of that by the worst of beams, in parts of a budget in seconds. The rest
+// is for verifying the winner.
 constexpr double end_of_search = 0.6, end_of_gentle = 0.75, end_of_worst = 0.85;
-constexpr double soft_touch = 0.01;            // of the plain step's impact velocity, at which they touch
-constexpr double distinct = 1.01;              // ratio of the costs of two candidates
-constexpr std::size_t families_sifted = 2;     // by the worst of beams
-constexpr long evaluations_of_the_worst = 50;  // of the budget so small a part, by the worst of beams
-constexpr long shortest_half = 100;            // evaluations that are not divided any more
+constexpr double soft_touch = 0.01;            // touch speed of landings at rest, over that of the plain step
+constexpr double distinct = 1.01;              // least ratio of the costs of two candidates
+constexpr std::size_t families_sifted = 2;     // families that are sifted by the worst of beams
+constexpr long evaluations_of_the_worst = 50;  // divisor of the budget for the search by the worst of beams
+constexpr long shortest_half = 100;            // evaluations of a budget that is not divided any more
 constexpr double opening = 0.6;                // share of the budget that several families divide before the best goes on
 
-// Of what is kept of the candidates: see Search::tried.
+// Numbers of candidates that are kept: see Search::tried.
 constexpr std::size_t kept_best = 100, kept_of_ladder = 150, kept_of_family = 15;
 
-// The best of a search's improvements first, each distinctly worse than the one before: neighbours would fail for the same
-// reason.
+// Returns the best of a search's improvements first, each distinctly worse than the one before: neighbours would fail for the
+// same reason.
 std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) {
   std::vector<Evaluation> chosen;
   for (auto e = improvements.rbegin(); e != improvements.rend() && chosen.size() < most_candidates; ++e) {
@@ -51,7 +51,7 @@ std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) 
   return chosen;
 }
 
-// Of evaluations in order those that are better than all before them.
+// Returns the evaluations, in order, that are better than all before them.
 std::vector<Evaluation> improvements_of(std::vector<Evaluation> log) {
   std::vector<Evaluation> improvements;
   for (Evaluation& e : log) {
@@ -61,11 +61,11 @@ std::vector<Evaluation> improvements_of(std::vector<Evaluation> log) {
   return improvements;
 }
 
-// One search: its families, and what is told of it while it runs.
+// One search: its families, and its reports while it runs.
 class Search {
  public:
-  /// The family of each of the settings is its number among them; `options` may change until on_start has been called;
-  /// `max_seconds` [s] instead of theirs.
+  /// The family of each setting is its index. `options` may change until on_start has been called. `max_seconds` [s] takes the
+  /// place of theirs.
   Search(const std::vector<SearchSetting>& settings, const OptimizeOptions& options, double max_seconds)
       : settings_(settings),
         options_(options),
@@ -78,8 +78,8 @@ class Search {
     begin_ = std::chrono::steady_clock::now();
   }
 
-  // A scene that holds a landing already is refined, and so are landings that other searches have found: they are the first
-  // candidates, and the search starts there, or, from those of another family, at the nearest waveform of its own.
+  // Refines a landing that the scene holds already, and those that other searches have found. They are the first candidates,
+  // and the search starts there, or at the nearest waveform of its family.
   void begin() {
     const SearchSetting& setting = settings_.front();
     if (!setting.begins_plainly())
@@ -103,10 +103,10 @@ class Search {
     }
   }
 
-  // Of a search of one family.
+  // Adds a start to a search of one family.
   void begin_at_point(const std::vector<double>& x) { families_.front().begin_at_point(x); }
 
-  // Of a piezo and of several drives, which can bring all modes to rest.
+  // Finds landings at rest for a piezo and for several drives, which can bring all modes to rest.
   [[nodiscard]] std::vector<DriveWaveforms> landings_at_rest() const {
     const SearchSetting& setting = settings_.front();
     const std::vector<DriveSearch>& shaped = setting.space.drives();
@@ -122,7 +122,7 @@ class Search {
     return all_;
   }
 
-  // The landings that were given and the best of what the search came upon.
+  // Verifies the given landings and the best candidates of the search.
   void verify(Verification& all) const {
     for (const FoundWaveform& given : landings_) all.add(given);
     std::vector<Evaluation> tried;
@@ -134,7 +134,7 @@ class Search {
       add(e);
       if (all.decided(e.value)) break;
     }
-    // Neighbours ring the same modes that the scene does not have: other families may not.
+    // Candidates of other families: neighbours ring the same modes that the scene does not have.
     for (std::size_t k = 0; k < families_.size() && families_.size() > 1 && !all.confirmed(); ++k) {
       std::size_t added = 0;
       for (const Evaluation& e : candidates(improvements_of(families_[k].log()))) {
@@ -144,8 +144,8 @@ class Search {
         ++added;
       }
     }
-    // Where the best by the own cost did not stand up to the full run, others that promise more than what did: the surest
-    // landings first, among which are the winners of a search for another target.
+    // If the best by the own cost failed the full run, verify others that promise more than what passed, the surest landings
+    // first. The winners of a search for another target are among them.
     if (options_.target.has_own_cost()) {
       for (const FamilySearch& family : families_) {
         for (std::size_t k = 0; k < most_sure; ++k) {
@@ -164,7 +164,7 @@ class Search {
     std::vector<std::vector<double>> points = {};
   };
 
-  // By another cost, of every family that has any; that of the best first.
+  // Ranks the candidates of every family by another cost; the family with the best comes first.
   [[nodiscard]] std::vector<Promising> promising(const SearchSetting& other) const {
     std::vector<Promising> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
@@ -182,7 +182,7 @@ class Search {
     return all;
   }
 
-  // The best of all candidates that touch, a ladder of those that cost more, and the best of every family.
+  // Returns the best of all candidates that touch, a ladder of costlier ones, and the best of every family.
   [[nodiscard]] std::vector<TriedWaveform> tried() const {
     std::vector<Evaluation> all;
     for (const FamilySearch& family : families_) {
@@ -203,7 +203,7 @@ class Search {
     return kept;
   }
 
-  // What every family came to.
+  // Returns the results of every family.
   [[nodiscard]] std::vector<SearchedFamilyResult> families() const {
     std::vector<SearchedFamilyResult> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
@@ -220,7 +220,7 @@ class Search {
     return options_.begins_with_half && !std::isfinite(max_seconds_) && evaluations >= 2 * shortest_half;
   }
 
-  // What is done with half the budget is done first, where budgets are divided. False where the search is to end.
+  // Divides the budget where that is asked for: the search with half of it runs first. Returns false if the search must end.
   bool run_halves(long evaluations) {
     if (!is_divided(evaluations)) return run_undivided(evaluations);
     const long half = evaluations / 2;
@@ -235,16 +235,16 @@ class Search {
     const long before = all_.evaluations;
     if (families_.size() == 1)
       return go_on(0, evaluations, all_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same, before > 0);
-    // The whole search for bounce first: no winner of that is then better than one for another target.
+    // Search for bounce first, as a whole: no winner of that search is then better than one for another target.
     const long own = has_own ? evaluations / own_share : 0;
     const double bounce_seconds = all_seconds * (has_own ? 1 - 1.0 / own_share : 1);
     if (!run_families(evaluations - own, bounce_seconds, has_own ? Costs::leading : Costs::same)) return false;
-    // Then the own cost, from the best points of every family, with what gradients have counted as well.
+    // Search by the own cost next, from the best points of every family. Its rest counts gradients as well.
     const long rest = evaluations - (all_.evaluations - before);
     return !has_own || rest <= 0 || run_families(rest, max_seconds_ - seconds(), Costs::own);
   }
 
-  // With the modes of the scene alone.
+  // Computes the own cost with the modes of the scene alone.
   [[nodiscard]] double own_cost(std::size_t family, const Evaluation& e) const {
     SearchSetting alone = settings_[family];
     alone.richer.clear();
@@ -260,9 +260,8 @@ class Search {
             .parameters = families_[k].named(e)};
   }
 
-  // Each family has a share of the budget; the best goes on with the rest. By the cost of bounce each begins at what those before
-  // it have found; by the own cost, where that would draw all into one valley, only the best does. False where the search is to
-  // end.
+  // Gives each family a share of the budget, and the rest to the best. By the cost of bounce, each begins at what those before
+  // it have found. By the own cost only the best does, as all would end in one valley. Returns false if the search must end.
   bool run_families(long all_evaluations, double all_seconds, Costs costs) {
     const double share = opening / static_cast<double>(families_.size()), begun = seconds();
     const auto evaluations = static_cast<long>(share * static_cast<double>(all_evaluations));
@@ -275,7 +274,7 @@ class Search {
     return go_on(leader(costs), rest, all_seconds - (seconds() - begun), options_.more_evaluations, costs, true);
   }
 
-  // `prepared()` is the scene under these waveforms.
+  // `prepared()` returns the scene under these waveforms.
   template <class MakePrepared>
   void refine(const std::vector<Signal>& drives, const DriveWaveforms& waveforms, const MakePrepared& prepared) {
     const double cost = settings_.front().price(drives).own;
@@ -307,7 +306,7 @@ class Search {
     if (const std::optional<SceneFile> scene = families_[e.problem].scene(e)) options_.on_improvement(e, *scene);
   }
 
-  // The family of the least cost; of equals the first.
+  // Returns the family of the least cost; of equals the first.
   [[nodiscard]] std::size_t leader(Costs costs) const {
     std::size_t leader = 0;
     double least = std::numeric_limits<double>::infinity();
@@ -324,7 +323,7 @@ class Search {
     }
   }
 
-  // One run of a family, whose result is added to that of all. False where the search is to end.
+  // Runs a family once and adds its result to that of all. Returns false if the search must end.
   bool go_on(std::size_t family, long evaluations, double time, long more, Costs costs, bool goes_on) {
     if (!(time > 0)) return false;
     const OptimizerResult now =
@@ -345,7 +344,7 @@ class Search {
     return now.termination != Termination::interrupted && now.termination != Termination::failure;
   }
 
-  // The improvements of all families, in the order in which they ran.
+  // Merges the improvements of all families, in the order in which they ran.
   void merge() {
     std::vector<Evaluation> log;
     for (const FamilySearch& family : families_) {
@@ -361,7 +360,7 @@ class Search {
     if (all_.termination == Termination::no_feasible_point) all_.termination = Termination::evaluation_budget;
   }
 
-  // Since it was made.
+  // Seconds since the search was made.
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
@@ -369,7 +368,7 @@ class Search {
   const std::vector<SearchSetting>& settings_;
   const OptimizeOptions& options_;
   double max_seconds_;
-  std::vector<std::string> names_;  // of the families
+  std::vector<std::string> names_;  // names of the families
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::deque<FamilySearch> families_;
   std::vector<FoundWaveform> landings_;
@@ -379,12 +378,12 @@ class Search {
   long next_index_ = 0;
 };
 
-// A search goes on where what it has found belongs to the modes of the scene: with gentle edges, then by the worst of beams. What
-// was searched with gentle edges is only sifted and polished so. These evaluations are not on record: a search that is resumed
-// makes them again.
+// Continues a search whose result belongs to the modes of the scene: with gentle edges, then by the worst of beams. A search
+// with gentle edges is only sifted and polished by the latter. These evaluations are not on record: a resumed search makes them
+// again.
 class SearchBeyondModes {
  public:
-  /// `seconds` since the search began.
+  /// `seconds` returns the time since the search began.
   SearchBeyondModes(const OptimizeOptions& options, std::function<double()> seconds, Verification& verified)
       : options_(options), seconds_(std::move(seconds)), verified_(verified) {
     own_.starts.clear();
@@ -396,7 +395,7 @@ class SearchBeyondModes {
     own_.on_improvement = {};
   }
 
-  /// After a search without gentle edges, which `gentle` has; the evaluations.
+  /// Continues a search without gentle edges, which `gentle` has; returns the evaluations.
   long go_on(const Search& search, const std::vector<SearchSetting>& settings, const std::vector<SearchSetting>& gentle) {
     if (!verified_.belongs_to_modes()) return 0;
     if (gentle.empty()) return sift(search, settings);
@@ -408,7 +407,7 @@ class SearchBeyondModes {
     return sift(other, gentle);
   }
 
-  /// After a search with gentle edges, or whose drivers have no others; the evaluations.
+  /// Continues a search with gentle edges, or whose drivers have no others; returns the evaluations.
   long sift(const Search& search, const std::vector<SearchSetting>& settings) {
     if (!verified_.belongs_to_modes() && !verified_.confirmed()) return evaluations_;
     const std::vector<Search::Promising> all = search.promising(by_the_worst_of_modes(settings.front()));
@@ -417,7 +416,7 @@ class SearchBeyondModes {
       if (!begin("searching on by the worst of more modes", options_.max_evaluations / evaluations_of_the_worst, end_of_worst))
         break;
       std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
-      worst.front().family = 0;  // the only one
+      worst.front().family = 0;  // index of the only one
       own_.family = families_of(options_.family)[k];
       Search other(worst, own_, own_.max_seconds);
       for (const std::vector<double>& point : points) other.begin_at_point(point);
@@ -428,7 +427,7 @@ class SearchBeyondModes {
   }
 
  private:
-  // False where there is no time.
+  // Returns false if no time is left.
   bool begin(std::string what, long evaluations, double end) {
     own_.max_evaluations = std::max(evaluations, 1L);
     own_.max_seconds = end * options_.max_seconds - seconds_();
@@ -473,10 +472,10 @@ double OptimizeResult::parameter(std::string_view name) const {
 
 namespace {
 
-// The options of a search on the nominal device, whose budget is that of closings of its scene; tells what it is going to take.
+// Scales the budget of a search on the nominal device to closings of its scene, and reports the estimate.
 void fit_nominal_budget(const SearchSetting& setting, OptimizeOptions& options) {
   if (!options.counts_work && !options.on_estimate) return;
-  constexpr double by_evaluation = 1.5;  // closings, with the gradients of some and the runs that verify the winner
+  constexpr double by_evaluation = 1.5;  // closings per evaluation, with gradients and the runs that verify the winner
   const ClosingWork one = closing_work(setting);
   const long asked = options.max_evaluations;
   if (options.counts_work) {
@@ -496,7 +495,7 @@ void fit_nominal_budget(const SearchSetting& setting, OptimizeOptions& options) 
 
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   OptimizeOptions options = asked;
-  // The memory of whoever asks may be there from now on only.
+  // The caller's memory may exist only from now on.
   options.on_start = [&](const FamilyColumns& columns) {
     if (asked.on_start) asked.on_start(columns);
     options.memory = asked.memory;
@@ -517,7 +516,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
       std::max((may_go_on ? end_of_search : end_of_worst) * options.max_seconds - seconds(), options.max_seconds / 4);
   const auto started = std::chrono::steady_clock::now();
   Search search(is_gentle ? gentle : settings, options, max_seconds);
-  begin += std::chrono::steady_clock::now() - started;  // what on_start takes is not of the budget
+  begin += std::chrono::steady_clock::now() - started;  // the budget excludes the time of on_start
   search.begin();
   OptimizeResult result{.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
   result.baseline_cost = setting.baseline_cost;
@@ -526,7 +525,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   search.verify(verified);
   result.families = search.families();
   if (options.keep_tried) result.tried = search.tried();
-  result.family = result.families.front().family;  // where there is no winner
+  result.family = result.families.front().family;  // name for a result without winner
   result.variables = setting.space.variables();
   SearchBeyondModes beyond(options, seconds, verified);
   result.evaluations_of_modes = is_gentle ? beyond.sift(search, gentle) : beyond.go_on(search, settings, gentle);

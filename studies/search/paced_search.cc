@@ -13,21 +13,21 @@ namespace {
 
 struct PaceStage {
   std::size_t devices;
-  long closings;  // of waveforms that last as long as the plain step bounces
-  double step;    // of the bounds
+  long closings;  // closings, of waveforms that last as long as the plain step bounces
+  double step;    // part of the bounds
 };
 constexpr std::array stages_at_pace{PaceStage{64, 10'000, 0.15}, PaceStage{128, 10'000, 0.1}, PaceStage{256, 10'000, 0.08},
                                     PaceStage{256, 10'000, 0.04}};
 
-constexpr double of_the_time = 0.995;                // of the time: other devices wait a little longer
-constexpr std::uint64_t first_of_paces = 1'000'000;  // random numbers: beyond those of the race
+constexpr double of_the_time = 0.995;                // share of the time: other devices wait a little longer
+constexpr std::uint64_t first_of_paces = 1'000'000;  // offset of the random numbers: beyond those of the race
 
 bool has_pace(const RobustAim& aim) { return aim.free.until > 0 && std::isfinite(aim.free.until); }
 
-// What devices may wait at a pace.
+// Returns the time that devices may wait at a pace.
 double allowed(const Pace& pace, const RobustAim& aim) { return of_the_time * pace.of_step * aim.free.until; }
 
-// How long a waveform lasts where the search begins, over what devices may wait unpriced: closings take time in proportion.
+// Returns the duration of the first waveform over the time that devices may wait unpriced: closings take time in proportion.
 double relative_duration(const SearchSetting& setting, const RobustAim& aim) {
   if (!has_pace(aim)) return 1;
   const DriveWaveforms first = setting.space.waveforms(setting.space.starts().front());
@@ -80,7 +80,7 @@ std::optional<Racer> search_at_pace(const SearchSetting& given, const Pace& pace
                                        .jobs = options.jobs},
                                       [&](const std::vector<double>&, double, long taken) {
                                         closings += taken;
-                                        if (over()) return true;  // whoever is told may throw from here on
+                                        if (over()) return true;  // the callback may throw from here on
                                         if (options.progress) options.progress(0);
                                         return over();
                                       });

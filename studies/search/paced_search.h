@@ -1,5 +1,5 @@
-// The search for a quasi-static approach over devices: from the closed form, by CMA-ES on ever more devices, at the pace of a
-// time from which on the devices have to carry a steady force.
+// A search for a quasi-static approach over devices. CMA-ES begins at the closed form, on ever more devices. The pace is set by
+// the time from which on the devices have to carry a steady force.
 #pragma once
 
 #include <functional>
@@ -9,16 +9,16 @@
 
 namespace softland {
 
-/// A pace and what is searched at it.
+/// A pace, and the family that is searched at it.
 struct Pace {
-  double of_step = 1;      ///< the time in which devices have to carry a steady force, over that of the plain step
+  double of_step = 1;      ///< time in which devices have to carry a steady force, over that of the plain step
   std::size_t family = 0;  ///< its number among the settings
 };
 
-/// `setting` searches a quasi-static family; `aim` is the aim of the whole search, whose free time is that of the plain step.
-/// None where no such waveform is within the limits, or the search was stopped before it had tried one. Closings count as those
-/// of RaceOptions, of which memory, seed, jobs, stop, out_of_time, progress and on_stage are used, and `closings` over that of a
-/// usual race.
+/// Searches at a pace. `setting` is that of a quasi-static family; `aim` is the aim of the whole search, whose free time is
+/// that of the plain step. None if no such waveform is within the limits, or the search was stopped before it had tried one.
+/// Closings count as those of RaceOptions. Its memory, seed, jobs, stop, out_of_time, progress and on_stage are used, and
+/// `closings` over that of a usual race.
 [[nodiscard]] std::optional<Racer> search_at_pace(const SearchSetting& setting, const Pace& pace, const RobustCost& cost,
                                                   const RobustAim& aim, const RaceOptions& options, std::atomic<long>& closings);
 

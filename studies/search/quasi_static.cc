@@ -19,7 +19,7 @@ struct Ramp {
   }
 };
 
-// The weights of a shaper: binomial coefficients over their sum.
+// Returns the weights of a shaper: binomial coefficients over their sum.
 std::vector<double> shaper(std::size_t impulses) {
   std::vector<double> weights{1};
   for (std::size_t n = 1; n < impulses; ++n) {
@@ -35,7 +35,7 @@ class BrokenLine {
  public:
   explicit BrokenLine(double first) : first_(first) {}
 
-  /// A line from `begin` to `end` through a shaper of half a `period` between its impulses.
+  /// Adds a line from `begin` to `end` through a shaper of half a `period` between its impulses.
   void add(double begin, double end, double height, std::size_t impulses, double period) {
     const std::vector<double> weights = shaper(impulses);
     for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -43,7 +43,7 @@ class BrokenLine {
       ramps_.push_back({begin + shift, end + shift, weights[k] * height});
     }
   }
-  /// An edge of this length by three lines: one through a shaper of three impulses.
+  /// Adds an edge of this length by three lines: one through a shaper of three impulses.
   void add_edge(double begin, double length, double height) { add(begin, begin + length / 2, height, 3, length / 2); }
   void add_line(double begin, double end, double height) { ramps_.push_back({begin, end, height}); }
 
@@ -57,7 +57,7 @@ class BrokenLine {
     for (const Ramp& r : ramps_) sum += r.at(time);
     return sum;
   }
-  /// The points where it bends; those nearer to each other than `apart` are one.
+  /// Returns the points where the line bends; points nearer to each other than `apart` are one.
   [[nodiscard]] std::vector<std::pair<double, double>> points(double apart) const {
     std::vector<double> times{0};
     for (const Ramp& r : ramps_) times.insert(times.end(), {r.begin, r.end});
@@ -75,7 +75,7 @@ class BrokenLine {
   std::vector<Ramp> ramps_;
 };
 
-// Straight lines through these points, within the limits and as slow as the driver asks for.
+// Returns straight lines through these points, within the limits and as slow as the driver asks for.
 Waveform slewed(const std::vector<std::pair<double, double>>& points, double before, const DriverLimits& limits) {
   Table table{.time = {0}, .voltage = {before}};
   double time = 0;
@@ -91,7 +91,8 @@ Waveform slewed(const std::vector<std::pair<double, double>>& points, double bef
   return table;
 }
 
-// At which voltages of the drive that carries the nominal design touches, by the square of the level of the holder up to `most`.
+// Returns the voltages of the carrying drive at which the nominal design touches, by the square of the holder's level up to
+// `most`.
 std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& prepared, const StableApproach& approach,
                                                          double most) {
   constexpr int levels = 6;
@@ -108,10 +109,10 @@ std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& pr
 
 constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;  // standard deviations of the touching voltage
 constexpr double least_deviation = 0.005;                           // of the touching voltage: the contact has a height
-constexpr double nearest_points = 1e-6;                             // of a period
+constexpr double nearest_points = 1e-6;                             // least distance of two points, in periods
 constexpr double step_after_line = 1.2, holder_after_line = 0.8;    // periods after the line
-constexpr double settle = 0.5;                                      // periods in which a holder goes up
-constexpr double least_contact_level = 0.16, most_low = 0.5;        // of a holder's hold level
+constexpr double settle = 0.5;                                      // periods in which a holder rises
+constexpr double least_contact_level = 0.16, most_low = 0.5;        // shares of a holder's hold level
 constexpr std::array lower_levels{0.03, 0.12};                      // likewise
 constexpr double back = 1, back_of_step = 5.7, back_after = 2;      // periods in which a piezo goes back, and waits for it
 
@@ -168,7 +169,7 @@ double QuasiStatic::share(double deviations) const {
   return std::min(1 + deviations * approach_.deviation / reach, std::max(1.0, std::abs(approach_.limit) / reach));
 }
 
-// What a waveform begins with whose devices carry a steady force from `steady` on.
+// Returns the closed form of a waveform whose devices carry a steady force from `steady` on.
 std::vector<double> QuasiStatic::closed_form(double steady, double low) const {
   const double rise = share(impulses_ > 2 ? -slow_before : -fast_before), end = share(beyond);
   const double risen = static_cast<double>(impulses_ + 1) / 2 - (impulses_ > 2 ? 0.5 : 0);  // periods
@@ -229,7 +230,7 @@ QuasiStatic QuasiStatic::paced(double steady) const {
   return own;
 }
 
-// Lines in the square of the volts by which an electrode acts, drawn by chords.
+// Returns lines in the square of the volts of an electrode, approximated by chords.
 Waveform QuasiStatic::carrying(Points points) const {
   if (!is_electrode_) return slewed(points, before_, limits_);
   constexpr int chords = 5;
@@ -256,7 +257,8 @@ DriveWaveforms QuasiStatic::waveforms(std::span<const double> x) const {
   const double touching = reaches(holding_ == Holding::shaped ? x[3] : holder_before_), line = x[1];
   const auto within = [&](double voltage) { return std::clamp(voltage, limits_.min_voltage, limits_.max_voltage); };
   const double rise_voltage = within(x[0] * touching), end_voltage = within(x[2] * touching);
-  const std::size_t of_line = impulses_ > 2 ? impulses_ : 1;  // of its ends; a short shaper is better off without
+  const std::size_t of_line =
+      impulses_ > 2 ? impulses_ : 1;  // impulses at the ends of the line; a short shaper is better without
   const double risen = static_cast<double>(impulses_ + 1) / 2 * period_;
   const double begin = impulses_ > 2 ? risen - period_ / 2 : risen, end = begin + line;
   BrokenLine carrier(strength(before_));

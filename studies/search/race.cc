@@ -19,26 +19,26 @@ constexpr double without_limit = std::numeric_limits<double>::infinity();
 
 struct Rung {
   std::size_t devices;
-  long closings;  // of each search, of a race of the default length
-  double step;    // of the box
+  long closings;  // closings of each search, for a race of the default length
+  double step;    // first step, as a part of the box
 };
 constexpr std::array rungs{Rung{32, 2000, 0.15}, Rung{64, 6000, 0.08}, Rung{128, 10'000, 0.03}};
 constexpr Rung last_again{128, 8000, 0.03};
 constexpr std::size_t most_again = 2;
 constexpr std::size_t finalists = 3;
-constexpr double enough_land = 0.25, many_land = 0.4;  // of the devices: what is ranked, and gone on with, by its share
-constexpr double worth_going_on = 0.01;                // of the devices
+constexpr double enough_land = 0.25, many_land = 0.4;  // bounce-free shares that rank, and go on, by the share
+constexpr double worth_going_on = 0.01;                // least gain in the bounce-free share
 constexpr double population_by_share = 2, longer_where_many_land = 1.7;
 constexpr std::size_t scouting_devices = 16;
 constexpr std::uint64_t box_points = 32;
 
-// A search of the race on its way.
+// One search of the race in progress.
 struct Runner {
   std::size_t family = 0;
   bool by_share = false;
   Point x;
   long closings = 0;
-  std::vector<DeviceOutcome> outcomes = {};  // on the devices of the rung that it is judged for
+  std::vector<DeviceOutcome> outcomes = {};  // outcomes on the devices of its judging
   double bounce_free = 0, tail = without_limit, share = without_limit;
 };
 
@@ -96,7 +96,7 @@ class Race {
   [[nodiscard]] std::uint64_t seed_of(std::size_t rung, const Runner& r) const {
     return random_bits(options_.seed, Stream::race, 1000 * rung + 2 * r.family + (r.by_share ? 1 : 0));
   }
-  // Which devices, and which aim, for the memory.
+  // Identifies the devices and the aim in the memory.
   [[nodiscard]] std::uint64_t identity(const Runner& r) const {
     return random_bits(options_.seed, Stream::race, r.by_share ? 1 : 0);
   }
@@ -106,7 +106,7 @@ class Race {
     if (options_.progress) options_.progress(std::min(1.0, static_cast<double>(all) / planned_));
   }
 
-  // Closings in which the starts are looked at.
+  // Returns the closings that the starts take.
   [[nodiscard]] std::size_t scouting_of(const std::vector<Runner>& runners, const std::vector<DriveWaveforms>& begun) const {
     std::set<std::size_t> families;
     for (const Runner& r : runners) families.insert(r.family);
@@ -115,7 +115,7 @@ class Race {
     return scouting_devices * starts;
   }
 
-  // The best of many starts, for either measure.
+  // Begins every search at the best of many starts, by its measure.
   void begin(std::vector<Runner>& runners, const std::vector<DriveWaveforms>& begun) {
     std::set<std::size_t> families;
     for (const Runner& r : runners) families.insert(r.family);
@@ -152,7 +152,7 @@ class Race {
     return all;
   }
 
-  // Empty where a driver cannot give the waveform.
+  // Returns the outcomes; empty if a driver cannot give the waveform.
   std::vector<DeviceOutcome> closed(std::size_t family, const Point& x, std::size_t devices, int jobs) {
     const SearchSetting& own = settings_[family];
     const DriveWaveforms searched = own.space.waveforms(x);
@@ -179,7 +179,7 @@ class Race {
                                              .seed = seed_of(number, r),
                                              .jobs = options_.jobs},
                                             [&](const Point&, double, long closings) {
-                                              if (over()) return true;  // whoever is told may throw from here on
+                                              if (over()) return true;  // the callback may throw from here on
                                               took(closings);
                                               return over();
                                             });
@@ -189,7 +189,7 @@ class Race {
         options_.stop);
   }
 
-  // On so many devices; whether any search lands that share of them.
+  // Judges every search on so many devices. Returns true if any lands at least `share` of them.
   bool judge(std::vector<Runner>& runners, std::size_t devices, double share) {
     run_tasks(
         runners.size(), options_.jobs,
@@ -205,7 +205,7 @@ class Race {
     return std::ranges::any_of(runners, [&](const Runner& r) { return r.bounce_free >= share; });
   }
 
-  // The best search of every family, and the best of the others by the other criterion.
+  // Returns the best search of every family, and the best of the others by the other criterion.
   static std::vector<Runner> survivors(std::vector<Runner> runners, bool by_share) {
     sort(runners, by_share);
     std::vector<Runner> kept, others;
@@ -256,7 +256,7 @@ class Race {
   const RobustCost& cost_;
   const RaceAims& aims_;
   const RaceOptions& options_;
-  bool alone_ = false;  // one search, not a race
+  bool alone_ = false;  // a single search, not a race
   std::atomic<long> closings_ = 0;
   double planned_ = 1;
 };

@@ -1,20 +1,20 @@
 // A race over devices: searches of several families by two measures, of which the best go on with more devices and smaller steps.
 //
-//   rung   searches                                              closings of each   devices   first step
+//   round  searches                                              closings of each   devices   first step
 //   A      every family by either measure                        2000               32        0.15 of the box
 //   B      the best of every family, and the best of the rest    6000               64        0.08
 //   C      the best three                                        10 000             128       0.03
-//          the first again, where two fifths of the devices      8000               128       0.03
-//          land without a rebound, as long as that gains 1 %
+//          the first again, if two fifths of the devices are     8000               128       0.03
+//          bounce-free, as long as that gains 1 %
 //
-// Where a quarter lands after A, what follows is 1.7 times as long, unless the closings are a budget. Searches by the share have
-// generations twice as large as those of one alone: it takes few values, and tells little of its slope.
+// If a quarter of the devices lands after A, the next rounds are 1.7 times as long, unless the closings are a budget. Searches
+// by the share have generations twice as large as those of a single search: the share takes few values, and shows little of its
+// slope.
 //
-// What goes on is decided on the devices of the next rung: by the share that lands without a rebound where any search has a
-// quarter of the devices there (on the last rung two fifths), else by the tail of the cost; and what was searched by the share
-// then goes on by the tail. A search begins at the best of its family's own starts, of points of the whole box, and of what it is
-// told to begin with, on 16 devices. Searches of a rung are independent of each other, so that the result depends on seed and
-// closings alone.
+// The devices of the next round decide what goes on. The share of bounce-free devices ranks if any search reaches a quarter
+// there (two fifths in the last round), else the tail of the cost. A search by the share then goes on by the tail. A search
+// begins at the best of its family's own starts, of points of the whole box, and of the given waveforms, on 16 devices.
+// Searches of a round are independent of each other, so that the result depends on seed and closings alone.
 //
 // Source for the halving: K. Jamieson & A. Talwalkar, "Non-stochastic best arm identification and hyperparameter optimization",
 // AISTATS 2016.
@@ -33,56 +33,56 @@
 
 namespace softland {
 
-/// Families that are raced where none is named.
+/// Families of a race if none is named.
 inline constexpr std::string_view raced_families = "knots:6+catch+dual-pulse+bspline:6+staircase:5";
 /// Closings of a race of five families by two measures.
 inline constexpr long race_closings = 86'000;
-/// The least length of a race, over the default one: shorter searches end before they tell anything.
+/// The least length of a race, over the default one: shorter searches end too early to be meaningful.
 inline constexpr double least_length_of_race = 0.25;
-/// Devices that a race looks at, at the most.
+/// Most devices of a race.
 inline constexpr std::uint64_t raced_devices = 256;
 
 /// The two measures of a race.
 struct RaceAims {
-  RobustAim tail;   ///< of the cost, as cvar:0.9
-  RobustAim share;  ///< of the devices that land without a rebound
+  RobustAim tail;   ///< tail of the cost, as cvar:0.9
+  RobustAim share;  ///< share of bounce-free devices
 };
 
-/// What a search of the race came to.
+/// The result of a search of the race.
 struct Racer {
   std::size_t family = 0;  ///< its number among the settings
   std::string measure;
   std::vector<double> x;
-  DriveWaveforms waveforms;  ///< of the searched drives [V]
-  long closings = 0;         ///< of the searches that led to it
-  double bounce_free = 0;    ///< share of the devices of its last rung
+  DriveWaveforms waveforms;  ///< waveforms of the searched drives [V]
+  long closings = 0;         ///< closings of the searches that led to it
+  double bounce_free = 0;    ///< bounce-free share of the devices of its last round
   double tail = std::numeric_limits<double>::infinity(), share = std::numeric_limits<double>::infinity();  ///< its costs there
 };
 
 struct RaceOptions {
-  long closings = race_closings;  ///< rungs are as much longer or shorter
-  bool are_a_budget = false;      ///< rungs are no longer where many devices land
+  long closings = race_closings;  ///< closings; they scale the rounds
+  bool are_a_budget = false;      ///< rounds are no longer where many devices land
   std::uint64_t seed = 1;
   int jobs = 1;  ///< threads; does not change the result
   const std::atomic<bool>* stop = nullptr;
-  EvaluationMemory* memory = nullptr;         ///< asked with SearchSetting::family, which has to differ
+  EvaluationMemory* memory = nullptr;         ///< its keys hold SearchSetting::family, which has to differ
   std::function<bool()> out_of_time = {};     ///< may be null
-  std::function<void(double)> progress = {};  ///< told the part that is done, from any thread
-  /// Told of the best search at the end of every stage but the last; may be null.
+  std::function<void(double)> progress = {};  ///< called with the part that is done, from any thread
+  /// Called with the best search at the end of every stage but the last; may be null.
   std::function<void(const Racer&)> on_stage = {};
 };
 
 struct RaceResult {
-  std::vector<Racer> racers;  ///< the ends of all rungs, the last rung first
+  std::vector<Racer> racers;  ///< winners of all rounds, the last round first
   long closings = 0;
 };
 
-/// `settings` differ in SearchSetting::family and space alone; `cost` is on raced_devices of them.
-/// `begun`: waveforms to begin with as well.
+/// Runs the race. `settings` differ in SearchSetting::family and space alone; `cost` is on raced_devices of them. `begun` are
+/// further waveforms to begin with.
 [[nodiscard]] RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims,
                               const RaceOptions& options, const std::vector<DriveWaveforms>& begun = {});
 
-/// One search through all rungs, of one family by one measure. `begun`: waveforms to begin with as well.
+/// Runs one search through all rounds, of one family by one measure. `begun` are further waveforms to begin with.
 [[nodiscard]] RaceResult race_alone(const SearchSetting& setting, std::size_t family, const RobustCost& cost,
                                     const RaceAims& aims, bool by_share, const std::vector<DriveWaveforms>& begun,
                                     const RaceOptions& options);

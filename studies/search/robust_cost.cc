@@ -22,7 +22,7 @@ constexpr double most_violation = 10;
 
 double value_of(const DeviceOutcome& outcome, const Criterion& condition) { return outcome.of(condition.figure); }
 
-// Candidates are ranked by closings of this accuracy at best; the verdict has that of the scene.
+// Candidates are ranked by closings of at best this accuracy; the verdict has that of the scene.
 constexpr double ranking_accuracy = 1e-4;
 
 PreparedScene for_ranking(const PreparedScene& given) {
@@ -165,7 +165,8 @@ std::vector<Signal> RobustCost::signals(const std::vector<Waveform>& waveforms, 
                                : setting_.given.driven(waveforms);
 }
 
-// A sampled drive has a breakpoint at each sample: those that differ by a gain alone are prepared once.
+// Finds the gains of the devices. A sampled drive has a breakpoint at each sample: drives that differ by a gain alone are
+// prepared once.
 void RobustCost::find_gains() {
   if (std::ranges::none_of(ensemble_.units, [&](const DeviceUnits& units) { return drives_.differ(units); })) return;
   ungained_levels_ = hold_levels(drives_.without_gains(setting_.drives({})));
@@ -179,7 +180,7 @@ void RobustCost::find_gains() {
   }
 }
 
-// Nothing is asked of the other devices where the nominal one is not kept closed.
+// Returns how a device is kept closed. All devices count as held if the nominal one is not kept closed.
 RobustCost::Kept RobustCost::kept(std::size_t k, const std::vector<Signal>& signals) const {
   const Hold hold = hold_of(*ensemble_.devices[k].model, signals, nominal_closed_);
   return {.is_held = !nominal_closed_ || hold.is_held,
@@ -303,7 +304,7 @@ bool RobustCost::is_told(std::span<const DeviceOutcome> outcomes) const {
                             : risk(scores(outcomes), aim_.measure.risk) < (1 - rounding) * worst_score;
 }
 
-// Of scores where some devices fail: their deviation would fall again where most of them do.
+// Returns the risk of scores with failing devices: their deviation alone would fall again where most devices fail.
 double RobustCost::risk_of(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores, const Risk& measure) {
   if (measure.kind != RiskKind::mean_sigma || std::ranges::none_of(outcomes, fails)) return risk(scores, measure);
   std::vector<double> others;

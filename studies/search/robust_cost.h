@@ -1,27 +1,27 @@
-// What a drive costs on devices that differ: a measure of risk over the costs of their closings, and conditions on their figures.
+// The cost of a drive over varied devices: a measure of risk over the costs of their closings, and conditions on their figures.
 //
 //   s_k   cost of the closing of device k, every figure over that of the plain step on the nominal device:
 //           bounce             (largest touch speed + highest rebound) / 2
 //           rebound            highest rebound               impact    largest touch speed
 //           count              rebounds                      settling  permanent contact, over first contact of the step
 //           energy             impact energy                 steady    steady force time, over first contact of the step
-//           of a user's own objective its value
-//         3, or more than any that closes, where the device does not close or its hold levels do not keep it closed, where its
-//         closing cannot be followed, or no such device can be described: it fails
+//           own objective      its value
+//         A device that fails costs 3, or more than any that closes. It fails if it does not close, if its hold levels do not
+//         keep it closed, if its closing cannot be followed, or if no such device can be described.
 //   cost  R(s) + (share of devices that fail) + 0.02 min(median of first contact over that of the step, max(0, tau - 1))
 //         + 10 (sum over the conditions: violation, where positive)
 //
-// tau is what a user waits: the 95 % quantile of the time from which on the contact force is steady over what is free, which is
-// that of the plain step on the same devices. The step bounces for that long, so that a slower first touch costs nobody anything.
-// Where 95 % of the devices have no steady force under the step it is their permanent contact, and where they do not settle their
-// first contact. A device that is not steady at the end of its run counts with the end.
+// tau is the waiting time of a user: the 95th percentile of the time from which on the contact force is steady, over the free
+// time, which is that of the plain step on the same devices. The step bounces for that long, so that a slower first touch costs
+// the user nothing. If fewer than 95 % of the devices get a steady force under the step, their permanent contact takes its
+// place, or their first contact if they do not settle. A device that is not steady at the end of its run counts with the end.
 //
-// Of mean+sigma R is that of the devices that do not fail, plus 3 (1 + factor) times the root of the share of those that do: the
-// deviation over all of them would fall again where most fail.
+// R of mean+sigma is that of the devices that do not fail, plus 3 (1 + factor) times the root of the share of those that do.
+// The deviation over all of them would fall again if most fail.
 //
-// R is the measure that was asked for (sampling/risk.h), or for a yield 1 less the share of devices that fulfil its condition,
-// plus a tenth of the mean of s, which leads the search where the share does not change. A condition holds when 95 % of the
-// devices fulfil it: its violation is the 95 % quantile of that of the devices (config/criterion.h).
+// R is the requested measure (sampling/risk.h). For a yield it is 1 less the share of devices that fulfil its condition, plus a
+// tenth of the mean of s, which leads the search where the share does not change. A condition holds when 95 % of the devices
+// fulfil it: its violation is the 95th percentile of that of the devices (config/criterion.h).
 //
 // A closing is scored until 60 % of a period of the first mode, or two and a half in contact, after first touch, and one period
 // in contact after the last breakpoint of its drives.
@@ -40,20 +40,20 @@
 
 namespace softland {
 
-/// Conditions beside the plain step with limits of their own: what 95 % of the devices stay below under it. Throws InvalidInput
-/// where the step has no such figure.
+/// Gives conditions beside the plain step limits of their own: what 95 % of the devices stay below under it. Throws
+/// InvalidInput if the step has no such figure.
 [[nodiscard]] std::vector<Criterion> beside_step(std::vector<Criterion> conditions, std::span<const DeviceOutcome> of_step);
 
 /// The share of devices that has to fulfil a condition.
 inline constexpr double constrained_share = 0.95;
 
-/// Until when waiting for a contact is free.
+/// The time until which waiting for a contact is free.
 struct FreeTime {
   double Metrics::*figure = &Metrics::initial_contact_time;  ///< the time that counts
-  double until = 0;  ///< 95 % of the devices [s]; 0: the median of first contact is priced alone, infinite: nothing is
+  double until = 0;  ///< 95th percentile [s]; 0: the median of first contact is priced alone, infinite: nothing is
 };
-/// As long as the devices wait under the plain step, whose outcomes these are. Throws nothing: where 95 % of them never touch the
-/// time is 0.
+/// Returns the time that the devices wait under the plain step, whose outcomes are `of_step`. Throws nothing: the time is 0 if
+/// 95 % of them never touch.
 [[nodiscard]] FreeTime free_time(std::span<const DeviceOutcome> of_step);
 
 struct RobustAim {
@@ -62,32 +62,33 @@ struct RobustAim {
   FreeTime free = {};
 };
 
-/// Devices and what they would measure without error, by these gauges and their frequency.
+/// Devices and their exact measured values, by these gauges and their frequency.
 struct GaugedEnsemble {
   std::vector<SampledDevice> devices;
-  std::vector<DeviceUnits> exact;  ///< of a device that cannot be described: 1
+  std::vector<DeviceUnits> exact;  ///< exact units; 1 for a device that cannot be described
 };
-/// `precision`: of pull-in voltages, relative. Throws Interrupted where `watch` asks to stop.
+/// Builds and measures the devices. `precision` is that of pull-in voltages, relative. Throws Interrupted if `watch` asks to
+/// stop.
 [[nodiscard]] GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, double precision, int jobs,
                                        const Watch& watch = {});
-/// Of pull-in voltages where devices are compared: far finer than any instrument. Of a film that gives way slowly, which is
-/// followed for long just above its pull-in voltage, it takes a sixth of the time that dynamic_pull_in_precision does.
+/// Precision of pull-in voltages for comparing devices: far finer than any instrument. With a film that gives way slowly, which
+/// is followed for long just above its pull-in voltage, it takes a sixth of the time of dynamic_pull_in_precision.
 inline constexpr double compared_precision = 1e-5;
 
 /// Devices that are built and measured.
 struct BuiltEnsemble {
   std::vector<SampledDevice> devices;
-  std::vector<DeviceUnits> units;  ///< of a device's own drive, over that of the nominal one
+  std::vector<DeviceUnits> units;  ///< units of a device's own drive, over those of the nominal one
 };
-/// The same devices as they are known, by a calibration that needs no other gauges: the errors are functions of `seed` and the
-/// number of the device. One that cannot be measured is refused.
+/// Returns the same devices as they are known, by a calibration that needs no other gauges. The errors are functions of `seed`
+/// and the number of the device. A device that cannot be measured is refused.
 [[nodiscard]] BuiltEnsemble known_as(GaugedEnsemble gauged, const KnownUnits& known, std::uint64_t seed);
-/// Throws Interrupted where `watch` asks to stop.
+/// Builds the devices with their units. Throws Interrupted if `watch` asks to stop.
 [[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs,
                                       const Watch& watch = {});
 
-/// Devices of this search alone, built for candidates that are ranked: closings of an accuracy of 1e-4 at best. Which ones they
-/// are depends on `seed` and `which`. Throws Interrupted where `watch` asks to stop.
+/// Builds devices of this search alone, for ranking candidates: closings of an accuracy of 1e-4 at best. They depend on `seed`
+/// and `which`. Throws Interrupted if `watch` asks to stop.
 [[nodiscard]] BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known, std::uint64_t count,
                                         std::uint64_t seed, std::uint64_t which, int jobs, const Watch& watch);
 
@@ -97,32 +98,33 @@ class RobustCost {
   RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors = vectors_in_use());
 
   [[nodiscard]] std::size_t devices() const { return ensemble_.devices.size(); }
-  /// The closings of devices [first, last) under their own drives; `waveforms` are those of the nominal device, one per drive.
+  /// Closes devices [first, last) under their own drives; `waveforms` are those of the nominal device, one per drive.
   [[nodiscard]] std::vector<DeviceOutcome> close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
                                                  int jobs) const;
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes) const { return value(outcomes, aim_); }
-  /// By another aim.
+  /// The cost by another aim.
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
   /// The measure alone: R(s).
   [[nodiscard]] double measured(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
-  /// The closings of all devices under the plain step until 95 % of them carry a steady force, or as long as such runs go.
+  /// Closes all devices under the plain step until 95 % of them carry a steady force, or for the longest of such runs.
   [[nodiscard]] std::vector<DeviceOutcome> close_by_step(int jobs) const;
-  /// The closings of all devices, followed after first touch for the window of the scene or until `free` [s], what is longer.
+  /// Closes all devices, and follows them after first touch for the window of the scene or until `free` [s], whichever is
+  /// longer.
   [[nodiscard]] std::vector<DeviceOutcome> close_until(const std::vector<Waveform>& waveforms, double free, int jobs) const;
-  /// Whether the measure tells these devices from such as all fail: not where as many of them fail as it looks at, or none
+  /// False if the measure cannot tell these devices from those that all fail: as many of them fail as it looks at, or none
   /// fulfils the condition of a yield.
   [[nodiscard]] bool is_told(std::span<const DeviceOutcome> outcomes) const;
 
   /// s_k of a device that does not close.
   static constexpr double not_closed = 3;
   [[nodiscard]] const SampledDevice& device(std::size_t k) const { return ensemble_.devices[k]; }
-  /// The closing of device k in these units instead of those it was built with.
+  /// Closes device k in these units instead of those it was built with.
   [[nodiscard]] DeviceOutcome close(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const;
-  /// s_k; where its figure is not known that of a device that does not close.
+  /// s_k; that of a device that does not close if its figure is not known.
   [[nodiscard]] double score(const DeviceOutcome& outcome) const;
 
  private:
-  // How its hold levels keep a device.
+  // State of a device under its hold levels.
   struct Kept {
     bool is_held = true;
     double steady_force = Metrics::unset;  // [N]
@@ -146,30 +148,30 @@ class RobustCost {
   const RobustAim& aim_;
   BuiltEnsemble ensemble_;
   DeviceDrives drives_;
-  std::optional<std::vector<std::vector<double>>> gains_;  // of every device; none where drives differ by more
+  std::optional<std::vector<std::vector<double>>> gains_;  // gains of every device; none if drives differ by more
   std::vector<double> ungained_levels_;                    // hold levels of the plain step from sources with a gain of 1
   Vectors vectors_;
-  DeviceOutcome step_;                               // of the nominal device
-  std::optional<ClosedEquilibrium> nominal_closed_;  // under the hold levels; none where they do not keep it closed
-  std::vector<double> levels_;                       // those, of the nominal device
-  std::vector<Kept> kept_;                           // each device, under them
-  double window_, tail_, wait_;                      // after first touch, after the last breakpoint, for a touch [s]
+  DeviceOutcome step_;                               // outcome of the nominal device
+  std::optional<ClosedEquilibrium> nominal_closed_;  // under the hold levels; none if they do not keep it closed
+  std::vector<double> levels_;                       // hold levels of the nominal device
+  std::vector<Kept> kept_;                           // each device, under the hold levels
+  double window_, tail_, wait_;                      // times after first touch, after the last breakpoint, for a touch [s]
 };
 
-/// Whether a device does not close and stay closed, cannot be followed, or cannot be described.
+/// True if a device does not close and stay closed, cannot be followed, or cannot be described.
 [[nodiscard]] bool fails(const DeviceOutcome& outcome);
 
-/// From when on a device carries a steady contact, as FreeTime says; the end of its run where it does not by then, infinite where
-/// it fails [s].
+/// Time from which on a device carries a steady contact, as FreeTime defines it [s]. It is the end of the run if the contact is
+/// not steady by then, infinite if the device fails.
 [[nodiscard]] double waited(const DeviceOutcome& outcome, double Metrics::*figure);
-/// Its 95 % quantile.
+/// 95th percentile of that time.
 [[nodiscard]] double waited(std::span<const DeviceOutcome> outcomes, double Metrics::*figure);
 
-/// Whether a device fulfils a condition.
+/// True if a device fulfils a condition.
 [[nodiscard]] bool fulfils(const DeviceOutcome& outcome, const Criterion& condition);
-/// The share of devices that does.
+/// The share of devices that fulfils it.
 [[nodiscard]] Yield share_that_fulfils(std::span<const DeviceOutcome> outcomes, const Criterion& condition);
-/// Whether constrained_share of the devices fulfils each of the conditions.
+/// True if constrained_share of the devices fulfils each of the conditions.
 [[nodiscard]] bool hold(std::span<const Criterion> conditions, std::span<const DeviceOutcome> outcomes);
 
 }  // namespace softland

@@ -21,16 +21,16 @@ namespace softland {
 namespace {
 
 constexpr int nominal_searches = 2;
-constexpr std::size_t winners_taken = 4;  // of each
-constexpr double scouting_time = 0.05;    // of a budget of time, for each search on the nominal device
+constexpr std::size_t winners_taken = 4;  // winners of each of these searches
+constexpr double scouting_time = 0.05;    // share of a budget of time, for each search on the nominal device
 constexpr std::uint64_t selection_devices = 512;
-constexpr double apart = 0.08;  // of the box: starts of searches
+constexpr double apart = 0.08;  // least distance of starts, as a part of the box
 
 constexpr std::size_t all_devices = std::numeric_limits<std::size_t>::max();
 
-// What is spent on starts, by the budget.
+// Effort for finding starts, by the budget.
 struct Scouting {
-  long nominal_evaluations;  // of each search on the nominal device
+  long nominal_evaluations;  // evaluations of each search on the nominal device
   std::uint64_t box_points;
   std::size_t raced;  // starts that are tried on more than the first devices
 };
@@ -42,9 +42,9 @@ Scouting scouting(long budget) {
 
 struct Heat {
   std::size_t searches;
-  std::size_t devices;  // at the most
-  double share;         // of the budget
-  double step;          // of the box
+  std::size_t devices;  // most devices of a search
+  double share;         // share of the budget
+  double step;          // first step, as a part of the box
 };
 constexpr std::array heats{Heat{6, 32, 0.4, 0.15}, Heat{2, all_devices, 0.35, 0.06}, Heat{1, all_devices, 0.25, 0.025}};
 
@@ -64,7 +64,7 @@ double distance(const Point& a, const Point& b, const std::vector<Variable>& var
   return farthest;
 }
 
-// The best that are apart from each other; the distance shrinks until there are enough.
+// Returns the best that are apart from each other; the distance shrinks until there are enough.
 std::vector<Candidate> best_apart(std::vector<Candidate> all, std::size_t count, const std::vector<Variable>& variables) {
   std::stable_sort(all.begin(), all.end(), is_better);
   std::vector<Candidate> chosen;
@@ -83,7 +83,7 @@ std::uint64_t fresh_seed(std::uint64_t seed, std::uint64_t which) { return rando
 
 class RobustSearch {
  public:
-  /// `step_cost` of the plain step, for the progress.
+  /// `step_cost` is that of the plain step, for the progress.
   RobustSearch(const SearchSetting& setting, const RobustCost& cost, const RobustAim& aim, const OptimizeOptions& options,
                const std::function<double()>& clock, double step_cost)
       : setting_(setting),
@@ -97,7 +97,7 @@ class RobustSearch {
     progress_.baseline_cost = step_cost;
   }
 
-  // The best points of all heats, the best first; empty where nothing was feasible.
+  // Returns the best points of all rounds, the best first; empty if nothing was feasible.
   std::vector<Candidate> run() {
     std::vector<Candidate> leaders = first_leaders();
     std::vector<Candidate> found = leaders;
@@ -112,7 +112,7 @@ class RobustSearch {
       shares_left -= heat.share;
       const std::vector<Candidate> ends = search_from(leaders, heat, static_cast<long>(heat.share * left));
       found.insert(found.end(), ends.begin(), ends.end());
-      // Whatever is best goes on, from whichever heat.
+      // The best go on, from whichever round.
       std::vector<Candidate> all = ends;
       all.insert(all.end(), leaders.begin(), leaders.end());
       std::stable_sort(all.begin(), all.end(), is_better);
@@ -124,7 +124,7 @@ class RobustSearch {
   }
 
   [[nodiscard]] long closings() const { return closings_; }
-  /// On all devices, or as many of them as it took to give a candidate up.
+  /// Number of evaluations on all devices, or on as many of them as it took to give a candidate up.
   [[nodiscard]] long evaluations() const { return static_cast<long>(log_.size()); }
   [[nodiscard]] std::vector<Evaluation> improvements() const {
     std::vector<Evaluation> all;
@@ -166,7 +166,7 @@ class RobustSearch {
     options_.on_progress(progress_);
   }
 
-  // Waveforms that land the nominal device.
+  // Finds waveforms that land the nominal device.
   std::vector<Point> nominal_winners() {
     std::vector<Point> all;
     for (int k = 0; k < nominal_searches && !over(); ++k) {
@@ -186,7 +186,7 @@ class RobustSearch {
     return all;
   }
 
-  // Starts for the first heat: the best of many on ever more devices.
+  // Finds starts for the first round: the best of many on ever more devices.
   std::vector<Candidate> first_leaders() {
     std::vector<Candidate> all;
     const auto add = [&](const Point& x) { all.push_back({.x = x}); };
@@ -218,7 +218,7 @@ class RobustSearch {
     return best_apart(std::move(all), heats[0].searches, variables_);
   }
 
-  // One search from each of the starts, with its share of the closings.
+  // Runs one search from each of the starts, with its share of the closings.
   std::vector<Candidate> search_from(const std::vector<Candidate>& starts, const Heat& heat, long closings) {
     const long share = closings / static_cast<long>(starts.size()), block = share + 3;
     const int inner = std::max(1, options_.jobs / static_cast<int>(starts.size()));
@@ -252,7 +252,7 @@ class RobustSearch {
                                        .jobs = jobs},
                                       told);
     if (devices == cost_.devices()) return end.cost < start.value ? Candidate{.x = end.x, .value = end.cost} : start;
-    Candidate best{.x = end.x.empty() ? start.x : end.x};  // on fewer devices the cost is another
+    Candidate best{.x = end.x.empty() ? start.x : end.x};  // the cost on fewer devices differs
     const StagedCost::Tried tried = staged_.tried(best.x, cost_.devices(), std::numeric_limits<double>::infinity(), jobs);
     best.value = tried.cost;
     closings_ += tried.closings;
@@ -267,10 +267,10 @@ class RobustSearch {
   Scouting scouting_;
   std::vector<Variable> variables_;
   std::function<double()> clock_;
-  double begin_;  // [s]
+  double begin_;  // time of the beginning [s]
   std::atomic<long> closings_ = 0;
   std::uint64_t heats_run_ = 0;
-  double heat_end_ = 0;  // of a budget of time, since the beginning [s]
+  double heat_end_ = 0;  // end of the round in a budget of time, since the beginning [s]
   long next_index_ = 0;
 
   std::mutex mutex_;
@@ -278,7 +278,7 @@ class RobustSearch {
   OptimizeProgress progress_;
 };
 
-// The best of the candidates on devices that none of them was made for.
+// Returns the best of the candidates on devices that none of them was made for.
 Candidate compared(std::vector<Candidate> candidates, const SearchSetting& setting, const RobustCost& others, int jobs) {
   candidates = best_apart(std::move(candidates), heats[0].searches + 1, setting.space.variables());
   Candidate winner = candidates.front();
@@ -294,7 +294,7 @@ Candidate compared(std::vector<Candidate> candidates, const SearchSetting& setti
   return winner;
 }
 
-// The winner and the plain step on fresh devices, over the whole window.
+// Judges the winner and the plain step on fresh devices, over the whole window.
 void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& options, const RobustOptions& robust,
            const Watch& watch) {
   OptimizeResult& out = result.found;
@@ -326,10 +326,10 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
   }
 }
 
-// Its budget becomes one of closings of these devices; tells what the search is going to take.
+// Scales the budget to closings of these devices, and reports the estimate.
 void fit_robust_budget(const SearchSetting& setting, OptimizeOptions& options, std::uint64_t verdict) {
   if (!options.counts_work && !options.on_estimate) return;
-  constexpr double rows = 4;  // of the verdict, over the whole window
+  constexpr double rows = 4;  // closings per device of the verdict, over the whole window
   const ClosingWork one = closing_work(setting);
   const long asked = options.max_evaluations;
   const bool in_lanes = why_not_in_lanes(setting.given.model).empty();
@@ -378,7 +378,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given
   std::vector<std::string> names;
   for (const Variable& v : out.variables) names.push_back(v.name);
   if (options.on_start) options.on_start({.families = {names}});
-  options.memory = given.memory;  // which may be there from now on only
+  options.memory = given.memory;  // the memory may exist only from now on
   const std::vector<DeviceOutcome> of_step = cost.close(setting.drives({}), 0, cost.devices(), options.jobs);
   robust.aim.conditions = beside_step(std::move(robust.aim.conditions), of_step);
   out.baseline_cost = cost.value(of_step);
@@ -391,7 +391,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given
   out.search.termination = search.termination();
   if (candidates.empty()) return result;
 
-  // Asked to stop from here on, what there is stands without the verdict.
+  // A stop from here on leaves the results so far, without the verdict.
   Candidate winner = candidates.front();
   try {
     if (out.search.termination != Termination::interrupted)

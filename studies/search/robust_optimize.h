@@ -1,12 +1,12 @@
-// The search for a drive that does well on devices as they come from manufacturing.
+// The search for a drive that does well on devices with the process variation of manufacturing.
 //
-// The same devices for all candidates. Starts are those of the family, the best of two searches on the nominal device, the
-// waveform of the scene, those that the search is told to start with, and points of the whole box; all are tried on 8 devices,
-// the best of them on 32, and the best six of these begin CMA-ES on 32 devices; on all of them it goes on from the best two, and
-// then from the best, by smaller steps. A candidate that is worse on the first 8 or 32 devices than the median of those before it
-// is not tried on the rest, and has the cost of those. The best point of every heat is compared on 512 other devices, and what
-// wins there is judged on 2000 fresh ones over the whole window: its cost on the devices that were searched is too good by what
-// the search has learned of them by heart.
+// All candidates are tried on the same devices. Starts are those of the family, the best of two searches on the nominal device,
+// the waveform of the scene, the given waveforms, and points of the whole box. All are tried on 8 devices, the best of them on
+// 32, and the best six of these begin CMA-ES on 32 devices. It goes on from the best two on all devices, and then from the
+// best, by smaller steps. A candidate that is worse on the first 8 or 32 devices than the median of those before it is not
+// tried on the rest, and has the cost of those. The best point of every round is compared on 512 other devices. The winner is
+// judged on 2000 fresh ones over the whole window: its cost on the searched devices is too good, as the search is over-fitted
+// to them.
 //
 // Source for the races: O. Maron & A. W. Moore, "Hoeffding races", NIPS 1993 (the idea; our test is the median of the candidates
 // before).
@@ -25,38 +25,38 @@
 namespace softland {
 
 inline constexpr long default_closings = 60'000;
-/// The family that is searched where none is named: with the same volts for all devices, and in units that are measured on each.
+/// Families searched if none is named: with the same volts for all devices, and with a per-device calibration.
 inline constexpr std::string_view default_robust_family = "knots", default_calibrated_family = "catch";
-inline constexpr std::uint64_t most_searched = 100'000;  ///< devices of a search, which are all kept
+inline constexpr std::uint64_t most_searched = 100'000;  ///< most devices of a search, which are all kept
 
 struct RobustOptions {
   RobustAim aim;
-  std::uint64_t samples = 128;                 ///< devices that are searched
-  std::uint64_t verdict = 2000;                ///< fresh ones
-  std::function<double()> clock = wall_clock;  ///< what a budget of time is held against [s]
+  std::uint64_t samples = 128;                 ///< searched devices
+  std::uint64_t verdict = 2000;                ///< fresh devices
+  std::function<double()> clock = wall_clock;  ///< clock of a budget of time [s]
 };
 
 struct FulfilledCondition {
-  std::string text;    ///< of the condition
-  Yield share;         ///< of fresh devices that fulfil it
-  bool holds = false;  ///< by constrained_share of them
+  std::string text;    ///< text of the condition
+  Yield share;         ///< share of fresh devices that fulfil it
+  bool holds = false;  ///< true if constrained_share of them fulfil it
 };
 [[nodiscard]] FulfilledCondition fulfilled(const std::vector<DeviceOutcome>& outcomes, const Criterion& condition);
 
-/// What a search over devices by one measure came to, as its JSON holds it.
+/// The findings of a search over devices by one measure, as its JSON holds them.
 struct RobustFindings {
   std::string measure;
   double devices = Metrics::unset, fresh_devices = Metrics::unset, closings = Metrics::unset;  ///< closings: in the search
-  double cost_on_searched = Metrics::unset;  ///< of the winner, on the devices that were searched
+  double cost_on_searched = Metrics::unset;  ///< cost of the winner on the searched devices
   double failing = Metrics::unset;  ///< share of the fresh devices that end open, are not kept closed, or are outside the model
-  bool is_told = true;              ///< the measure looks further than at those
-  std::optional<FulfilledCondition> yield;  ///< what was to be fulfilled by as many devices as possible
+  bool is_told = true;              ///< the measure looks beyond those
+  std::optional<FulfilledCondition> yield;  ///< condition of a yield
   std::vector<FulfilledCondition> conditions;
 };
 
 struct RobustResult {
   OptimizeResult found;               ///< costs are those on fresh devices
-  std::optional<Robustness> verdict;  ///< plain step and winner on the same fresh devices; none where it was interrupted
+  std::optional<Robustness> verdict;  ///< plain step and winner on the same fresh devices; none if interrupted
   RobustFindings findings;
 };
 
@@ -64,12 +64,12 @@ struct RobustResult {
 /// for a scene without [spread].
 [[nodiscard]] RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& robust);
 
-/// What a search will vary, and the height from which on a rebound counts.
+/// The parameters that a search will vary, and the height from which on a rebound counts.
 struct SearchedParameters {
   FamilyColumns columns;
   double significant_rebound = 0;  ///< [m]
 };
-/// Of optimize(), or of robust_optimize() `over_devices`; throws what these would throw before they begin.
+/// Returns those of optimize(), or of robust_optimize() if `over_devices`. Throws what these would throw before they begin.
 [[nodiscard]] SearchedParameters searched_parameters(const SceneFile& file, const OptimizeOptions& options, bool over_devices,
                                                      const Watch& watch);
 

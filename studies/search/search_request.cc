@@ -22,7 +22,7 @@
 namespace softland {
 namespace {
 
-// What `parse` gives; its complaints name the field, and what else is said of it.
+// Returns what `parse` gives; adds the field to its messages.
 template <class Parse>
 auto read(const std::string& field, const Parse& parse) {
   try {
@@ -50,7 +50,7 @@ std::vector<Criterion> conditions_of(const SearchRequest& request, std::span<con
   return all;
 }
 
-// Conditions that name figures of both are for the drawing and for the devices.
+// Reads conditions. Those on figures of both are for the nominal design and for the devices.
 void read_shared_conditions(const SearchRequest& request, std::vector<Criterion>& drawing, std::vector<Criterion>& devices) {
   devices = conditions_of(request, device_figures);
   for (const std::string& text : request.constrain) {
@@ -106,13 +106,13 @@ OptimizeOptions options_of(const SearchRequest& request, const SceneFile& scene,
   options.counts_work = !request.budget;
   if (request.robust == nominal_alone) options.conditions = conditions_of(request, conditioned_figures);
   if (request.budget) read_budget(*request.budget, options);
-  // Other methods go on where they were; the plan of a search of one seed holds that number.
+  // Only these methods can begin with half the budget; the plan of a search of one seed holds that number.
   const bool has_one_seed = !request.seeds || *request.seeds == "1";
   options.begins_with_half = request.robust == nominal_alone && request.budget && has_one_seed && request.optimizer == "auto";
   return options;
 }
 
-// Without the approach, which moves devices alone.
+// Returns the families without the quasi-static approach, which moves devices alone.
 std::string families_of_drawing(const std::string& text, const SceneFile& scene, Actuator actuator) {
   std::string kept;
   for (const std::string& family : families_of(text)) {
@@ -185,8 +185,7 @@ std::uint64_t seed_count(const SearchRequest& request, const OptimizeOptions& op
   return count;
 }
 
-// Devices that differ want a family that is slow and free, or, where each is driven in its own units, a quick one that holds
-// fast.
+// Varied devices need a slow and free family, or, with a per-device calibration, a quick one that holds fast.
 std::string usual_families(const SearchRequest& request, const SceneFile& scene) {
   if (request.is_by_measure())
     return std::string(request.calibrate.empty() || request.calibrate == "none" ? default_robust_family
@@ -208,7 +207,7 @@ SearchRequest or_else(SearchRequest request, const SearchRequest& other) {
 
 namespace {
 
-// Over devices all drives are shaped that can be.
+// A search over devices shapes every drive that can be shaped.
 Actuator usual_actuator(const SceneFile& scene) {
   const bool has_piezo = scene.written("piezo") && scene.written("driver.piezo");
   if (!has_piezo) return Actuator::electrostatic;

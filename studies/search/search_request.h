@@ -1,4 +1,4 @@
-// What a search is asked for, in the words that a command line, a plan and a store share; and the search that this is.
+// The request of a search, in the words that a command line, a plan and a store share, and the search that it describes.
 #pragma once
 
 #include <cstdint>
@@ -15,33 +15,33 @@
 
 namespace softland {
 
-/// Words of SearchRequest::robust beside a measure: for the drawing and for devices, or for the drawing alone.
+/// Words of SearchRequest::robust beside a measure: for the nominal design and for devices, or for the nominal design alone.
 inline constexpr std::string_view by_race = "auto", nominal_alone = "none";
 
-/// Words of SearchRequest::hold_step: with the actuator pzt its instant is searched, or it is t = 0.
+/// Words of SearchRequest::hold_step: the instant is searched with the actuator pzt, or is t = 0.
 inline constexpr std::string_view step_is_chosen = "chosen", step_is_fixed = "fixed";
 
-/// What is empty, or none, is not given: see completed().
+/// A search request. Empty members, and none, are not given: see completed().
 struct SearchRequest {
   std::string target = {};                  ///< "bounce", "0.7 bounce + 0.3 energy"
   std::string actuator = {};                ///< "electrostatic", "pzt", "both"
   std::string waveform = {};                ///< families: "knots+dual-pulse"
   std::string optimizer = {};               ///< "auto", or a method
   std::string robust = {};                  ///< by_race, nominal_alone, or the measure of a search over devices
-  std::string hold_step = {};               ///< when a plain step of the electrode comes: step_is_chosen or step_is_fixed
-  std::string calibrate = {};               ///< measured on every device: "Vdp:1 %,frequency"; empty: what the scene says
+  std::string hold_step = {};               ///< instant of a plain step of the electrode: step_is_chosen or step_is_fixed
+  std::string calibrate = {};               ///< calibration of every device: "Vdp:1 %,frequency"; empty: that of the scene
   std::vector<std::string> constrain = {};  ///< conditions: "peak_contact_force < 20 uN"
   std::optional<std::string> samples = {};  ///< devices
   std::optional<std::string> budget = {};   ///< evaluations, or closings of devices, "2500", or time, "90 s"
   std::optional<std::string> seed = {};
-  std::optional<std::string> seeds = {};  ///< how many searches, from `seed` on
+  std::optional<std::string> seeds = {};  ///< number of searches, from `seed` on
 
-  /// Whether devices are searched by one measure.
+  /// True if devices are searched by one measure.
   [[nodiscard]] bool is_by_measure() const { return robust != by_race && robust != nominal_alone; }
 };
 
-/// The words of requests, of each with its name: visit(name, word of the first, of the second, ...), which are std::string, or
-/// std::optional<std::string> where they need not be given. The conditions are not among them.
+/// Visits the words of requests, each with its name: visit(name, word of the first, of the second, ...). They are std::string,
+/// or std::optional<std::string> if they need not be given. The conditions are not among them.
 template <class Visit, class... Requests>
 void visit_words(const Visit& visit, Requests&... requests) {
   visit("target", requests.target...);
@@ -57,36 +57,36 @@ void visit_words(const Visit& visit, Requests&... requests) {
   visit("seeds", requests.seeds...);
 }
 
-/// With the words of `other` where none are given.
+/// Fills in the words of `other` where none are given.
 [[nodiscard]] SearchRequest or_else(SearchRequest request, const SearchRequest& other);
 
-/// With the words of the defaults, which suit the scene and each other, but for what is optional.
+/// Fills in the defaults, which suit the scene and each other, except for optional words.
 [[nodiscard]] SearchRequest completed(SearchRequest request, const SceneFile& scene);
 
-/// What takes the place of words that no text can hold.
+/// Parts that take the place of words that no text can hold.
 struct OwnParts {
-  std::shared_ptr<const OwnObjective> objective = nullptr;  ///< in the place of the target
+  std::shared_ptr<const OwnObjective> objective = nullptr;  ///< objective in the place of the target
   OwnWaveforms waveforms = {};
 };
 
 /// A search, or several that differ in their seeds, ready to run.
 struct PlannedSearch {
-  SceneFile scene;                               ///< with the calibration that is asked for
-  OptimizeOptions options;                       ///< with the first of the seeds, on one thread
-  std::optional<RobustOptions> robust;           ///< of a search over devices by one measure
-  std::optional<ForDevicesOptions> for_devices;  ///< of one that races measures and families
+  SceneFile scene;                               ///< scene with the requested calibration
+  OptimizeOptions options;                       ///< options with the first of the seeds, on one thread
+  std::optional<RobustOptions> robust;           ///< options of a search over devices by one measure
+  std::optional<ForDevicesOptions> for_devices;  ///< options of a search that races measures and families
   std::uint64_t seeds = 1;
 
   [[nodiscard]] std::uint64_t seed(std::uint64_t k) const { return options.seed + k; }
-  /// Devices that are looked at by one measure, or fresh ones of the verdict; 0: none.
+  /// Devices that are searched by one measure, or fresh ones of the verdict; 0: none.
   [[nodiscard]] std::uint64_t devices() const { return robust ? robust->samples : for_devices ? for_devices->verdict : 0; }
 };
 
 inline constexpr std::uint64_t most_seeds = 100'000;
 
-/// Reads the words of a completed() request. `families`: of a race over devices; empty: all. One that says nothing of hold_step
-/// is of a version before the quasi-static approach, and is searched as it was then. Throws InvalidRequest with field, value and
-/// rule.
+/// Reads the words of a completed() request. `families` are those of a race over devices; empty: all. A request without
+/// hold_step is of a version before the quasi-static approach, and is searched as it was then. Throws InvalidRequest with
+/// field, value and rule.
 [[nodiscard]] PlannedSearch planned(const SearchRequest& request, SceneFile scene, const std::string& families = {},
                                     const OwnParts& own = {});
 

@@ -19,18 +19,18 @@
 namespace softland {
 namespace {
 
-constexpr double latest_touch = 2.5;  // times the baseline's first touch
+constexpr double latest_touch = 2.5;  // multiples of the baseline's first touch
 // Lateness that costs little: an electrode can throw and catch the beam in about the time of the step, a piezo only slows it.
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
-constexpr double search_tolerance = 1e-6;  // of the integrator: costs good to about 1e-4
-constexpr double most_broken = 10;         // a condition, by a part of its limit
-// By this the worst of beams counts the touch speed beside the cost of bounce, in which a soft touch is next to nothing: what
-// modes differ in first.
+constexpr double search_tolerance = 1e-6;  // tolerance of the integrator: costs good to about 1e-4
+constexpr double most_broken = 10;         // largest violation of a condition, as a part of its limit
+// Weight of the touch speed for the worst of beams. A soft touch hardly counts in the cost of bounce, but is the first to
+// differ between modes.
 constexpr double weight_of_speed = 0.04;
-constexpr double hopeless = 0.25;  // by the cost of bounce, about 1 of the plain step: not tried with richer beams
+constexpr double hopeless = 0.25;  // cost of bounce, about 1 for the plain step, from which on richer beams are not tried
 constexpr double golden_ratio = 1.618033988749895;
 
-// A hold level that a plain step does not close with may still close with a throw: what a closing of this beam would be like.
+// Returns the figures of an estimated closing. A plain step may not close with a hold level that still closes with a throw.
 Metrics imagined_step(const PreparedScene& given, double period) {
   const double gap = given.scene.device.contact_gap();
   Metrics step;
@@ -41,13 +41,13 @@ Metrics imagined_step(const PreparedScene& given, double period) {
   return step;
 }
 
-// Of a condition that a method follows: g. Searches end where it is 0, and are to fulfil it there.
+// Returns g of a condition that a method follows. Searches end where g is 0, and the condition must be fulfilled there.
 double excess(const Criterion& one, const Metrics& metrics) {
   constexpr double margin = 1e-6;
   return std::clamp(one.violation(one.figure.value(metrics)) + margin, -most_broken, most_broken);
 }
 
-// Derivative of excess() with respect to the figure.
+// Returns the derivative of excess() with respect to the figure.
 double excess_rate(const Criterion& one, const Metrics& metrics) {
   if (std::abs(excess(one, metrics)) >= most_broken) return 0;
   const double scale = one.limit == 0 ? 1 : std::abs(one.limit);
@@ -105,7 +105,7 @@ PreparedScene prepared_with(const PreparedScene& prepared, DriveWaveforms wavefo
 PreparedScene read_back(const SceneFile& file, const std::string& name, const PreparedScene& given) {
   PreparedScene p = choose(prepare(file.again(name)));
   p.scene.warnings = given.scene.warnings;
-  p.scene.standing = given.scene.standing;  // of the file in volts all hold levels would count
+  p.scene.standing = given.scene.standing;  // all hold levels would count in the file in volts
   return p;
 }
 
@@ -140,7 +140,7 @@ bool SearchSetting::keeps_limits(const std::string& drive, const Waveform& wavef
   return violation(told, limits_for(waveform, limits.at(drive))).empty();
 }
 
-// A drive that still changes after the score would open the switch again unseen.
+// A drive that still changes after the score could open the switch again unseen.
 ClosingOptions SearchSetting::run_of(const std::vector<Signal>& signals) const {
   ClosingOptions own = run;
   own.no_end_before = last_breakpoint(signals) + given.model.basis().in_contact_period();
@@ -173,7 +173,7 @@ SearchCosts SearchSetting::worst_price(const RecordedClosing& closing) const {
 }
 
 Metrics SearchSetting::with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const {
-  metrics.hold_force = baseline.metrics.hold_force;  // of the hold levels, which a search never changes
+  metrics.hold_force = baseline.metrics.hold_force;  // force of the hold levels, which a search never changes
   metrics.capacitance = baseline.metrics.capacitance;
   metrics.resistance = baseline.metrics.resistance;
   set_drive_figures(metrics, given, signals);
@@ -197,7 +197,7 @@ SearchCosts SearchSetting::price_of(const RecordedClosing& closing) const {
   for (const Criterion& one : followed_conditions()) prices.apart->excess.push_back(excess(one, figures));
   const double violation = broken(conditions, figures);
   if (!(violation > 0)) return prices;
-  // Less than what separates a landing from none, and for the own cost more than any landing that fulfils them costs.
+  // Penalty: less than the step between a landing and none. For the own cost it exceeds any landing that fulfils the conditions.
   const double penalty = 3 * violation / (1 + violation);
   prices.leading += penalty;
   prices.own += target.has_own_cost() ? 1 + penalty : penalty;
@@ -214,7 +214,7 @@ SearchCosts SearchSetting::price_at(std::span<const double> x, EvaluationMemory*
   auto closing = std::make_shared<const RecordedClosing>(*this, given.driven(std::move(*told)));
   SearchCosts found = worst_price(*closing);
   if (last != nullptr) *last = {.x = key.x, .closing = std::move(closing)};
-  found.leading += 0.0, found.own += 0.0;  // of zeros a memory need not keep the sign
+  found.leading += 0.0, found.own += 0.0;  // normalise -0, whose sign a memory need not keep
   if (memory != nullptr) memory->note(key, {.cost = found.own, .leading = found.leading, .lands = found.lands});
   return found;
 }
@@ -252,7 +252,7 @@ SignalSlopes SearchSetting::signal_slopes(std::span<const double> x, const std::
 }
 
 std::vector<ParameterGroup> SearchSetting::parameter_groups() const {
-  std::vector<double> inside;  // where no two parameters are at the same part of their range, by chance or by symmetry
+  std::vector<double> inside;  // a point with no two parameters at the same part of their range
   for (const Variable& v : space.variables())
     inside.push_back(std::lerp(v.lower, v.upper, 0.3 + 0.4 * std::fmod(golden_ratio * static_cast<double>(inside.size()), 1.0)));
   return signal_slopes(inside).groups();

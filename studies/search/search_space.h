@@ -1,4 +1,4 @@
-// What a search may vary: the parameters of the waveforms of one or several drives, with bounds and starting points that come
+// The variables of a search: the parameters of the waveforms of one or several drives. Their bounds and starting points come
 // from the scene (driver limits, natural frequencies, closing time of the plain step).
 //
 // Times below are in units of T0, the first touch of the plain step, and T1, the period of the first mode.
@@ -24,9 +24,9 @@
 //   sines     the hold level and N sines of 1 ... N half waves, with amplitudes up to the range of the driver, in a duration in
 //             [0.5, 4] T0; what leaves the limits is made smaller as a whole
 //   quasi-static   one family of all drives, over devices only: see quasi_static.h
-// An electrode on the far side, which brakes, waits before its pulses instead of coasting after them.
-// The hold level is the scene's own and never varied. A slew limit lengthens edges, rise times and fades, lets a sine begin when
-// its base has risen, and caps its amplitude.
+// An electrode on the far side, which brakes, waits before its pulses instead of coasting after them. The hold level is the
+// scene's own and never varied. A slew limit lengthens edges, rise times and fades, lets a sine begin when its base has risen,
+// and caps its amplitude.
 #pragma once
 
 #include <array>
@@ -45,16 +45,16 @@
 
 namespace softland {
 
-/// Which drives a search shapes, as far as its defaults depend on it.
+/// Drives that a search shapes, as far as its defaults depend on it.
 enum class Shaped { electrode, piezo, several };
-/// Several: an electrode and a piezo, or one with electrodes on the far side whose drivers the scene describes.
+/// Returns `several` for an electrode and a piezo, and for electrodes on the far side whose drivers the scene describes.
 [[nodiscard]] Shaped shaped_drives(const SceneFile& scene, Actuator actuator);
-/// What is searched where no family is named: families that together land every switch of results/comparison.md.
+/// The families searched if none is named: together they land every switch of results/comparison.md.
 [[nodiscard]] std::string_view default_families(Shaped drives);
-/// The families that "knots", or "knots+dual-pulse+staircase:5+knots:8", names. Throws InvalidInput where one is empty or named
+/// The families that "knots", or "knots+dual-pulse+staircase:5+knots:8", names. Throws InvalidInput if one is empty or named
 /// twice.
 [[nodiscard]] std::vector<std::string> families_of(const std::string& text);
-/// What the names of a family's parameters begin with: "knots." where there are several, nothing where it is the only one.
+/// Prefix of a family's parameters: "knots." if there are several families, empty if it is the only one.
 [[nodiscard]] std::string prefix_of(const std::string& families, const std::string& family);
 
 struct SearchedFamily;
@@ -62,7 +62,7 @@ struct SearchedFamily;
 using OwnWaveforms = std::vector<std::shared_ptr<const OwnWaveform>>;
 /// "step, pulse, ..., sines:N or quasi-static:N"
 [[nodiscard]] std::string listed_searched_families();
-/// Whether a name is that of the family which moves all drives at once: "quasi-static", "quasi-static:2".
+/// True for the family that moves all drives at once: "quasi-static", "quasi-static:2".
 [[nodiscard]] bool is_quasi_static(std::string_view family);
 
 /// The waveform parameters of one drive.
@@ -70,25 +70,25 @@ struct DriveSearch {
   std::string drive;
   const SearchedFamily* family = nullptr;            ///< null: an own waveform
   std::shared_ptr<const OwnWaveform> own = nullptr;  ///< instead of a family
-  std::size_t count = 0;   ///< of levels, knots, pulses or sines, where the family has any number of them
-  double hold = 0;         ///< [V]
-  double before = 0;       ///< what it stands at before t = 0 [V]
-  bool brakes = false;     ///< an electrode on the far side
-  double first_touch = 0;  ///< of the plain step [s]
+  std::size_t count = 0;                             ///< number of levels, knots, pulses or sines, if there is a choice
+  double hold = 0;                                   ///< [V]
+  double before = 0;                                 ///< voltage before t = 0 [V]
+  bool brakes = false;                               ///< an electrode on the far side
+  double first_touch = 0;                            ///< first touch of the plain step [s]
   DriverLimits limits;
   std::vector<Variable> variables;
   std::vector<std::vector<double>> starts;
   [[nodiscard]] Waveform waveform(std::span<const double> x) const;
   /// The parameters of a waveform of this family that lies within the bounds, to rounding.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const Waveform& waveform) const;
-  /// The parameters of the waveform of this family that differs least from the given one in what drives the beam, the square of
-  /// an electrode's voltage or the piezo's voltage: in the mean square, until a little after the last breakpoint. Its own where
-  /// it is of this family.
+  /// The parameters of the waveform of this family that differs least from the given one in what drives the beam: the square of
+  /// an electrode's voltage or the piezo's voltage. The difference is the mean square until a little after the last breakpoint.
+  /// A waveform of this family has its own parameters.
   [[nodiscard]] std::vector<double> nearest(const Waveform& waveform) const;
-  /// Why a search cannot begin with a waveform, in words: it holds another level, or leaves the driver's limits. Empty where it
+  /// Why a search cannot begin with a waveform, in words: it holds another level, or leaves the driver's limits. Empty if it
   /// can.
   [[nodiscard]] std::string misfit(const Waveform& waveform) const;
-  /// Whether a signal ends on the hold level, to rounding.
+  /// True if a signal ends on the hold level, to rounding.
   [[nodiscard]] bool holds(const Signal& signal) const;
 
  private:
@@ -97,29 +97,29 @@ struct DriveSearch {
 
 class SearchSpace {
  public:
-  /// `family` names that of all drives ("pulse", "knots:8") or of each ("main=step,pzt=pulse"; pulse where it says nothing);
-  /// `first_touch` of the plain step [s]; `own` may be named too. Throws InvalidInput when the scene lacks the drive, a piezo
-  /// limit, or the family cannot be searched; of an own waveform where it does not end on the hold level at its start; of
-  /// quasi-static where no drive can carry the switch to its contact.
+  /// `family` names that of all drives ("pulse", "knots:8") or of each ("main=step,pzt=pulse"; pulse for the others).
+  /// `first_touch` is that of the plain step [s]; `family` may name one of `own`. Throws InvalidInput if the scene lacks the
+  /// drive or a piezo limit, or if the family cannot be searched. Throws it for an own waveform that does not end on the hold
+  /// level at its start, and for quasi-static if no drive can carry the switch to its contact.
   SearchSpace(const PreparedScene& prepared, Actuator actuator, const std::string& family, double first_touch,
               const OwnWaveforms& own = {});
 
   [[nodiscard]] const std::vector<DriveSearch>& drives() const { return drives_; }
-  /// The one of this name, which must be among them.
+  /// The drive of this name, which must be among them.
   [[nodiscard]] const DriveSearch& drive(const std::string& name) const;
   [[nodiscard]] std::vector<Variable> variables() const;
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
   /// Waveforms of the searched drives.
   [[nodiscard]] DriveWaveforms waveforms(std::span<const double> x) const;
-  /// The point that gives these waveforms, if there is one: where a search refines what was found before.
+  /// The point that gives these waveforms, if it exists: the start for refining an earlier result.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const DriveWaveforms& waveforms) const;
-  /// The point whose waveforms differ least from these, which must not be misfits: where a search for another family begins.
+  /// The point whose waveforms differ least from these, which must not be misfits: the start for another family.
   [[nodiscard]] std::vector<double> nearest(const DriveWaveforms& waveforms) const;
-  /// Why a search cannot begin with these waveforms, in words; empty where it can.
+  /// Why a search cannot begin with these waveforms, in words; empty if it can.
   [[nodiscard]] std::string misfit(const DriveWaveforms& waveforms) const;
-  /// Of these waveforms those of the searched drives.
+  /// The waveforms of the searched drives among these.
   [[nodiscard]] DriveWaveforms searched(const DriveWaveforms& waveforms) const;
-  /// The quasi-static approach, where that is what is searched; else null.
+  /// The quasi-static approach, if it is the searched family; else null.
   [[nodiscard]] const QuasiStatic* quasi_static() const { return joint_ ? &*joint_ : nullptr; }
   /// The space of the quasi-static approach about the closed form for this time of steady force [s].
   [[nodiscard]] SearchSpace paced(double steady) const;
@@ -129,7 +129,7 @@ class SearchSpace {
   [[nodiscard]] std::vector<double> nearest_of_all(const DriveWaveforms& given) const;
 
   std::vector<DriveSearch> drives_;
-  std::optional<QuasiStatic> joint_;  // moves all of them
+  std::optional<QuasiStatic> joint_;  // the family that moves all of them
 };
 
 }  // namespace softland

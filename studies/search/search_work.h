@@ -1,4 +1,4 @@
-// The work of a search: how many closings a budget has that nobody gave.
+// The work of a search: the number of closings in a budget that the user did not give.
 //
 // A usual budget counts work, so that a scene whose closings are slow gets fewer of them. Work is counted in right-hand sides of
 // the equations of motion, which are the same on every machine and for every number of threads:
@@ -17,23 +17,23 @@ namespace softland {
 
 /// The work of one closing.
 struct ClosingWork {
-  double counted = 0;  ///< w
-  double seconds = 0;  ///< it takes on this machine, now [s]
+  double counted = 0;  ///< work w
+  double seconds = 0;  ///< time on this machine [s]
 };
-/// Runs the closings under the plain step and under the first starting waveform of the family, as a search runs them; the slower
-/// one. Throws nothing: what cannot be followed has taken what it took until then.
+/// Runs the closings under the plain step and under the first starting waveform of the family, as a search runs them, and
+/// returns the slower one. Throws nothing: a closing that cannot be followed counts up to its failure.
 [[nodiscard]] ClosingWork closing_work(const SearchSetting& setting);
 
-/// u; the shipped scenes whose closings are quick stay below it.
+/// Reference work u; the shipped scenes whose closings are quick stay below it.
 [[nodiscard]] double usual_work(Shaped drives);
-/// Closings of devices that lanes follow in the time of one.
+/// Number of devices that lanes follow in the time of one.
 inline constexpr double usual_lanes = 8;
 
-/// Time of a closing in a search over devices, over that of one closing: 0.6 to 1.3 where it was measured. A slow approach takes
+/// Time of a closing in a search over devices, over that of one closing: 0.6 to 1.3 in measurements. A slow approach takes
 /// several times as long.
 inline constexpr double device_share = 0.8, slow_approach = 3;
 
-/// n, at least 1.
+/// Closings n, at least 1.
 [[nodiscard]] long within_work(long closings, double counted, double usual);
 
 }  // namespace softland

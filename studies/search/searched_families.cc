@@ -28,7 +28,7 @@ void add_step(DriveSearch& s, const PreparedScene&, double t0) {
   s.starts = {{0.5 * t0}};
 }
 
-// A broken line: the voltages at its knots, the time of the whole and the parts of it between them.
+// Adds a broken line: the voltages at its knots, the time of the whole and the parts of it between them.
 void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
   for (std::size_t k = 0; k < s.count; ++k)
     s.variables.push_back({fmt::format("level_{}_V", k + 1), s.limits.min_voltage, s.limits.max_voltage});
@@ -52,7 +52,7 @@ void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
     line([&](double part) { return (0.7 + 0.2 * part) * s.hold; }, 8, 0.2);                  // a slow ramp
     line([&](double part) { return (0.75 + 0.2 * part) * s.hold; }, 3, 0.2);                 // a quicker one
     line([&](double part) { return part < 0.55 ? s.hold : 0.5 * s.hold; }, 1.5, 0.1);        // throw and coast
-    line([&](double part) { return part < 0.75 ? 0.3 * s.hold : 0.6 * s.hold; }, 1.8, 0.1);  // leave it to others
+    line([&](double part) { return part < 0.75 ? 0.3 * s.hold : 0.6 * s.hold; }, 1.8, 0.1);  // leave it to the other drives
   }
 }
 
@@ -118,7 +118,7 @@ Parameters of_harmonic(const DriveSearch&, const Waveform& waveform) {
                              duration,         dither.fade / duration};
 }
 
-// Lines that begin with a jump, as all that are searched without a limit of the slew.
+// True for lines that begin with a jump, like all that are searched without a slew limit.
 bool begins_with_jump(const DriveSearch& s, const Table& table, std::size_t rows) {
   return table.time.size() == rows && table.time[1] == 0 && table.voltage[0] == s.before;
 }
@@ -164,7 +164,7 @@ constexpr auto families = std::to_array<SearchedFamily>({
     {"sines", FamilyOf<Sines>::name, 4, add_sines, sines_at, of_sines},
 });
 
-constexpr std::size_t fewest = 2, most = 20;  // of levels, knots, pulses or sines
+constexpr std::size_t fewest = 2, most = 20;  // numbers of levels, knots, pulses or sines
 
 }  // namespace
 

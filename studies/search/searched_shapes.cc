@@ -47,7 +47,8 @@ std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const Prepare
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == s.drive) driven[k] = found.pulling, coasting[k] = found.coasting;
   }
-  // Of one mode where the film has states of its own.
+  // All modes take part in the swing. The bang-bang landing of the first mode takes its place if the film has states of its
+  // own.
   if (p.model.film_states() == 0 && p.rest()) {
     constexpr double longest = 3;  // periods
     const std::optional<Swing> swing = quickest_swing(p.model, driven, coasting, longest * first_period(p), p.values_before());
@@ -106,8 +107,8 @@ double add_dither_variables(DriveSearch& s, const PreparedScene& p, double t0) {
 SlewedDither slewed_dither(const DriveSearch& s, double amplitude, double omega, double decay, double start, double duration,
                            double fade) {
   // Under a slew limit the sine waits for the base, and fades for as long as its amplitude needs: the slope of the envelope
-  // adds to that of the sine. Half the duration is the longest fade; what is too steep even then is made smaller.
-  const double slew = s.limits.max_slew, rise = longest_rise(s);  // infinite, and 0, where there is no limit
+  // adds to that of the sine. Half the duration is the longest fade; a sine that is too steep even then is made smaller.
+  const double slew = s.limits.max_slew, rise = longest_rise(s);  // infinite, and 0, without a limit
   const double turning = omega + 1 / decay;
   const double needed = amplitude * turning < slew ? amplitude / (slew - amplitude * turning) : never;
   const double longer = std::min(std::max(fade * duration, needed), duration / 2);
@@ -249,7 +250,7 @@ Waveform sines_at(const DriveSearch& s, std::span<const double> x) {
               .amplitudes = {x.begin(), x.end() - 1},
               .start = longest_rise(s),
               .duration = x.back()};
-  // What leaves the limits is made smaller as a whole: a band stays a band.
+  // A waveform beyond the limits is made smaller as a whole: a band stays a band.
   Sines alone = sines;
   alone.base = 0;
   const Signal swing = signal(alone);
@@ -259,7 +260,7 @@ Waveform sines_at(const DriveSearch& s, std::span<const double> x) {
   if (up > s.limits.max_voltage - s.hold) share = std::min(share, (s.limits.max_voltage - s.hold) / up);
   if (down > s.hold - s.limits.min_voltage) share = std::min(share, (s.hold - s.limits.min_voltage) / down);
   if (steepest > s.limits.max_slew) share = std::min(share, s.limits.max_slew / steepest);
-  constexpr double precision = 1e-7;  // of the extrema, over the sum of all amplitudes
+  constexpr double precision = 1e-7;  // precision of the extrema, over the sum of all amplitudes
   if (share < 1) {
     for (double& amplitude : sines.amplitudes) amplitude *= share * (1 - precision);
   }

@@ -15,20 +15,20 @@ using Parameters = std::optional<std::vector<double>>;
 
 /// The voltage within the limits of the drive.
 [[nodiscard]] double inside(const DriveSearch& s, double voltage);
-/// Voltage [V] whose static effect on the contact point alone is `lift` away from the contact [m]: of the piezo.
+/// Voltage [V] of the piezo whose static effect on the contact point alone is `lift` away from the contact [m].
 [[nodiscard]] double lifting_voltage(const PreparedScene& p, double lift);
-/// [s]
+/// Period of the first mode [s].
 [[nodiscard]] double first_period(const PreparedScene& p);
-/// Full pull and then none, as it lands the switch (swing.h), or its first mode without damping (bang_bang.h) where the gas film
-/// is compressible; the other drives stand at their hold levels.
+/// Full pull and then none, as it lands the switch (swing.h). If the gas film is compressible, the landing is that of the first
+/// mode alone, without damping (bang_bang.h). The other drives stand at their hold levels.
 struct ThrowAndCoast {
   double pulling = 0, coasting = 0;           ///< [V]
   double driven_time = 0, coasting_time = 0;  ///< [s]
 };
-/// How long a pull after the landing lasts where searches begin: while the modes that still ring decay, in first touches of the
-/// plain step.
+/// Durations of the pull after the landing, in first touches of the plain step. Searches begin with them: the modes that still
+/// ring decay meanwhile.
 inline constexpr std::array pushes = {0.5, 1.0, 2.0, 3.5};
-/// Nothing where there is no such landing, and for a drive that pulls away from the contact.
+/// Nothing if no such landing exists, and for a drive that pulls away from the contact.
 [[nodiscard]] std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const PreparedScene& p);
 
 void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0);
@@ -47,11 +47,11 @@ void add_sines(DriveSearch& s, const PreparedScene& p, double t0);
 [[nodiscard]] Parameters of_bspline(const DriveSearch& s, const Waveform& waveform);
 [[nodiscard]] Parameters of_sines(const DriveSearch& s, const Waveform& waveform);
 
-/// Amplitude, frequency, phase and start of a dither about the hold level: variables and their bounds. Throws InvalidInput where
-/// the limits leave it no room. The highest frequency [rad/s] is returned.
+/// Adds amplitude, frequency, phase and start of a dither about the hold level, with their bounds. Returns the highest
+/// frequency [rad/s]. Throws InvalidInput if the limits leave it no room.
 double add_dither_variables(DriveSearch& s, const PreparedScene& p, double t0);
-/// How a slew limit changes a dither of this amplitude, whose angle turns by at most `omega` [rad/s] and which decays in `decay`
-/// [s]: the duration of its fades, and its amplitude.
+/// A dither under a slew limit: the duration of its fades, and its amplitude. Its angle turns by at most `omega` [rad/s], and
+/// it decays in `decay` [s].
 struct SlewedDither {
   double rise_time = 0, start = 0, fade = 0, amplitude = 0;
 };

@@ -1,5 +1,5 @@
 // The searched families that are one train: pulses of a level and a duration each, between which the switch may coast, by edges
-// of one length, and then the hold level. What one of them may not vary stands in its row of searched_families.cc.
+// of one length, and then the hold level. The restrictions of each family stand in its row of searched_families.cc.
 //
 // A point is level_1 ... level_N, duration_1 ... duration_N, coast_1 ... and edge. A drive that brakes waits before each of its
 // pulses instead of coasting after them.
@@ -15,26 +15,27 @@
 
 namespace softland::internal {
 
-/// What a family restricts of the train.
+/// The restrictions of a family on its train.
 struct TrainRules {
-  std::size_t pulses = 0;              ///< 0: as many as are asked for; and none where a family is no train
-  bool coasts = false;                 ///< between two pulses there is no voltage
-  std::array<double, 3> longest = {};  ///< durations, in first touches of the plain step; the last one of all further pulses, too
-  double longest_edge = 0.1;           ///< in periods of the first mode
+  std::size_t pulses = 0;  ///< 0: as many as requested, and none for other families
+  bool coasts = false;     ///< between two pulses there is no voltage
+  std::array<double, 3> longest =
+      {};                     ///< durations, in first touches of the plain step; the last one is that of all further pulses
+  double longest_edge = 0.1;  ///< longest edge, in periods of the first mode
   std::string_view first_duration = "duration_1_s";
 };
 
-/// A pulse of these levels and then the hold level, whose durations are at least those of its edges, as long as the driver asks
-/// for.
+/// A pulse of these levels and then the hold level. The durations are at least those of its edges, which are as long as the
+/// driver asks for.
 [[nodiscard]] Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations,
                                 double edge);
 
 void add_pulse(DriveSearch& s, const PreparedScene& p, double t0);
-/// Throw, coast, hold fast.
+/// Adds a throw, a coast, and a level that holds fast.
 void add_catch(DriveSearch& s, const PreparedScene& p, double t0);
 void add_staircase(DriveSearch& s, const PreparedScene& p, double t0);
 void add_coast(DriveSearch& s, const PreparedScene& p, double t0);
-/// The first pulse throws the switch, the second holds it fast on its contact; those after it hold on.
+/// Adds pulses: the first throws the switch, the second holds it fast on its contact; those after it hold on.
 void add_pulses(DriveSearch& s, const PreparedScene& p, double t0);
 [[nodiscard]] Waveform train_at(const DriveSearch& s, std::span<const double> x);
 [[nodiscard]] Parameters of_train(const DriveSearch& s, const Waveform& waveform);

@@ -16,7 +16,8 @@ struct Flight {
   std::vector<VectorXd> states;  // one per step
 };
 
-// Flies from rest under full pull, and from a time on under full release, until the contact point arrives or turns back.
+// Simulates a flight from rest under full pull, and from a time on under full release, until the contact point arrives or turns
+// back.
 class PullAndRelease {
  public:
   PullAndRelease(const Switch& model, Eigen::VectorXd rest, std::vector<double> pulling, std::vector<double> releasing,
@@ -76,7 +77,7 @@ std::optional<Swing> quickest_swing(const Switch& model, const std::vector<doubl
   require(model.film_states() == 0, "the quickest swing is not known where the gas film is compressible");
   const std::optional<VectorXd> rest = model.open_equilibrium(before);
   require(rest.has_value(), "a switch without an open state has no swing");
-  constexpr double step_angle = 0.05;  // of the fastest mode in a step
+  constexpr double step_angle = 0.05;  // phase of the fastest mode in a step
   Swing swing{.step = step_angle / model.basis().angular_frequencies().maxCoeff()};
   PullAndRelease drives(model, *rest, pulling, releasing, swing.step, longest);
   const Flight full = drives.fly(longest);
@@ -88,7 +89,7 @@ std::optional<Swing> quickest_swing(const Switch& model, const std::vector<doubl
   }
   swing.states = drives.fly(high).states;
   swing.driven_time = high;
-  // All steps but the one that ends at the release have one length: its share is too small to matter where a search begins.
+  // All steps have one length but the one that ends at the release: its share is too small to matter for a starting point.
   swing.releasing_time = std::max(0.0, static_cast<double>(swing.states.size() - 1) * swing.step - high);
   return swing;
 }

@@ -1,4 +1,4 @@
-// Where a race begins: within the volts that a driver has where its scene says nothing, however many more there may be.
+// The first race: within the default limits of a driver, even if the scene gives wider ones.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace softland {
 
-/// The same searches where no searched electrode leaves the limit that it has by default (default_limit() in config/scene.h).
-/// `names` are those of their families. Empty where no limit is wider, or the hold level itself is beyond it.
+/// Returns the same searches with searched electrodes within their default limits (default_limit() in config/scene.h). `names`
+/// are those of their families. Empty if no limit is wider, or the hold level itself is beyond it.
 [[nodiscard]] std::vector<SearchSetting> within_usual_room(const std::vector<SearchSetting>& settings, Actuator actuator,
                                                            const std::vector<std::string>& names);
 

@@ -13,10 +13,10 @@
 namespace softland {
 namespace {
 
-constexpr double as_hard = 1e-3;  // excess over the plain step that is none
+constexpr double as_hard = 1e-3;  // excess over the plain step that does not count
 
-// The target's own figure, infinite where the closing has none; of a sum, the mean of figures over their units of
-// the baseline.
+// Returns the target's own figure, infinite if the closing has none. The figure of a sum is the mean of its figures over those
+// of the baseline.
 double figure(const Aim& aim, const Metrics& m, const Metrics& baseline) {
   if (aim.has_own_objective() && !m.touched()) return std::numeric_limits<double>::infinity();
   const double value = aim.mean(m, baseline, [&](const TargetRow& row) {
@@ -91,9 +91,9 @@ void Verification::move_to(OptimizeResult& result) {
   result.goal_met = best_->belief >= Belief::meets_goal;
   result.confirmed = best_->belief == Belief::confirmed;
   const Metrics& m = best_->closing.metrics;
-  // Where the plain step does not bounce either, what is left to gain is in the cost.
+  // If the plain step does not bounce either, only the cost can improve.
   const double own = figure(target_, m, baseline_), of_step = figure(target_, baseline_, baseline_);
-  // What has not settled can only be better than a plain step that touches and has not settled either.
+  // An unsettled closing can only be better than a plain step that touches and has not settled either.
   const bool may_be_better = (target_.from_the_start() != nullptr && m.touched()) || m.settled ||
                              (!baseline_.settled && std::isfinite(baseline_.initial_contact_time));
   result.better_than_baseline =
@@ -112,7 +112,7 @@ void Verification::move_to(OptimizeResult& result) {
   result.best_cost = best_->found.cost;
 }
 
-// Of a confirming run nothing is known that is not of the motion: its hold force and drives are those of the winner.
+// A confirming run measures the motion alone: its hold force and drives are those of the winner.
 bool Verification::met(const Metrics& m) const { return goal_met(target_, m, baseline_) && !(broken(known(m), m) > 0); }
 
 std::vector<Criterion> Verification::known(const Metrics& m) const {
@@ -133,7 +133,7 @@ bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline) {
     return best.touched() && figure(target, best, baseline) < figure(target, baseline, baseline);
   if (!best.settled || best.bounce_count > 0) return false;
   if (!target.has_own_cost()) return true;
-  // The plain step bounces for many times its closing: what counts is how soon contact can begin for good.
+  // The plain step bounces for many times its closing time: the measure is how soon contact can begin for good.
   const bool is_settling = !target.is_sum() && target.is_about(Target::settling);
   if (is_settling && std::isfinite(baseline.initial_contact_time))
     return best.permanent_contact_time <= settling_goal * baseline.initial_contact_time;

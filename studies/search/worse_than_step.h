@@ -1,8 +1,9 @@
-// Whether a drive does worse on devices than the plain step.
+// Compares a drive with the plain step on devices.
 //
-// Of the largest impact speed, the highest rebound and the peak force: worse where the 95 % quantile is above that of the step on
-// the same devices, and the 95 % interval of the difference, by a bootstrap over devices, does not hold 0. Rebounds that are not
-// significant are equal. A device that does not close has the worst of every figure.
+// The compared figures are the largest impact speed, the highest rebound and the peak force. One is worse if its 95th
+// percentile is above that of the step on the same devices, and the 95 % interval of the difference, by a bootstrap over
+// devices, does not hold 0. Rebounds that are not significant are equal. A device that does not close has the worst of every
+// figure.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +15,18 @@
 
 namespace softland {
 
-/// Keys of device_figures that are compared.
+/// Keys of the compared device_figures.
 inline constexpr std::array judged_figures{key_of(&Metrics::largest_impact_velocity), key_of(&Metrics::major_bounce_height),
                                            key_of(&Metrics::peak_contact_force)};
 
-/// The figures in which the drive is worse, of outcomes by device, as far as both have them; `significant`: height of a rebound
-/// from which on it counts [m].
+/// The figures in which the drive is worse. Outcomes are by device, as far as both have them; `significant` is the height from
+/// which on a rebound counts [m].
 [[nodiscard]] std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive,
                                                      const std::vector<DeviceOutcome>& step, double significant,
                                                      std::uint64_t seed);
 
-/// Conditions that no judged figure is above the 95 % quantile of the step's outcomes, or for a rebound above `significant` [m].
-/// There is none on a figure whose quantile is not finite.
+/// Conditions that keep each judged figure at or below the 95th percentile of the step's outcomes, or a rebound at or below
+/// `significant` [m]. A figure without a finite quantile has no condition.
 [[nodiscard]] std::vector<Criterion> no_harder_than(const std::vector<DeviceOutcome>& step, double significant);
 
 }  // namespace softland
