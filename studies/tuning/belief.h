@@ -1,4 +1,4 @@
-// What the records of a device tell of it: devices with weights, in the standard normal coordinates z of TunedScene.
+// The belief about a device from its records: devices with weights, in the standard normal coordinates z of TunedScene.
 //
 //   -ln p(z | records) = |z|^2 / 2 + sum over records L(record, closing of the device z under its shot) + const
 //
@@ -7,10 +7,10 @@
 //   edges        open time u within 0.09, 0.3 and 0.9 T_0 of the first touch,
 //                L = 1.2 ln(1 + q^2 / 3),  q = (u - u_record) / (0.0045 T_0 + 0.2 max(u, u_record)): the closing after its first
 //                rebounds is chaotic, and no edge of it is matched to another
-//   count        where edges are not known: the same of the openings that would be seen, (1 + 0.3 max) apart
+//   count        if edges are not known: the same for the number of visible openings, (1 + 0.3 max) apart
 //   loudness     ln loudness is a + b ln v_max, one a and one b in [0.5, 2] for all records, with an error of 0.3
 //
-// T_0 closing time of the plain step, g contact gap. The errors that depend on the scene are those that were found good on
+// T_0 is the closing time of the plain step, g the contact gap. The errors that depend on the scene were found to work on
 // mem-gold, as shares of its scales.
 #pragma once
 
@@ -23,13 +23,13 @@
 
 namespace softland {
 
-/// A shot that was fired, and what came of it.
+/// A shot that was fired, and its record.
 struct LearnedShot {
-  std::vector<Waveform> waveforms;  ///< told, in the order of Switch::drives() [V]
+  std::vector<Waveform> waveforms;  ///< commanded waveforms, in the order of Switch::drives() [V]
   ContactRecord record;
 };
 
-/// Numbers in a row, each a function of the seed and of how many were drawn: standard normal, or uniform in (0, 1).
+/// A sequence of random numbers, standard normal or uniform in (0, 1): each is a function of the seed and of its position.
 class Draws {
  public:
   Draws(std::uint64_t seed, std::uint64_t first) : seed_(seed), next_(first) {}
@@ -41,14 +41,14 @@ class Draws {
   std::uint64_t seed_, next_;
 };
 
-/// The terms above.
+/// The likelihood of records, by the terms above.
 class Likelihood {
  public:
   /// Keeps references.
   Likelihood(const TunedScene& scene, std::span<const LearnedShot> shots) : scene_(scene), shots_(shots) {}
-  /// r of the first touch in one shot; +-30 where only one of the two touches, 0 where neither does.
+  /// r of the first touch in one shot; +-30 if only one of the two touches, 0 if neither does.
   [[nodiscard]] double touch_residual(const ImaginedClosing& closing, const ContactRecord& record) const;
-  /// The logarithm of the likelihood of all records, of the closings of one device under all shots in their order.
+  /// The log likelihood of all records, for the closings of one device under all shots in their order.
   [[nodiscard]] double of(std::span<const ImaginedClosing> closings) const;
   /// Standard deviation of a recorded first touch at this speed [s].
   [[nodiscard]] double touch_deviation(double speed) const;
@@ -64,34 +64,35 @@ class Likelihood {
 struct Belief {
   std::vector<Eigen::VectorXd> points;  ///< z of the devices
   std::vector<double> weights;          ///< their sum is 1
-  Eigen::VectorXd mean, mode;           ///< of z
-  Eigen::MatrixXd covariance;           ///< of z
-  double effective_devices = 0;         ///< 1 / (sum of the squared weights), with the weights of the likelihood itself
-  double log_posterior = 0;             ///< of the mode, without its constant
+  Eigen::VectorXd mean, mode;           ///< mean and mode of z
+  Eigen::MatrixXd covariance;           ///< covariance of z
+  double effective_devices = 0;         ///< 1 / (sum of the squared weights), by the weights of the likelihood itself
+  double log_posterior = 0;             ///< log posterior of the mode, without its constant
 
   /// The prior: draws of the standard normal distribution.
   [[nodiscard]] static Belief prior(Eigen::Index size, Draws& draws);
-  /// So many points, each as often as its weight asks for (systematic resampling, Kitagawa 1996), in random order.
+  /// Draws `count` points in proportion to their weights (systematic resampling, Kitagawa 1996), in random order.
   [[nodiscard]] std::vector<Eigen::VectorXd> resampled(std::size_t count, Draws& draws) const;
 };
 
-/// Fits the first touches of these shots alone, from the belief and from devices all over the spread, until one of them is within
-/// the bound. One record whose contact stayed open is left out: a wire that comes off once is no device.
+/// Fits the first touches of these shots alone, from the belief and from devices all over the spread, until one of them is
+/// within the bound. One record whose contact stayed open is left out: a wire that comes off once says nothing about the
+/// device.
 ///
 /// Closings that are linear in z give touches y that are normal, with the covariance J J^T + I in units of their errors. The
-/// least |z|^2 + |r|^2 is then y^T (J J^T + I)^-1 y, chi-square with as many degrees of freedom as records. No deviation of one
-/// peak enters: it is the least over all peaks of what the records tell. The bound is its quantile by E. B. Wilson & M. M.
-/// Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684. Throws Interrupted.
+/// least |z|^2 + |r|^2 is then y^T (J J^T + I)^-1 y, chi-square with as many degrees of freedom as records. The deviation of a
+/// single peak does not enter: the least is over all peaks. The bound is its quantile by E. B. Wilson & M. M. Hilferty, Proc.
+/// Natl. Acad. Sci. 17 (1931) 684. Throws Interrupted.
 [[nodiscard]] TouchMisfit touch_misfit(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& belief,
                                        Draws& draws, const Watch& watch = {});
 
-/// Returns by how much the least |z|^2 + sum of r^2 rises where the gaps have the ratio of the scene; 0 where the spread has no
-/// such ratio. The rise is chi-square with one degree of freedom on devices of the spread. The search for the least over all
-/// peaks ends where it rises by less than `enough`. Throws Interrupted.
+/// Returns the rise of the least |z|^2 + sum of r^2 if the gaps have the ratio of the scene; 0 if the spread has no such ratio.
+/// The rise is chi-square with one degree of freedom on devices of the spread. The search over all peaks ends when the rise is
+/// below `enough`. Throws Interrupted.
 [[nodiscard]] double gap_ratio_misfit(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& belief,
                                       double enough, Draws& draws, const Watch& watch = {});
 
-/// What is believed after these shots; `last` is where some of the searches begin. At least one shot. Throws Interrupted.
+/// Returns the belief after these shots, at least one. Some of the searches begin at `last`. Throws Interrupted.
 [[nodiscard]] Belief learned(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& last, Draws& draws,
                              const Watch& watch = {});
 

@@ -1,5 +1,5 @@
-// The times at which the capacitance of a switch passes a threshold. An instrument sees them of a closing that no current tells,
-// such as a landing on a dielectric.
+// The times at which the capacitance of a switch passes a threshold. An instrument sees them for a closing without a contact
+// current, such as a landing on a dielectric.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@
 
 namespace softland {
 
-/// The capacitance is above the threshold.
+/// A time span with the capacitance above the threshold.
 struct CapacitanceRise {
   double begin = 0;  ///< [s]
-  double end = 0;    ///< [s]; NaN where it lasts to the end of the run
-  double rate = 0;   ///< how fast the capacitance grows at its begin [F/s]
+  double end = 0;    ///< [s]; NaN if it lasts to the end of the run
+  double rate = 0;   ///< rate of the capacitance at its begin [F/s]
 };
 
 /// Follows the capacitance of one electrode, step by step. A rise and a fall within one step of the integrator are not seen.
@@ -26,7 +26,7 @@ class CapacitanceEdges final : public ClosingObserver {
 
   [[nodiscard]] bool follows_motion() const override { return true; }
   void step(const Knot& begin, const Knot& end, const ContactState& contact) override;
-  /// They are in order of time.
+  /// Rises in order of time.
   [[nodiscard]] const std::vector<CapacitanceRise>& rises() const { return rises_; }
 
  private:
@@ -38,12 +38,12 @@ class CapacitanceEdges final : public ClosingObserver {
   double threshold_;
   Switch::Workspace work_;
   std::vector<double> between_;  // modal coordinates between two knots
-  double last_;                  // above the threshold, at the end of the last step [F]; NaN before the first
+  double last_;                  // capacitance above the threshold, after the last step [F]; NaN before the first
   std::vector<CapacitanceRise> rises_;
 };
 
-/// The capacitance of the closed state of the nominal design less that of the open one [F]. Throws InvalidInput where the
-/// threshold does not lie between the two, or there is no such state or no electrode that pulls.
+/// Returns the capacitance of the closed state of the nominal design less that of the open one [F]. Throws InvalidInput if the
+/// threshold does not lie between the two, or if such a state or a pulling electrode is missing.
 [[nodiscard]] double capacitance_rise(const PreparedScene& nominal, double threshold);
 
 }  // namespace softland

@@ -19,7 +19,7 @@
 namespace softland {
 namespace {
 
-// Only a contact tells a lab that a switch has closed.
+// Throws if the switch has no contact: only a contact shows that a switch has closed.
 void require_contact(const PreparedScene& nominal) {
   require(nominal.scene.device.has_contact(), [&] {
     return fmt::format("{}: there is no [contact]: a lab would see nothing of a closing", nominal.scene.file.name());
@@ -64,7 +64,7 @@ void stiffen(SceneFile& file, const Scene& scene, double factor) {
           [&] { return fmt::format("stiffness={}: {}: its contact has no stiffness", number_text(factor), scene.file.name()); });
 }
 
-// In volts, so that a waveform means the same whatever the model does to the pull-in voltage.
+// Returns the scene of the model, in volts: a waveform means the same whatever the model does to the pull-in voltage.
 PreparedScene with_model(const PreparedScene& nominal, const PracticeModel& model) {
   SceneFile file = nominal.resolved();
   if (model.more_modes != 0) add_modes(file, nominal.scene, model.more_modes);
@@ -76,7 +76,7 @@ PreparedScene with_model(const PreparedScene& nominal, const PracticeModel& mode
   return own;
 }
 
-// The first device of this seed that can be described.
+// Returns the first device of this seed that can be described.
 SampledDevice drawn(const PreparedScene& own, std::uint64_t seed) {
   constexpr std::uint64_t most = 100;
   const Ensemble ensemble(own, 1);
@@ -136,7 +136,7 @@ std::vector<ContactEdge> PracticeDevice::seen_edges(const std::vector<ContactClo
                  opens = touch.end + options_.laboratory.edge_error * random_normal(of_shot, Stream::practice_edges, drawn++);
     const bool stays_open = seen.empty() || closes - seen.back().time > std::max(0.0, options_.laboratory.unseen);
     if (!stays_open) {
-      seen.pop_back();  // the opening before it
+      seen.pop_back();  // remove the opening before it
     } else if (!(opens <= closes)) {
       seen.push_back({.time = closes, .closed = true});
     } else {

@@ -178,7 +178,7 @@ LandingCost Outlook::expected(const std::vector<Waveform>& waveforms, std::size_
 
 namespace {
 
-// Root mean square of what lies on that side of the middle, from there: late touches scatter more than early ones.
+// Root mean square of the distances from the middle on one side of it: late touches scatter more than early ones.
 double scatter_of(const std::vector<double>& sample, double middle, double side) {
   double squares = 0, count = 0;
   for (const double one : sample) {
@@ -231,13 +231,13 @@ double Outlook::touch_slope(const std::vector<Waveform>& waveforms) const {
 
 namespace {
 
-// A search of the expected cost over the first devices of an outlook.
+// A search for the least expected cost over the first devices of an outlook.
 struct Search {
   const char* optimizer;
   std::size_t devices;
   long evaluations;
-  double step;  // first one, of the box
-  bool fine;    // leaves the coarse numbers as they are
+  double step;  // first step, as a part of the box
+  bool fine;    // varies the fine numbers only
 };
 
 std::vector<double> found(const Shapes& shapes, const Outlook& outlook, const std::vector<double>& start, const Search& search,
@@ -268,8 +268,8 @@ std::vector<double> found(const Shapes& shapes, const Outlook& outlook, const st
 namespace {
 
 std::vector<Recipe> searched_recipes(const TunedScene& scene, const Shapes& shapes, std::size_t count, const Watch& watch) {
-  constexpr double narrow = 0.1, narrow_nuisances = 0.5;  // devices, in standard deviations of the prior
-  constexpr double headroom = 0.92;                       // of the driver's highest level
+  constexpr double narrow = 0.1, narrow_nuisances = 0.5;  // scatter of the devices, in standard deviations of the prior
+  constexpr double headroom = 0.92;                       // share of the driver's highest level
   constexpr double hopeless = 0.9;
   constexpr std::array deviations{0.0, -1.0, 1.0, -2.0, 2.0};
   const std::size_t devices = scene.is_in_lanes() ? 48 : 12;

@@ -24,12 +24,13 @@
 namespace softland {
 namespace {
 
-constexpr double belief_accuracy = 1e-4;  // of closings
+constexpr double belief_accuracy = 1e-4;  // accuracy of closings
 constexpr double viscosity_deviation = 0.05, contact_deviation = 0.1;
-// An error of the model that is a constant time, over the closing time of the plain step.
+// Model error in time, over the closing time of the plain step.
 constexpr double delay_share = 0.003;
 
-// Of a closing, in closing times of the plain step: after the first touch, without a touch, and after the last breakpoint.
+// Durations of a closing, in closing times of the plain step: after the first touch, without a touch, and after the last
+// breakpoint.
 constexpr double after_touch = 1.8, longest_wait = 7.4, tail = 0.75;
 
 bool varies(const DeviceSpread& spread, const std::string& path) {
@@ -55,7 +56,7 @@ std::vector<std::string> shaped_drives_of(const PreparedScene& prepared, Actuato
   return names;
 }
 
-// The keys of this name that the contacts which make the connection have: of one contact, contact.KEY.
+// Returns the keys of this name of the contacts that make the connection; contact.KEY if there is one contact.
 std::vector<std::string> contact_keys(const SceneFile& file, const Device& device, std::string_view key) {
   std::vector<std::string> keys;
   for (const Contact& contact : device.contacts) {
@@ -65,16 +66,16 @@ std::vector<std::string> contact_keys(const SceneFile& file, const Device& devic
   return keys;
 }
 
-// The rest distances of these contacts; none where the contact is the face of a dielectric.
+// Returns the rest distances of these contacts; none if the contact is the face of a dielectric.
 std::vector<std::string> contact_gaps(const PreparedScene& prepared) {
   if (prepared.scene.file.written("gap.contact")) return {"gap.contact"};
   return contact_keys(prepared.scene.file, prepared.scene.device, "gap");
 }
 
-// The name of the quantity that these gaps follow.
+// Returns the name of the quantity that these gaps follow.
 std::string gap_name(const std::vector<std::string>& gaps) { return gaps.size() == 1 ? gaps.front() : "contact gaps"; }
 
-// The scene in volts, with every default written out, and what the belief varies beside the spread.
+// Returns the scene in volts, with every default written out, and with the nuisances that the belief varies beside the spread.
 SceneFile with_nuisances(const PreparedScene& prepared, const TunerOptions& options) {
   SceneFile file = prepared.resolved();
   const DeviceSpread& spread = prepared.scene.spread;
@@ -98,7 +99,7 @@ SceneFile with_nuisances(const PreparedScene& prepared, const TunerOptions& opti
   return file;
 }
 
-// The landing of one lane.
+// Observes the landing of one lane.
 class LaneClosing final : public LandingObserver {
  public:
   void touch(const Touch& touch) override {
@@ -112,7 +113,7 @@ class LaneClosing final : public LandingObserver {
   ImaginedClosing closing = {};
 };
 
-// The same of a closing that is run by itself, and of its capacitance where an instrument sees that.
+// Observes the same of a closing that is run by itself, and its capacitance if an instrument sees that.
 class SingleClosing final : public ClosingObserver {
  public:
   SingleClosing(const Switch& model, double threshold, double speed_per_rate)
@@ -158,8 +159,8 @@ class SingleClosing final : public ClosingObserver {
 
 }  // namespace
 
-// The contact gaps leave the factor that they share with other gaps, and follow it but for a deviation of their own: correlated
-// normal factors.
+// Takes the contact gaps out of the factor that they share with other gaps. They follow it with a deviation of their own:
+// correlated normal factors.
 void TunedScene::loosen_contact_gap(DeviceSpread& spread, const std::vector<std::string>& gaps) {
   for (std::size_t i = 0; i < spread.variables.size(); ++i) {
     SpreadVariable& shared = spread.variables[i];
@@ -237,7 +238,7 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
     step_stays_from_ = std::isfinite(step.permanent_contact_time) ? step.permanent_contact_time : scales_.closing_time;
   }
   if (options.touch) scales_.latest_touch = beside_step(*options.touch, scales_.closing_time).limit;
-  constexpr double coarsest = 0.1;  // of the closing time
+  constexpr double coarsest = 0.1;  // share of the closing time
   require(options.laboratory.edge_error < coarsest * scales_.closing_time, [&] {
     return fmt::format("the error of edges, {}, must be below a tenth of the closing time of the plain step, {}",
                        engineering(options.laboratory.edge_error, "s", 3), engineering(scales_.closing_time, "s", 3));
@@ -320,7 +321,7 @@ std::vector<Signal> TunedScene::signals(const ImaginedShot& shot) const {
 }
 
 std::vector<ImaginedClosing> TunedScene::close(std::span<const ImaginedShot> shots, const Watch& watch) const {
-  // All threads have something to do, and lanes are filled.
+  // Choose the task size so that all threads are busy and lanes are filled.
   constexpr std::size_t lanes = 8, most_in_lanes = 64, most_by_itself = 4;
   const auto jobs = static_cast<std::size_t>(options_.jobs);
   const std::size_t share = (shots.size() + jobs - 1) / jobs;
@@ -381,7 +382,7 @@ std::vector<ImaginedClosing> TunedScene::close(std::span<const ImaginedShot> sho
 
 namespace {
 
-// The gain of the source of that drive.
+// Returns the gain of the source of that drive.
 double gain_of(const DeviceSpread& spread, const std::string& drive, const std::vector<double>& values) {
   double gain = 1;
   for (std::size_t i = 0; i < spread.variables.size(); ++i) {

@@ -37,9 +37,9 @@ void check(const TunerOptions& options) {
 namespace {
 
 constexpr std::size_t proposal_devices = 32;
-constexpr double enough_devices = 8;                  // effective ones, for a belief to predict
-constexpr double certain = 3.5;                       // standard errors, of another ratio of the gaps
-constexpr std::size_t first_ones = 4, last_ones = 8;  // records that are learned from
+constexpr double enough_devices = 8;                  // effective devices that a belief needs to predict
+constexpr double certain = 3.5;                       // standard errors that establish another ratio of the gaps
+constexpr std::size_t first_ones = 4, last_ones = 8;  // numbers of records that are learned from
 
 double weighted_mean(const std::vector<double>& weights, const std::vector<double>& values) {
   double sum = 0;
@@ -67,12 +67,12 @@ std::optional<BelievedQuantity> believed_gap_ratio(const TunedScene& scene, cons
   return one;
 }
 
-// Of random numbers: those of a closing.
+// Start of the random numbers of a closing.
 std::uint64_t first_draw(int closings) { return (static_cast<std::uint64_t>(closings) + 1) << 20; }
 
 }  // namespace
 
-// What no closing changes.
+// The part that no closing changes.
 struct Tuner::Setting {
   Setting(const SceneFile& file, const TunerOptions& options, const Watch& watch)
       : scene(file, options, watch), recipes(recipes_of(scene, watch)), shapes(scene) {
@@ -87,16 +87,16 @@ struct Tuner::Setting {
 struct Tuner::State {
   struct Fired {
     LearnedShot shot;
-    std::vector<double> x;  // of its shape
+    std::vector<double> x;  // numbers of its shape
     TunerShot as_proposed;
     int waveform = 0;  // number of the shot that fired it first
   };
-  // Volts that follow the touch time of a shot that is repeated.
+  // A controller that makes the volts follow the touch time of a repeated shot.
   struct Steering {
-    std::vector<Waveform> waveforms;  // at s = 1
+    std::vector<Waveform> waveforms;  // waveforms at s = 1
     int waveform = 0;                 // number of the shot that fired it first
     double slope = Metrics::unset, most = 1, s = 1;
-    std::vector<double> touches;  // the first ones, which say where it ought to touch [s]
+    std::vector<double> touches;  // first touches, whose mean is the reference [s]
     [[nodiscard]] std::vector<Waveform> steered() const {
       std::vector<Waveform> own = waveforms;
       for (Waveform& waveform : own) waveform = scaled(std::move(waveform), s, 1);
@@ -113,18 +113,18 @@ struct Tuner::State {
   struct Learned {
     std::vector<Fired> fired;
     int closings = 0, in_a_row = 0;
-    std::size_t forgotten = 0;  // records that are believed no more, of those that were fired
-    double hold = 1;            // of the hold level, over the nominal one
+    std::size_t forgotten = 0;  // number of first records that are not used any more
+    double hold = 1;            // hold level over the nominal one
     Belief belief;
     std::optional<Steering> steering;
-    std::vector<double> x;  // of the next shot
+    std::vector<double> x;  // numbers of the next shot
     TunerShot next, kept;
     int next_waveform = 0;                           // number of the shot that fired the next waveform first; 0: none did
-    std::vector<double> surprises;                   // of touch times that the belief had predicted, in standard deviations
+    std::vector<double> surprises;                   // errors of predicted touch times, in standard deviations
     int unexpected_bounces = 0;                      // closings that bounced, where hardly a device of the belief did
-    int unexplained_bounces = 0;                     // long ones that were learned from, and that the best device does not have
-    std::optional<BelievedQuantity> gap_ratio = {};  // believed last by enough devices, unless the scene's explains the records
-    TouchMisfit misfit = {};                         // of the records that were learned from last
+    int unexplained_bounces = 0;                     // long bounces among the records in use that the best device does not have
+    std::optional<BelievedQuantity> gap_ratio = {};  // last value from enough devices, unless the scene's explains the records
+    TouchMisfit misfit = {};                         // misfit of the records that were learned from last
   };
 
   State(std::shared_ptr<const Setting> of_scene, const Watch& watch)
@@ -174,7 +174,7 @@ struct Tuner::State {
 
 namespace {
 
-// How far a recorded first touch is from the predicted one, in standard deviations.
+// Difference of a recorded first touch from the predicted one, in standard deviations.
 double surprise(const PredictedRecord& predicted, const ContactRecord& record, double effective_devices) {
   constexpr double both_sides = 1.96;
   const std::optional<double> seen = first_touch(record);
@@ -183,10 +183,10 @@ double surprise(const PredictedRecord& predicted, const ContactRecord& record, d
   return both_sides * (*seen - predicted.touch_median) / (edge - predicted.touch_median);
 }
 
-// Whether the contact opened for longer than an error of the model explains: a mode that it does not have opens it by a
+// True if the contact opened for longer than an error of the model explains: a mode that the model lacks opens it by a
 // nanometre.
 bool has_long_bounce(const TunedScene& scene, const ContactRecord& record) {
-  constexpr double share = 0.04;  // of the closing time of the plain step
+  constexpr double share = 0.04;  // share of the closing time of the plain step
   if (record.edges.empty()) return bounce_count(record).value_or(0) > 0;
   const double least = scene.options().laboratory.unseen + share * scene.scales().closing_time;
   return std::ranges::any_of(openings(record), [&](const ContactOpening& one) { return one.end - one.begin >= least; });
@@ -209,7 +209,7 @@ int unexplained_bounces(const TunedScene& scene, std::span<const LearnedShot> sh
   return count;
 }
 
-// The ratio must be off by one deviation of what was thought possible, too.
+// True if the ratio is off by its errors, and by one prior deviation, too.
 bool is_off(const std::optional<BelievedQuantity>& ratio) {
   return ratio && std::abs(ratio->mean - 1) >= std::max(certain * ratio->deviation, ratio->prior_deviation);
 }
@@ -238,7 +238,7 @@ Tuner::State::Learned Tuner::State::learned(Learned known, const ContactRecord& 
     known.next.number += 1;
     return known;
   }
-  if (known.steering) known.forgotten = known.fired.size() - std::min(known.fired.size(), last_ones);  // what drifted
+  if (known.steering) known.forgotten = known.fired.size() - std::min(known.fired.size(), last_ones);  // forget what drifted
   known.steering.reset();
   propose_next(known, watch);
   return known;
@@ -279,7 +279,7 @@ void Tuner::State::propose_next(Learned& known, const Watch& watch) const {
   if (known.in_a_row >= 2 && proposal.cost.landing < calm) repeat(known, outlook);
 }
 
-// The belief chooses among the waveforms that did not bounce when they were fired last, unless the next is clearly better.
+// Keeps the best waveform among those that did not bounce when they were fired last, unless the next is clearly better.
 void Tuner::State::keep_best(Learned& known, const Outlook& outlook, double expected) const {
   constexpr double clearly = 0.15;
   known.kept = known.next;
@@ -313,7 +313,7 @@ void Tuner::State::repeat(Learned& known, const Outlook& outlook) const {
 
 void Tuner::State::fire_kept_again() {
   const auto fired = std::ranges::find(now.fired, now.kept.number, [](const Fired& one) { return one.as_proposed.number; });
-  if (fired == now.fired.end() || now.steering) return;  // the waveform that is steered is the one kept
+  if (fired == now.fired.end() || now.steering) return;  // the steered waveform is the one kept
   now.x = fired->x;
   now.next_waveform = fired->waveform;
   const int number = now.next.number;
@@ -405,7 +405,7 @@ BeliefSummary Tuner::belief() const {
 
 namespace {
 
-// "The device ...: its contact gap is 4.8 % wider ..." Devices of [spread] keep the ratio of the scene.
+// Says "The device ...: its contact gap is 4.8 % wider ..." Devices of [spread] keep the ratio of the scene.
 std::string gap_ratio_words(const BelievedQuantity& ratio) {
   constexpr double percent = 100;
   const double change = percent * (ratio.mean - 1);

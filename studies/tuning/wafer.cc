@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// y = J z + n of one device.
+// The measurement y = J z + n of one device.
 struct Told {
   MatrixXd rows;
   VectorXd values;
@@ -28,7 +28,7 @@ void check(const NormalBelief& belief, Index size) {
 }
 
 Told told_by(const TunedBelief& tuned) {
-  constexpr double is_told = 0.5;  // of the variance before: samples of a belief scatter above it
+  constexpr double is_told = 0.5;  // share of the variance before: samples of a belief scatter above it
   const Index n = tuned.prior.mean.size();
   const MatrixXd factor = cholesky_factor(tuned.prior.covariance), identity = MatrixXd::Identity(n, n);
   MatrixXd inverse(n, n);
@@ -42,7 +42,7 @@ Told told_by(const TunedBelief& tuned) {
   Told all{.rows = MatrixXd(static_cast<Index>(told.size()), n), .values = VectorXd(static_cast<Index>(told.size()))};
   for (Index i = 0; i < all.values.size(); ++i) {
     const Index k = told[static_cast<std::size_t>(i)];
-    const double variance = eigen.values[k], precision = 1 / variance - 1;  // that of the records alone
+    const double variance = eigen.values[k], precision = 1 / variance - 1;  // precision of the records alone
     const VectorXd direction = eigen.vectors.col(k);
     all.rows.row(i) = std::sqrt(precision) * direction.transpose() * inverse;
     all.values[i] = direction.dot(mean) / variance / std::sqrt(precision) + all.rows.row(i).dot(tuned.prior.mean);
