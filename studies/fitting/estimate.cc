@@ -13,9 +13,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of a symmetric matrix that is positive but for rounding; variances of directions that it says nothing of are vast.
+// Inverts a symmetric matrix that is positive but for rounding; variances of directions without information are vast.
 MatrixXd inverse(const MatrixXd& matrix) {
-  constexpr double least = 1e-13;  // over the largest eigenvalue
+  constexpr double least = 1e-13;  // share of the largest eigenvalue
   const SymmetricEigen eigen = symmetric_eigen(matrix);
   const double largest = eigen.values[eigen.values.size() - 1];
   const VectorXd inverses = eigen.values.unaryExpr([&](double v) { return 1 / std::max(v, std::max(least * largest, 1e-300)); });

@@ -33,16 +33,16 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double unset = Metrics::unset;
-constexpr double scale_without_prior = 0.1;  // of the value
+constexpr double scale_without_prior = 0.1;  // share of the value
 constexpr double quantile_95 = 1.959963984540054;
 
-// What one number of the bench file is.
+// One number of the bench file.
 struct Datum {
-  std::size_t device = 0, instrument = 0;  // of the device
-  Index row = 0;                           // of the reading
+  std::size_t device = 0, instrument = 0;  // instrument of the device
+  Index row = 0;                           // row of the reading
   double measured = 0, error = 0;
   std::size_t measurement = 0;
-  double time = unset;  // of a row of a trace [s]
+  double time = unset;  // time of a row of a trace [s]
 };
 
 struct FitDevice {
@@ -51,10 +51,10 @@ struct FitDevice {
   std::vector<Instrument> instruments = {};
 };
 
-// A variable of the spread, of one device or of all.
+// A variable of the spread, of one device or shared by all.
 struct Parameter {
   std::size_t variable = 0;
-  std::optional<std::size_t> device = {};  // none: of all
+  std::optional<std::size_t> device = {};  // none: shared by all
   double mean = 0, scale = 1;              // value = mean + scale z
   bool has_prior = true;
 };
@@ -63,7 +63,7 @@ struct Setup {
   std::vector<FitDevice> devices;
   std::vector<Datum> data;
   std::vector<Parameter> parameters;
-  std::vector<std::vector<std::size_t>> of_device;  // the parameter of each variable
+  std::vector<std::vector<std::size_t>> of_device;  // indices of the parameter of each variable
   MatrixXd prior;                                   // P
   MatrixXd prior_root;                              // residuals of the prior are prior_root z
   Loss loss = Loss::huber;
@@ -73,7 +73,7 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Of the entries of the spread that have one of these keys, the entry; else the name itself.
+// Returns the entry of the spread that has this key; else the name itself.
 std::string entry_of(const DeviceSpread& spread, const std::string& name) {
   for (const SpreadVariable& v : spread.variables) {
     if (v.name == name) return v.name;
@@ -84,7 +84,8 @@ std::string entry_of(const DeviceSpread& spread, const std::string& name) {
   return name;
 }
 
-// The scene in volts, with a spread of the unknowns alone; those that had none get one, which is no prior.
+// Returns the scene in volts, with a spread of the unknowns alone. Unknowns without an entry get one, which does not act as a
+// prior.
 PreparedScene with_unknowns(const PreparedScene& given, std::vector<std::string>& unknowns,
                             std::vector<std::string>& without_prior) {
   const DeviceSpread& spread = given.scene.spread;
@@ -126,7 +127,7 @@ PreparedScene with_unknowns(const PreparedScene& given, std::vector<std::string>
   return p;
 }
 
-// ---- what was measured
+// ---- measurements
 
 class Instruments {
  public:
@@ -238,7 +239,7 @@ void add_parameters(Setup& setup, const std::vector<std::string>& shared, const 
   }
 }
 
-// Those of one device, or the shared ones, depend on each other as the spread says.
+// Unknowns of one device, or the shared ones, are correlated as the spread says.
 void add_prior(Setup& setup) {
   const auto n = static_cast<Index>(setup.parameters.size());
   setup.prior = setup.prior_root = MatrixXd::Zero(n, n);
@@ -262,14 +263,14 @@ void add_prior(Setup& setup) {
 
 // ---- residuals
 
-// The readings of all devices at z; each search has one.
+// The readings of all devices at z; each search has a model of its own.
 class Model {
  public:
   explicit Model(const Setup& setup) : setup_(setup) {
     for (const FitDevice& device : setup.devices) readers_.emplace_back(device.nominal);
   }
 
-  // Values as the instruments read them; false where a device cannot be had or read.
+  // Computes the values that the instruments read; false if a device is impossible or cannot be read.
   [[nodiscard]] bool read(std::span<const double> z, VectorXd& values, MatrixXd* slopes) {
     const auto n = static_cast<Index>(setup_.parameters.size());
     values.resize(static_cast<Index>(setup_.data.size()));
@@ -297,7 +298,7 @@ class Model {
     return true;
   }
 
-  // Of one instrument on a device that is at z, in its own unit by z.
+  // The reading of one instrument on a device at z, in its own unit, and its slopes by z.
   [[nodiscard]] std::optional<std::pair<double, VectorXd>> read_one(std::size_t device, std::span<const double> z,
                                                                     const Instrument& instrument) {
     if (!readers_[device].move_to(values_of(device, z))) return std::nullopt;
@@ -362,13 +363,13 @@ std::vector<std::vector<double>> starts_of(const Setup& setup, const FitOptions&
   return all;
 }
 
-// J^T W J of data whose residuals and slopes, over their errors, these are.
+// Returns J^T W J of data with these residuals and slopes, both over their errors.
 MatrixXd information(const MatrixXd& slopes, const VectorXd& residuals, Loss loss) {
   const VectorXd weights = residuals.unaryExpr([&](double r) { return loss_weight(loss, r); });
   return slopes.transpose() * weights.asDiagonal() * slopes;
 }
 
-// ---- what follows from the end
+// ---- results of the end
 
 class EndOfFit {
  public:
@@ -395,7 +396,7 @@ class EndOfFit {
 
   void add_next(const Watch& watch);
   void add_population();
-  // Without a prior, an unknown that no datum moves with keeps the value at which its search began.
+  // Throws for an unknown without a prior that no datum depends on: it would keep the value at which its search began.
   void require_all_seen(const std::string& bench) const {
     for (std::size_t i = 0; i < setup_.parameters.size(); ++i) {
       const Parameter& p = setup_.parameters[i];
@@ -433,7 +434,7 @@ class EndOfFit {
     }
   }
 
-  // Of the mean of the devices: what is weak on one is weak on all, each in a mixture of its own.
+  // Weak directions of the mean of the devices: a direction that is weak on one is weak on all, each in a mixture of its own.
   [[nodiscard]] std::vector<WeakDirection> weak_of_a_device() const {
     const auto n = static_cast<Index>(setup_.parameters.size());
     const std::vector<std::size_t>& first = setup_.of_device.front();
@@ -483,12 +484,12 @@ class EndOfFit {
   MatrixXd slopes_;
 };
 
-// What could be measured besides, and how well that is usually done.
+// A further possible measurement, and its usual error.
 struct Candidate {
   std::string name;
   Instrument instrument;
-  double error = 0;           // absolute [SI unit], or
-  double relative_error = 0;  // over the value
+  double error = 0;           // absolute error [SI unit], or
+  double relative_error = 0;  // error over the value
 };
 
 std::vector<Candidate> candidates(const PreparedScene& p) {
@@ -548,7 +549,7 @@ void EndOfFit::add_next(const Watch& watch) {
   std::ranges::stable_sort(fit_.next, [](const auto& a, const auto& b) { return a.reduction > b.reduction; });
 }
 
-// Of what every device has of its own, with shared unknowns as they were found.
+// Adds the population of the devices' own unknowns, with shared unknowns as they were found.
 void EndOfFit::add_population() {
   if (setup_.devices.size() < 2) return;
   FittedPopulation found{.variables = {}, .names = {}, .mean = {}, .deviation = {}, .correlation = {}};
@@ -627,7 +628,7 @@ Setup setup_of(const SceneFile& file, const Bench& bench, const FitOptions& opti
   return setup;
 }
 
-// The same with these measurements.
+// Returns the setup with these measurements.
 Setup with_data(Setup setup, const Bench& bench) {
   for (FitDevice& device : setup.devices) device.instruments.clear();
   setup.data.clear();
@@ -673,7 +674,7 @@ void set_spread(SceneFile& file, const Fit& fit) {
       keys.push_back('"' + key.name() + '"');
       weights.push_back(number_text(key.weight));
     }
-    // A share of the middle, which is the scene's value now.
+    // The width is a share of the mean, which is the scene's value now.
     const std::string width =
         variable.is_factor
             ? fmt::format("cov=\"{:.4g} %\"", 100 * all.deviation[i] / all.mean[i])
@@ -682,7 +683,7 @@ void set_spread(SceneFile& file, const Fit& fit) {
     file.set(fmt::format("spread.\"{}\"={{keys=[{}],{}distribution=\"normal\",{}}}", all.names[i], fmt::join(keys, ","), added,
                          width));
     for (std::size_t j = 0; j < i; ++j) {
-      constexpr double most = 0.999;  // beyond, two would be one
+      constexpr double most = 0.999;  // a higher correlation would make two variables one
       const double correlation = all.correlation(static_cast<Index>(i), static_cast<Index>(j));
       pairs.push_back(fmt::format("[\"{}\",\"{}\",{:.4f}]", all.names[j], all.names[i], std::clamp(correlation, -most, most)));
     }
@@ -692,12 +693,12 @@ void set_spread(SceneFile& file, const Fit& fit) {
 
 namespace {
 
-// Why a fit is not to be believed.
+// Returns the reasons to doubt a fit.
 std::vector<std::string> doubts_of(const Fit& fit, const ManyEnds& all, const LeastSquaresEnd& best) {
-  constexpr double far = 4;              // standard deviations of what was known
-  constexpr double largest_rms = 3;      // errors
-  constexpr double as_good = 2;          // of the cost, half a sum of squares: two standard deviations
-  constexpr double standard_errors = 4;  // by which another minimum differs
+  constexpr double far = 4;              // standard deviations of the prior
+  constexpr double largest_rms = 3;      // in errors
+  constexpr double as_good = 2;          // excess of the cost, half a sum of squares: two standard deviations
+  constexpr double standard_errors = 4;  // least difference of another minimum, in standard errors
   std::vector<std::string> doubts;
   for (const FittedUnknown& u : fit.unknowns) {
     const double off = std::abs(u.value - u.prior_mean) / u.prior_deviation;
@@ -719,7 +720,7 @@ std::vector<std::string> doubts_of(const Fit& fit, const ManyEnds& all, const Le
   return doubts;
 }
 
-// With the middle of the population in the place of each device's own values.
+// Returns the fit with the mean of the population in the place of each device's own values.
 Fit of_population(Fit fit) {
   if (!fit.population) return fit;
   for (std::size_t i = 0; i < fit.population->names.size(); ++i) {
@@ -747,15 +748,15 @@ std::string fitted_text(const Fit& fit, std::string_view text, const std::string
 
 namespace {
 
-// The data that count, and where the searches from several starts end.
+// The data that count, and the ends of the searches from several starts.
 struct Stage {
   std::unique_ptr<const Setup> setup;
   ManyEnds all = {};
 };
 
-// Two ends are one minimum where the data and the prior tell them apart by less than their errors.
+// True if two ends are one minimum: the data and the prior separate them by less than their errors.
 bool is_one_minimum(const LeastSquaresEnd& a, const LeastSquaresEnd& b) {
-  constexpr double apart = 0.1;  // standard deviations, or of the cost
+  constexpr double apart = 0.1;  // in standard deviations, and in the cost
   double largest = 0;
   for (std::size_t i = 0; i < a.x.size(); ++i) largest = std::max(largest, std::abs(a.x[i] - b.x[i]));
   return largest <= apart && std::abs(a.cost - b.cost) <= apart;
@@ -767,7 +768,7 @@ Stage solved(Setup setup, const std::vector<std::vector<double>>& starts, const 
   return stage;
 }
 
-// Distinct ends, the best first: those that more rows of the traces may yet prefer.
+// Returns distinct ends, the best first: more rows of the traces may yet prefer one of them.
 std::vector<std::vector<double>> best_ends(const ManyEnds& all) {
   constexpr std::size_t most = 5;
   std::vector<const LeastSquaresEnd*> ranked;
@@ -786,7 +787,7 @@ std::vector<std::vector<double>> best_ends(const ManyEnds& all) {
   return starts;
 }
 
-// When the nominal design first touches, by measurement; NaN of what is no trace.
+// Returns the first touch of the nominal design, by measurement; NaN for a measurement that is not a trace.
 std::vector<double> nominal_touches(const Setup& setup, std::size_t measurements) {
   std::vector<double> touches(measurements, unset);
   for (const Datum& datum : setup.data) {
@@ -803,9 +804,9 @@ std::vector<double> nominal_touches(const Setup& setup, std::size_t measurements
   return touches;
 }
 
-// The residuals of each trace, in errors, of the rows that count or of those that came last.
+// The residuals of each trace, in errors, of the rows that count or of the newest ones.
 struct TraceMisfit {
-  std::vector<double> rms;  // root mean square, by measurement; infinite where the device cannot be read
+  std::vector<double> rms;  // root mean square, by measurement; infinite if the device cannot be read
   std::vector<double> rows;
 };
 
@@ -824,7 +825,7 @@ TraceMisfit misfit(const Stage& stage, std::size_t measurements, const TraceWind
   return of;
 }
 
-// Whether the scene describes the newest rows as well as those before the first touch, by measurement, but for what chance adds.
+// True, by measurement, if the scene describes the newest rows as well as those before the first touch, within chance.
 std::vector<bool> described(const TraceMisfit& newest, const TraceMisfit& before) {
   constexpr double least = 0.15, deviations = 3;
   std::vector<bool> all;
@@ -835,17 +836,17 @@ std::vector<bool> described(const TraceMisfit& newest, const TraceMisfit& before
   return all;
 }
 
-// Whether the data go with the unknowns as their slopes say, within the errors that follow from these. Past some bounces they do
-// not: slopes of a chaotic course are those of a few steps of its chaos, and promise errors that are far too small.
+// True if the data are linear in the unknowns within their standard errors. Past some bounces they are not: slopes of a chaotic
+// motion hold for tiny steps only, and give errors that are far too small.
 bool is_linear(const Stage& stage) {
-  constexpr double largest = 0.5;  // of one standard deviation
+  constexpr double largest = 0.5;  // deviation from linear, in standard deviations
   const Setup& setup = *stage.setup;
   const LeastSquaresEnd& end = stage.all.ends[stage.all.best];
   Model model(setup);
   VectorXd values, moved;
   MatrixXd slopes;
   if (!model.read(end.x, values, &slopes)) return false;
-  VectorXd weights(values.size());  // of the residuals, and 1 over their errors
+  VectorXd weights(values.size());  // weights of the residuals, and 1 over their errors
   for (Index i = 0; i < values.size(); ++i) {
     const Datum& datum = setup.data[static_cast<std::size_t>(i)];
     weights[i] = std::sqrt(loss_weight(setup.loss, (values[i] - datum.measured) / datum.error)) / datum.error;

@@ -1,15 +1,16 @@
-// The scene fitted to what was measured on devices: least squares over the quantities of [spread], or any keys of the scene.
+// The fit of a scene to measurements on devices: least squares over the quantities of [spread], or any keys of the scene.
 //
 //   minimise  sum over data of rho(((y_i(x) - m_i) / s_i)^2) + (z - mean)^T R^-1 (z - mean)
 //
-// y_i(x) what an instrument reads of the device (studies/devices/instruments.h), m_i what was measured, s_i its error, rho a
-// robust loss (least_squares.h). z are the unknowns in scales of their own: one standard deviation of [spread], whose
-// correlations R count, or, for a key that it does not have, a tenth of the scene's value, with no prior. Distributions other
+// y_i(x) is what an instrument reads of the device (studies/devices/instruments.h), m_i the measured value, s_i its error, rho
+// a robust loss (least_squares.h). z are the unknowns in scales of their own: one standard deviation of [spread], whose
+// correlations R count. A key without an entry has a tenth of the scene's value as scale, and no prior. Distributions other
 // than the normal one count with their mean and standard deviation.
 //
-// Unknowns are those of each device, or shared by all. The searches begin at the nominal device and at points of low discrepancy
-// spread over the prior; the best end counts. Standard errors are those of the linearised problem there. Of traces the rows up to
-// the first touch count at first, and the best ends go on to more of them as long as the scene describes those (trace_windows.h).
+// Unknowns are those of each device, or shared by all. The searches begin at the nominal device and at points of low
+// discrepancy spread over the prior; the best end counts. Standard errors are those of the linearised problem there. The rows
+// of traces up to the first touch count at first. The best ends go on to more of them as long as the scene describes those
+// (trace_windows.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -31,24 +32,24 @@ namespace softland {
 
 struct FitOptions {
   std::vector<std::string> unknowns = {};  ///< entries of [spread], or keys; empty: all entries of [spread]
-  std::vector<std::string> shared = {};    ///< of these, what all devices have in common
+  std::vector<std::string> shared = {};    ///< those of the unknowns that all devices share
   Loss loss = Loss::huber;
   std::size_t starts = 20;
   std::uint64_t seed = 1;
   int jobs = 1;         ///< threads; does not change the result
-  bool suggest = true;  ///< look for what to measure next
+  bool suggest = true;  ///< search for the best next measurement
 };
 inline constexpr std::size_t most_starts = 10'000;
 
 struct FittedUnknown {
-  std::string name;                                                      ///< of the entry in [spread], or the key
-  std::string device;                                                    ///< empty: of all, or of the only one
+  std::string name;                                                      ///< name of the entry in [spread], or the key
+  std::string device;                                                    ///< device; empty: all devices, or the only one
   std::string unit;                                                      ///< SI; empty: a factor of the scene's values
-  double nominal = 0;                                                    ///< of the scene [unit]
-  double value = 0, standard_error = 0;                                  ///< unset where the fit is doubted
+  double nominal = 0;                                                    ///< value of the scene [unit]
+  double value = 0, standard_error = 0;                                  ///< unset if the fit is in doubt
   double low = 0, high = 0;                                              ///< 95 % interval; likewise
-  double prior_mean = Metrics::unset, prior_deviation = Metrics::unset;  ///< NaN: nothing was known
-  double scale = 0;                                                      ///< of z
+  double prior_mean = Metrics::unset, prior_deviation = Metrics::unset;  ///< NaN: no prior
+  double scale = 0;                                                      ///< scale of z
 };
 
 struct FitResidual {
@@ -57,7 +58,7 @@ struct FitResidual {
   Measurable what = Measurable::pull_in;
   std::string drive;
   std::optional<double> level, time;                      ///< [V], [s]
-  double measured = 0, error = 0, before = 0, after = 0;  ///< of the scene as it was given; of the fitted one
+  double measured = 0, error = 0, before = 0, after = 0;  ///< before: in the given scene; after: in the fitted one
   [[nodiscard]] double normalized() const { return (after - measured) / error; }
   [[nodiscard]] double normalized_before() const { return (before - measured) / error; }
 };
@@ -73,11 +74,11 @@ struct NextMeasurement {
   std::string name;  ///< "closing time at 22 V"
   Measurable what = Measurable::pull_in;
   std::optional<double> level;  ///< [V]
-  double error = 0;             ///< taken for it [SI unit]
-  double reduction = 0;         ///< of the root of the mean square of all standard errors
+  double error = 0;             ///< assumed error [SI unit]
+  double reduction = 0;         ///< share by which the root mean square of all standard errors falls
 };
 
-/// What the fitted population of devices is, where there are several.
+/// The fitted population of several devices.
 struct FittedPopulation {
   std::vector<std::size_t> variables;  ///< numbers of the variables of the scene's spread
   std::vector<std::string> names;
@@ -86,28 +87,28 @@ struct FittedPopulation {
 };
 
 struct Fit {
-  PreparedScene scene;  ///< before, with the [spread] of the unknowns
+  PreparedScene scene;  ///< given scene, with the [spread] of the unknowns
   bool spread_assumed = false;
   std::vector<std::string> devices;
   std::vector<FittedUnknown> unknowns;
-  Estimate estimate;  ///< of several devices its weak directions are those of the mean device, by the unknowns of the first
+  Estimate estimate;  ///< weak directions are those of the mean device, by the unknowns of the first
   std::vector<FitResidual> residuals;
   std::vector<FittedTrace> traces = {};
-  std::vector<NextMeasurement> next;  ///< the best first
+  std::vector<NextMeasurement> next;  ///< measurements, the best first
   std::optional<FittedPopulation> population;
   std::size_t starts = 0, converged = 0, minima = 0;
-  std::vector<double> costs;  ///< of the ends, by start; NaN where a search had none
+  std::vector<double> costs;  ///< costs of the ends, by start; NaN for a failed search
   Loss loss = Loss::huber;
   std::uint64_t seed = 1;
   bool found = false;
-  /// Why what was found is not to be believed, in words: an unknown that lies far from what was known of it, data that it does
-  /// not describe, another minimum that describes them as well. Then there are no standard errors.
+  /// The reasons to doubt the result, in words: an unknown that lies far from its prior, data that are not described, another
+  /// minimum that describes them as well. A result in doubt has no standard errors.
   std::vector<std::string> doubts = {};
 
-  /// Sum of the squared normalized residuals, as they are.
+  /// Sum of the squared normalized residuals, without weights.
   [[nodiscard]] double chi_squared() const;
   [[nodiscard]] double chi_squared_before() const;
-  /// Key and value of everything that was fitted for this device: what the fitted scene has in the place of the scene's own.
+  /// Key and value of everything that was fitted for this device: the fitted scene has them in the place of the scene's own.
   struct FittedKey {
     std::string path;
     std::size_t element = 0;
@@ -116,16 +117,17 @@ struct Fit {
   [[nodiscard]] std::vector<FittedKey> keys(const std::string& device) const;
 };
 
-/// Gives [spread] of the scene the deviations and correlations of the population that was fitted: normal, about the scene's
+/// Sets the [spread] of the scene to the deviations and correlations of the fitted population: normal, about the scene's
 /// values.
 void set_spread(SceneFile& file, const Fit& fit);
 
-/// A scene of this text, which stands in the file `path`, with what was found of this device; of several devices, with the middle
-/// of their population and its spread. Comments, sources and units stay. Throws InvalidInput for a text that is no scene.
+/// Returns this text of a scene, which is that of the file `path`, with the results for this device; for several devices, with
+/// the mean of their population and its spread. Comments, sources and units stay. Throws InvalidInput for a text that is not a
+/// scene.
 [[nodiscard]] std::string fitted_text(const Fit& fit, std::string_view text, const std::string& path, const std::string& device);
 
-/// Throws InvalidInput for unknowns that no device can have, measurements that the scene cannot have, and where the scene itself
-/// or a device of the bench file does not allow any of it; Interrupted.
+/// Throws InvalidInput for unknowns that no device can have, for measurements that the scene cannot have, and if the scene
+/// itself or a device of the bench file does not allow any of it. Throws Interrupted.
 [[nodiscard]] Fit fit(const SceneFile& file, const Bench& bench, const FitOptions& options, const Watch& watch = {});
 
 }  // namespace softland

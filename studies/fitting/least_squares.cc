@@ -20,15 +20,15 @@ namespace {
 
 constexpr double square(double x) { return x * x; }
 
-// Where the module may be: beside the installed program, in the tree that this was built in, where it was to be installed.
+// Returns the possible places of the module: beside the installed program, in the build tree, in the install prefix.
 std::vector<std::filesystem::path> module_places() {
   std::error_code fault;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", fault);
   return {program.parent_path() / SOFTLAND_CERES_FROM_PROGRAM, SOFTLAND_CERES_BUILT, SOFTLAND_CERES_INSTALLED};
 }
 
-// Ceres and what it needs (glog, SuiteSparse, a BLAS of its own) come with the module and stay to themselves: who does not fit
-// never loads them, and no other library uses their symbols.
+// Loads the module. It brings Ceres and its dependencies (glog, SuiteSparse, a BLAS of its own), which stay separate: a program
+// that does not fit never loads them, and no other library uses their symbols.
 CeresSolve* load_module() {
   std::string faults;
   for (const std::filesystem::path& place : module_places()) {

@@ -8,7 +8,7 @@
 //   cauchy    rho(s) = a^2 ln(1 + s / a^2)
 //   none      rho(s) = s
 //
-// Residuals are in standard deviations, so that a is a number of these.
+// Residuals are in standard deviations, and so is a.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ inline constexpr std::array losses{Named<Loss>{Loss::huber, "huber"}, Named<Loss
                                    Named<Loss>{Loss::none, "none"}};
 static_assert(is_complete<losses>());
 
-/// Where residuals are no longer believed.
+/// Residuals from which on the loss deviates from squares.
 inline constexpr double loss_scale = 3;
 /// rho'(r^2): the weight that the residual has in the information.
 [[nodiscard]] double loss_weight(Loss loss, double residual);
@@ -37,35 +37,35 @@ inline constexpr double loss_scale = 3;
 
 struct LeastSquares {
   std::size_t unknowns = 0, residuals = 0;
-  std::size_t robust = 0;  ///< of the residuals, the first ones
+  std::size_t robust = 0;  ///< number of first residuals under the loss
   Loss loss = Loss::huber;
-  /// Writes the residuals at x and, where `jacobian` is not null, their derivatives, row by row. False where there are none.
+  /// Writes the residuals at x and, if `jacobian` is not null, their derivatives, row by row. False if they do not exist.
   std::function<bool(std::span<const double> x, std::span<double> residuals, double* jacobian)> evaluate;
 };
 
 struct LeastSquaresEnd {
-  bool converged = false;      ///< to a point from which no step helps
-  std::vector<double> x = {};  ///< empty where there are no residuals at the start
-  double cost = 0;             ///< half of what is minimised
+  bool converged = false;      ///< true at a point from which no step helps
+  std::vector<double> x = {};  ///< empty if the start has no residuals
+  double cost = 0;             ///< half of the minimised sum
   long evaluations = 0, with_jacobian = 0;
-  std::string message = {};  ///< of Ceres
+  std::string message = {};  ///< message of Ceres
 };
 
-/// Whether Ceres is there.
+/// True if Ceres is available.
 [[nodiscard]] bool has_ceres();
 
-/// From this start. Does not depend on what else is solved at the same time. Throws what `evaluate` throws, Interrupted, and
-/// InvalidInput where Ceres is not there.
+/// Minimises from this start. The result does not depend on other solves at the same time. Throws what `evaluate` throws,
+/// Interrupted, and InvalidInput if Ceres is not available.
 [[nodiscard]] LeastSquaresEnd solve(const LeastSquares& problem, std::vector<double> start, const Watch& watch = {});
 
-/// The ends of searches from several starts, on so many threads, which do not change them.
+/// The ends of searches from several starts. The number of threads does not change them.
 struct ManyEnds {
   std::vector<LeastSquaresEnd> ends;  ///< by start
-  std::size_t best = 0;               ///< number of the one of least cost among those that have an x
-  std::size_t minima = 0;             ///< distinct ones among those that converged; 0 where none did
+  std::size_t best = 0;               ///< index of the end with least cost among those that have an x
+  std::size_t minima = 0;             ///< distinct minima among the converged ends; 0 if none converged
   [[nodiscard]] bool found() const { return !ends.empty() && !ends[best].x.empty(); }
 };
-/// `make` gives every search a problem of its own. Two ends are one minimum where `same` says so.
+/// Solves from all starts; `make` gives every search a problem of its own. Two ends are one minimum if `same` says so.
 [[nodiscard]] ManyEnds solve_from(const std::function<LeastSquares()>& make, const std::vector<std::vector<double>>& starts,
                                   int jobs, const std::function<bool(const LeastSquaresEnd&, const LeastSquaresEnd&)>& same,
                                   const Watch& watch = {});

@@ -1,6 +1,6 @@
-// Which rows of a trace a fit goes by: at first those up to the first touch, then ever more, as long as the scene describes those
-// that come. Past some bounces the least change of a device changes the trace altogether, and a search that sees all of it ends
-// in any of many minima.
+// The rows of a trace that a fit uses: at first those up to the first touch, then ever more, as long as the scene describes
+// them. Past some bounces the least change of a device changes the trace altogether. A search that sees all of it ends in any
+// of many minima.
 #pragma once
 
 #include <limits>
@@ -12,25 +12,25 @@ namespace softland {
 
 class TraceWindows {
  public:
-  /// `touches`: when the nominal design first touches, by measurement [s]. Where that is not finite, and where the measurement
-  /// has an end of its own (`until`), all rows count from the beginning.
+  /// `touches` are the first touches of the nominal design, by measurement [s]. All rows count from the beginning if that is
+  /// not finite, or if the measurement has an end of its own (`until`).
   TraceWindows(const Bench& bench, const std::vector<double>& touches);
 
   /// The measurements with the rows that count.
   [[nodiscard]] Bench inside() const;
-  /// Takes the next stretch of every trace that has one; false: no trace has.
+  /// Takes the next stretch of every trace that has one; returns false if no trace has.
   bool grow();
-  /// Whether a time of this measurement is in the stretch that was taken last.
+  /// True if a time of this measurement is in the newest stretch.
   [[nodiscard]] bool is_new(std::size_t measurement, double time) const;
-  /// Keeps the stretches that were taken last where all are described, by measurement. Else all traces go back to where they
-  /// ended before, and those that are not described stay there; false: what was fitted to these stretches is not to be kept.
+  /// Keeps the newest stretches if all are described, by measurement. Else all traces go back to their earlier ends, and those
+  /// that are not described stay there. Returns false if the fit to these stretches must be dropped.
   bool keep(const std::vector<bool>& described);
-  /// Up to when a trace counts: the time of its last row [s].
+  /// The end of a trace that counts: the time of its last row [s].
   [[nodiscard]] double end(std::size_t measurement) const;
 
  private:
   struct Window {
-    double begin = 0, end = std::numeric_limits<double>::infinity();  // of the newest stretch [s]
+    double begin = 0, end = std::numeric_limits<double>::infinity();  // newest stretch [s]
     bool grows = false;
   };
   const Bench& bench_;
