@@ -1,4 +1,4 @@
-// What a front of an exploration is of: figures that are to be small, or large.
+// The aims of a front of an exploration: figures that are to be small, or large.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,11 @@
 
 namespace softland {
 
-/// Something that varies, or a figure.
+/// A variable or a figure of an exploration.
 struct ExploredColumn {
-  std::string key;   ///< what options and files call it: "impact_velocity_m_s"
-  std::string name;  ///< for people: "Impact speed", or the key of the scene
-  std::string unit;  ///< of SI; empty: a plain number
+  std::string key;   ///< key in options and files: "impact_velocity_m_s"
+  std::string name;  ///< name for people: "Impact speed", or the key of the scene
+  std::string unit;  ///< SI unit; empty: a plain number
   bool is_variable = false;
 };
 [[nodiscard]] std::vector<ExploredColumn> explored_columns(const StoredPlan& plan);
@@ -24,18 +24,17 @@ struct ExploredAim {
   std::size_t column = 0;
   bool is_largest = false;
 };
-/// What stands before a figure that is to be large.
+/// Prefix of a figure that is to be large.
 inline constexpr std::string_view largest_mark = "max:";
 
-/// Whether this is the name of a column: its key, its key without the unit, or its name for people.
+/// True if this is the name of a column: its key, its key without the unit, or its name for people.
 [[nodiscard]] bool goes_by(const ExploredColumn& column, const std::string& name);
 
-/// The aims that a list names: "impact_velocity,max:bounce_free". Throws InvalidRequest of the field `pareto` for a name that is
-/// no figure or stands twice, and for fewer than two.
+/// The aims that a list names: "impact_velocity,max:bounce_free". Throws InvalidRequest of the field `pareto` for a name that
+/// is not a figure or occurs twice, and for fewer than two.
 [[nodiscard]] std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& columns, const std::string& list);
 
-/// Whether a point that ended so may stand on a front: what bounces on when the window ends is no closing that others fall short
-/// of.
+/// True if a point with this status may lead a front: a closing that still bounces when the window ends must not beat others.
 [[nodiscard]] bool may_lead(std::string_view status);
 
 }  // namespace softland

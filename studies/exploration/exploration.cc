@@ -26,14 +26,14 @@
 namespace softland {
 namespace {
 
-constexpr std::uint64_t default_devices = 500;  // of a robustness study: 2000 as the verb takes are for one drive, not for a map
+constexpr std::uint64_t default_devices = 500;  // devices of a robustness study: the verb's 2000 are for one drive, not for a map
 constexpr std::array shown_quantiles{0.5, 0.95};
 constexpr std::array step_figures{figure_of(&Metrics::permanent_contact_time), figure_of(&Metrics::bounce_count),
                                   figure_of(&Metrics::major_bounce_height), figure_of(&Metrics::impact_velocity)};
 
 struct OptionRow {
   std::string_view name;
-  PointStudy study;  // that it belongs to
+  PointStudy study;  // study of the option
 };
 constexpr std::array options{OptionRow{"certify", PointStudy::simulate},  OptionRow{"samples", PointStudy::robustness},
                              OptionRow{"target", PointStudy::optimize},   OptionRow{"actuator", PointStudy::optimize},
@@ -59,7 +59,7 @@ SearchRequest request_of(const std::map<std::string, std::string>& given) {
   return request;
 }
 
-/// Options of a search with their defaults.
+/// Fills in the defaults of the options of a search.
 void complete_search(std::map<std::string, std::string>& given, const SceneFile& scene, const auto& checked) {
   const SearchRequest request = completed(request_of(given), scene);
   given.try_emplace("target", request.target);
@@ -85,7 +85,7 @@ void complete_search(std::map<std::string, std::string>& given, const SceneFile&
   });
 }
 
-/// The drives whose pull-in is told: the electrodes that pull in, or where there are none the dispersion force.
+/// Returns the drives whose pull-in is a figure: the electrodes that pull in, or the dispersion force if there are none.
 std::vector<std::size_t> pulling_drives(const Device& device) {
   std::vector<std::size_t> drives;
   for (std::size_t k = 0; k < device.electrodes.size(); ++k) {
@@ -95,7 +95,7 @@ std::vector<std::size_t> pulling_drives(const Device& device) {
   return drives;
 }
 
-/// The drives as straight lines: exact for steps and pulses, a thousandth of the swing for sines.
+/// Returns the drives as straight lines: exact for steps and pulses, within a thousandth of the swing for sines.
 std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const PreparedScene& p) {
   std::map<std::string, std::vector<std::pair<double, double>>> all;
   const std::vector<std::string> names = p.drive_names();
@@ -109,7 +109,7 @@ std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const Pre
 
 double finite(double value) { return std::isfinite(value) ? value : Metrics::unset; }
 
-/// What is said of a scene of a plan, which is no file of the user's.
+/// Removes the file name from a message: the scene of a plan is not a file of the user's.
 std::string without_file(std::string_view message) {
   constexpr std::string_view file = "scene: ";
   if (message.starts_with(file)) message.remove_prefix(file.size());
@@ -152,7 +152,7 @@ std::vector<PointFigure> robustness_figures(const AskedFigures& asked) {
 
 namespace {
 
-// "touch.least_time_s" is "touch.least_time" in s.
+// Reads "touch.least_time_s" as "touch.least_time" in s.
 PointFigure figure_of_key(const std::string& key) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 13> suffixes{{{"_rad_s", "rad/s"},
                                                                                     {"_m_s", "m/s"},
@@ -167,7 +167,7 @@ PointFigure figure_of_key(const std::string& key) {
                                                                                     {"_J", "J"},
                                                                                     {"_F", "F"},
                                                                                     {"_W", "W"}}};
-  // The number of a list, or the name of an electrode, may stand behind the unit: "natural_frequencies_rad_s.1".
+  // The unit may precede the number of a list, or the name of an electrode: "natural_frequencies_rad_s.1".
   for (std::size_t end = key.size(); end != std::string::npos && end > 0; end = key.rfind('.', end - 1)) {
     const std::string_view head = std::string_view(key).substr(0, end);
     for (const auto& [suffix, unit] : suffixes) {
@@ -413,7 +413,7 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Watch& watch) {
   return row;
 }
 
-// A number that the record of the plan's scene has, and this one has not, is not known here.
+// Returns the recorded row. Numbers that the record of the plan's scene has, and this one has not, stay unset.
 PointRow Exploration::recorded(const SceneFile& scene, int jobs, const Watch& watch) {
   const OtherStudy::Record record = other_->record(scene, plan_.options(), plan_.seed(), jobs, watch);
   PointRow row{.status = record.status, .reason = {}, .figures = std::vector<double>(figures_.size(), Metrics::unset)};
@@ -448,7 +448,7 @@ PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Watch& w
   search.seed = plan_.seed();
   search.jobs = jobs;
   search.stop = watch.stop;
-  // A search that was asked to stop would still verify what it has found, for a row that is not kept.
+  // A stopped search would still verify its results, for a row that is not kept.
   search.on_preparation = [&watch](std::string_view, double) { watch.throw_if_stopped(); };
   const OptimizeResult found = optimize(scene, search);
   if (found.search.termination == Termination::interrupted) throw Interrupted();

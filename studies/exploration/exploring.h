@@ -1,4 +1,4 @@
-// The points of a part of a plan on their way into its store.
+// The computation of the points of a part of a plan into its store.
 #pragma once
 
 #include <atomic>
@@ -14,16 +14,16 @@
 
 namespace softland {
 
-/// How far it is.
+/// The progress of an exploration.
 struct Explored {
-  std::int64_t points = 0;  ///< of the part
-  std::int64_t known = 0;   ///< of these, in the store when it began
+  std::int64_t points = 0;  ///< points of the part
+  std::int64_t known = 0;   ///< points that the store had when it began
   std::int64_t computed = 0;
   std::int64_t reused = 0;     ///< taken over from earlier plans
-  std::int64_t earlier = 0;    ///< rows of earlier plans: as many can be taken over at the most
-  double seconds = 0;          ///< since it began
-  double computing = 0;        ///< since the first point was begun that had to be computed [s]
-  double waited_on_store = 0;  ///< by all threads [s]
+  std::int64_t earlier = 0;    ///< rows of earlier plans: at most as many can be taken over
+  double seconds = 0;          ///< time since it began
+  double computing = 0;        ///< time since the first computed point was begun [s]
+  double waited_on_store = 0;  ///< time that all threads waited [s]
 
   [[nodiscard]] std::int64_t there() const { return known + computed + reused; }
   [[nodiscard]] std::int64_t remaining() const { return points - there(); }
@@ -32,13 +32,13 @@ struct Explored {
 struct ExploringOptions {
   Shard shard = {};
   int jobs = 1;
-  const std::atomic<bool>* stop = nullptr;                  ///< ends it early, with what there is
+  const std::atomic<bool>* stop = nullptr;                  ///< ends the exploration early, with the points so far
   std::function<void(const Explored&)> on_point = nullptr;  ///< called under a lock after every point
 };
 
 class Exploring {
  public:
-  /// The store must be of stored_plan(exploration, options.shard).
+  /// Keeps references. The store must be of stored_plan(exploration, options.shard).
   Exploring(Exploration& exploration, StudyStore& store, const ExploringOptions& options);
 
   /// Computes the points that the store lacks; the same rows on any number of threads. Throws as StudyStore::add().
@@ -62,7 +62,7 @@ class Exploring {
   bool reuses_;
   int inner_jobs_ = 1;
   Watch watch_;
-  mutable std::mutex mutex_;  // of what is told, and of the time when computing began
+  mutable std::mutex mutex_;  // guards the progress, and the time when computing began
   Explored told_;
   std::atomic<double> store_seconds_ = 0;
   Clock::time_point begin_ = Clock::now();

@@ -15,10 +15,10 @@
 namespace softland {
 namespace {
 
-// The same for every number of points, so that a longer search begins with the points of a shorter one.
+// Population for every number of points, so that a longer search begins with the points of a shorter one.
 constexpr std::size_t population = 60;
 
-// How far a point that is not done is from one that is: NSGA-II goes towards what is nearer.
+// Constraint violations of points that are not done: NSGA-II prefers the smaller one.
 constexpr double not_done = 1, impossible = 2;
 
 class FrontSearch {

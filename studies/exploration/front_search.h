@@ -1,4 +1,4 @@
-// A search for the front of an exploration, whose points go into a store as they are found.
+// A search for the front of an exploration, which stores its points as they are found.
 #pragma once
 
 #include <atomic>
@@ -13,18 +13,18 @@
 
 namespace softland {
 
-/// Of a plan for a front that says nothing else.
+/// Default sample of a plan for a front.
 inline constexpr std::string_view usual_front_sample = "nsga2:2000";
 
-/// Of the plan of an exploration that is a search. Throws as explored_aims().
+/// Returns the aims of a plan that is a search. Throws as explored_aims().
 [[nodiscard]] std::vector<ExploredAim> aims_of(const Exploration& exploration);
 
-/// How far it is.
+/// The progress of a search for a front.
 struct FrontFound {
-  std::int64_t points = 0;    ///< of the plan
-  std::int64_t asked = 0;     ///< by the search, of these
-  std::int64_t known = 0;     ///< in the store when it began
-  std::int64_t computed = 0;  ///< that were not
+  std::int64_t points = 0;    ///< points of the plan
+  std::int64_t asked = 0;     ///< points that the search has asked for
+  std::int64_t known = 0;     ///< points that the store had when it began
+  std::int64_t computed = 0;  ///< points that were computed
   Termination termination = Termination::interrupted;
 };
 
@@ -34,9 +34,9 @@ struct FrontOptions {
   std::function<void(const FrontFound&)> on_point = nullptr;  ///< called under a lock after every point
 };
 
-/// The plan of the exploration is a search. Point k is the k-th that the search asks for; one that is in `known`, or under an
-/// earlier plan in the store, is not computed again, so that a search that was interrupted ends with the rows of one that was
-/// not. Throws as StudyStore::add().
+/// Searches the front; the plan of the exploration is a search. Point k is the k-th that the search asks for. A point in
+/// `known`, or under an earlier plan in the store, is not computed again, so that an interrupted search ends with the same
+/// rows. Throws as StudyStore::add().
 [[nodiscard]] FrontFound search_front(Exploration& exploration, StudyStore& store, KnownRows known,
                                       const std::vector<ExploredAim>& aims, const FrontOptions& options);
 

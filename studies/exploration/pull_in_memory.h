@@ -1,5 +1,4 @@
-// Pull-in voltages that are found once and remembered: many points of an exploration have the same switch and differ only in
-// what drives it.
+// A memory of pull-in voltages: many points of an exploration have the same switch and differ only in what drives it.
 #pragma once
 
 #include <deque>
@@ -14,10 +13,10 @@ namespace softland {
 
 class PullInMemory {
  public:
-  /// Finds those of the switch that `scene` describes, which must be the one it is then called for, in the memory where another
-  /// scene has left them: one that differs only in waveforms (but for what the other drives stand at), limits of the drivers,
-  /// window and what is reported. May be called on any thread; one that needs what another is just computing waits for it. The
-  /// memory must live as long.
+  /// Returns a finder of the pull-in voltages of the switch of `scene`, and must be called for that switch. It takes voltages
+  /// from the memory where another scene has left them. Such a scene differs only in waveforms (except the voltages of the
+  /// other drives), limits of the drivers, window and reported figures. May be called on any thread; a thread waits for
+  /// voltages that another one is computing. The memory must live as long.
   [[nodiscard]] PullInFinder finder(const SceneFile& scene);
 
  private:

@@ -11,14 +11,14 @@
 
 namespace softland {
 
-/// What its store holds of the plan.
+/// The part of the plan that its store holds.
 [[nodiscard]] StoredPlan stored_plan(const Exploration& exploration, const Shard& shard);
-/// The exploration that `store` is for. Where it holds one of this plan already, the columns are those there.
+/// The exploration that `store` is for. If it holds one of this plan already, the columns are those in the store.
 [[nodiscard]] Exploration exploration_for(Plan plan, const std::filesystem::path& store, const Watch& watch = {},
                                           const OtherStudies& others = {});
-/// Throws InvalidRequest of the field `shard` where the exploration has no such part: a search for a front cannot be divided.
+/// Throws InvalidRequest of the field `shard` if the exploration has no such part: a search for a front cannot be divided.
 void require_part(const Exploration& exploration, const Shard& shard);
-/// The plan of the exploration that a store holds. Throws InvalidInput where it holds a search.
+/// The plan of the exploration that a store holds. Throws InvalidInput if it holds a search.
 [[nodiscard]] PlanRequest exploration_in(const StudyReader& store);
 /// The row of a point at these values of the variables [SI unit].
 [[nodiscard]] StoredRow stored_row(std::int64_t point, const ContentKey& content, std::vector<double> values, PointRow row);
