@@ -25,7 +25,8 @@ std::vector<StoredColumn> columns_for(const std::vector<std::string>& variables)
   return columns;
 }
 
-// Equal keys ask for the same number. `row`: of all columns, as the stores of former versions have it.
+// Returns the key of an evaluation: equal keys ask for the same number. `row` has all columns, as in the stores of former
+// versions.
 ContentKey content_of(const EvaluationKey& key, const std::vector<double>& row) {
   std::string text = fmt::format("{} {} {:016x}", key.devices, key.seed, std::bit_cast<std::uint64_t>(key.hopeless));
   for (const double x : row) text += fmt::format(" {:016x}", std::bit_cast<std::uint64_t>(x));

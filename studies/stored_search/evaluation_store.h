@@ -1,4 +1,4 @@
-// The evaluations of a search in a store, so that a search that is gone on with simulates none of them twice.
+// The evaluations of a search in a store, so that a continued search simulates none of them twice.
 #pragma once
 
 #include <exception>
@@ -15,27 +15,27 @@
 
 namespace softland {
 
-/// In the folder of a search.
+/// Name of the store in the folder of a search.
 inline constexpr const char* evaluations_file = "evaluations.sqlite";
 
-/// One row per candidate that was simulated, in the order of their ends. What another plan in the store knows, a search with
-/// another budget, is taken over when it is asked for.
+/// A store with one row per simulated candidate, in the order of their ends. Rows of another plan in the store, a search with
+/// another budget, are taken over on request.
 class EvaluationStore : public EvaluationMemory {
  public:
-  /// `columns`: of all families. `points`: how many evaluations the plan asks for at the most; those beyond are not kept. Throws
-  /// as StudyStore does.
+  /// `columns` are those of all families. `points` is the largest number of evaluations of the plan; those beyond are not kept.
+  /// Throws as StudyStore does.
   EvaluationStore(const std::filesystem::path& file, const nlohmann::json& plan, std::int64_t points, std::uint64_t seed,
                   FamilyColumns columns, const StoredOrigin& origin);
 
   [[nodiscard]] std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override;
   void note(const EvaluationKey& key, const EvaluationValues& values) noexcept override;
 
-  /// How many evaluations were simulated, and how many were there already.
+  /// Numbers of evaluations that were simulated, and that were read from the store.
   [[nodiscard]] std::int64_t computed() const;
   [[nodiscard]] std::int64_t recalled() const;
-  /// Throws what kept it from keeping an evaluation.
+  /// Throws the error that kept it from storing an evaluation.
   void check();
-  /// Waits until all evaluations are durable, and lets the file go. Throws as check() does.
+  /// Waits until all evaluations are durable, and closes the file. Throws as check() does.
   void close();
 
  private:
@@ -45,7 +45,7 @@ class EvaluationStore : public EvaluationMemory {
   StudyStore store_;
   std::int64_t points_;
   mutable std::mutex mutex_;
-  std::map<ContentKey, EvaluationValues> known_;  // of this plan
+  std::map<ContentKey, EvaluationValues> known_;  // evaluations of this plan
   std::int64_t next_ = 0, computed_ = 0, recalled_ = 0;
   std::exception_ptr failure_;
 };

@@ -104,7 +104,7 @@ void SeedStudy::run(const Listener& listener) {
   store_.flush();
 }
 
-// An interrupted search adds no row; what it evaluated is kept, and the study goes on with it.
+// Runs one search. An interrupted search adds no row; its evaluations are kept, and the study continues with them.
 void SeedStudy::search(std::uint64_t k, int jobs, const Listener& listener) {
   OptimizeOptions options = search_.options;
   const Watch watch{.stop = search_.options.stop};

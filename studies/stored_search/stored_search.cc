@@ -19,9 +19,9 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kind = "search";
-constexpr const char* raced_families_key = "raced_waveform";  // as it was given
+constexpr const char* raced_families_key = "raced_waveform";  // key of the families as they were given
 
-// The words of a plan. One that says nothing of devices is of the nominal one.
+// Reads the words of a plan. A plan without the word for devices is of the nominal one.
 SearchRequest request_in(const json& plan) {
   SearchRequest request{.robust = std::string(nominal_alone)};
   const auto take = [&](std::string_view name, auto& word) {
@@ -33,7 +33,7 @@ SearchRequest request_in(const json& plan) {
   return request;
 }
 
-// The scenes to begin with, or those of the plan that is gone on with.
+// Returns the scenes to begin with, or those of the plan that is continued.
 std::vector<StartingScene> starting_scenes(const AskedSearch& asked, const json& known) {
   std::vector<StartingScene> all;
   for (const StartingScene& one : asked.starts) {
@@ -48,7 +48,7 @@ std::vector<StartingScene> starting_scenes(const AskedSearch& asked, const json&
   return all;
 }
 
-// The scene as it was given, or as the plan has it that is gone on with, with what is set.
+// Returns the scene as it was given, or as in the plan that is continued, with the assignments added.
 json given_scene(const AskedSearch& asked, const json& known) {
   json given;
   if (asked.given) {
@@ -67,7 +67,7 @@ SceneFile scene_of(const json& given) {
   return scene;
 }
 
-// The words are those of the request, with the numbers that were not given.
+// Returns the plan: the words are those of the request, with the numbers that were not given.
 json plan_of(SearchRequest request, const PlannedSearch& search, const std::vector<StartingScene>& starts, const json& given) {
   request.seed = std::to_string(search.options.seed);
   request.seeds = std::to_string(search.seeds);
@@ -90,7 +90,7 @@ json plan_of(SearchRequest request, const PlannedSearch& search, const std::vect
   return plan;
 }
 
-// The first key that two scenes do not share, with what each says.
+// Returns the first key in which two scenes differ, with both values.
 std::string scene_difference(const std::string& there, const std::string& asked) {
   const auto keys = [](const std::string& text) { return SceneFile::parse(text, "scene").json().flatten(); };
   const json before = keys(there), now = keys(asked);
@@ -182,7 +182,7 @@ std::string difference(const json& there, const json& asked) {
 json plan_of_seed(const json& plan, std::uint64_t seed) {
   json one = plan;
   one["seed"] = std::to_string(seed);
-  for (const char* key : {"seeds", "given"}) one.erase(key);  // neither decides what is found
+  for (const char* key : {"seeds", "given"}) one.erase(key);  // neither changes the result
   return one;
 }
 
