@@ -17,7 +17,8 @@ namespace softland {
 namespace {
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
-constexpr double not_closed = std::numeric_limits<double>::lowest();  // of what is minimised, where the largest is sought
+constexpr double not_closed =
+    std::numeric_limits<double>::lowest();  // value of the minimised function for a device that does not close
 
 /// Points of the box: standard normal numbers, one per varying quantity.
 class Box {
@@ -64,7 +65,7 @@ SampledInside sampled_inside(const Ensemble& ensemble, std::size_t sampled, doub
   return inside;
 }
 
-/// The middle of the box, and all its corners where they take no more than a fifth of the evaluations.
+/// Returns the middle of the box, and all its corners if they take at most a fifth of the evaluations.
 std::vector<std::vector<double>> corners(std::size_t d, double half_width, std::size_t evaluations) {
   std::vector<std::vector<double>> points{std::vector<double>(d, 0)};
   constexpr std::size_t most_bits = 16;
@@ -84,7 +85,7 @@ Interval range_of(const std::vector<double>& figures) {
   return {.low = *least, .high = *most};
 }
 
-/// 1 - sum (y - prediction)^2 / sum (y - mean)^2.
+/// Returns 1 - sum (y - prediction)^2 / sum (y - mean)^2.
 double predicted_share(const PolynomialChaos& chaos, const Eigen::MatrixXd& points, const std::vector<double>& figures) {
   const double mean = sample_mean(figures);
   double missed = 0, all = 0;
@@ -96,7 +97,7 @@ double predicted_share(const PolynomialChaos& chaos, const Eigen::MatrixXd& poin
   return all > 0 ? 1 - missed / all : Metrics::unset;
 }
 
-/// Points of the devices [first, last) that have the figure, and the figure.
+/// Points of the devices [first, last) that have the figure, and their figures.
 struct Taught {
   Eigen::MatrixXd points;
   std::vector<double> figures;

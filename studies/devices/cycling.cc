@@ -20,11 +20,11 @@
 namespace softland {
 namespace {
 
-constexpr double slower = 1.5;             // a scan begins so much lower where its first rate is not steady,
-constexpr int most_slower = 6;             // so many times
-constexpr double periods_of_opening = 60;  // in which an opening has to come to rest
+constexpr double slower = 1.5;             // a scan begins lower by this factor if its first rate is not steady
+constexpr int most_slower = 6;             // most such steps
+constexpr double periods_of_opening = 60;  // periods within which an opening has to come to rest
 
-// Appends the pieces of a signal that begin before `until`, as they are `later`.
+// Appends the pieces of a signal that begin before `until`, shifted by `later`.
 void append(std::vector<SignalPiece>& pieces, const Signal& signal, double until, double later) {
   for (SignalPiece piece : signal.pieces()) {
     if (piece.begin >= until) break;
@@ -34,7 +34,7 @@ void append(std::vector<SignalPiece>& pieces, const Signal& signal, double until
   }
 }
 
-// Keeps the course, too.
+// Records a cycle, and keeps the course, too.
 class KeptCourse final : public ClosingObserver {
  public:
   explicit KeptCourse(CycleRecorder& recorder, double contact_gap) : recorder_(recorder), contact_gap_(contact_gap) {}
@@ -124,7 +124,8 @@ Cycles CycledSwitch::run(const CycleTimes& times, bool keeps_gap, const Watch& w
   return found;
 }
 
-// A touch is known once the next one has begun: a cycle is judged when the one after it has ended.
+// Returns true if all cycles are steady. A touch is known once the next one has begun: a cycle is judged when the next has
+// ended.
 bool CycledSwitch::is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Watch& watch) const {
   CycleRecorder recorder(model_.contact_gap(), options_, times);
   Trajectory so_far;
@@ -173,9 +174,9 @@ RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, cons
   double lowest = rate_of(times.rest_on, times.rest_off);
   const double highest = rate_of(times.least_on, times.least_off);
   if (!(lowest > 0)) return scan;
-  // What is left of the vibration at rest may still be felt.
+  // The remaining vibration at rest may still matter.
   for (int k = 0; k < most_slower && !watch.stopped() && !is_steady_at(lowest); ++k) lowest /= slower;
-  bool is_below = true;  // the first rate that is not steady
+  bool is_below = true;  // true up to the first rate that is not steady
   for (double rate = lowest; rate <= highest && !watch.stopped(); rate *= 1 + options.step) {
     const bool is_steady = is_steady_at(rate);
     watch.tell("rates", std::log(rate / lowest) / std::log(highest / lowest));

@@ -9,13 +9,13 @@
 namespace softland {
 namespace {
 
-// Over all drives.
+// Returns a number of the edge that is unique over all drives.
 std::uint64_t number_of_edge(std::size_t drive, std::size_t edge) {
-  constexpr std::uint64_t most_edges = std::uint64_t{1} << 32;  // of one drive
+  constexpr std::uint64_t most_edges = std::uint64_t{1} << 32;  // number of edges of one drive
   return drive * most_edges + edge;
 }
 
-// Straight pieces come out exact.
+// Returns the signal as a table; straight pieces are exact.
 Waveform as_table(const Signal& signal, double window) {
   const bool ends_on_sine = signal.pieces().back().oscillates();
   const double last = signal.pieces().back().begin;
@@ -27,7 +27,7 @@ Waveform as_table(const Signal& signal, double window) {
   return table;
 }
 
-// Null for jitter, which is none of one number.
+// Returns the member of an error; null for jitter, which is not a single number.
 double* member_of(SourceErrors& errors, DriveError error) {
   switch (error) {
     case DriveError::gain:
@@ -54,22 +54,22 @@ std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Dev
   return own;
 }
 
-// What a source is told, and what its errors make of it. The jitter of a source that takes samples moves the edges that it
-// samples, its other errors come after; that of another comes with them, and a gain that varies stands in the waveform, which
-// every family can express.
+// The commanded waveforms of a device, and the errors of its sources. In a source that takes samples, jitter moves the edges
+// before they are sampled, and the other errors act on the samples. Other sources apply all errors together. A varied gain
+// stands in the waveform, which every family can express.
 struct DeviceDrives::Driven {
   std::vector<Waveform> waveforms;
-  std::vector<Signal> signals;  // told
+  std::vector<Signal> signals;  // commanded
   std::vector<SourceErrors> errors;
-  double origin = 0;  // of the clock [s]
+  double origin = 0;  // origin of the clock [s]
 
-  // Told with jitter, and when that begins on the clock of the waveform [s].
+  // The commanded signal with jitter, and its begin on the clock of the waveform [s].
   [[nodiscard]] std::pair<Signal, double> jittered(std::size_t k) const {
     const SourceErrors jitter{.edges = errors[k].edges};
     const double begin = std::min(0.0, first_edge(signals[k], jitter));
     return {jitter.are_none() ? signals[k] : with_errors(signals[k], jitter, begin), begin};
   }
-  // What is left for a source that takes samples.
+  // The remaining errors of a source that takes samples.
   [[nodiscard]] SourceErrors after_samples(std::size_t k) const {
     return {.gain = errors[k].gain, .offset = errors[k].offset, .delay = errors[k].delay - origin + jittered(k).second};
   }
@@ -103,7 +103,7 @@ std::vector<double> DeviceDrives::shown(std::vector<double> values) const {
   return values;
 }
 
-// Of an error but jitter [SI unit].
+// Returns the value of an error other than jitter [SI unit].
 double DeviceDrives::value(const Source& source, const std::vector<double>& values) const {
   const SpreadVariable& variable = nominal_->scene.spread.variables[source.variable];
   return DeviceSpread::value(variable, variable.keys[source.key], values[source.variable]);
@@ -185,7 +185,7 @@ std::optional<std::vector<double>> DeviceDrives::gains(const DeviceUnits& units,
     if (own.delay < 0) return std::nullopt;  // the clock of all drives begins with it
     if (sources_[k].empty() && own.gain == 1) continue;
     const bool is_gain = std::ranges::all_of(sources_[k], [](const Source& one) { return one.error == DriveError::gain; });
-    // The voltage before t = 0 and an offset have no gain.
+    // A gain does not scale the voltage before t = 0 or an offset.
     if (!is_gain || own.offset != 0 || nominal_->values_before()[k] != 0) return std::nullopt;
   }
   return all;

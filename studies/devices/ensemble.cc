@@ -20,9 +20,9 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t chunk = 128;  // devices of one task: many to a lane, few between two looks at a Watch
+constexpr std::size_t chunk = 128;  // devices of one task: many for a lane, few between two checks of a Watch
 
-// The figures of a lane.
+// Records the figures of a lane.
 class LaneFigures final : public LandingObserver {
  public:
   explicit LaneFigures(const MetricsOptions& options) : figures_(options) {}
@@ -54,7 +54,7 @@ class LaneFigures final : public LandingObserver {
   LandingFigures::Course course_;
 };
 
-// Devices that classes are made of.
+// Devices that define the classes.
 constexpr std::uint64_t reference_seed = random_bits(0, Stream::classes, 0);
 std::size_t reference_size(const Calibration& calibration) {
   constexpr std::size_t fewest = 512, of_a_class = 8;
@@ -177,7 +177,7 @@ double DeviceMeter::time_of(const Switch& model, double step) const {
   return softland::closing_time(model, electrode_, step, bias_of(nominal_->scene, electrode_), periods_to_close / frequency());
 }
 
-// The nominal device under steps from 0.75 to 1.19 times closing_step over the factor of the volts.
+// Measures the nominal device under steps from 0.75 to 1.19 times closing_step over the factor of the volts.
 void DeviceMeter::learn_times() {
   constexpr double least = 0.75, most = 1.19;
   constexpr int steps = 88;
@@ -196,7 +196,7 @@ double DeviceMeter::closing_time() const {
   return gauges_.closing_time ? time_of(nominal_->model, closing_step * pull_in_) : Metrics::unset;
 }
 
-// Between two steps of the nominal device on a line; beyond them on the last line.
+// Interpolates between two steps of the nominal device; extrapolates the last line beyond them.
 DeviceUnits DeviceMeter::told_by(double time) const {
   if (!std::isfinite(time)) return {.volts = Metrics::unset, .time = 1};
   const auto above = std::ranges::upper_bound(told_, time, {}, &ToldVolts::time);
@@ -211,7 +211,7 @@ double DeviceMeter::piezo_unit(const Switch& model) { return std::abs(model.basi
 double DeviceMeter::frequency() const { return nominal_->model.basis().angular_frequencies()[0] / (2 * pi); }
 
 double DeviceMeter::pull_in(const Switch& model, double precision) const {
-  constexpr double looser = 10;  // the integrator: no measurement is as good
+  constexpr double looser = 10;  // for the integrator: no measurement is as good
   const std::vector<double> bias = bias_of(nominal_->scene, electrode_);
   const StaticPullIn statically = static_pull_in(model, electrode_, bias);
   return dynamic_pull_in(model, electrode_, statically, bias, {}, looser * precision, precision).voltage;
@@ -227,7 +227,7 @@ DeviceUnits DeviceMeter::exact(const Switch& model) const {
 }
 
 DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed, std::uint64_t k) {
-  constexpr double least_volts = 0.1;  // no instrument reads less than nothing
+  constexpr double least_volts = 0.1;  // no instrument reads a negative voltage
   const auto reading = [&](double error, Stream stream, std::uint64_t counter) {
     return std::max(least_volts, 1 + error * random_normal(seed, stream, counter));
   };
@@ -244,7 +244,7 @@ DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& c
 
 namespace {
 
-// True units of each reference device, without measurement error.
+// Returns the true units of each reference device, without measurement error.
 std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const Gauges& gauges, std::size_t size, int jobs,
                                          const Watch& watch) {
   const DeviceMeter meter(nominal, gauges);
@@ -268,7 +268,7 @@ std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const Gau
   return units;
 }
 
-// Relative errors of volts and time count alike.
+// Coordinates in which relative errors of volts and time count alike.
 SpacePoint logarithms(const DeviceUnits& units) { return {std::log(units.volts), std::log(units.time), std::log(units.piezo)}; }
 DeviceUnits units_at(const SpacePoint& point) {
   return {.volts = std::exp(point[0]), .time = std::exp(point[1]), .piezo = std::exp(point[2])};
@@ -314,8 +314,8 @@ KnownUnits KnownUnits::without_errors() const {
 
 std::vector<KnownUnits> known_units(const PreparedScene& nominal, std::span<const Calibration> calibrations, int jobs,
                                     const Watch& watch) {
-  // Volts that a closing time tells are others than those of Vdp.
-  std::map<bool, std::vector<DeviceUnits>> references;  // whether they are told by it
+  // Volts by a closing time differ from those by Vdp.
+  std::map<bool, std::vector<DeviceUnits>> references;  // by whether a closing time gives the volts
   for (const bool by_time : {false, true}) {
     std::size_t size = 0;
     Gauges gauges;
@@ -332,7 +332,7 @@ std::vector<KnownUnits> known_units(const PreparedScene& nominal, std::span<cons
 }
 
 DeviceUnits deviation_of_units(const PreparedScene& nominal, bool need_pull_in, int jobs, const Watch& watch) {
-  constexpr std::size_t devices = 128;  // a deviation within 6 %
+  constexpr std::size_t devices = 128;  // deviation within 6 %
   DeviceUnits squares{.volts = 0, .time = 0, .piezo = 0};
   double known = 0;
   for (const DeviceUnits& one : reference_units(nominal, {.pull_in = need_pull_in}, devices, jobs, watch)) {
@@ -405,7 +405,7 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
 
 namespace {
 
-// A device that is quiet at the end of the window has not settled where its hold levels do not keep it closed.
+// A device that is quiet at the end of the window has not settled if its hold levels do not keep it closed.
 void judge_hold(DeviceOutcome& outcome, const Hold& hold) {
   Metrics& m = outcome.metrics;
   if (outcome.closed()) m.resistance = hold.resistance;
@@ -519,7 +519,7 @@ std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, cons
   };
   const std::size_t chunks = (ensemble.size() + chunk - 1) / chunk;
   std::size_t complete = std::min<std::size_t>(ensemble.size(), chunk * run_tasks(chunks, run.jobs, task, watch.stop));
-  // Asked to stop, some chunks hold devices that were not begun, or not ended.
+  // After a stop, some chunks hold devices that were not begun, or not ended.
   const auto missing = [](const DeviceOutcome& o) {
     return o.failure.empty() && (o.metrics.status == Status::not_run || o.metrics.status == Status::interrupted);
   };

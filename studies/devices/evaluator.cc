@@ -23,9 +23,9 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t rows_of_task = 64;  // rows of one task: many to a lane, few between two looks at a Watch
+constexpr std::size_t rows_of_task = 64;  // rows of one task: many for a lane, few between two checks of a Watch
 
-// "electrode.main.span[2]" as its path and 2; without an element 0.
+// Splits "electrode.main.span[2]" into its path and 2; without an element into the path and 0.
 std::pair<std::string, std::size_t> key_and_element(const std::string& key) {
   const std::size_t open = key.rfind('[');
   if (open == std::string::npos || !key.ends_with("]")) return {key, 0};
@@ -34,7 +34,7 @@ std::pair<std::string, std::size_t> key_and_element(const std::string& key) {
   return is_number ? std::pair(key.substr(0, open), std::stoul(inside)) : std::pair(key, std::size_t{0});
 }
 
-// "waveform.main.level" as main and level.
+// Splits "waveform.main.level" into main and level.
 std::optional<std::pair<std::string, std::string>> waveform_key(const std::string& path) {
   constexpr std::string_view before = "waveform.";
   if (!path.starts_with(before)) return std::nullopt;
@@ -43,7 +43,7 @@ std::optional<std::pair<std::string, std::string>> waveform_key(const std::strin
   return std::pair(path.substr(before.size(), dot - before.size()), path.substr(dot + 1));
 }
 
-// The parameter of a waveform; null where its family has none of that name. Calls with_names for a message.
+// Returns the parameter of a waveform; null if its family has none of that name. Calls with_names for a message.
 double* waveform_parameter(Waveform& waveform, const std::string& name, std::size_t element, std::vector<std::string_view>& names,
                            ParameterKind& kind) {
   return std::visit(
@@ -79,7 +79,7 @@ std::string unit_of_parameter(ParameterKind kind, const std::string& drive) {
   return "";
 }
 
-// What the scene writes at a key; none where it writes no quantity there.
+// Returns the quantity that the scene writes at a key; none if it writes no quantity there.
 std::optional<Quantity> written_quantity(const SceneFile& file, const std::string& path, std::size_t element) {
   std::optional<std::string> text = file.written(path);
   if (!text) return std::nullopt;
@@ -98,7 +98,7 @@ std::optional<Quantity> written_quantity(const SceneFile& file, const std::strin
 
 std::string spread_entry(const std::string& key) { return fmt::format("spread.\"{}\"", key); }
 
-// A scene in which these keys vary, each by its own value: to vary by a factor would cost the last bit.
+// Returns a scene in which these keys vary, each by its own value: a factor would cost the last bit.
 SceneFile scene_that_varies(SceneFile file, const std::vector<std::string>& keys) {
   file.erase("spread");
   file.erase("calibration");
@@ -116,9 +116,9 @@ SceneFile scene_that_varies(SceneFile file, const std::vector<std::string>& keys
 }  // namespace
 
 struct Evaluator::Row {
-  SampledDevice own;                      // of the row, unless it is the nominal one
-  const SampledDevice* device = nullptr;  // to be closed
-  std::vector<Signal> signals;            // of the row, where they differ from the scene's
+  SampledDevice own;                      // device of the row, unless it is the nominal one
+  const SampledDevice* device = nullptr;  // device to close
+  std::vector<Signal> signals;            // signals of the row, if they differ from the scene's
   std::string refusal = {};
   double duration = 0;
   bool has_signals = false;
@@ -159,7 +159,7 @@ Evaluator::Evaluator(const SceneFile& file, std::vector<std::string> keys, std::
   drives_ = std::make_unique<DeviceDrives>(*nominal_);
 }
 
-// Reads which columns are of the device, and makes the scene ready.
+// Finds the columns of the device, and makes the scene ready.
 void Evaluator::vary_device(const SceneFile& file, const Watch& watch) {
   if (options_.volts == VoltsOf::each) {
     SceneFile scene = file;
@@ -230,7 +230,7 @@ std::vector<Waveform> Evaluator::waveforms_of(std::span<const double> values) co
   return all;
 }
 
-// Why a driver cannot give what a row asks of it; empty where it can.
+// Returns why a driver cannot give the waveforms of a row; empty if it can.
 std::string Evaluator::violation_of(const std::vector<Waveform>& own) const {
   for (const WaveformKey& key : of_waveforms_) {
     const std::optional<DriverLimits>& limits = nominal_->drives[key.drive].limits;
@@ -364,7 +364,7 @@ void Evaluator::evaluate(std::span<const double> rows, std::span<double> figures
 
 namespace {
 
-// Which drives have volts in the unit Vdp, that follow the device, and which in volts.
+// Drives with volts in the unit Vdp, which follow the device, and drives in volts.
 struct WrittenVolts {
   bool in_volts = false, in_pull_in = false, in_other_units = false;
 };
@@ -397,7 +397,7 @@ WrittenVolts written_volts(const SceneFile& file, const PreparedScene& there) {
   return found;
 }
 
-// The figures' row of derivatives; throws where there is none.
+// Returns the row of derivatives of a figure; throws if it has none.
 const FigureDerivatives& derived(const Derivatives& found, const Figure& figure) {
   require(found.why_none.empty(), [&] { return "jacobian: no derivatives here: " + found.why_none; });
   const auto of = std::find_if(found.figures.begin(), found.figures.end(),
@@ -415,12 +415,12 @@ void require_derived(const Derivatives::Variable& variable) {
 
 }  // namespace
 
-// The scene of a row, in volts, with all that a derivative by its columns needs.
+// The scene of a row, in volts, with the data that a derivative by its columns needs.
 struct Evaluator::Place {
   PreparedScene scene;                 ///< its [spread] is that of the columns of the device
   std::vector<std::size_t> of_device;  ///< columns, in the order of its variables
   std::vector<WaveformKey> of_waveforms;
-  KnownUnits known;  ///< by which volts follow the device
+  KnownUnits known;  ///< units by which volts follow the device
 };
 
 Evaluator::Place Evaluator::place_of(std::span<const double> row, const Watch& watch) const {
@@ -466,7 +466,7 @@ Evaluator::Place Evaluator::place_of(std::span<const double> row, const Watch& w
   return with_columns(std::move(there), keys_of_row(in_volts, row), std::move(known));
 }
 
-// The parameters of waveforms among the columns, by the units that they are written in.
+// Returns the parameters of waveforms among the columns, by the units that they are written in.
 std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& in_volts, std::span<const double> row) const {
   std::vector<WaveformKey> all;
   std::vector<Waveform> waveforms = in_volts.waveforms();
@@ -492,7 +492,7 @@ std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& 
   return all;
 }
 
-// Figures by parameters of waveforms.
+// Derives figures by parameters of waveforms.
 void Evaluator::derive_by_waveforms(const Place& place, std::span<const double> row, Eigen::MatrixXd& all,
                                     const Watch& watch) const {
   const std::vector<Waveform> here = place.scene.waveforms();

@@ -1,11 +1,11 @@
-// Figures of merit as a function of numbers of a scene: many rows at once, in lanes and on all cores, of a scene that is made
-// ready once. For optimizers, samplers and surrogates from outside.
+// Figures of merit as a function of numbers of a scene: many rows at once, in lanes and on all cores, with a scene that is
+// prepared once. It serves optimizers, samplers and surrogates from outside.
 //
-// A column is a number of the scene. Of the device, or an error of a drive, it is what [spread] may name: "gap.contact",
-// "electrode.main.span[2]", "driver.main.gain"; a row is then the device that a spread would have with these values, and its
-// figures have the bits that `robustness` gives such a device. Of a waveform it is a parameter: "waveform.main.level",
-// "waveform.main.times[1]" [V], [s], [rad/s], [rad]. Volts are those of the nominal scene, or follow the pull-in voltages of each
-// row (VoltsOf).
+// A column is a number of the scene. A column of the device, or of an error of a drive, has a name of [spread]: "gap.contact",
+// "electrode.main.span[2]", "driver.main.gain". A row is then the device that a spread would have with these values, and its
+// figures have the bits that `robustness` gives such a device. A column of a waveform is a parameter: "waveform.main.level",
+// "waveform.main.times[1]" [V], [s], [rad/s], [rad]. Volts are those of the nominal scene, or follow the pull-in voltages of
+// each row (VoltsOf).
 #pragma once
 
 #include <Eigen/Core>
@@ -24,50 +24,50 @@
 
 namespace softland {
 
-/// Whose pull-in voltages Vsp and Vdp stand for.
+/// The device whose pull-in voltages Vsp and Vdp stand for.
 enum class VoltsOf {
-  nominal,  ///< those of the scene: every row gets the same volts
-  each      ///< of the row: any key of the scene may vary, and every row is prepared anew, which takes several closings
+  nominal,  ///< the scene's: every row gets the same volts
+  each      ///< the row's: any key of the scene may vary, and every row is prepared anew, which takes several closings
 };
 
 struct EvaluatorOptions {
   VoltsOf volts = VoltsOf::nominal;
-  double tolerance = EnsembleRun{}.tolerance;  ///< of the integrator
+  double tolerance = EnsembleRun{}.tolerance;  ///< tolerance of the integrator
 };
 
-/// How a row ended.
+/// The status of a row.
 struct RowEnd {
-  std::string status;       ///< "done", as in results, or "infeasible": such a device, or such a waveform, cannot be
-  std::string reason = {};  ///< why it has no figures
+  std::string status;       ///< "done", as in results, or "infeasible": the device, or the waveform, is impossible
+  std::string reason = {};  ///< reason for missing figures
 };
 
 class Evaluator {
  public:
-  /// Throws InvalidInput for a scene that cannot be run, a key that cannot vary or stands twice, and a figure that is not
-  /// measured of devices: see measured().
+  /// Throws InvalidInput for a scene that cannot be run, for a key that cannot vary or occurs twice, and for a figure that is
+  /// not measured on devices: see measured().
   Evaluator(const SceneFile& file, std::vector<std::string> keys, std::vector<Figure> figures,
             const EvaluatorOptions& options = {}, const Watch& watch = {});
   Evaluator(const Evaluator&) = delete;
   Evaluator& operator=(const Evaluator&) = delete;
 
-  /// Whether closings in lanes tell this figure.
+  /// True if closings in lanes give this figure.
   [[nodiscard]] static bool measured(const Figure& figure);
 
   [[nodiscard]] const std::vector<std::string>& keys() const { return keys_; }
-  [[nodiscard]] const std::vector<std::string>& units() const { return units_; }  ///< of the columns, SI
-  [[nodiscard]] const std::vector<double>& nominal() const { return values_; }    ///< what the scene itself has [SI unit]
+  [[nodiscard]] const std::vector<std::string>& units() const { return units_; }  ///< SI units of the columns
+  [[nodiscard]] const std::vector<double>& nominal() const { return values_; }    ///< values of the scene itself [SI unit]
   [[nodiscard]] const std::vector<Figure>& figures() const { return figures_; }
   [[nodiscard]] const PreparedScene& scene() const { return *nominal_; }
 
-  /// `rows`: row after row, a number for each key [SI unit]; `figures`: row after row, NaN where there is none; `ends`: of the
-  /// rows. What is found does not depend on `jobs`, nor on what other rows there are. Throws InvalidInput where the sizes do not
-  /// fit, Interrupted where `watch` asks to stop. May be called by several threads at once.
+  /// Evaluates rows. `rows` holds them one after another, a number for each key [SI unit]; `figures` likewise, NaN for a
+  /// missing one; `ends` has one entry per row. The results do not depend on `jobs`, nor on the other rows. Throws InvalidInput
+  /// if the sizes do not fit, Interrupted if `watch` asks to stop. May be called by several threads at once.
   void evaluate(std::span<const double> rows, std::span<double> figures, std::span<RowEnd> ends, int jobs,
                 const Watch& watch = {}) const;
 
-  /// The derivatives of the figures by the keys at a row, figures x keys [unit of the figure over that of the key]: exact ones of
-  /// the closing (studies/devices/derivatives.h). Volts that follow each row have them where all are written in Vdp of one
-  /// electrode, or none. Throws InvalidInput with the reason where a figure has none there.
+  /// The derivatives of the figures by the keys at a row, figures x keys [unit of the figure over that of the key]: exact ones
+  /// of the closing (studies/devices/derivatives.h). Volts that follow each row have them if all are written in Vdp of one
+  /// electrode, or none. Throws InvalidInput with the reason if a figure has none there.
   [[nodiscard]] Eigen::MatrixXd jacobian(std::span<const double> row, const Watch& watch = {}) const;
 
  private:
@@ -75,8 +75,8 @@ class Evaluator {
   struct WaveformKey {
     std::size_t column, drive;
     std::string parameter;
-    std::size_t element = 0;  ///< of a list, counted from 1; 0: it is none
-    double factor = 1;        ///< of the parameter for one unit of the column
+    std::size_t element = 0;  ///< element of a list, counted from 1; 0: not a list
+    double factor = 1;        ///< factor of the parameter for one unit of the column
   };
   struct Row;
   struct Place;
@@ -99,15 +99,15 @@ class Evaluator {
   std::vector<Figure> figures_;
   EvaluatorOptions options_;
   std::vector<WaveformKey> of_waveforms_;
-  std::vector<std::size_t> of_device_;      ///< columns, in the order of the spread's variables
+  std::vector<std::size_t> of_device_;      ///< columns of the device, in the order of the spread's variables
   std::unique_ptr<PreparedScene> nominal_;  ///< its spread is that of the columns
-  std::unique_ptr<Ensemble> ensemble_;      ///< none where no column is of the device
+  std::unique_ptr<Ensemble> ensemble_;      ///< none if no column is of the device
   std::unique_ptr<DeviceDrives> drives_;
-  std::vector<Waveform> waveforms_;  ///< of the scene, in the order of the drives
-  std::vector<Signal> signals_;      ///< of them
+  std::vector<Waveform> waveforms_;  ///< waveforms of the scene, in the order of the drives
+  std::vector<Signal> signals_;      ///< their signals
   std::optional<ClosedEquilibrium> closed_;
   mutable std::mutex builders_lock_;
-  mutable std::vector<std::unique_ptr<DeviceBuilder>> builders_;  ///< that nobody uses now: a row does not wait for a new one
+  mutable std::vector<std::unique_ptr<DeviceBuilder>> builders_;  ///< idle builders: a row does not wait for a new one
 };
 
 }  // namespace softland

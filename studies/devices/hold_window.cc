@@ -16,10 +16,10 @@ namespace {
 
 bool is_held(const ClosedRange& device, double level) { return device.release <= level && !(device.pulled_through < level); }
 
-// Where the pull-through of a device is looked for: a little below that of the nominal one.
+// Starting point for the collapse voltage of a device: a little below that of the nominal one.
 struct Nominal {
   double level = std::numeric_limits<double>::quiet_NaN();  // [V]
-  std::optional<ClosedEquilibrium> closed;                  // there
+  std::optional<ClosedEquilibrium> closed;                  // closed equilibrium at that level
 };
 
 Nominal nominal_of(const Switch& model, std::size_t electrode, std::vector<double> volts) {
@@ -33,7 +33,7 @@ Nominal nominal_of(const Switch& model, std::size_t electrode, std::vector<doubl
 }
 
 ClosedRange range_of_device(const Switch& model, std::size_t electrode, std::vector<double> volts, const Nominal& nominal) {
-  constexpr double precision = 1e-4;  // as much as is shown
+  constexpr double precision = 1e-4;  // precision of the reports
   ClosedRange range{.release = release_voltage(model, electrode, volts)};
   if (!std::isfinite(range.release)) return range;
   volts[electrode] = nominal.closed ? std::max(nominal.level, range.release) : range.release;
@@ -50,7 +50,7 @@ HoldWindow hold_window(std::span<const ClosedRange> devices) {
     const auto lost = std::ranges::count_if(devices, [&](const ClosedRange& one) { return !is_held(one, level); });
     return static_cast<double>(lost) <= most_lost;
   };
-  // Levels where enough devices are held begin at the release voltage of one, and end at the pull-through of another.
+  // Levels at which enough devices are held begin at the release voltage of one, and end at the collapse voltage of another.
   HoldWindow window;
   double beyond_all = 0;
   for (const ClosedRange& one : devices) {

@@ -20,11 +20,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double tolerance_of_readings = 1e-9;  // of closings whose differences are taken
+constexpr double tolerance_of_readings = 1e-9;  // tolerance of closings whose differences are taken
 
 VectorXd single(double value) { return VectorXd::Constant(1, value); }
 
-// Edges of the contact's state, in their order.
+// Records the edges of the contact's state, in their order.
 class EdgeRecorder final : public ClosingObserver {
  public:
   explicit EdgeRecorder(double gap) : finder_(gap) {}
@@ -46,7 +46,7 @@ class EdgeRecorder final : public ClosingObserver {
   std::vector<double> edges_;
 };
 
-// The motion of the contact point at given times.
+// Records the motion of the contact point at given times.
 class PointRecorder final : public ClosingObserver {
  public:
   PointRecorder(std::span<const double> times, bool velocity)
@@ -135,7 +135,7 @@ DeviceReader::Reading DeviceReader::read(const Instrument& instrument, bool with
   }
 }
 
-// V = gain * told + offset
+// Reads a static voltage, by V = gain * commanded + offset.
 DeviceReader::Reading DeviceReader::static_voltage(const Instrument& instrument, bool with_slopes) {
   const std::size_t k = instrument.drive;
   const std::vector<double> bias = bias_of(nominal_.scene, k);

@@ -1,4 +1,4 @@
-// What instruments read of a device, and how it changes with what the device may differ in.
+// Readings of instruments on a device, and their derivatives by the varied quantities.
 //
 //   pull_in       static pull-in voltage [V]: a slow ramp closes the switch (model/pull_in.h)
 //   release       voltage at which a slow ramp opens it again [V]
@@ -9,12 +9,12 @@
 //   position      of the contact point, over times, under waveforms [m]: towards the contact, from its place in the straight beam
 //   velocity      likewise [m/s]
 //
-// Voltages and levels are those that the source is told: its gain and offset stand between them and the switch,
-// V = gain * told + offset. The other drives stand at their bias (bias_of()), at 0 V for frequencies and capacitances. One
-// mechanism for what `fit` fits, and for what `calibrate` measures on its devices.
+// Voltages and levels are commanded: the gain and offset of the source stand between them and the switch, V = gain * commanded
+// + offset. The other drives stand at their bias (bias_of()), at 0 V for frequencies and capacitances. `fit` and `calibrate`
+// use the same readings.
 //
-// Slopes of the first four are those of model/static_slopes.h, those of the first touch of model/linearized_closing.h. There is
-// no exact derivative of the rest: differences of closings on either side.
+// Slopes of the first four are those of model/static_slopes.h, those of the first touch of model/linearized_closing.h. The
+// others have no exact derivative: their slopes are differences of closings on either side.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,7 +35,7 @@ struct MeasurableRow {
   Measurable value;
   std::string_view name;
   std::string_view unit;   ///< SI
-  std::string_view words;  ///< for people
+  std::string_view words;  ///< name for people
 };
 inline constexpr std::array measurables{
     MeasurableRow{Measurable::pull_in, "pull_in", "V", "pull-in voltage"},
@@ -52,33 +52,33 @@ static_assert(is_complete<measurables>());
 
 struct Instrument {
   Measurable what = Measurable::pull_in;
-  std::size_t drive = 0;                 ///< among Switch::drives()
-  double level = 0;                      ///< told [V]
-  std::size_t mode = 0;                  ///< of a frequency, from 0
-  std::vector<Waveform> waveforms = {};  ///< of every drive, told; empty: a step of `drive` to the level
-  std::vector<double> times = {};        ///< of a position or velocity [s]
-  std::size_t edges = 1;                 ///< of a contact
+  std::size_t drive = 0;                 ///< index among Switch::drives()
+  double level = 0;                      ///< commanded level [V]
+  std::size_t mode = 0;                  ///< mode of a frequency, from 0
+  std::vector<Waveform> waveforms = {};  ///< commanded waveforms of every drive; empty: a step of `drive` to the level
+  std::vector<double> times = {};        ///< times of a position or velocity [s]
+  std::size_t edges = 1;                 ///< number of edges of a contact
 
-  /// The numbers that it reads.
+  /// The number of values that it reads.
   [[nodiscard]] std::size_t size() const;
 };
 
-/// A figure of a switch whose drive gets `level` itself: of one number, and no closing under waveforms. NaN where the switch does
-/// not have it. `duration`: in which a step must close it [s].
+/// Reads a figure of a switch whose drive gets `level` itself: a single number, and no closing under waveforms. NaN if the
+/// switch does not have it. `duration` is the time in which a step must close it [s].
 [[nodiscard]] double read(const Instrument& instrument, const Switch& model, Bias bias, double duration);
 
-/// Reads devices of a scene by the values of what varies.
+/// Reads devices of a scene by the values of the varied quantities.
 class DeviceReader {
  public:
-  /// Of a scene whose [spread] has no jitter. Keeps a reference.
+  /// The scene's [spread] must have no jitter. Keeps a reference.
   explicit DeviceReader(const PreparedScene& nominal) : nominal_(nominal), near_(nominal) {}
 
-  /// Goes to the device with these values, as DeviceSpread::to_values. False where there is none such.
+  /// Moves to the device with these values, as DeviceSpread::to_values. Returns false if that device is impossible.
   [[nodiscard]] bool move_to(const std::vector<double>& values);
 
   struct Reading {
-    Eigen::VectorXd values;  ///< as many as the instrument reads; NaN where the device does not have them
-    Eigen::MatrixXd slopes;  ///< a row each, a column to each varying quantity; empty where none were asked for
+    Eigen::VectorXd values;  ///< one per value of the instrument; NaN if the device does not have it
+    Eigen::MatrixXd slopes;  ///< a row for each value, a column for each varied quantity; empty if not requested
   };
   [[nodiscard]] Reading read(const Instrument& instrument, bool with_slopes);
 

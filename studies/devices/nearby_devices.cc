@@ -12,7 +12,7 @@
 namespace softland {
 namespace {
 
-// What a small change of a variable is small against [SI unit, or factor].
+// Returns the size of a large change of a variable [SI unit, or factor].
 double size_of(const SpreadVariable& variable, double value) {
   double size = variable.is_added ? std::numeric_limits<double>::infinity() : std::abs(value);
   for (const VariedKey& key : variable.keys) {
@@ -27,7 +27,7 @@ NearbyDevices::NearbyDevices(const PreparedScene& nominal, const EnsembleDrive& 
   drive_ = &drive;
   known_ = drive.known.without_errors();
   const Calibration& calibration = known_.calibration();
-  constexpr double precision = 1e-11;  // of pull-in voltages, whose differences are taken
+  constexpr double precision = 1e-11;  // precision of pull-in voltages, whose differences are taken
   if (!calibration.is_empty()) meter_.emplace(nominal, Gauges::of(calibration), precision);
 }
 
@@ -49,11 +49,11 @@ bool NearbyDevices::changes_switch(std::size_t i) const {
   return std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return !key.drive; });
 }
 
-// The two devices beside it. Throws InvalidInput where one of them cannot be described.
+// Returns the two devices beside it. Throws InvalidInput if one of them cannot be described.
 SwitchSlopes::Neighbours NearbyDevices::neighbours(std::size_t i) {
   Switch above = device_beside(i, 1), below = device_beside(i, -1);
   SwitchOptions finer = nominal_.quadrature;
-  // A panel that has a point more than on the other side would look like a change of the device.
+  // A panel with one point more than on the other side would look like a change of the device.
   while (above.quadrature().points() != below.quadrature().points()) {
     constexpr double little = 1.01;
     finer.points_per_length *= little;
@@ -70,7 +70,7 @@ SwitchSlopes::Neighbours NearbyDevices::neighbours(std::size_t i) {
           .acts_in_flight = !std::all_of(keys.begin(), keys.end(), is_of_contact)};
 }
 
-// The signals of the device with these values.
+// Returns the signals of the device with these values.
 std::vector<Signal> NearbyDevices::signals_of(std::span<const double> values) {
   const std::vector<double> own(values.begin(), values.end());
   DeviceUnits units;
@@ -83,13 +83,13 @@ std::vector<Signal> NearbyDevices::signals_of(std::span<const double> values) {
   return drives_.differ(units) ? drives_.signals(drive_->waveforms, units, own) : nominal_.driven(drive_->waveforms);
 }
 
-// Whether a quantity changes what a device is driven with.
+// True if a quantity changes the drives of a device.
 bool NearbyDevices::changes_signals(std::size_t i) const {
   const std::vector<VariedKey>& keys = variables()[i].keys;
   return meter_ || std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return key.drive.has_value(); });
 }
 
-// A step of a waveform that comes, goes or begins the clock on one side is no small change.
+// True if both sides have the same pieces: a step of a waveform that comes, goes or begins the clock is not a small change.
 bool NearbyDevices::keeps_pieces(std::size_t i) {
   const auto pieces = [&](double side) {
     std::vector<std::size_t> counts;

@@ -1,5 +1,5 @@
-// The devices on either side of one device, a little apart in each varying quantity: what derivatives by these quantities are
-// made of.
+// The devices on either side of one device, a small step apart in each varied quantity, from which derivatives by these
+// quantities are computed.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace softland {
 
-/// What the varying quantities do to a switch and to its drives.
+/// Changes of a switch and of its drives by the varied quantities.
 struct DeviceChanges {
   SwitchSlopes of_switch;
   SignalSlopes of_signals;
@@ -24,22 +24,22 @@ class NearbyDevices {
  public:
   static constexpr const char* other_pieces = "the waveforms have other pieces on either side of its nominal value";
 
-  /// Beside the nominal device of a scene whose [spread] has no jitter, under this drive. Keeps references.
+  /// Starts at the nominal device of a scene whose [spread] has no jitter, under this drive. Keeps references.
   NearbyDevices(const PreparedScene& nominal, const EnsembleDrive& drive);
 
-  /// The same under no drive yet: drive_by() is to come before signals are asked for.
+  /// The same without a drive yet: call drive_by() before asking for signals.
   explicit NearbyDevices(const PreparedScene& nominal);
   NearbyDevices(const NearbyDevices&) = delete;
   NearbyDevices& operator=(const NearbyDevices&) = delete;
   /// Takes another drive, of the same calibration. Keeps a reference.
   void drive_by(const EnsembleDrive& drive) { drive_ = &drive; }
 
-  /// Goes to the device with these values, as DeviceSpread::to_values.
+  /// Moves to the device with these values, as DeviceSpread::to_values.
   void move_to(const std::vector<double>& values);
   [[nodiscard]] const std::vector<double>& values() const { return values_; }
-  /// The device there. Throws InvalidInput where it cannot be described.
+  /// The device there. Throws InvalidInput if it cannot be described.
   [[nodiscard]] Switch device() { return device_at(values_); }
-  /// What a quantity is changed by, to either side [unit of its value].
+  /// The change of a quantity to either side [unit of its value].
   [[nodiscard]] double step(std::size_t i) const { return steps_[i]; }
   /// The device a step above it in one quantity (`side` 1) or below (-1). Throws as device() does.
   [[nodiscard]] Switch device_beside(std::size_t i, double side) { return device_at(beside(i, side)); }
@@ -47,12 +47,13 @@ class NearbyDevices {
   [[nodiscard]] std::vector<Signal> signals() { return signals_of(values_); }
   [[nodiscard]] std::vector<Signal> signals_beside(std::size_t i, double side) { return signals_of(beside(i, side)); }
 
-  /// How `model`, which is device(), and its signals change. Says of each quantity without derivatives why, where that is empty.
+  /// Changes of `model`, which is device(), and of its signals. Gives the reason for each quantity without derivatives, if that
+  /// is empty.
   [[nodiscard]] DeviceChanges changes(const Switch& model, std::vector<std::string>& why_none, const Watch& watch = {});
-  /// The same of the switch alone, and of the signals alone. Throw as device() does.
+  /// The same for the switch alone, and for the signals alone. Throw as device() does.
   [[nodiscard]] SwitchSlopes changes_of_switch(const Switch& model);
   [[nodiscard]] SignalSlopes changes_of_signals();
-  /// What the source of drive k does wrong on this device but for its jitter.
+  /// The errors of the source of drive k on this device, except its jitter.
   [[nodiscard]] SourceErrors source_errors(std::size_t k) const { return drives_.errors(k, values_); }
   [[nodiscard]] SourceErrors source_errors_by(std::size_t k, std::size_t i) const { return drives_.errors_by(k, i); }
 

@@ -63,7 +63,7 @@ void summarise(DriveRobustness& drive) {
   drive.worst.resize(static_cast<std::size_t>(kept));
 }
 
-// The gap of the contact at so many instants from 0 to `end`; where the closing ended before, its last.
+// Returns the gap of the contact at `instants` instants from 0 to `end`; its last value after the end of the closing.
 std::vector<double> sampled_gap(const Trajectory& closing, std::size_t instants, double end) {
   const std::vector<TrajectoryPoint>& knots = closing.points;
   if (knots.empty()) return {};
@@ -83,7 +83,7 @@ std::vector<double> sampled_gap(const Trajectory& closing, std::size_t instants,
   return gap;
 }
 
-// In the order of Switch::drives(); what is not driven stays at 0 V.
+// Returns the waveforms in the order of Switch::drives(); drives without a waveform stay at 0 V.
 std::vector<Waveform> waveforms_of(const PreparedScene& nominal, const NamedDrive& drive) {
   for (const auto& [name, waveform] : drive.waveforms) {
     const Drive* const given = nominal.drives.find(name);
@@ -99,7 +99,7 @@ std::vector<Waveform> waveforms_of(const PreparedScene& nominal, const NamedDriv
   return nominal.in_drive_order(drive.waveforms);
 }
 
-// The source of a device whose own units or errors are larger than those of the nominal one has to give more.
+// Widens the limits of a source whose own units or errors are larger than those of the nominal device.
 void allow(SceneFile& file, const std::string& driver, const Signal& signal, const DriverLimits& limits) {
   if (violation(signal, limits).empty()) return;
   if (signal.maximum() > limits.max_voltage) file.assign(driver + ".max_voltage", signal.maximum());
@@ -108,7 +108,7 @@ void allow(SceneFile& file, const std::string& driver, const Signal& signal, con
   if (std::isfinite(signal.peak_slew())) {
     file.assign(driver + ".max_slew", signal.peak_slew());
   } else {
-    file.erase(driver + ".max_slew");  // an offset is there at once
+    file.erase(driver + ".max_slew");  // an offset acts at once
   }
 }
 
@@ -130,8 +130,8 @@ constexpr std::array all_measurements{
     Measurement{measured_pull_in, &Calibration::pull_in_error}, Measurement{"closing time", &Calibration::time_error},
     Measurement{measured_frequency, &Calibration::frequency_error}, Measurement{measured_piezo, &Calibration::piezo_error}};
 
-// The same drive for every knowledge that one can have of a device, without errors: from nothing to all that can be measured,
-// first as the class of the device, then as its own units.
+// Returns the same drive for every calibration of a device, without errors: from none to all measurements, first with the class
+// of the device, then with its own units.
 std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
   std::vector<NamedDrive> all;
   const auto add = [&](const std::string& name, const Calibration& calibration) {
@@ -154,7 +154,7 @@ std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
   };
   for (std::size_t i = 0; i < measured.size() && measured.size() > 1; ++i)
     add(std::string(measured[i].name), exactly(std::span(measured).subspan(i, 1)));
-  if (measured.size() > 2 && drive.calibration.piezo_error) {  // what the last one is worth beside the others
+  if (measured.size() > 2 && drive.calibration.piezo_error) {  // the value of the last measurement beside the others
     const auto others = std::span(measured).first(measured.size() - 1);
     add(named(others), exactly(others));
   }
@@ -194,7 +194,7 @@ Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive
   Robustness result{.duration = run.duration, .tolerance = run.tolerance};
   const Actuator driven = has_pulling_electrode(nominal.scene.device) ? Actuator::both : Actuator::pzt;
   NamedDrive plain{.name = "plain step", .waveforms = plain_step(nominal, driven)};
-  plain.waveforms.merge(nominal.drives.waveforms());  // of the drives that do not step
+  plain.waveforms.merge(nominal.drives.waveforms());  // drives that do not step
   std::vector<NamedDrive> all;
   const auto is_judged = [&](const NamedDrive& drive) {  // the scene's own drive may be the plain step
     const std::vector<Signal> own = nominal.told(waveforms_of(nominal, drive));
@@ -342,7 +342,7 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
       units = drive.known.of(meter.exact(*sampled.model), seed, device);
       if (!units.are_known()) units = {};
     }
-    file.erase("calibration");  // has been used
+    file.erase("calibration");  // it is applied already
   }
   const DeviceDrives drives(nominal);
   const std::vector<DeviceDrives::Written> own =

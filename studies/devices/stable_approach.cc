@@ -14,14 +14,14 @@
 namespace softland {
 namespace {
 
-// At which an electrode may stand before contact, over its hold level: from the lowest on.
+// Levels of an electrode before contact, over its hold level, from the lowest on.
 constexpr std::array low_levels{0.0, 0.12, 0.24, 0.36};
-// Standard deviations of the touching voltage that the limit of a driver has to leave.
+// Least distance of a driver's limit from the touching voltage, in standard deviations of that.
 constexpr double enough_deviations = 2.5;
-// Coordinates of the unit cube one standard deviation of a normal to either side of the middle.
+// Coordinates of the unit cube one standard deviation of a normal number to either side of the middle.
 constexpr double one_below = 0.15865525393145707, one_above = 1 - one_below;
 
-// Commanded voltage at which the contact point of a device touches.
+// Returns the commanded voltage at which the contact point of a device touches.
 std::optional<double> touching_voltage(const PreparedScene& nominal, const SampledDevice& device,
                                        const StableApproach& approach) {
   if (!device.model) return std::nullopt;
@@ -49,7 +49,7 @@ class Finder {
     if (!nominal.scene.spread.empty()) ensemble_.emplace(nominal, 1);
   }
 
-  // None where the nominal design has no path within the limits.
+  // Returns none if the nominal design has no path within the limits.
   [[nodiscard]] std::optional<StableApproach> along(const std::string& drive, const std::string& holder, double low) const {
     const Drive& carries = nominal_.drives.at(drive);
     if (!carries.limits) return std::nullopt;
@@ -81,7 +81,7 @@ class Finder {
         return touching_voltage(nominal_, builder.device(std::move(u)), found);
       };
       const std::optional<double> above = at(one_above), below = at(one_below);
-      // One that has no path so near the nominal design tells that the other side is as far.
+      // If one side has no path so near the nominal design, the other side is assumed to be as far.
       const double slope = above && below ? (*above - *below) / 2
                            : above        ? *above - found.reaches
                            : below        ? found.reaches - *below
@@ -95,18 +95,18 @@ class Finder {
   std::optional<Ensemble> ensemble_;
 };
 
-// The limit beyond the touching voltage, in standard deviations.
+// Returns the distance of the limit from the touching voltage, in standard deviations.
 double room(const StableApproach& found) { return std::abs(found.limit - found.reaches) / std::max(found.deviation, 1e-300); }
 
 }  // namespace
 
 double StableApproach::touch_places() const {
-  constexpr double of_a_normal = 2 * 1.6448536269514722;  // deviations from its 5 % quantile to its 95 % one
+  constexpr double of_a_normal = 2 * 1.6448536269514722;  // deviations from its 5th to its 95th percentile
   return of_a_normal * deviation * std::abs(slope);
 }
 
 double shortest_rise(const PreparedScene& nominal) {
-  constexpr double periods = 1.5;  // a line of one, and half a one between the impulses
+  constexpr double periods = 1.5;  // a line of one period, and half a period between the impulses
   return periods * 2 * pi / nominal.model.basis().angular_frequencies()[0];
 }
 
