@@ -12,11 +12,12 @@
 namespace softland {
 namespace {
 
-constexpr double enough_seconds = 0.03;     // of timed runs of one setting
-constexpr double reference_tighter = 1e-4;  // than the tightest tolerance
-constexpr double reference_looser = 100;    // the second reference, than the first; and every reference tried than the next
-constexpr double reference_growth = 2.5;    // of the time from one to the next, of a fifth-order method
-constexpr double told_apart = 9.9;          // times the reference's tolerance, less what rounding takes: errors show from here on
+constexpr double enough_seconds = 0.03;     // least sum of the timed runs of one setting
+constexpr double reference_tighter = 1e-4;  // factor below the tightest tolerance
+constexpr double reference_looser =
+    100;  // factor of the second reference's tolerance over the first, and between references that are tried
+constexpr double reference_growth = 2.5;  // time ratio of one reference to the next, for a fifth-order method
+constexpr double told_apart = 9.9;  // multiple of the reference's tolerance, less rounding, from which on errors are resolved
 constexpr CloudOptions cloud_options{.runs = 8};
 
 bool touched(const Metrics& m) { return std::isfinite(m.initial_contact_time); }
@@ -37,7 +38,7 @@ class Study {
       }
     }
     const std::size_t tolerances = options.tolerances.size();
-    // Two references and the cloud count as one each.
+    // The two references and the cloud count as one each.
     all_ = 3 + (all_integrators.size() + other_points_.size()) * tolerances + other_modes_.size();
     found_.why_always_restarted = prepared.model.has_contact() ? why_always_restarted(prepared.model) : "there is no contact";
     if (found_.why_always_restarted.empty()) all_ += all_integrators.size() * tolerances;
@@ -98,7 +99,7 @@ class Study {
       return;
     }
     ClosingOptions closing_options = closing(row);
-    constexpr int steps_per_look = 64;  // at the clock
+    constexpr int steps_per_look = 64;  // steps between two looks at the clock
     int steps = 0;
     bool cut = false;
     double start = 0;
@@ -129,14 +130,14 @@ class Study {
     row.errors = relative_errors(row.figures, found_.reference.figures, prepared_.scene.metrics);
   }
 
-  // Without a contact law a run ends at first touch.
+  // Returns the figures. A run without a contact law ends at first touch.
   [[nodiscard]] Metrics figures(const Trajectory& t) const {
     Metrics m = metrics(t, prepared_.scene.metrics);
     if (!prepared_.model.has_contact()) m.major_bounce_height = m.peak_contact_force = Metrics::unset;
     return m;
   }
 
-  // As long as there is time.
+  // Measures a setting if there is time left.
   void try_out(const Switch& model, AccuracyRow& row) {
     if (seconds_since(start_) < options_.all_seconds) {
       measure(model, row, options_.runs, options_.most_seconds);
@@ -146,7 +147,7 @@ class Study {
     progress();
   }
 
-  // A setting at every tolerance.
+  // Measures a setting at every tolerance.
   void sweep(const Switch& model, const AccuracyRow& given, std::vector<AccuracyRow>& rows) {
     bool cut = false;
     for (const double tolerance : options_.tolerances) {
@@ -167,7 +168,7 @@ class Study {
     }
   }
 
-  // The same without a restart at the contact.
+  // Measures the same without a restart at the contact.
   void go_through(const Switch& model, Integrator integrator) {
     if (!found_.why_always_restarted.empty()) return;
     AccuracyRow row = setting(integrator, own_points_);
@@ -179,7 +180,7 @@ class Study {
     return points ? Switch(prepared_.scene.device, {.points_per_length = *points}) : prepared_.model;
   }
 
-  // From loose to tight, to the tolerance planned or to where rounding or the time that is left ends it.
+  // Tightens the reference to the planned tolerance, or to where rounding or the remaining time ends it.
   void tighten_reference(const Switch& fine, std::optional<double> points, double& seconds_left) {
     const double planned = reference_tighter * options_.tolerances.back();
     int steps = 0;
@@ -191,7 +192,7 @@ class Study {
       if (found && (!touched(best.figures) || growth * best_seconds > seconds_left)) return;
       AccuracyRow next = setting(own_integrator_, points, planned * std::pow(reference_looser, steps));
       const double start = options_.clock();
-      constexpr double first_share = 1.0 / 3;  // so that there is time for one with fewer points
+      constexpr double first_share = 1.0 / 3;  // leaves time for a reference with fewer points
       measure(fine, next, 1, found ? seconds_left : first_share * seconds_left);
       const double seconds = seconds_since(start);
       seconds_left = std::max(0.0, seconds_left - seconds);
@@ -276,7 +277,7 @@ class Study {
     }
   }
 
-  // With the tighter tolerances of the same setting, which are the rows that follow.
+  // True if a row is within an accuracy, and the following rows of the same setting, which have tighter tolerances.
   [[nodiscard]] bool within(std::size_t index, double accuracy) const {
     const AccuracyRow& first = found_.rows[index];
     if (!first.missing.empty()) return false;
@@ -291,9 +292,9 @@ class Study {
   const PreparedScene& prepared_;
   const AccuracyOptions& options_;
   std::vector<Signal> signals_;
-  std::optional<double> own_points_;  // none of a plate
+  std::optional<double> own_points_;  // none for a plate
   std::vector<double> other_points_;
-  double tightest_ = 0;  // of the tolerances that the reference can judge
+  double tightest_ = 0;  // tightest tolerance that the reference can judge
   int own_modes_ = 0;
   Integrator own_integrator_ = Integrator::automatic;
   std::vector<int> other_modes_;

@@ -1,4 +1,4 @@
-// What closes a switch: which of its drives are shaped, against the plain step and in a search.
+// The actuator that closes a switch: the drives that are shaped, in the plain step and in a search.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +15,12 @@ inline constexpr auto actuators = std::to_array<Named<Actuator>>(
     {{Actuator::electrostatic, "electrostatic"}, {Actuator::pzt, "pzt"}, {Actuator::both, "both"}});
 static_assert(is_complete<actuators>());
 
-/// Whether an electrode pulls towards the contact: one that is not on the far side.
+/// True if an electrode pulls towards the contact: one that is not on the far side.
 [[nodiscard]] bool has_pulling_electrode(const Device& device);
-/// The electrode that closes the switch: `main` if there is one, else the first that pulls in. Throws InvalidInput
-/// when there is none.
+/// The electrode that closes the switch: `main` if it exists, else the first that pulls in. Throws InvalidInput if no electrode
+/// does.
 [[nodiscard]] std::string searched_electrode(const Device& device);
-/// Its number among the drives.
+/// The index of that electrode among the drives.
 [[nodiscard]] std::size_t searched_drive(const Device& device);
 /// Electrodes on the far side whose driver has limits: a search brakes with them. The others keep the scene's waveform.
 [[nodiscard]] std::vector<std::string> braking_electrodes(const PreparedScene& prepared);

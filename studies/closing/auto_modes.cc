@@ -20,20 +20,20 @@
 namespace softland {
 namespace {
 
-constexpr double run_tolerance = 1e-6;  // of the integrator: errors far below auto_modes_tolerance
-constexpr double least_share = 0.01;    // of what a closing is like, below which a figure is as good as zero
+constexpr double run_tolerance = 1e-6;  // tolerance of the integrator: errors far below auto_modes_tolerance
+constexpr double least_share = 0.01;    // share of the scale of a closing, below which a figure counts as zero
 
 struct Judged {
   double value, scale;
 };
 
-// A closing with some number of modes.
+// The figures of a closing with some number of modes.
 struct Judgement {
   std::vector<Judged> figures;
   PreparedScene scene;
 };
 
-// As well as figures are judged: a dynamic pull-in voltage takes as long as tens of closings.
+// Finds pull-in voltages as precisely as figures are judged: a dynamic one takes as long as tens of closings.
 ElectrodePullIn pull_in_to_be_judged(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch) {
   constexpr double precision = 1e-5;
   ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
@@ -45,7 +45,7 @@ Judgement judged(const SceneFile& file, int modes, const Watch& watch) {
   SceneFile with = file;
   with.assign("structure.modes", modes);
   with.assign("simulate.effects",
-              std::string("all"));  // every number of modes is judged on the same effects; they are chosen after
+              std::string("all"));  // all numbers of modes have the same effects; they are chosen after
   const PreparedScene p = prepare(with, false, watch, pull_in_to_be_judged);
   const double omega = p.model.basis().angular_frequencies()[0], gap = p.scene.device.contact_gap();
   const Trajectory t = simulate_closing(p.model, p.signals(),
@@ -73,7 +73,7 @@ Judgement judged(const SceneFile& file, int modes, const Watch& watch) {
   return {.figures = std::move(list), .scene = p};
 }
 
-// The largest relative change of any figure; one that comes or goes has changed entirely.
+// Returns the largest relative change of any figure; a figure that comes or goes has changed entirely.
 double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
   double most = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -83,7 +83,7 @@ double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
   return most;
 }
 
-// The most that twice and four times as many modes move a static voltage of an electrode.
+// Returns the largest relative change of a static voltage of an electrode by twice and four times as many modes.
 double statics_moved(const Scene& scene, int modes) {
   const Switch own = resolved_switch(scene.device, scene.simulate.accuracy, modes).model;
   const ModeLadder ladder(scene, own);
@@ -97,7 +97,7 @@ double statics_moved(const Scene& scene, int modes) {
   return most;
 }
 
-// Whether the modes of a scene say of its closed state under the hold levels what more modes do.
+// True if more modes agree with those of a scene about its closed state under the hold levels.
 bool agrees_on_stability(const PreparedScene& p) {
   const ModeLadder ladder(p);
   const auto closed = closed_equilibria(ladder, hold_levels(p.signals()));
@@ -129,7 +129,7 @@ AutoModes choose_modes(const SceneFile& file, const Watch& watch) {
   };
   AutoModes found;
   for (int modes = 1; modes + further <= most_modes; ++modes) {
-    // Statics are cheap: no closing is followed with modes that they rule out, but the last.
+    // Statics are cheap: do not run closings with modes that they rule out, except the last.
     found = {.modes = modes, .moved = statics_moved(scene, modes)};
     if (!found.settled() && modes + further < most_modes) continue;
     const Judgement& own = with(modes);

@@ -1,5 +1,5 @@
-// The choices that a scene leaves to softland: modes = "auto" and effects = "auto". Each repeats the closing of a scene that is
-// prepared already, and gives one that is prepared anew.
+// The choices that a scene leaves to softland: modes = "auto" and effects = "auto". Each repeats the closing of a prepared
+// scene, and returns a newly prepared one.
 #pragma once
 
 #include "base/watch.h"
@@ -7,12 +7,12 @@
 
 namespace softland {
 
-/// The scene with as many modes as its closing needs, then without the effects that do not matter, and a warning for each choice
-/// that says so; a scene that leaves none comes back as it is. `default_limits` as in prepare(). Throws as prepare() does, and
-/// Interrupted where `watch` asks to stop.
+/// Returns the scene with as many modes as its closing needs, then without the effects that do not matter, and a warning for
+/// each choice. A scene without choices is returned unchanged. `default_limits` is as in prepare(). Throws as prepare() does,
+/// and Interrupted if `watch` asks to stop.
 [[nodiscard]] PreparedScene choose(PreparedScene prepared, bool default_limits = false, const Watch& watch = {});
 
-/// What a user's scene asks for: prepare(), then choose(); and a warning where more modes move its static pull-in voltages
+/// Prepares a user's scene: prepare(), then choose(). Adds a warning if more modes move its static pull-in voltages
 /// (by_modes.h).
 [[nodiscard]] PreparedScene prepare_and_choose(const SceneFile& file, bool default_limits = false, const Watch& watch = {});
 

@@ -13,10 +13,10 @@
 namespace softland {
 namespace {
 
-constexpr double found_to = 1e-5;  // relative: what a voltage is found to with more modes
+constexpr double found_to = 1e-5;  // relative precision of a voltage with more modes
 
-// What values with ever more modes tend to. Three of numbers of modes that double make a geometric series (Aitken); the last is
-// taken where it hardly differs from the one before, or has all modes that there are and little left to go.
+// Returns the limit of values with ever more modes. Three with doubled numbers of modes make a geometric series (Aitken). The
+// last value is the limit if it hardly differs from the one before, or has the most modes and little left to go.
 double extrapolated(const std::map<int, double>& values) {
   constexpr double rounding = 3 * found_to, fastest = 0.5, left = 0.02;  // changes of the last value, and their ratio
   if (values.size() < 2) return std::nan("");
@@ -30,11 +30,11 @@ double extrapolated(const std::map<int, double>& values) {
   return last->first == most_static_modes && std::abs(change) <= left * size ? last->second : std::nan("");
 }
 
-// The statics of many modes end in rounding, which depends on how a program is linked.
+// Rounds to ten digits. The statics of many modes end in rounding, which depends on how a program is linked.
 double to_ten_digits(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.9e}", value)) : value; }
 
-// One value by modes: find(switch) is asked of one switch after the other, and of the finest one where the others leave much to
-// be extrapolated.
+// Finds one value by modes: calls find(switch) for one switch after the other, and for the finest one if much is left to
+// extrapolate.
 template <class Find>
 ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
   constexpr double much = 5e-3;  // relative change between the last two
@@ -50,7 +50,7 @@ ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
   return by_modes(std::move(values));
 }
 
-// An equilibrium of fewer modes as the beginning of one of more.
+// Returns an equilibrium of fewer modes as the starting point for more.
 ClosedEquilibrium with_modes_of(ClosedEquilibrium closed, const Switch& model) {
   closed.q.conservativeResizeLike(Eigen::VectorXd::Zero(model.modes()));
   return closed;
@@ -171,7 +171,7 @@ ByModes static_pull_in_by_modes(const ModeLadder& ladder, const Scene& scene, st
 }
 
 ByModes pulled_through_by_modes(const ModeLadder& ladder, std::size_t electrode, std::vector<double> volts, double own) {
-  constexpr double below = 0.95;  // of the voltage with fewer modes
+  constexpr double below = 0.95;  // share of the voltage with fewer modes
   std::optional<ClosedEquilibrium> near;
   double found = own;
   return value_by_modes(ladder, [&](const Switch& model) {

@@ -14,23 +14,23 @@
 namespace softland {
 namespace {
 
-constexpr double shared = 0.01;  // of the tolerance, relative to a figure: what both runs may miss alike
+constexpr double shared = 0.01;  // share of the tolerance, relative to a figure, for the common error of both runs
 constexpr double parted = 0.1;   // relative difference of a rebound's height from which runs have parted
 
-// Whether the drives' last digits decide a figure of the closing and of a better one, or whether it has one at all.
+// True if the drives' last digits decide a figure of the closing and of a better one, or whether it exists.
 bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, const Metrics& own, const Metrics& better,
                      const MetricsOptions& options) {
   std::vector<double> values;
   for (const Metrics& m : cloud) values.push_back(figure.counted(m, options));
-  // What a loose tolerance does to the values of these two is an error, not a condition.
+  // The effect of a loose tolerance on the values of these two is an error, not a condition.
   const bool own_has = std::isfinite(figure.value(own)), better_has = std::isfinite(figure.value(better));
   const auto have = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }) + own_has + better_has;
   if (have == 0 || cloud.empty()) return false;
   return have < static_cast<std::ptrdiff_t>(cloud.size() + 2) || ill_conditioned(spread(std::move(values)));
 }
 
-// Figures of the closing with each pull-in voltage that its drives are written in higher, and lower, by the error of that
-// voltage: a multiple of what a finer quadrature changes, and the width of its bracket.
+// Computes the figures of the closing with each pull-in voltage in which its drives are written higher, and lower, by its
+// error. The error is a multiple of the change by a finer quadrature, plus the width of the bracket of the voltage.
 std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switch& fine, const SwitchOptions& quadrature,
                                       const ClosingOptions& options, const MetricsOptions& figures, const Watch& watch) {
   const Scene& written = prepared.effects ? prepared.effects->described : prepared.scene;
@@ -40,7 +40,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
     const auto at = std::find_if(electrodes.begin(), electrodes.end(), [&](const Electrode& e) { return e.name == name; });
     const auto k = static_cast<std::size_t>(at - electrodes.begin());
     const auto known = prepared.pull_in.find(name);
-    if (known == prepared.pull_in.end()) continue;  // of limits alone
+    if (known == prepared.pull_in.end()) continue;  // only limits are in its units
     const Switch model(written.device, quadrature);
     const std::vector<double> bias = bias_of(written, k);
     const StaticPullIn statically = static_pull_in(model, k, bias);
@@ -58,7 +58,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
         moved.drives = written.drives(units).of(prepared.drive_names());
         for (std::size_t i = 0; i < moved.drives.size(); ++i)  // they charge the same switch
           moved.drives[i].source.load = prepared.drives[i].source.load;
-      } catch (const InvalidInput&) {  // a drive at a limit of its driver, or no better voltage: the error is not known
+      } catch (const InvalidInput&) {  // the error is not known: a drive is at a limit of its driver, or no better voltage exists
         found.emplace_back();
         continue;
       }
@@ -78,7 +78,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
   return found;
 }
 
-// What one run did, rebound by rebound, with the touch before each.
+// The course of one run, rebound by rebound, with the touch before each.
 struct Course {
   std::vector<Rebound> rebounds;
   std::vector<double> impacts;  // [m/s]
@@ -109,7 +109,7 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
                           .impact_velocity = first.impacts[k],
                           .at_threshold = at_threshold};
   };
-  // Gentle touches are the ones that a hair's breadth makes or unmakes.
+  // The gentlest touch is the one that tiny changes make or unmake.
   const auto gentlest = [&](std::size_t count) {
     const auto found = std::min_element(first.impacts.begin(), first.impacts.begin() + static_cast<std::ptrdiff_t>(count));
     return named(static_cast<std::size_t>(found - first.impacts.begin()), false);
@@ -140,7 +140,7 @@ Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
     return c;
   }
   const std::vector<Signal> signals = prepared.signals();
-  // The better one of the run and its judge.
+  // The better of the run and its judge.
   const bool judge_is_better = c.judge->tolerance < c.tolerance;
   const SwitchOptions& quadrature = judge_is_better ? c.judge->quadrature : c.quadrature;
   const Switch fine(prepared.scene.device, quadrature);
@@ -151,8 +151,8 @@ Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
                                .opens_at = c.command ? c.command->time : std::numeric_limits<double>::infinity(),
                                .stop = watch.stop};
   const std::vector<double> holding = prepared.start() == StartState::closed ? values_before(signals)
-                                      : c.command                          ? hold_levels(c.command->held)
-                                                                           : hold_levels(signals);
+                                      : c.command                            ? hold_levels(c.command->held)
+                                                                             : hold_levels(signals);
   const MetricsOptions figures = with_load(with_opening(prepared.scene.metrics, fine, signals, c.command), fine, holding);
   const Metrics& better = c.judge->metrics;
   const std::vector<Metrics> moved = at_other_pull_in(prepared, fine, quadrature, options, figures, watch);
@@ -165,7 +165,7 @@ Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
   std::erase_if(cloud, [](const Trajectory& t) { return !came_to_its_end(t); });
   std::vector<Metrics> runs;
   for (Trajectory& t : cloud) {
-    t.hold_force = c.trajectory.hold_force;  // that of the closed equilibrium, which one part in 1e7 does not move
+    t.hold_force = c.trajectory.hold_force;  // value of the closed equilibrium, which one part in 1e7 does not move
     t.is_held = c.trajectory.is_held;
     t.hold_capacitance = c.trajectory.hold_capacitance;
     t.hold_resistance = c.trajectory.hold_resistance;

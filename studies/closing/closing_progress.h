@@ -1,4 +1,4 @@
-// Closings that tell how far they are.
+// Closings that report their progress.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace softland {
 
-/// For ClosingOptions::observer of a closing of `duration` [s] that is the `share` of a computation, after `done`. Empty where
-/// nobody listens. `watch` must live as long.
+/// Returns a ClosingOptions::observer for a closing of `duration` [s] that is the `share` of a computation, after `done`. Empty
+/// if the watch has no listener. `watch` must live as long.
 [[nodiscard]] inline std::function<bool(double, const double*, const double*)> observer(const Watch& watch, std::string what,
                                                                                         double duration, double done = 0,
                                                                                         double share = 1) {

@@ -1,5 +1,5 @@
-// A closing repeated under imperceptibly perturbed drives. Where a closing is chaotic no tolerance settles the bounce count or
-// the permanent contact time: such figures are properties of a cloud of runs.
+// A closing repeated under imperceptibly perturbed drives. The bounce count and the permanent contact time of a chaotic closing
+// do not converge with the tolerance: such figures are properties of a cloud of runs.
 #pragma once
 
 #include <array>
@@ -21,23 +21,23 @@ struct CloudOptions {
   int jobs = 1;  ///< threads; does not change the runs
 };
 
-/// The runs in order: a function of the arguments alone, but for those that `closing.stop` ends, which are left out with all
-/// after the first of them. An observer of `closing` is called from several threads at once when jobs > 1; `watch` is told from
-/// one at a time.
+/// Returns the runs in order, as a function of the arguments alone. Runs that `closing.stop` ends are left out, with all after
+/// the first of them. An observer of `closing` is called from several threads at once if jobs > 1; `watch` is called from one
+/// at a time.
 [[nodiscard]] std::vector<Trajectory> perturbed_closings(const Switch& model, std::span<const Signal> drives,
                                                          const ClosingOptions& closing, const CloudOptions& options = {},
                                                          const Watch& watch = {});
 
-/// Where a figure lies in the runs that have it; NaN when none has.
+/// Range of a figure over the runs that have it; NaN if none has.
 struct Spread {
   double low = Metrics::unset, median = Metrics::unset, high = Metrics::unset;
   int runs = 0;
 };
 [[nodiscard]] Spread spread(std::vector<double> values);
 
-/// Beyond this relative range over the cloud a figure is ill-conditioned: a thousandfold magnification of the perturbation.
+/// Relative range over the cloud from which on a figure is ill-conditioned: a thousandfold magnification of the perturbation.
 inline constexpr double ill_conditioned_range = 1e-4;
-/// Whether the drives' last digits decide a figure; `values` are those that Figure::counted() gives.
+/// True if the drives' last digits decide a figure; `values` are those of Figure::counted().
 [[nodiscard]] bool ill_conditioned(const Spread& values);
 
 }  // namespace softland

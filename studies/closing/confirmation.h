@@ -1,5 +1,5 @@
-// The other ways in which a closing is simulated before it is believed: by a tighter integrator, with richer beams, under other
-// gas laws.
+// The other ways in which a closing is simulated to confirm it: by a tighter integrator, with richer beams, under other gas
+// laws.
 #pragma once
 
 #include <functional>
@@ -10,13 +10,13 @@
 
 namespace softland {
 
-/// Of the integrator, in a run that confirms another.
+/// Tolerance of the integrator in a run that confirms another.
 inline constexpr double tight_tolerance = 1e-9;
 
-/// What another way of simulating differs in.
+/// The difference of another way of simulating.
 enum class Varied { integrator, modes, gas };
 
-/// A switch to simulate a closing with again.
+/// A switch for simulating a closing again.
 struct OtherWay {
   std::string name;  ///< "tolerance 1e-9", "modes 6", "gas veijola"
   Varied varied = Varied::integrator;
@@ -25,25 +25,25 @@ struct OtherWay {
 };
 
 struct ConfirmingRun {
-  std::string name;  ///< of the way
+  std::string name;  ///< name of the way
   Varied varied = Varied::integrator;
   Metrics metrics;
 };
 
-/// The device with two, four and six modes more, as far as there may be so many; none of a plate, which has one mode.
+/// The device with two, four and six modes more, as far as possible; none for a plate, which has one mode.
 [[nodiscard]] std::vector<Device> with_more_modes(const Device& device);
-/// Where `device` has more modes than what a quadrature was chosen for.
+/// Returns the quadrature for a `device` with more modes than it was chosen for.
 [[nodiscard]] SwitchOptions quadrature_of_richer(SwitchOptions quadrature, const Device& device);
 
-/// A tighter integrator, then every richer beam.
+/// Returns a tighter integrator, then every richer beam.
 [[nodiscard]] std::vector<OtherWay> other_numerics(const PreparedScene& closing);
-/// Those of the laws strip, veijola and gallis-torczynski that the scene does not have and could have; none where its gas is a
-/// damper, or there is none.
+/// Returns the laws strip, veijola and gallis-torczynski, without the scene's own and those that it cannot have. None if its
+/// gas is a damper, or without gas.
 [[nodiscard]] std::vector<OtherWay> other_gas_laws(const PreparedScene& closing);
 
-/// The same closing in another way.
+/// Simulates the closing in another way.
 [[nodiscard]] ConfirmingRun simulated(const PreparedScene& closing, const OtherWay& way);
-/// The same closing in every other way; of gas laws only those whose limits it keeps.
+/// Simulates the closing in every other way; under gas laws only if it keeps their limits.
 [[nodiscard]] std::vector<ConfirmingRun> confirm(const PreparedScene& closing);
 
 }  // namespace softland

@@ -16,7 +16,7 @@
 namespace softland {
 namespace {
 
-// Force on the first mode at rest under 1 V on one electrode.
+// Returns the force on the first mode at rest under 1 V on one electrode.
 double force_at_rest(const Device& described, std::size_t electrode) {
   const Switch model(described);
   Switch::Workspace work = model.workspace();
@@ -36,7 +36,7 @@ BoundedClosing closing(const PreparedScene& p, const Watch& watch, const Closing
   return bounded_closing(p, p.model, bound, watch, "closings without each effect", done, share);
 }
 
-// How far the contact point rests from where it does in `without`.
+// Returns the distance between the contact point's rest positions with an effect and without it.
 OmissibleEffect rest_effect(const std::string& effect, const Device& d, const Device& without,
                             std::optional<SceneValue> instead) {
   const double rise = d.contact_gap() - without.contact_gap();
@@ -65,7 +65,7 @@ void add_omissible_rest_shape(const Device& d, std::vector<OmissibleEffect>& lis
   }
 }
 
-// Anchors that give way become clamps; sections with holes become solid.
+// Adds the structure's parts: compliant anchors become clamps, sections with holes become solid.
 void add_omissible_parts(const Device& d, std::vector<OmissibleEffect>& list) {
   const Beam& beam = part_of<Beam>(d.structure);
   const auto add_anchor = [&](const char* key, std::optional<Anchor> Beam::*end) {
@@ -163,7 +163,7 @@ void add_omissible_fringing(const PreparedScene& prepared, std::vector<Omissible
   }
 }
 
-// A face on which the beam lands stays, but its roughness.
+// Adds the dielectrics. A face on which the beam lands stays, without its roughness.
 void add_omissible_dielectrics(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
   for (const Electrode& e : d.electrodes) {
@@ -221,7 +221,7 @@ void add_omissible_contact(const PreparedScene& prepared, std::vector<OmissibleE
   const Contact& contact = d.contacts.front();
   const auto section = [](const Contact& c) { return c.name.empty() ? std::string("contact") : "contact." + c.name; };
   if (contact.distribution == ContactDistribution::pad) {
-    const double rise = 1.5 * d.contact_gap() / d.structure.length * contact.pad_length;  // of a uniform beam bent by its end
+    const double rise = 1.5 * d.contact_gap() / d.structure.length * contact.pad_length;  // for a uniform beam bent by its end
     list.push_back({.effect = section(contact) + ".distribution",
                     .magnitude = {.name = "tilt of the pad", .unit = "m", .value = rise},
                     .group = {.name = "over the interference", .value = rise / prepared.model.penetration_scale()},
@@ -273,11 +273,11 @@ PreparedScene without(const PreparedScene& prepared, const std::vector<Omissible
   SceneFile file = frozen.again(prepared.scene.file.name());
   file.assign("simulate.effects", std::string("all"));
   for (const OmissibleEffect& e : effects) {
-    // A key of a section that goes goes with it.
+    // A key of a section that is left out goes with the section.
     const bool inside = std::any_of(effects.begin(), effects.end(),
                                     [&](const OmissibleEffect& other) { return e.effect.starts_with(other.effect + "."); });
     if (inside) continue;
-    file.erase(fmt::format("spread.\"{}\"", e.effect));  // it has nothing left to vary
+    file.erase(fmt::format("spread.\"{}\"", e.effect));  // the key has nothing left to vary
     if (e.instead) {
       file.assign(e.effect, *e.instead);
     } else {
@@ -294,7 +294,7 @@ PreparedScene without(const PreparedScene& prepared, const std::vector<Omissible
   PreparedScene p = prepare(file);
   p.scene.warnings = prepared.scene.warnings;
   p.pull_in = prepared.pull_in;
-  p.drives = prepared.drives.of(p.drive_names());  // which charge the switch with all effects
+  p.drives = prepared.drives.of(p.drive_names());  // the drives charge the switch with all effects
   p.duration = prepared.duration;
   p.held_from = prepared.held_from;
   p.tolerance = prepared.tolerance;
@@ -311,7 +311,7 @@ double influence(const Metrics& own, const Metrics& other, const MetricsOptions&
 
 BoundedClosing bounded_closing(const PreparedScene& prepared, const Switch& model, const ClosingBound& bound, const Watch& watch,
                                const std::string& what, double done, double share) {
-  constexpr long steps_per_look = 64;  // at the clock
+  constexpr long steps_per_look = 64;  // steps between two looks at the clock
   BoundedClosing found;
   const auto tell = observer(watch, what, prepared.duration, done, share);
   const double start = processor_seconds();

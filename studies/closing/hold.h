@@ -1,4 +1,4 @@
-// What drives do to a closed switch once they stand at their hold levels: whether it stays, and with which force.
+// The effect of hold levels on a closed switch: whether it stays closed, and with which force.
 #pragma once
 
 #include <optional>
@@ -14,45 +14,46 @@
 
 namespace softland {
 
-/// What is to be warned of where a trajectory is not held.
+/// Warning about a trajectory that is not held.
 inline constexpr std::string_view not_held =
     "the hold levels do not keep the switch closed: it has no closed equilibrium under them. They are below its release "
     "voltage, or so high that the electrode pulls the beam past the contact";
 
-/// What is to be warned of where the hold levels of these drives do not keep a switch closed whose closed state under them is
-/// `state`; empty where they do.
+/// Returns the warning if the hold levels of these drives do not keep a switch closed whose closed state under them is `state`;
+/// empty if they do.
 [[nodiscard]] std::string hold_warning(const Switch& model, const std::vector<Signal>& signals, const ClosedState& state);
 
-/// What the hold levels of drives do to a closed switch.
+/// The effect of the hold levels of drives on a closed switch.
 struct Hold {
-  std::optional<ClosedEquilibrium> closed;  ///< if there is one
-  double force = Metrics::unset;            ///< of the contact, where it is stable, or of the connection of several [N]
-  std::vector<double> forces = {};          ///< of each of several contacts [N]; empty where no state holds
-  double resistance = Metrics::unset;       ///< of the contact, or of the connection of several [Ohm]; NaN: open, or not known
-  std::vector<double> resistances = {};     ///< of each of several contacts [Ohm]; empty where no state holds
-  /// Whether anything holds the switch: not where it has a contact and no such equilibrium, unless the contact may hold on by
-  /// adhesion, nor where it is unstable.
+  std::optional<ClosedEquilibrium> closed;  ///< none if the switch has no closed equilibrium
+  double force = Metrics::unset;            ///< force of the contact, if it is stable, or of the connection of several [N]
+  std::vector<double> forces = {};          ///< force of each of several contacts [N]; empty if no state holds
+  double resistance =
+      Metrics::unset;  ///< resistance of the contact, or of the connection of several [Ohm]; NaN: open, or not known
+  std::vector<double> resistances = {};  ///< resistance of each of several contacts [Ohm]; empty if no state holds
+  /// True if the switch is held. False if it has a contact and no such equilibrium, unless the contact may hold by adhesion,
+  /// and if the equilibrium is unstable.
   bool is_held = true;
-  /// ClosingOptions::steady_force [N]; NaN where nothing holds the switch.
+  /// ClosingOptions::steady_force [N]; NaN if the switch is not held.
   [[nodiscard]] double steady_force(const MetricsOptions& options) const { return options.steady_force * force; }
 };
-/// What these levels do, one per drive of the switch [V]. `near`: the equilibrium of a switch and drives little different, from
-/// which this one is found sooner.
+/// Computes the hold under these levels, one per drive of the switch [V]. `near` is the equilibrium of a switch and drives that
+/// differ little, from which this one is found sooner.
 [[nodiscard]] Hold hold_under(const Switch& model, const std::vector<double>& levels,
                               const std::optional<ClosedEquilibrium>& near = {});
-/// What the hold levels of these drives do.
+/// Computes the hold under the hold levels of these drives.
 [[nodiscard]] inline Hold hold_of(const Switch& model, const std::vector<Signal>& signals,
                                   const std::optional<ClosedEquilibrium>& near = {}) {
   return hold_under(model, hold_levels(signals), near);
 }
-/// Sets hold force and whether anything holds the switch.
+/// Sets the hold force, and whether the switch is held.
 void set_hold(Trajectory& trajectory, const Hold& hold);
-/// The same, and the capacitance where the hold levels leave the switch.
+/// Sets the same, and the capacitance of the state in which the hold levels leave the switch.
 void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold);
-/// The same options for a run of this switch, whose contact these levels hold closed, one per drive [V]: with the load that it
-/// switches.
+/// Returns the options with the load that the switch carries, for a run whose contact these levels hold closed, one per drive
+/// [V].
 [[nodiscard]] MetricsOptions with_load(MetricsOptions options, const Switch& model, const std::vector<double>& holding);
-/// Whether a run that began closed has left its contact for good.
+/// True if a run that began closed has left its contact for good.
 [[nodiscard]] bool has_opened(const Trajectory& run);
 
 }  // namespace softland

@@ -10,11 +10,11 @@
 namespace softland {
 namespace {
 
-constexpr int most_samples = 4000;  // a curved piece is looked at so often
+constexpr int most_samples = 4000;  // samples of a curved piece
 constexpr int halvings = 40;
 constexpr double tail = 40;  // time constants after which a decay is over
 
-enum class OfJump { before, after };  // which side of a jump is meant
+enum class OfJump { before, after };  // side of a jump
 
 struct Instant {
   double time;  // [s]
@@ -27,13 +27,13 @@ std::vector<double> levels_at(const std::vector<Signal>& signals, const Instant&
   return levels;
 }
 
-// Parts of a piece over which nothing turns twice; 1 of a straight one.
+// Number of parts of a piece over which nothing turns twice; 1 for a straight piece.
 int parts_of(const Signal& signal, double begin, double end) {
   const double step = signal.resolving_step(begin);
   return std::isfinite(step) ? std::clamp(static_cast<int>(std::ceil((end - begin) / step)), 1, most_samples) : 1;
 }
 
-// When the drives are looked at, in order: at both sides of every breakpoint, and in between where they are not straight.
+// Returns the instants to check, in order: both sides of every breakpoint, and in between for pieces that are not straight.
 std::vector<Instant> instants(const std::vector<Signal>& signals) {
   std::vector<double> stops;
   double end = 0;
@@ -58,12 +58,12 @@ std::vector<Instant> instants(const std::vector<Signal>& signals) {
   return all;
 }
 
-// Whether a drive is an electrode that pulls the beam to the contact.
+// True if a drive is an electrode that pulls the beam to the contact.
 bool pulls(const Switch& model, std::size_t drive) {
   return model.drive_kind(drive) == DriveKind::electrode && pulls_in(model.device(), drive);
 }
 
-// Whether something holds a closed switch at the levels of its drives.
+// Tells if a closed switch is held at the levels of its drives.
 class Holding {
  public:
   Holding(const Switch& model, const std::vector<Signal>& signals)
@@ -73,12 +73,12 @@ class Holding {
     std::vector<double> levels = levels_at(signals_, instant);
     if (is_weaker(levels, last_) || is_weaker(levels, lost_)) return false;
     if (hold_under(model_, levels).is_held) return true;
-    lost_ = std::move(levels);  // what is looked at next is likely to be no more
+    lost_ = std::move(levels);  // the next levels are likely to be no higher
     return false;
   }
 
  private:
-  // Not more volts on any electrode that pulls the beam to the contact, and the same on every other drive.
+  // True for no more volts on any electrode that pulls the beam to the contact, and the same on every other drive.
   [[nodiscard]] bool is_weaker(const std::vector<double>& levels, const std::vector<double>& than) const {
     for (std::size_t k = 0; k < levels.size(); ++k) {
       if (levels[k] == than[k]) continue;
@@ -92,8 +92,8 @@ class Holding {
   std::vector<double> last_, lost_;
 };
 
-// When the fall begins that brings an electrode to where it is just before `time`, or at a jump there; `time` where it does not
-// fall.
+// Returns the begin of the fall that brings an electrode to its level just before `time`, or at a jump there; `time` if it does
+// not fall.
 double begin_of_fall(const Switch& model, std::size_t electrode, const Signal& signal, double time) {
   if (signal.voltage_before(time) != signal.voltage(time)) return time;
   const std::vector<SignalPiece>& pieces = signal.pieces();
@@ -113,7 +113,7 @@ double begin_of_fall(const Switch& model, std::size_t electrode, const Signal& s
   }
 }
 
-// The crossing from where something holds the switch to where nothing does [s].
+// Returns the time at which the switch stops being held [s].
 std::optional<double> loses_hold(const Switch& model, const std::vector<Signal>& signals, StartState start) {
   Holding holding(model, signals);
   const std::vector<Instant> all = instants(signals);
@@ -121,7 +121,7 @@ std::optional<double> loses_hold(const Switch& model, const std::vector<Signal>&
   if (start == StartState::closed) {
     for (std::size_t i = 0; i < all.size() && holding.at(all[i]); ++i) held = i;
   } else {
-    for (std::size_t i = all.size(); i-- > 1 && !held;) {  // what the drives are before t = 0 has closed nothing
+    for (std::size_t i = all.size(); i-- > 1 && !held;) {  // the levels before t = 0 have closed nothing
       if (holding.at(all[i])) held = i;
     }
   }

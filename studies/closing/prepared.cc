@@ -145,14 +145,14 @@ std::string before_state_path(const PreparedScene& scene) {
   return fmt::format("waveform.{}.before_state", named != nullptr ? named->name : "NAME");
 }
 
-// The cheapest that deliver on random scenes: results/accuracy.md.
+// Returns the loosest tolerance that delivers the accuracy on random scenes: results/accuracy.md.
 double tolerance_for(double accuracy, bool stiff) { return std::clamp(accuracy / 10, 1e-12, stiff ? 1e-4 : 1e-3); }
 
 namespace {
 
 constexpr double longest_window = 1e3;  // [s], as the longest simulate.duration
 
-/// At most, of a waveform's sine in the window.
+/// Returns the most periods of a waveform's sine in the window.
 double periods_of(const Waveform& waveform, double window) {
   const auto lasts = [&](const auto& sine) { return std::min(sine.end, window) - sine.start; };
   if (const auto* sine = std::get_if<Harmonic>(&waveform))
@@ -163,9 +163,9 @@ double periods_of(const Waveform& waveform, double window) {
   return 0;
 }
 
-/// The window of a scene that names none [s]: it shows the closing of steps to the hold levels, which gas may slow down, and what
-/// follows. Steps that do not close the switch in ten times that window are not waited for, nor in a thousand times where their
-/// levels leave no open equilibrium: just above pull-in a damped switch creeps.
+/// The window of a scene that names none [s]: it shows the closing under steps to the hold levels, which gas may slow down, and
+/// the time after it. Steps that do not close the switch in ten times that window are not waited for, nor in a thousand times
+/// if their levels leave no open equilibrium: just above pull-in a damped switch creeps.
 double default_window(const Switch& model, const std::vector<Signal>& signals) {
   constexpr double periods = 6, closings = 4, loose = 1e-4;
   constexpr long most_steps = 100'000;
@@ -179,8 +179,8 @@ double default_window(const Switch& model, const std::vector<Signal>& signals) {
   return closing.touches.empty() ? usual : std::max(usual, closings * closing.touches.front().begin);
 }
 
-/// The window of a scene that names none and opens a closed switch from `begin` on [s]: it shows how the switch comes to rest in
-/// its open state, within ten times six periods of the first mode.
+/// The window of a scene that names none and opens a closed switch from `begin` on [s]: it shows how the switch comes to rest
+/// in its open state, within ten times six periods of the first mode.
 double default_window_of_opening(const Switch& model, const std::vector<Signal>& signals, StartState start, double begin) {
   constexpr double periods = 6, longest = 10, loose = 1e-4, settled = 0.02, margin = 2;
   constexpr long most_steps = 100'000;
@@ -199,7 +199,7 @@ double default_window_of_opening(const Switch& model, const std::vector<Signal>&
   return std::clamp(since + margin * period, begin + usual, begin + longest * usual);
 }
 
-/// The drives but for what sampling and filters make of them.
+/// Returns the drives without the effects of sampling and filters.
 std::vector<Signal> without_sources(const PreparedScene& p) {
   std::vector<Signal> signals = p.told(p.waveforms());
   for (std::size_t k = 0; k < signals.size(); ++k) {
@@ -228,7 +228,7 @@ void check_open_at(const PreparedScene& p) {
     file.refuse("simulate.open_at", fmt::format("must lie in the window, which ends at {}", engineering(p.duration, "s")));
 }
 
-/// Windows and waveforms that no computer would see the end of.
+/// Refuses windows and waveforms that no computer could finish.
 void check_window(const PreparedScene& p) {
   const SceneFile& file = p.scene.file;
   if (!(p.duration <= longest_window)) {
@@ -249,7 +249,7 @@ void check_window(const PreparedScene& p) {
   }
 }
 
-/// Every source charges its electrode on the open switch.
+/// Sets the load of every source: its electrode on the open switch.
 void load_sources(PreparedScene& p) {
   const Switch& model = p.model;
   std::vector<double> open(static_cast<std::size_t>(model.modes()), 0.0);
@@ -260,7 +260,7 @@ void load_sources(PreparedScene& p) {
   }
 }
 
-/// A landing that is so soft that the field pulls the beam through it.
+/// Refuses a landing that is so soft that the field pulls the beam through it.
 void check_landing(const PreparedScene& p) {
   const Landing* landing = p.scene.device.landing();
   if (landing == nullptr || landing->is_wall()) return;
@@ -278,7 +278,7 @@ void check_landing(const PreparedScene& p) {
       const UniformAsperityContact per_area = uniform_contact(rough->summits, rough->height, {.width = 1, .length = 1});
       key = "asperity_density", unit = "1/m^2";
       own = rough->summits.density;
-      least = own * std::pow(most / most_face_voltage(per_area, depth), 2);  // the pressure is in proportion to it
+      least = own * std::pow(most / most_face_voltage(per_area, depth), 2);  // the pressure is proportional to it
     }
     if (own > least) continue;
     p.scene.file.refuse(
@@ -288,14 +288,14 @@ void check_landing(const PreparedScene& p) {
   }
 }
 
-/// The value with three digits, rounded towards 0.
+/// Writes the value with three digits, rounded towards 0.
 std::string rounded_down(double value, std::string_view unit) {
   const double digit = std::pow(10, std::floor(std::log10(value)) - 2);
   constexpr double rounding = 1e-12;
   return engineering(std::floor(value / digit * (1 + rounding)) * digit, unit, 3);
 }
 
-/// Sources that take more samples than a run can follow.
+/// Refuses sources that take more samples than a run can follow.
 void check_sources(const PreparedScene& p) {
   constexpr double most_samples = 1e5;
   for (const Drive& drive : p.drives) {
@@ -320,7 +320,7 @@ std::vector<double> bias_of(const Scene& scene, std::size_t drive) {
 
 namespace {
 
-// ", under piezo at 0.3 V": what the other drives stand at, where that is not 0.
+// Says ", under piezo at 0.3 V": the levels of the other drives that are not 0.
 std::string under_bias(const PreparedScene& p, std::size_t electrode) {
   const std::vector<double> bias = bias_of(p.scene, electrode);
   const std::vector<std::string> names = p.drive_names();
@@ -346,8 +346,8 @@ ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bi
 
 namespace {
 
-// A limit is one of the source, whatever the other drives stand at: where the switch has no open state under them, Vsp and Vdp of
-// a limit are those with the other drives at 0 V. A waveform in these units has none then.
+// Takes pull-in voltages of limits with the other drives at 0 V, if the switch has no open state under their levels: a limit
+// belongs to the source, whatever the other drives do. A waveform in these units has no voltage then.
 bool take_limits_at_rest(PreparedScene& p, std::size_t electrode, const PullInFinder& find_pull_in, const Watch& watch) {
   const std::vector<std::string> names = p.drive_names();
   if (std::ranges::find(p.scene.limits_in_pull_in, names[electrode]) == p.scene.limits_in_pull_in.end()) return false;

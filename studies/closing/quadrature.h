@@ -1,7 +1,8 @@
-// How many quadrature points a switch takes.
+// The number of quadrature points of a switch.
 //
 // Loads grow as 1/h^2 and faster, so that they are steepest where the beam comes next to an electrode: a dip of gap h and
-// curvature h'' is sqrt(2 h / h'') wide. On the way to the contact that is at touch. There the points are checked by doubling.
+// curvature h'' is sqrt(2 h / h'') wide. The dip is narrowest at touch on the way to the contact, and the points are checked
+// there by doubling.
 #pragma once
 
 #include <optional>
@@ -10,9 +11,9 @@
 
 namespace softland {
 
-/// What a smooth load takes at a relative accuracy.
+/// Quadrature for a smooth load at a relative accuracy.
 [[nodiscard]] SwitchOptions quadrature_for(double accuracy, int modes);
-/// Twice the points.
+/// Returns twice the points.
 [[nodiscard]] SwitchOptions finer_than(const SwitchOptions& quadrature);
 
 /// Relative difference of the loads in a state q between two quadratures of one switch, in the norm of the static energy: the
@@ -25,11 +26,11 @@ struct ResolvedSwitch {
   SwitchOptions quadrature;
   double error = 0;  ///< relative, of the loads at touch
 };
-/// Has few points that do, from quadrature_for(accuracy, modes) on. Where more points do not help, since the loads are not
-/// smooth, `error` is above `accuracy`. `modes`: instead of those of the structure.
+/// Finds few points that deliver the accuracy, from quadrature_for(accuracy, modes) on. `error` is above `accuracy` if more
+/// points do not help, since the loads are not smooth. `modes` takes the place of the structure's.
 [[nodiscard]] ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optional<int> modes = {});
-/// A device that varies from a nominal one whose `quadrature` delivers `accuracy`: with that quadrature, or with a finer one
-/// where it touches nearer to the electrode.
+/// Returns a varied device of a nominal one whose `quadrature` delivers `accuracy`: with that quadrature, or with a finer one
+/// if it touches nearer to the electrode.
 [[nodiscard]] Switch switch_like(const Device& device, const Switch& nominal, const SwitchOptions& quadrature, double accuracy);
 
 }  // namespace softland

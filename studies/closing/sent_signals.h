@@ -1,4 +1,4 @@
-// The drives of a scene as what leaves softland for generators and simulators of circuits.
+// The drives of a scene for export to generators and circuit simulators.
 #pragma once
 
 #include <map>
@@ -10,22 +10,21 @@
 
 namespace softland {
 
-/// Voltages of the scene as its sources give them: the factor of the dispersion force is none.
+/// Voltages of the scene as its sources apply them, without the factor of the dispersion force.
 [[nodiscard]] std::map<std::string, Signal> named_signals(const PreparedScene& prepared);
 
-/// What goes to generators and simulators of circuits: what sources are told, of those that take samples these, or what they
-/// make of it.
+/// Signals for export: the commanded signals (the samples of sources that take these), or the outputs of the sources.
 enum class Sent { told, output };
 struct SentSignals {
   std::map<std::string, Signal> signals;
-  std::map<std::string, double> sample_rates = {};  ///< of those that are samples [Hz]
+  std::map<std::string, double> sample_rates = {};  ///< rates of sampled signals [Hz]
   std::map<std::string, double> amplifiers =
-      {};  ///< of those that have one: volts at the switch, as signals are, per volt of the source
+      {};  ///< gains of the amplifiers: volts at the switch, as signals are, per volt of the source
 };
-/// Of one waveform per drive in the order of Switch::drives().
+/// Returns the signals for one waveform per drive in the order of Switch::drives().
 [[nodiscard]] SentSignals sent_signals(const PreparedScene& prepared, const std::vector<Waveform>& waveforms,
                                        Sent sent = Sent::told);
-/// What the sources of the scene are told, as CSV: read back under the same drivers it gives the same closing.
+/// The commanded signals of the scene's sources, as CSV: read back under the same drivers they give the same closing.
 [[nodiscard]] std::string told_csv(const PreparedScene& prepared);
 
 }  // namespace softland

@@ -18,17 +18,17 @@
 namespace softland {
 namespace {
 
-// What two runs of one closing differ by, and the rounding that they share. t_p, t_b and N_B are left to clouds.
+// Difference of two runs of one closing, and their common rounding. t_p, t_b and N_B are left to clouds.
 FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, double contact_gap) {
-  constexpr double shared = 0.01;              // of the tolerance, relative to a figure
-  constexpr double lowest_separation = 1e-12;  // of the contact gap, below which metrics() sees no rebound
+  constexpr double shared = 0.01;              // share of the tolerance, relative to a figure
+  constexpr double lowest_separation = 1e-12;  // share of the contact gap, below which metrics() sees no rebound
   FigureValues d;
   for (const Figure& figure : all_figures) {
     if (!figure.is_told_by_two_runs()) continue;
     const double own = figure.value(a);
     d[figure] = std::max(std::abs(own - figure.value(b)), shared * tolerance * std::abs(own));
   }
-  // A rebound that neither run has lasts for no time that could be wrong.
+  // The duration of a rebound that neither run has cannot be wrong.
   if (a.first_rebound_time == 0 && b.first_rebound_time == 0) d[&Metrics::first_rebound_time] = Metrics::unset;
   double& height = d[&Metrics::major_bounce_height];
   height = std::max(height, lowest_separation * contact_gap);
@@ -47,7 +47,8 @@ struct Run {
   SwitchOptions quadrature;
 };
 
-// Where two runs part: the first rebound above a height whose heights differ by a tenth. Infinite where they do not.
+// Returns the time at which two runs part: the first rebound above a height whose heights differ by a tenth. Infinite if they
+// do not part.
 double parting_time(const Run& a, const Run& b, double lowest) {
   constexpr double parted = 0.1;
   const std::vector<Rebound>&one = a.rebounds, &two = b.rebounds;
@@ -61,8 +62,8 @@ double parting_time(const Run& a, const Run& b, double lowest) {
   return std::numeric_limits<double>::infinity();
 }
 
-// Whether the largest of what comes after the runs part might be the largest of all in another run: what two of them show of it
-// is two draws of many.
+// True if the largest part after the runs have parted might be the largest of all in another run: two runs are two draws of
+// many.
 template <class Part, class Size>
 bool chance_decides(const std::vector<Part>& parts, double parting, Size&& size) {
   constexpr double margin = 2;
@@ -80,8 +81,8 @@ double energy_after(const std::vector<Touch>& touches, double parting) {
   return sum;
 }
 
-// What two runs say of anything beyond the point where they part is chance: it has no error but a cloud's. Nor have figures that
-// hang on every touch where the runs differ by a thousand times the tolerance.
+// Removes the errors of chaotic figures. Anything beyond the point where two runs part is chance: only a cloud gives its error.
+// The same holds for figures that depend on every touch if the runs differ by a thousand times the tolerance.
 void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& other, const MetricsOptions& options) {
   constexpr double magnified = 1000;
   const double visible = magnified * std::max(best.tolerance, other.tolerance);
@@ -89,7 +90,7 @@ void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& ot
     if (figure.conditioning != Conditioning::every_touch) continue;
     if (errors[figure] > visible * std::abs(figure.value(best.metrics))) errors[figure] = Metrics::unset;
   }
-  // Rebounds that do not count may part as well: what is left to impacts then is all that they may differ by.
+  // Rebounds that do not count may part as well: the energy of later impacts bounds the difference.
   for (const Run* run : {&best, &other}) {
     double& energy = errors[&Metrics::impact_energy];
     energy = std::max(energy, energy_after(run->trajectory.touches, parting_time(best, other, 0)));
@@ -105,7 +106,7 @@ void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& ot
   }
 }
 
-// The largest relative difference of the figures that `accuracy` is about.
+// Returns the largest relative difference of the figures that `accuracy` is about.
 double error(const Run& run, const Run& other, const PreparedScene& prepared) {
   FigureValues least;
   least[&Metrics::major_bounce_height] = prepared.scene.metrics.significant_rebound;
@@ -119,19 +120,19 @@ double error(const Run& run, const Run& other, const PreparedScene& prepared) {
 }
 
 constexpr double tighter_by = 100;
-constexpr double loosest_tolerance = 0.1;     // that simulate_closing takes
-constexpr double least_tolerance = 0.99e-13;  // beyond which rounding decides; 1e-13 itself as quotients give it
-// Of a fifth-order method 2.5 times the steps are to be expected; what needs this many more is not waited for.
+constexpr double loosest_tolerance = 0.1;     // of simulate_closing
+constexpr double least_tolerance = 0.99e-13;  // rounding decides below it; 1e-13 itself as quotients give it
+// A fifth-order method is expected to take 2.5 times the steps; a run that needs this many more is not waited for.
 constexpr long most_growth = 10, least_steps = 100;
-constexpr double helps = 1.0 / 3;  // a tighter run that leaves more than this of the error does not
-constexpr int most_in_vain = 2;    // in a row
+constexpr double helps = 1.0 / 3;  // share of the error that a tighter run must undercut to help
+constexpr int most_in_vain = 2;    // runs in a row
 
 bool can_tighten(const Run& r) { return r.tolerance / tighter_by >= least_tolerance; }
 
 bool is_back_stop(const Switch& model, std::size_t contact) { return model.device().contacts[contact].side == Side::far; }
 
-// What the figures of an opening on command leave to those who know the switch: impacts on its back stops, and whether the run
-// ends open and at rest, in which a period of the first mode has to pass.
+// Sets the figures of an opening on command that need the switch: impacts on its back stops, and whether the run ends open and
+// at rest for at least a period of the first mode.
 void set_commanded_opening(Metrics& m, const Trajectory& run, const Switch& model) {
   if (!m.asked.opening) return;
   for (std::size_t c = 0; c < run.contacts.size(); ++c) {
@@ -145,18 +146,18 @@ void set_commanded_opening(Metrics& m, const Trajectory& run, const Switch& mode
   if (m.status == Status::done && !rests && !run.began_closed) m.status = Status::not_settled;
 }
 
-// Runs of a scene's closing, each told to the watch.
+// Runs of a scene's closing, each reported to the watch.
 class ClosingRuns {
  public:
   ClosingRuns(const PreparedScene& prepared, const Watch& watch)
       : prepared_(prepared), watch_(watch), signals_(prepared.signals()), command_(open_command(prepared, signals_)) {}
 
   [[nodiscard]] const std::vector<Signal>& signals() const { return signals_; }
-  /// The command to open, where it comes in the window.
+  /// The command to open, if it comes in the window.
   [[nodiscard]] std::optional<OpenCommand> command() const {
     return command_ && command_->time < prepared_.duration ? command_ : std::nullopt;
   }
-  /// Those of the closing: until the command to open.
+  /// Signals of the closing: until the command to open.
   [[nodiscard]] const std::vector<Signal>& held() const {
     return command_ && prepared_.start() == StartState::open ? command_->held : signals_;
   }
@@ -217,17 +218,16 @@ class ClosingRuns {
     return r;
   }
 
-  // A command counts after the first touch alone.
+  // A command counts only after the first touch.
   [[nodiscard]] bool is_before_touch(const Run& r, const OpenCommand& command) const {
     return prepared_.start() == StartState::open && came_to_its_end(r.trajectory) &&
            !(r.metrics.initial_contact_time < command.time);
   }
 
-  // Follows the connection, and each of several contacts; what strikes a back stop is followed to the end.
+  // Records the connection, and each of several contacts. Contacts that strike a back stop are recorded to the end.
   [[nodiscard]] CourseRecorder recorder_of(const Switch& model, const std::optional<OpenCommand>& command) const {
     const MetricsOptions& plain = prepared_.scene.metrics;
-    const std::vector<double> holding =
-        prepared_.start() == StartState::closed ? values_before(signals_) : hold_levels(held());
+    const std::vector<double> holding = prepared_.start() == StartState::closed ? values_before(signals_) : hold_levels(held());
     const MetricsOptions options = with_load(with_opening(plain, model, signals_, command), model, holding);
     const auto open =
         command && model.contacts() > 1 ? model.open_equilibrium(hold_levels(signals_)) : std::optional<Eigen::VectorXd>();
@@ -249,16 +249,16 @@ class ClosingRuns {
   bool was_interrupted_ = false;
 };
 
-// A run, the one that judges it, and the largest relative difference of the figures that `accuracy` is about.
+// A run, its judge, and the largest relative difference of the figures that `accuracy` is about.
 struct JudgedRun {
   Run own, judge;
   double error;
-  const char* why;  // the error is no less
+  const char* why;  // reason for an error that is no smaller
 };
 
-// Finds the judge of a run. Where runs may be tightened the judge takes the place of the run, and has one of its own, until the
-// error is within the accuracy asked for or that no longer helps: then the tightest run is delivered, and a looser one judges it.
-// Where rounding forbids a tighter integrator the quadrature alone is refined.
+// Finds the judge of a run. If runs may be tightened, the judge takes the place of the run, and gets a judge of its own, until
+// the error is within the requested accuracy or tightening no longer helps. The tightest run is then delivered, and a looser
+// one judges it. If rounding forbids a tighter integrator, the quadrature alone is refined.
 JudgedRun with_judge(Run own, ClosingRuns& runs, const PreparedScene& prepared, bool may_tighten) {
   const double accuracy = prepared.scene.simulate.accuracy;
   Run judge = runs.judge_of(own);
@@ -276,7 +276,7 @@ JudgedRun with_judge(Run own, ClosingRuns& runs, const PreparedScene& prepared, 
     own = std::move(judge);
     judge = std::move(next);
   }
-  constexpr double enough = 0.2;  // of a tolerance, for a run to tell the error that it leaves
+  constexpr double enough = 0.2;  // share of a tolerance, for a run to show the error that it leaves
   if (judge_is_tighter() && e > accuracy && may_tighten) std::swap(own, judge);
   const double ratio = judge.tolerance / own.tolerance;
   if (came_to_its_end(judge.trajectory) && ratio > enough && ratio < 1 / enough) {  // it judges the quadrature alone
@@ -288,7 +288,7 @@ JudgedRun with_judge(Run own, ClosingRuns& runs, const PreparedScene& prepared, 
   return {.own = std::move(own), .judge = std::move(judge), .error = e, .why = why};
 }
 
-// In one digit, or as many as tell it from a bound that it is above.
+// Writes one digit, or as many as distinguish it from a bound that it is above.
 std::string in_telling_digits(double above, double bound) {
   constexpr int most_digits = 12;
   const std::string other = engineering(bound, "");
@@ -297,7 +297,7 @@ std::string in_telling_digits(double above, double bound) {
   return text;
 }
 
-// The errors that a judge finds, and what is to be warned of.
+// Adds the errors that a judge finds, and the warnings.
 void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared, bool may_tighten) {
   const Run &own = run.own, &judge = run.judge;
   const bool is_tighter = judge.tolerance < own.tolerance;
@@ -326,7 +326,7 @@ void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared,
   }
 }
 
-// A run that began closed loses the state in which it began, or the one in which it ends, where more modes deny them.
+// Judges a run that began closed with more modes: it loses the state in which it began, or in which it ends, if these deny it.
 void judge_opening_with_more_modes(Closing& c, const PreparedScene& prepared, const std::vector<Signal>& signals) {
   const ModeLadder ladder(prepared);
   if (!ladder.exists()) return;
@@ -345,7 +345,7 @@ void judge_opening_with_more_modes(Closing& c, const PreparedScene& prepared, co
   }
 }
 
-// What is to be said of a run that began closed, or had no state to begin in.
+// Warns about a run that began closed, or had no state to begin in.
 void warn_of_start(Closing& c, const PreparedScene& prepared) {
   const Trajectory& t = c.trajectory;
   if (c.metrics.status == Status::collapsed_at_rest) {
@@ -369,7 +369,8 @@ void warn_of_start(Closing& c, const PreparedScene& prepared) {
   }
 }
 
-// A switch that the modes of its scene hold has not settled where twice or four times as many let it go.
+// Judges a closing with more modes: a switch that the scene's modes hold has not settled if twice or four times as many release
+// it.
 void judge_with_more_modes(Closing& c, const PreparedScene& prepared, const std::vector<Signal>& signals) {
   Metrics& m = c.metrics;
   if (m.status == Status::open) {
@@ -391,7 +392,7 @@ void judge_with_more_modes(Closing& c, const PreparedScene& prepared, const std:
     m.*figure = c.errors[figure] = Metrics::unset;
 }
 
-// Errors and warnings of a closing are not known where its runs were interrupted.
+// Marks an interrupted closing: its errors and warnings are not known.
 void say_interrupted(Closing& c) {
   const bool complete = c.trajectory.status != Status::interrupted;
   c.metrics.status = Status::interrupted;
@@ -493,7 +494,7 @@ void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const st
   const bool piezo_only = prepared.scene.device.electrodes.empty();
   for (std::size_t k = 0; k < signals.size(); ++k) {
     const DriveKind kind = prepared.model.drive_kind(k);
-    if (kind == DriveKind::dispersion) continue;  // a force factor is no voltage
+    if (kind == DriveKind::dispersion) continue;  // a force factor is not a voltage
     if (kind == DriveKind::electrode || piezo_only)
       metrics.peak_voltage = std::max(metrics.peak_voltage, signals[k].peak(prepared.duration));
     metrics.peak_slew = std::max(metrics.peak_slew, signals[k].peak_slew(prepared.duration));

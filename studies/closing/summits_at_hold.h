@@ -1,7 +1,7 @@
-// How many summits of a rough contact touch where the hold levels press it.
+// The number of summits of a rough contact that touch under the force of the hold levels.
 //
-// A law of rough surfaces is a mean over many summits. Where fewer than one of them touches, contact forces of it say little of
-// one device, in any report that tells them.
+// A law of rough surfaces is a mean over many summits. If fewer than one of them touches, its contact forces say little about a
+// single device, in any report.
 #pragma once
 
 #include <optional>
@@ -20,12 +20,12 @@ struct SummitsAtHold {
 /// Counts the summits in this closed equilibrium. Empty for a contact along its pad, and for a law without summit heights.
 [[nodiscard]] std::optional<SummitsAtHold> summits_at_hold(const Switch& model, const ClosedEquilibrium& closed);
 
-/// "0.22 of 10 summits touch under the hold levels", and what that means where it is fewer than one.
+/// "0.22 of 10 summits touch under the hold levels", with the consequence if it is fewer than one.
 [[nodiscard]] std::string summits_words(const SummitsAtHold& summits);
 
-/// The same as a warning, where hold levels keep the switch closed on fewer than one summit; empty elsewhere.
+/// The same as a warning, if hold levels keep the switch closed on fewer than one summit; empty otherwise.
 [[nodiscard]] std::string few_summits_warning(const Switch& model, const std::vector<Signal>& signals);
-/// Tells whether this is that warning.
+/// True for that warning.
 [[nodiscard]] bool is_few_summits_warning(std::string_view warning);
 
 }  // namespace softland

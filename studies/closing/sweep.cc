@@ -8,7 +8,7 @@
 namespace softland {
 namespace {
 
-// A switch that follows its voltage without haste.
+// A switch that follows its voltage quasi-statically.
 class SlowSwitch {
  public:
   SlowSwitch(const Switch& model, std::size_t drive, Bias bias)
@@ -19,7 +19,7 @@ class SlowSwitch {
 
   SweepPoint follow(double voltage, bool is_up) {
     values_[drive_] = voltage;
-    // Nothing says how a beam comes off an electrode that it has been pulled onto.
+    // No law describes how a beam comes off an electrode onto which it has collapsed.
     if (state_ == SweepState::none) return {.voltage = voltage, .is_up = is_up};
     std::optional<Eigen::VectorXd> q;
     const bool was_closed = state_ == SweepState::closed;
