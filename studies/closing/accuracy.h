@@ -1,5 +1,5 @@
-// The cost of accuracy on the user's own scene: the errors of the delivered figures of merit, not of a step, against time and
-// right-hand sides, for every integrator, tolerance, number of quadrature points and number of modes.
+// The cost of accuracy on the user's own scene: the errors of the delivered figures of merit, not of a step. They are given
+// against time and right-hand sides, for every integrator, tolerance, number of quadrature points and number of modes.
 //
 // The reference has a ten-thousandth of the tightest tolerance and twice the most quadrature points, or as near to that as its
 // time allows. Settings that are no looser than it are then not tried. A rigid plate has the same gap everywhere: it has no
@@ -78,8 +78,8 @@ struct AccuracyStudy {
   std::vector<AccuracyRow> modes;    ///< other numbers of modes, at the tightest tolerance
   std::vector<AccuracyRow> through;  ///< every integrator and tolerance, without a restart at make and break of contact
   std::string why_always_restarted;  ///< reason for missing runs of that kind
-  std::array<Spread, studied_figures.size()> cloud;      ///< over perturbed runs at the tightest tolerance
-  Spread permanent_contact_time, bounce_count;           ///< over the same runs
+  std::array<Spread, studied_figures.size()> cloud;      ///< spreads over perturbed runs at the tightest tolerance
+  Spread permanent_contact_time, bounce_count;           ///< spreads over the same runs
   std::array<bool, studied_figures.size()> conditioned;  ///< true for a figure that has errors at all
   std::vector<Recommendation> recommendations;
 

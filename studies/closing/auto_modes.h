@@ -2,13 +2,12 @@
 //
 // Modes are added until the figures stop moving. These are initial contact time, impact velocity and highest rebound within one
 // period of the first mode after it (the first macro-bounce), under the scene's own waveforms. The static and dynamic pull-in
-// voltages that the scene uses are added. The chosen number of modes is the first that three further ones do not move by more
-// than the tolerance: on the reference closing three to five modes agree within 2 % in the rebound height, and the sixth moves
-// it by half. Between two clamps every second mode is antisymmetric, so six are tried. Twice and four times as many modes
+// voltages that the scene uses count as well. The chosen number of modes is the first that three further ones do not move by
+// more than the tolerance. On the reference closing three to five modes agree within 2 % in the rebound height, and the sixth
+// moves it by half. Between two clamps every second mode is antisymmetric, so six are tried. Twice and four times as many modes
 // (by_modes.h) must not move static pull-in, release and collapse voltages by more, nor disagree about the stability of the
 // closed state. A figure counts relative to its own size, but at least to a hundredth of the scale of a closing (contact gap,
 // and that times the first frequency).
-// frequency).
 #pragma once
 
 #include <string>

@@ -87,8 +87,8 @@ struct VoltagesByModes {
 /// Capacitance of the searched electrode in the closed state under these voltages [F], for a switch that lands on the face of a
 /// dielectric. Also with the most modes that a closing takes, if more modes move it by a reported amount.
 [[nodiscard]] ByModes closed_capacitance_by_modes(const ModeLadder& ladder, std::span<const double> volts);
-/// Returns the least of the tried numbers of modes from which on the value stays within mode_shift_worth_telling of the limit;
-/// none if the last one does not, or the values do not converge.
+/// Returns the least tried number of modes from which on values stay within mode_shift_worth_telling of the limit; none if the
+/// last one does not, or the values do not converge.
 [[nodiscard]] std::optional<int> modes_needed(const ByModes& found);
 
 /// "−6.1 %, to 142.7 V": the shift of a voltage, or another value, by more modes, and its limit if that is reported.

@@ -58,7 +58,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
         moved.drives = written.drives(units).of(prepared.drive_names());
         for (std::size_t i = 0; i < moved.drives.size(); ++i)  // they charge the same switch
           moved.drives[i].source.load = prepared.drives[i].source.load;
-      } catch (const InvalidInput&) {  // the error is not known: a drive is at a limit of its driver, or no better voltage exists
+      } catch (const InvalidInput&) {  // error not known: a drive is at a limit of its driver, or no better voltage exists
         found.emplace_back();
         continue;
       }

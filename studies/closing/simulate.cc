@@ -120,7 +120,7 @@ double error(const Run& run, const Run& other, const PreparedScene& prepared) {
 }
 
 constexpr double tighter_by = 100;
-constexpr double loosest_tolerance = 0.1;     // of simulate_closing
+constexpr double loosest_tolerance = 0.1;     // largest tolerance of simulate_closing
 constexpr double least_tolerance = 0.99e-13;  // rounding decides below it; 1e-13 itself as quotients give it
 // A fifth-order method is expected to take 2.5 times the steps; a run that needs this many more is not waited for.
 constexpr long most_growth = 10, least_steps = 100;

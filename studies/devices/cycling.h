@@ -96,8 +96,8 @@ struct ScanOptions {
   CycleTolerances tolerances = {};
 };
 
-/// Scans rates. The first is one at which every cycle begins and ends at rest, or a lower one if that is not steady; the last
-/// is that at which a part of the cycle becomes too short for its waveform.
+/// Scans rates. At the first one every cycle begins and ends at rest; it is lowered if it is not steady. At the last one a part
+/// of the cycle becomes too short for its waveform.
 [[nodiscard]] RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, const Watch& watch = {});
 
 struct CyclingOptions {

@@ -119,8 +119,8 @@ inline constexpr const char* not_measured = "its pull-in voltage, or what its pi
 class DeviceMeter {
  public:
   /// Keeps a reference to `nominal`, whose closing electrode it measures. Throws InvalidInput if a gauge needs an electrode or
-  /// a pull-in voltage that is missing. Throws it also if a piezo is requested that the switch lacks, or that does not move its
-  /// contact point. `precision` is the relative one of pull-in voltages; that of the nominal device is found to
+  /// a pull-in voltage that is missing. Throws it also for a requested piezo that the switch lacks, or that does not move its
+  /// contact point. The relative `precision` is that of pull-in voltages; that of the nominal device is found to
   /// dynamic_pull_in_precision at least.
   DeviceMeter(const PreparedScene& nominal, const Gauges& gauges, double precision = dynamic_pull_in_precision);
   /// Pull-in voltage [V] and frequency [Hz] of the nominal device.
@@ -162,7 +162,7 @@ class DeviceMeter {
 class KnownUnits {
  public:
   /// Makes the classes of `reference`, devices without error that represent the spread: known_units() has them. Throws
-  /// InvalidInput if it needs them and they are missing.
+  /// InvalidInput if it needs them and none can be measured.
   KnownUnits(const Calibration& calibration = {}, std::span<const DeviceUnits> reference = {});
   [[nodiscard]] const Calibration& calibration() const { return calibration_; }
   /// The same with exact measurements, in the same classes.
@@ -229,11 +229,11 @@ struct DeviceClosing {
 /// A device and its drives.
 struct DrivenDevice {
   const SampledDevice* device = nullptr;
-  const std::vector<Signal>* signals = nullptr;  ///< one per drive
+  const std::vector<Signal>* signals = nullptr;  ///< signals, one per drive
   double duration = 0;                           ///< window [s]
 };
-/// Closes devices, in lanes as close_devices(), to outcomes that tell whether they are held closed. `run` applies except for
-/// its window and its steady force, which are those of each device. `near` is the closed equilibrium of a switch and drives
+/// Closes devices, in lanes as close_devices(), to outcomes that tell whether they are held closed. Each device has a window
+/// and a steady force of its own; `run` has the other options. The closed equilibrium `near` is that of a switch and drives
 /// that differ little from these.
 [[nodiscard]] std::vector<DeviceOutcome> close_driven(std::span<const DrivenDevice> devices, const MetricsOptions& options,
                                                       const ClosingOptions& run, const std::optional<ClosedEquilibrium>& near,
@@ -260,7 +260,7 @@ class DeviceCloser {
   std::optional<DeviceMeter> meter_;
   std::vector<std::vector<Signal>> nominal_signals_;              // signals of every drive
   std::vector<std::optional<OpenCommand>> nominal_commands_;      // one per drive that may have one
-  std::vector<std::optional<ClosedEquilibrium>> nominal_closed_;  // under its hold levels
+  std::vector<std::optional<ClosedEquilibrium>> nominal_closed_;  // equilibrium under its hold levels
 };
 
 /// Closes all devices under each of these drives, and returns the outcomes of a drive, by device. After a stop, they are those

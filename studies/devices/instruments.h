@@ -2,11 +2,11 @@
 //
 //   pull_in       static pull-in voltage [V]: a slow ramp closes the switch (model/pull_in.h)
 //   release       voltage at which a slow ramp opens it again [V]
-//   frequency     of small undamped vibrations of the open switch about its rest at a level [Hz]
-//   capacitance   of an electrode of the open switch at rest at a level [F]
+//   frequency     small undamped vibrations of the open switch about its rest at a level [Hz]
+//   capacitance   an electrode of the open switch at rest at a level [F]
 //   closing_time  first touch under a step to a level, or under waveforms [s]
 //   contact       times of the first edges of the contact's state under waveforms [s]: touch, first opening, next touch
-//   position      of the contact point, over times, under waveforms [m]: towards the contact, from its place in the straight beam
+//   position      contact point over times, under waveforms [m]: towards the contact, from its place in the straight beam
 //   velocity      likewise [m/s]
 //
 // Voltages and levels are commanded: the gain and offset of the source stand between them and the switch, V = gain * commanded

@@ -50,9 +50,9 @@ struct DriveRobustness {
   KnownUnits known = {};                ///< units of the devices
   std::vector<DeviceOutcome> outcomes;  ///< outcomes by device
   PerFigure<FigureStatistics> figures;  ///< statistics of device_figures
-  Yield closing;                        ///< the contact is reached, and the run could be followed
-  Yield collapsed;                      ///< the beam is pulled onto the electrode
-  Yield bounce_free;                    ///< the contact is reached, and it settles without a significant rebound
+  Yield closing;                        ///< share that reaches the contact in a run to the end
+  Yield collapsed;                      ///< share whose beam collapses onto the electrode
+  Yield bounce_free;                    ///< share that closes and settles without a significant rebound
   std::vector<std::size_t> worst;       ///< devices, the highest rebound first; failures before all
 };
 
@@ -109,7 +109,7 @@ struct GapCourses {
 /// A drive to judge.
 struct NamedDrive {
   std::string name;
-  DriveWaveforms waveforms;      ///< in volts
+  DriveWaveforms waveforms;      ///< waveforms in volts
   Calibration calibration = {};  ///< none: every device gets the volts of the nominal one
 };
 
@@ -133,8 +133,8 @@ struct NamedDrive {
 [[nodiscard]] GapCourses gap_courses(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t devices,
                                      std::size_t instants, double end, const RobustnessOptions& options, const Watch& watch = {});
 
-/// Returns the scene of a device of that ensemble under one of its drives, with the errors of its sources written out.
-/// `simulate` runs it to the same closing, as Ensemble::scene(), except for a sine whose times or volts are off
+/// Returns the scene of a device of that ensemble under one of its drives, with the errors of its sources written out. The
+/// closing under `simulate` is the same, as Ensemble::scene(), except for a sine whose times or volts are off
 /// (DeviceDrives::waveforms).
 [[nodiscard]] SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t device,
                                         const RobustnessOptions& options);

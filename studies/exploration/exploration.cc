@@ -26,7 +26,7 @@
 namespace softland {
 namespace {
 
-constexpr std::uint64_t default_devices = 500;  // devices of a robustness study: the verb's 2000 are for one drive, not for a map
+constexpr std::uint64_t default_devices = 500;  // devices of a robustness study: the verb's 2000 are for one drive, not a map
 constexpr std::array shown_quantiles{0.5, 0.95};
 constexpr std::array step_figures{figure_of(&Metrics::permanent_contact_time), figure_of(&Metrics::bounce_count),
                                   figure_of(&Metrics::major_bounce_height), figure_of(&Metrics::impact_velocity)};

@@ -102,7 +102,7 @@ class FrontSearch {
   const FrontOptions& options_;
   Watch watch_;
   std::mutex mutex_;
-  std::map<std::vector<double>, StoredRow> fresh_;  // by place in the box, until their number is known
+  std::map<std::vector<double>, StoredRow> fresh_;  // rows by place in the box, until their number is known
   FrontFound found_;
 };
 

@@ -23,7 +23,7 @@ class PullInMemory {
   [[nodiscard]] ElectrodePullIn find(const std::string& switch_text, const Switch& model, std::size_t electrode, Bias bias,
                                      const Watch& watch);
 
-  // The oldest are forgotten: a plan comes to the points of one switch together, or again after those of a thousand others.
+  // Number of kept entries, the newest: a plan visits the points of one switch together, or after those of a thousand others.
   static constexpr std::size_t most_remembered = 16384;
   std::mutex mutex_;
   std::map<std::string, std::shared_future<ElectrodePullIn>> known_;

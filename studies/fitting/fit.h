@@ -2,10 +2,10 @@
 //
 //   minimise  sum over data of rho(((y_i(x) - m_i) / s_i)^2) + (z - mean)^T R^-1 (z - mean)
 //
-// y_i(x) is what an instrument reads of the device (studies/devices/instruments.h), m_i the measured value, s_i its error, rho
-// a robust loss (least_squares.h). z are the unknowns in scales of their own: one standard deviation of [spread], whose
-// correlations R count. A key without an entry has a tenth of the scene's value as scale, and no prior. Distributions other
-// than the normal one count with their mean and standard deviation.
+// The symbols are: y_i(x) reading of an instrument on the device (studies/devices/instruments.h), m_i measured value, s_i its
+// error, rho robust loss (least_squares.h). z are the unknowns in scales of their own: one standard deviation of [spread],
+// whose correlations R count. A key without an entry has a tenth of the scene's value as scale, and no prior. Distributions
+// other than the normal one count with their mean and standard deviation.
 //
 // Unknowns are those of each device, or shared by all. The searches begin at the nominal device and at points of low
 // discrepancy spread over the prior; the best end counts. Standard errors are those of the linearised problem there. The rows

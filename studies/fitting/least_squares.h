@@ -60,7 +60,7 @@ struct LeastSquaresEnd {
 
 /// The ends of searches from several starts. The number of threads does not change them.
 struct ManyEnds {
-  std::vector<LeastSquaresEnd> ends;  ///< by start
+  std::vector<LeastSquaresEnd> ends;  ///< ends by start
   std::size_t best = 0;               ///< index of the end with least cost among those that have an x
   std::size_t minima = 0;             ///< distinct minima among the converged ends; 0 if none converged
   [[nodiscard]] bool found() const { return !ends.empty() && !ends[best].x.empty(); }

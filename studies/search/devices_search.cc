@@ -30,7 +30,7 @@ constexpr double ranked_by_share = 0.25;                      // bounce-free sha
 constexpr std::uint64_t measured_devices = 128;               // devices of a search with a per-device calibration
 constexpr double coarse_error = 0.01, fine_error = 0.002;     // relative errors of measurements
 constexpr double least_times_of_error = 20;
-constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative
+constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative errors of Vdp
 constexpr double most_rows = 4;                                                   // rows with a per-device calibration
 constexpr std::size_t devices_by_error = 256;                                     // first devices of the verdict
 constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2;

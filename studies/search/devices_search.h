@@ -112,10 +112,10 @@ class DevicesSearch {
   /// Adds the work of this search to the estimate `nominal` of the one on the nominal device.
   [[nodiscard]] SearchEstimate estimate(SearchEstimate nominal) const;
 
-  /// Races, places what the race found, and measures the devices of the verdict. `before` is the number of families in front of
-  /// those of the race, among those that share the memory. `looked` is called once after a first candidate was judged on the
-  /// devices of the choice, never if there is no candidate. `reserved` is the part of a budget of time for what follows beside
-  /// the verdict [s]. Throws Interrupted when it is asked to stop.
+  /// Races, places what the race found, and measures the devices of the verdict. The families of the race stand behind `before`
+  /// others that share the memory. After a first candidate was judged on the devices of the choice, `looked` is called once;
+  /// never without a candidate. The part `reserved` of a budget of time is left for what follows beside the verdict [s]. Throws
+  /// Interrupted when it is asked to stop.
   void run(std::size_t before, std::function<void()> looked, double reserved);
   /// Makes run() end soon, without a usable result; from any thread.
   void give_up() { gave_up_ = true; }
@@ -152,7 +152,7 @@ class DevicesSearch {
   /// The searched drives of a candidate, and the others as in the plain step.
   [[nodiscard]] DriveWaveforms all_drives(DriveWaveforms searched) const;
   [[nodiscard]] long closings() const { return closings_; }
-  /// Fresh devices of the verdict: as many as were asked for, or fewer where closings are slow.
+  /// Fresh devices of the verdict: as many as requested, or fewer if closings are slow.
   [[nodiscard]] std::uint64_t verdict() const { return verdict_; }
 
  private:

@@ -15,7 +15,7 @@
 // The winner with a stable path: a drive can carry the switch to its contact through stable equilibria (stable_approach.h).
 // Candidates must not be worse than the plain step, nor leave more devices open than it does (and half a percent). The winner
 // has the softest 95th percentile among those that cost at most a twentieth more than the least. Two choices stand beside it.
-// The sooner one is the softest whose devices wait at most half as long for a steady contact as under the plain step; the
+// The sooner one is the softest whose devices wait at most half as long for a steady contact as under the plain step. The
 // softer one is the softest of those that wait at most twice as long. A choice that a sooner one equals is left out.
 //
 // The winner without a stable path: candidates must also close in at most five times the 95th percentile time of the plain step

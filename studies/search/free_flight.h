@@ -2,9 +2,9 @@
 //
 //   z_i = q_i s_i / g        u_i = q_i' s_i / (g omega_i)        time in 1 / omega_1
 //
-// q are modal coordinates, omega natural frequencies, g is the contact gap, s_i the displacement of the contact point by mode i
-// (a tenth of the largest for a mode with a node there). z_i is the part of mode i in the way to the contact. A control is the
-// strength of a drive over its largest: that of Switch::strength() for an electrode, the voltage of a piezo. The motion is
+// The symbols are: q modal coordinates, omega natural frequencies, g contact gap, s_i displacement of the contact point by mode
+// i. A mode with a node there has a tenth of the largest s_i. z_i is the part of mode i in the way to the contact. A control is
+// the strength of a drive over its largest: that of Switch::strength() for an electrode, the voltage of a piezo. The motion is
 // linear in it, and the quickest control jumps between its bounds. If the driver's slew is limited, the control is the voltage
 // over its largest, and linear between knots.
 #pragma once

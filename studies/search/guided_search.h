@@ -57,8 +57,8 @@ class GuidedSearch {
   /// further run goes on from them too. It begins at starts that were not tried as well, and its result is that of all runs.
   [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, Costs costs, long more = 0, long first_index = 0);
   struct Best {
-    Evaluation evaluation;  ///< with the own cost as value
-    double cost = 0;        ///< the leading or the own one
+    Evaluation evaluation;  ///< evaluation with the own cost as value
+    double cost = 0;        ///< leading or own cost
   };
   /// Returns the evaluation with the lowest cost: by the leading cost for Costs::leading, by the own one otherwise. Nothing if
   /// none is feasible.
@@ -80,7 +80,7 @@ class GuidedSearch {
   PriceSlopes slopes_;
   std::mutex mutex_;
   std::map<std::vector<double>, SearchCosts> known_;
-  std::map<long, Evaluation> log_;  ///< by index
+  std::map<long, Evaluation> log_;  ///< evaluations by index
   long first_index_ = 0;            ///< index of the stage's first evaluation
 };
 

@@ -56,7 +56,7 @@ struct LeastTime {
   ControlledCourse course = {};
 };
 
-/// Throws InvalidInput for a scene that the question does not fit (free_flight.h).
+/// Throws InvalidInput for a scene that free_flight.h does not follow.
 [[nodiscard]] LeastTime least_time(const PreparedScene& prepared, const LeastTimeOptions& options);
 
 /// Waveforms of the shaped drives that bring every mode to rest on the contact in about the least time. A drive takes a ninth,

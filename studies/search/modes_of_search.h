@@ -10,7 +10,7 @@
 namespace softland {
 
 /// Returns the same search with slower edges: searched drives go from one end of their range to the other in one period of the
-/// highest mode kept, or more slowly. Empty if that changes nothing: for a plate, whose one mode is all, and if every searched
+/// highest mode kept, or more slowly. Empty if that changes nothing: for a plate, which has one mode, and if every searched
 /// driver has a max_slew of its own. Families that find no room for it keep their limits.
 [[nodiscard]] std::vector<SearchSetting> with_gentle_edges(const std::vector<SearchSetting>& settings, Actuator actuator,
                                                            const std::string& families, const OwnWaveforms& own = {});

@@ -31,7 +31,7 @@ namespace {
 constexpr double time_share = 0.3;          // weight of the time in periods, beside the vibration in contact gaps
 constexpr double outside_share = 5;         // extra weight of the vibration beyond the band
 constexpr double stays_closed = 10;         // cost of a switch that stays closed
-constexpr double touched_again = 0.5;       // cost of every touch after the switch has let go
+constexpr double touched_again = 0.5;       // cost of every touch after the switch has opened
 constexpr double opening_tolerance = 1e-5;  // tolerance of the integrator
 constexpr double seen_for = 1;              // periods in which a candidate's vibration is measured, after the drives stand
 constexpr double watched_for = 3;           // the same for a run that verifies the winner, at least

@@ -118,7 +118,7 @@ struct TriedWaveform {
 };
 
 struct OptimizeResult {
-  PreparedScene scene;  ///< as given
+  PreparedScene scene;  ///< the given scene
   PreparedScene baseline_scene;
   Closing baseline;
   std::optional<PreparedScene> best_scene;  ///< the scene of best.toml

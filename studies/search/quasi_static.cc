@@ -108,12 +108,12 @@ std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& pr
 }
 
 constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;  // standard deviations of the touching voltage
-constexpr double least_deviation = 0.005;                           // of the touching voltage: the contact has a height
+constexpr double least_deviation = 0.005;                           // share of the touching voltage: the contact has a height
 constexpr double nearest_points = 1e-6;                             // least distance of two points, in periods
 constexpr double step_after_line = 1.2, holder_after_line = 0.8;    // periods after the line
 constexpr double settle = 0.5;                                      // periods in which a holder rises
 constexpr double least_contact_level = 0.16, most_low = 0.5;        // shares of a holder's hold level
-constexpr std::array lower_levels{0.03, 0.12};                      // likewise
+constexpr std::array lower_levels{0.03, 0.12};                      // shares of a holder's hold level
 constexpr double back = 1, back_of_step = 5.7, back_after = 2;      // periods in which a piezo goes back, and waits for it
 
 }  // namespace

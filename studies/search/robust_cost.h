@@ -11,10 +11,11 @@
 //   cost  R(s) + (share of devices that fail) + 0.02 min(median of first contact over that of the step, max(0, tau - 1))
 //         + 10 (sum over the conditions: violation, where positive)
 //
-// tau is the waiting time of a user: the 95th percentile of the time from which on the contact force is steady, over the free
-// time, which is that of the plain step on the same devices. The step bounces for that long, so that a slower first touch costs
-// the user nothing. If fewer than 95 % of the devices get a steady force under the step, their permanent contact takes its
-// place, or their first contact if they do not settle. A device that is not steady at the end of its run counts with the end.
+// The waiting time of a user is tau: the 95th percentile of the time from which on the contact force is steady, over the free
+// time. The free time is that of the plain step on the same devices. The step bounces for that long, so that a slower first
+// touch costs the user nothing. If fewer than 95 % of the devices get a steady force under the step, their permanent contact
+// takes its place, or their first contact if they do not settle. A device that is not steady at the end of its run counts with
+// the end.
 //
 // R of mean+sigma is that of the devices that do not fail, plus 3 (1 + factor) times the root of the share of those that do.
 // The deviation over all of them would fall again if most fail.
@@ -152,7 +153,7 @@ class RobustCost {
   std::vector<double> ungained_levels_;                    // hold levels of the plain step from sources with a gain of 1
   Vectors vectors_;
   DeviceOutcome step_;                               // outcome of the nominal device
-  std::optional<ClosedEquilibrium> nominal_closed_;  // under the hold levels; none if they do not keep it closed
+  std::optional<ClosedEquilibrium> nominal_closed_;  // equilibrium under the hold levels; none if not kept closed
   std::vector<double> levels_;                       // hold levels of the nominal device
   std::vector<Kept> kept_;                           // each device, under the hold levels
   double window_, tail_, wait_;                      // times after first touch, after the last breakpoint, for a touch [s]

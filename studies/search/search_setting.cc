@@ -197,7 +197,8 @@ SearchCosts SearchSetting::price_of(const RecordedClosing& closing) const {
   for (const Criterion& one : followed_conditions()) prices.apart->excess.push_back(excess(one, figures));
   const double violation = broken(conditions, figures);
   if (!(violation > 0)) return prices;
-  // Penalty: less than the step between a landing and none. For the own cost it exceeds any landing that fulfils the conditions.
+  // Penalty: less than the step between a landing and none. For the own cost, more than any landing that fulfils the
+  // conditions.
   const double penalty = 3 * violation / (1 + violation);
   prices.leading += penalty;
   prices.own += target.has_own_cost() ? 1 + penalty : penalty;

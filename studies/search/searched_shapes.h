@@ -1,5 +1,5 @@
-// Variables, starting points and waveforms of the searched families that are curves, and what those of trains (searched_trains.h)
-// share with them. Their rows stand in searched_families.cc; search_space.h says what they vary.
+// Variables, starting points and waveforms of the searched families that are curves, and the parts that trains
+// (searched_trains.h) share with them. Their rows stand in searched_families.cc; search_space.h lists what they vary.
 #pragma once
 
 #include <array>

@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 struct Flight {
   bool touched = false;
-  std::vector<VectorXd> states;  // one per step
+  std::vector<VectorXd> states;  // states, one per step
 };
 
 // Simulates a flight from rest under full pull, and from a time on under full release, until the contact point arrives or turns

@@ -21,7 +21,7 @@ struct GivenText {
 
 /// A scene whose waveforms a search begins with.
 struct StartingScene {
-  std::string name;  ///< as it was given
+  std::string name;  ///< name as given
   SceneFile scene;
 };
 

@@ -91,8 +91,8 @@ class Outlook {
 };
 
 [[nodiscard]] inline TunedScene::Units units_of(const Recipe& recipe) { return {.volts = recipe.volts, .time = recipe.time}; }
-/// Returns the recipes of the options, or else the cheaper ones of the scene's approaches, and chooses their approach. That of
-/// the nominal device comes first. Throws InvalidInput for recipes of other shapes, Interrupted.
+/// Returns the recipes of the options, or else the cheaper ones of the scene's approaches, and chooses their approach. The
+/// recipe of the nominal device comes first. Throws InvalidInput for recipes of other shapes, Interrupted.
 [[nodiscard]] std::vector<Recipe> recipes_of(TunedScene& scene, const Watch& watch);
 
 struct Proposal {

@@ -1,9 +1,9 @@
 // Tunes a waveform on one device, closing after closing, from the state of its contact alone. Every closing is open loop.
 //
 // The state of knowledge about the device is a belief: weighted devices of the scene's spread (or the assumed one,
-// config/assumed_spread.h). They also differ in gain of the sources, viscosity of the film, stiffness of the contact, the ratio
-// of contact to electrode gap, and in the time by which their records begin late, if a scene has such a thing. Two steps follow
-// every closing.
+// config/assumed_spread.h). They also differ in gain of the sources, viscosity of the film, stiffness of the contact, and the
+// ratio of contact to electrode gap. The time by which their records begin late differs too, if a scene has such a thing. Two
+// steps follow every closing.
 //
 //   1. the belief is learned anew from all records: Levenberg-Marquardt on the touch times from many starts, then rounds of
 //      weighted samples with the likelihood of the whole record (belief.h);
