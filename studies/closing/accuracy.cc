@@ -14,9 +14,8 @@ namespace {
 
 constexpr double enough_seconds = 0.03;     // least sum of the timed runs of one setting
 constexpr double reference_tighter = 1e-4;  // factor below the tightest tolerance
-constexpr double reference_looser =
-    100;  // factor of the second reference's tolerance over the first, and between references that are tried
-constexpr double reference_growth = 2.5;  // time ratio of one reference to the next, for a fifth-order method
+constexpr double reference_looser = 100;    // factor of the second reference over the first, and from one tried to the next
+constexpr double reference_growth = 2.5;    // time ratio of one reference to the next, for a fifth-order method
 constexpr double told_apart = 9.9;  // multiple of the reference's tolerance, less rounding, from which on errors are resolved
 constexpr CloudOptions cloud_options{.runs = 8};
 

@@ -18,8 +18,8 @@ enum class Sent { told, output };
 struct SentSignals {
   std::map<std::string, Signal> signals;
   std::map<std::string, double> sample_rates = {};  ///< rates of sampled signals [Hz]
-  std::map<std::string, double> amplifiers =
-      {};  ///< gains of the amplifiers: volts at the switch, as signals are, per volt of the source
+  /// Gains of the amplifiers: volts at the switch, as signals are, per volt of the source.
+  std::map<std::string, double> amplifiers = {};
 };
 /// Returns the signals for one waveform per drive in the order of Switch::drives().
 [[nodiscard]] SentSignals sent_signals(const PreparedScene& prepared, const std::vector<Waveform>& waveforms,

@@ -41,7 +41,8 @@ struct Prediction {
   std::string name;
   std::vector<std::size_t> figures;  ///< numbers in IdentificationStudy::figures
   /// Errors of the predicted logarithms of the best factors of volts, of time and of a piezo's volts: the root mean square over
-  /// devices that were not fitted to, and its square over their variance. NaN if nothing is fitted, or no piezo is driven.
+  /// devices that were not fitted to, and its square over their variance. NaN if nothing is fitted; for a piezo also if it is
+  /// not driven.
   double volts_miss = Metrics::unset, time_miss = Metrics::unset, piezo_miss = Metrics::unset;
   double volts_unexplained = Metrics::unset, time_unexplained = Metrics::unset, piezo_unexplained = Metrics::unset;
   bool is_judged = false;         ///< the members below are known

@@ -95,10 +95,9 @@ struct Limit {
   std::string hold_warning = {};                                      ///< warning if they do not keep the switch closed
   Metrics step;                                                       ///< figures of the plain step
   /// How the switch can be carried to its contact through stable equilibria on the devices of [spread]; none without such a
-  /// path or without [spread].
+  /// path or without [spread]. Its speed is that within the time until the plain step's force is steady.
   std::optional<StableApproach> approach = {};
-  double quasi_static = std::numeric_limits<double>::quiet_NaN();  ///< speed of that path within the plain step's steady force
-                                                                   ///< time: quasi_static_speed() [m/s]
+  double quasi_static = std::numeric_limits<double>::quiet_NaN();  ///< speed of that path: quasi_static_speed() [m/s]
   LeastTime touch;                                                 ///< least time at the permitted speed
   LeastTime rest;                                                  ///< least time with every mode at rest
   std::optional<LimitLanding> landing;  ///< the quickest bounce-free landing, else the one that rebounds least

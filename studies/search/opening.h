@@ -81,8 +81,7 @@ struct OpeningResult {
   std::vector<ConfirmingOpening> checks;
   std::optional<OpeningsOnDevices> on_devices;  ///< none if not asked for, or if no waveform opens the switch
   OptimizerResult search;
-  bool better =
-      false;  ///< true if the best opens for good sooner than the plain opening, or, where neither does, with less vibration
+  bool better = false;     ///< true if the best opens for good sooner than the plain opening, or else vibrates less
   bool goal_met = false;   ///< true if in the band from the time on at which the drives stand
   bool confirmed = false;  ///< confirmed by the other runs too
   bool interrupted = false;

@@ -239,7 +239,7 @@ class Search {
     const long own = has_own ? evaluations / own_share : 0;
     const double bounce_seconds = all_seconds * (has_own ? 1 - 1.0 / own_share : 1);
     if (!run_families(evaluations - own, bounce_seconds, has_own ? Costs::leading : Costs::same)) return false;
-    // Search by the own cost next, from the best points of every family. Its rest counts gradients as well.
+    // Search by the own cost next, from the best points of every family. The remaining budget counts gradients as well.
     const long rest = evaluations - (all_.evaluations - before);
     return !has_own || rest <= 0 || run_families(rest, max_seconds_ - seconds(), Costs::own);
   }

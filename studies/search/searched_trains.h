@@ -17,11 +17,10 @@ namespace softland::internal {
 
 /// The restrictions of a family on its train.
 struct TrainRules {
-  std::size_t pulses = 0;  ///< 0: as many as requested, and none for other families
-  bool coasts = false;     ///< between two pulses there is no voltage
-  std::array<double, 3> longest =
-      {};                     ///< durations, in first touches of the plain step; the last one is that of all further pulses
-  double longest_edge = 0.1;  ///< longest edge, in periods of the first mode
+  std::size_t pulses = 0;              ///< 0: as many as requested, and none for other families
+  bool coasts = false;                 ///< between two pulses there is no voltage
+  std::array<double, 3> longest = {};  ///< durations, in first touches of the plain step; the last one holds for all later pulses
+  double longest_edge = 0.1;           ///< longest edge, in periods of the first mode
   std::string_view first_duration = "duration_1_s";
 };
 

@@ -62,9 +62,9 @@ struct ImaginedDevice {
 template <class Openings>
 struct SeenClosing {
   double touch = std::numeric_limits<double>::quiet_NaN();  ///< first closing of the contact, since the drives began [s]
-  double speed = std::numeric_limits<double>::quiet_NaN();  ///< speed then; of a capacitance, its rate over its rise, times the
-                                                            ///< contact gap [m/s]
-  Openings openings = {};                                   ///< openings, since the drives began [s]
+  /// Speed at that time [m/s]; of a capacitance, its rate over its rise, times the contact gap.
+  double speed = std::numeric_limits<double>::quiet_NaN();
+  Openings openings = {};  ///< openings, since the drives began [s]
 };
 
 /// A simulated closing of such a device, as exact as its model.
