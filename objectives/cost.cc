@@ -99,7 +99,7 @@ double cost(const Aim& aim, const Metrics& m, const CostScale& scale, const Metr
   const double h = shares.of(&Metrics::major_bounce_height);
   const double p = m.major_bounce_height / (m.major_bounce_height + 10 * options.significant_rebound);
   const double v = shares.of(&Metrics::largest_impact_velocity);
-  // A drive that never comes to rest inside the run leaves the energy unmeasured: the other figures must do.
+  // The energy is not measured where a drive never comes to rest inside the run: the other figures decide then.
   const double k = std::isnan(m.landing_excess) ? 0 : shares.of(&Metrics::landing_excess);
   const double s = m.separated / scale.score_window;
   const double t = shares.of(&Metrics::initial_contact_time);
@@ -107,7 +107,8 @@ double cost(const Aim& aim, const Metrics& m, const CostScale& scale, const Metr
   shares.lead = 0.2 * h + 0.15 * v * v + 0.45 * k + 0.1 * s * s + 0.05 * p + 0.02 * late;
   const double excess = scale.judges_hardness && !aim.has_own_objective() ? excess_over_step(m, scale.step) : 0;
   shares.lead += excess;
-  // What lets go again is no landing, however softly it came: behind all that stay, before what never touches.
+  // A contact that opens again is not a landing, however soft it is: it ranks behind all that stay and before what never
+  // touches.
   const double reopening = m.reopened ? 5 : 0;
   if (!aim.has_own_cost() && aim.from_the_start() == nullptr) return reopening + shares.lead;
   const double own = aim.mean(m, scale.step, [&](const TargetRow& row) { return row.in(row.nominal, shares); });

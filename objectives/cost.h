@@ -1,4 +1,4 @@
-// What a search minimises, normalised by the plain step to the same hold level, so that the step costs about 1.
+// The cost that a search minimises. It is normalised by the plain step to the same hold level, so that the step costs about 1.
 //
 // Bounce count and settling time jump at grazing rebounds and, past the first macro-bounce, are properties of a cloud of runs
 // rather than of one: no search is led by them. Every search first follows the smooth cost of `bounce`, which leads to closings
@@ -14,25 +14,25 @@
 //
 //   bounce, rebound, count     B = 0.2 H + 0.15 V^2 + 0.45 K + 0.1 S^2 + 0.05 P + 0.02 L
 //   settling, impact, energy,  f / (1 + f) with f = F + B / 1000 where h <= h_s / 2, and 1 + (B + F) / 2 where the closing
-//   force, drive, steady       rebounds higher; F is the target's own figure over that of the step. settling: end of the last
-//                              significant rebound, first touch if none, over first touch of the step; impact: V; energy: root
-//                              of impact energy over that of the step (of a soft touch that ratio itself can be some 1e-4, and
-//                              B / 1000 would lead); force: largest contact force; drive: energy that the drives give
-//                              within the score; steady: from when on the contact force is steady over first touch of the
-//                              step, the end of the score where it is not
+//   force, drive, steady       rebounds higher; F is the target's own figure over that of the step.
+//                              settling: end of the last significant rebound, first touch if none, over first touch of the
+//                              step; impact: V; energy: root of impact energy over that of the step (for a soft touch that
+//                              ratio itself can be some 1e-4, and B / 1000 would lead); force: largest contact force;
+//                              drive: energy that the drives give within the score; steady: time from which the contact
+//                              force is steady over first touch of the step, the end of the score where it is not steady
 //
 // A closing can be harder than the plain step and have no rebound. B and F grow by E: the largest excess of touch speed, peak
 // contact force and impact energy over those of the step, as a share of them. A condition that the plain step breaks lifts this
 // rule, and so does an own objective.
 //
-// A weighted sum of targets has the weighted mean of their F, those of bounce, rebound and count being B. The F of a user's own
-// objective is its value (own_objective.h); of one that does not ask for a landing first the cost is F / (1 + F).
+// A weighted sum of targets has the weighted mean of their F; the F of bounce, rebound and count is B. The F of a user's own
+// objective is its value (own_objective.h); the cost is F / (1 + F) for one that does not ask for a landing first.
 //
 // K leads B: it is smooth where the rebounds are a chaotic sequence, and where it is small there are none. Squares make the sum
 // flat and well-conditioned near a soft landing. Lateness costs little up to T_free and much beyond: the softest landing is a
-// late one. The bound of half a significant height leaves room for what a run at full accuracy adds. A closing that never touches
-// costs 10 plus the part of the gap it left, so that the search is led towards contact; one that fails (touches the electrode,
-// leaves the laws' validity, cannot be integrated) is infeasible: infinity.
+// late one. The bound of half a significant height leaves room for what a run at full accuracy adds. A closing that never
+// touches costs 10 plus the part of the gap it left. This leads the search towards contact. A closing that fails (touches the
+// electrode, leaves the laws' validity, cannot be integrated) is infeasible: its cost is infinity.
 #pragma once
 
 #include <array>
@@ -52,21 +52,21 @@
 
 namespace softland {
 
-/// A closing beside that of the plain step: what the forms of a target are made of.
+/// A closing beside that of the plain step: the forms of a target are computed from it.
 struct Shares {
   const Metrics &own, &step;
   double lead = 0;    ///< cost of `bounce`
-  double window = 0;  ///< after the first touch, for which it was followed [s]
+  double window = 0;  ///< time after the first touch over which the closing was followed [s]
 
-  /// A step that lands softly by itself must not turn the ratios into infinities. NaN where the value is not known.
+  /// Returns a ratio that stays finite where the step itself lands softly; NaN where the value is not known.
   [[nodiscard]] static double ratio(double value, double of_step) {
     if (std::isnan(value)) return value;
     return of_step > 0 ? value / of_step : value > 0 ? 1 : 0;
   }
-  /// A figure over that of the step, or over another one of it.
+  /// Returns a figure over the same figure of the step, or over another figure `unit` of the step.
   [[nodiscard]] double of(double Metrics::*figure) const { return ratio(own.*figure, step.*figure); }
   [[nodiscard]] double of(double Metrics::*figure, double Metrics::*unit) const { return ratio(own.*figure, step.*unit); }
-  /// A time over the first touch of the step. Of one that is not known all that is known is that it comes later.
+  /// Returns a time over the first touch of the step. An unknown time counts as later than every time of the run.
   [[nodiscard]] double of_time(double time) const {
     const double known = std::isfinite(time) ? time : 2 * (own.initial_contact_time + window);
     return ratio(known, step.initial_contact_time);
@@ -74,20 +74,20 @@ struct Shares {
 };
 
 enum class Target { bounce, settling, rebound, count, impact, energy, force, drive, steady, electrical };
-/// What a search can be about. A new one is an enumerator and a row.
+/// A target that a search can have. A new one is an enumerator and a row.
 struct TargetRow {
   using Form = double (*)(const Shares&);
 
   Target value;
   std::string_view name;
-  Figure::Member figure;         ///< its own, of winners and goals, and of the forms below where these are null
-  Figure::Member unit = figure;  ///< of the step, over which its own is taken in a sum of targets
-  /// Whether a search for the target goes on by its own figure once it has followed the cost of `bounce`. Without a significant
-  /// rebound those of the others have no more to give.
+  Figure::Member figure;         ///< own figure: for winners and goals, and for the forms below where these are null
+  Figure::Member unit = figure;  ///< figure of the step over which the own figure is taken in a sum of targets
+  /// True when a search for the target goes on by its own figure once it has followed the cost of `bounce`. Figures without
+  /// this have nothing left to improve without a significant rebound.
   bool has_own_cost = true;
-  Form nominal = nullptr;             ///< in the cost of a search on the nominal device
-  Form robust = nullptr;              ///< in that of a search on devices that differ
-  std::string_view no_gradient = {};  ///< why its cost has none; empty where it has
+  Form nominal = nullptr;             ///< form in the cost of a search on the nominal device
+  Form robust = nullptr;              ///< form in the cost of a search under process variation
+  std::string_view no_gradient = {};  ///< reason why the cost has no gradient; empty where it has one
 
   [[nodiscard]] double in(Form form, const Shares& shares) const {
     if (form != nullptr) return form(shares);
@@ -97,7 +97,7 @@ struct TargetRow {
 };
 namespace internal {
 inline double lead(const Shares& s) { return s.lead; }
-/// A time over the first touch of the step, of a switch that comes to it by the end of its window, else the end.
+/// Returns a time over the first touch of the step; a time that the switch does not reach counts as the end of its window.
 inline double time_or_end(const Shares& s, double Metrics::*time) {
   return s.of(std::isfinite(s.own.*time) ? time : &Metrics::end, &Metrics::initial_contact_time);
 }
@@ -153,22 +153,22 @@ inline constexpr auto targets = std::to_array<TargetRow>({
 static_assert(is_complete<targets>());
 [[nodiscard]] constexpr std::string_view to_string(Target target) { return name_of(targets, target); }
 [[nodiscard]] constexpr bool has_own_cost(Target target) { return row_of(targets, target).has_own_cost; }
-/// The figure that a target is about.
+/// Returns the figure that a target is about.
 [[nodiscard]] constexpr const Figure& figure_of(Target target) { return figure_of(row_of(targets, target).figure); }
 
-/// What a search minimises: one target or own objective, or a sum of several with weights.
+/// The aim of a search: one target or own objective, or a weighted sum of several.
 class Aim {
  public:
   struct Part {
     Target target = Target::bounce;
     double weight = 1;
-    std::shared_ptr<const OwnObjective> own = nullptr;  ///< stands in the place of the target
-    double unit = 1;                                    ///< what the values of an own objective are divided by
+    std::shared_ptr<const OwnObjective> own = nullptr;  ///< own objective; takes the place of the target
+    double unit = 1;                                    ///< divisor of the values of an own objective
 
     [[nodiscard]] std::string_view name() const { return own ? own->name() : to_string(target); }
   };
   Aim(Target target) : parts_{{.target = target}} {}  // NOLINT(google-explicit-constructor): a target is an aim
-  /// Throws InvalidInput where it is null.
+  /// Throws InvalidInput where the objective is null.
   explicit Aim(std::shared_ptr<const OwnObjective> objective)
       : Aim(std::vector<Part>{{.own = refuse_null(std::move(objective))}}) {}
   /// Throws InvalidInput unless there is a part, weights are finite and > 0, and no target or own objective stands twice.
@@ -176,23 +176,23 @@ class Aim {
 
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
   [[nodiscard]] bool is_sum() const { return parts_.size() > 1; }
-  /// Whether a search for it goes on by a cost of its own once it has followed that of `bounce`. Of one target its own; a sum
-  /// always has one.
+  /// True when a search for this aim goes on by a cost of its own once it has followed that of `bounce`. A single target
+  /// decides by its row; a sum always has its own cost.
   [[nodiscard]] bool has_own_cost() const;
   [[nodiscard]] bool is_about(Target target) const;
-  /// Whether it holds an own objective.
+  /// True when a part is an own objective.
   [[nodiscard]] bool has_own_objective() const;
-  /// Whether it looks at the drive energy, as an own objective may.
+  /// True when the cost depends on the drive energy, as an own objective may.
   [[nodiscard]] bool measures_drive_energy() const;
-  /// The own objective by which a search goes from its first evaluation on; null: there is none.
+  /// Returns the own objective that leads a search from its first evaluation on; null where no part has one.
   [[nodiscard]] const OwnObjective* from_the_start() const;
-  /// The same, where own objectives that the plain step does not have between a hundredth and a hundred are divided by its value.
-  /// Throws InvalidInput where that is not finite.
+  /// Returns the same aim with values of own objectives divided by that of the plain step, where the latter is below a
+  /// hundredth or above a hundred. Throws InvalidInput where that value is not finite.
   [[nodiscard]] Aim in_units_of(const Metrics& step) const;
-  /// "bounce", "0.7 bounce + 0.3 energy"
+  /// Returns for example "bounce" or "0.7 bounce + 0.3 energy".
   [[nodiscard]] std::string text() const;
-  /// The sum of value(row of the target) with these weights, over the sum of the weights; of an own objective its value for this
-  /// closing beside the plain step. Throws InvalidInput where that is below 0.
+  /// Returns the weighted mean of value(row of the target); an own objective contributes its value for this closing beside the
+  /// plain step. Throws InvalidInput where that value is below 0.
   template <class Value>
   [[nodiscard]] double mean(const Metrics& closing, const Metrics& step, const Value& value) const {
     const auto of = [&](const Part& part) {
@@ -204,7 +204,7 @@ class Aim {
     return sum / weights;
   }
 
-  /// mean() of many closings: an own objective is asked once for all of them. `value` is told the closing as well.
+  /// Returns mean() for many closings: an own objective is called once for all of them. `value` also receives the closing.
   template <class Value>
   [[nodiscard]] std::vector<double> means(std::span<const Metrics> closings, const Metrics& step, const Value& value) const {
     std::vector<double> sums(closings.size(), 0), of_part(closings.size());
@@ -234,18 +234,18 @@ class Aim {
 /// Figures in which a closing may be harder than that of the plain step.
 inline constexpr auto hard_figures =
     std::to_array({&Metrics::largest_impact_velocity, &Metrics::peak_contact_force, &Metrics::impact_energy});
-/// The largest excess of the hard figures over those of the step, as a share of them; 0 where none is above.
+/// Returns the largest relative excess of the hard figures over those of the step; 0 where no figure exceeds it.
 [[nodiscard]] double excess_over_step(const Metrics& closing, const Metrics& step);
 
-/// The figures are those of a run that ends a fixed time after first contact.
+/// Scales of the cost. The figures are those of a run that ends a fixed time after first contact.
 struct CostScale {
-  Metrics step;                 ///< of the plain step
+  Metrics step;                 ///< figures of the plain step
   double score_window = 0;      ///< [s]
   double contact_gap = 0;       ///< [m]
   double free_touch = 0;        ///< T_free, over first touch of the step
-  bool judges_hardness = true;  ///< not where the plain step breaks a condition of the search
+  bool judges_hardness = true;  ///< false where the plain step breaks a condition of the search
 };
-/// Infinite for a run that could not be followed.
+/// Returns the cost; infinite for a run that could not be followed.
 [[nodiscard]] double cost(const Aim& aim, const Metrics& figures, const CostScale& scale, const MetricsOptions& options);
 
 }  // namespace softland

@@ -29,7 +29,7 @@ void add(FigureSlope& to, const FigureSlope& from, double factor = 1) {
   to.by_device += factor * from.by_device;
 }
 
-// Goes along the motion of the contact point as MetricsObserver does.
+// Follows the motion of the contact point as MetricsObserver does.
 class SlopeFinder {
  public:
   SlopeFinder(const Switch& model, std::span<const Signal> signals, const LinearizedClosing& motion,
@@ -69,7 +69,7 @@ class SlopeFinder {
   using Arc = LinearizedClosing::Arc;
 
   [[nodiscard]] const Arc& arc(std::size_t i) const { return motion_.arcs()[i]; }
-  // Calls of(j) for every parameter that changes the switch; empty where there are none.
+  // Collects of(j) for every parameter that changes the switch; empty where no parameter does.
   template <class Of>
   [[nodiscard]] VectorXd by_device(Of&& of) const {
     if (motion_.by_device() == nullptr) return {};
@@ -77,24 +77,24 @@ class SlopeFinder {
     for (Eigen::Index j = 0; j < all.size(); ++j) all[j] = of(*motion_.by_device(), static_cast<std::size_t>(j));
     return all;
   }
-  // Of the contact point's position over the plane at a fixed time [m].
+  // Returns the slope of the contact point's position over the plane at a fixed time [m].
   [[nodiscard]] FigureSlope position(std::size_t i, double factor) const {
     return {.weights = {{.arc = i, .by_q = factor * shape_, .by_v = zero_}},
             .moved = {},
             .by_device =
                 by_device([&](const SwitchSlopes& s, std::size_t j) { return factor * s.interference(j, arc(i).q.data()); })};
   }
-  // Of the contact point's speed as it crosses the plane at the end of an arc [m/s].
+  // Returns the slope of the contact point's speed as it crosses the plane at the end of an arc [m/s].
   [[nodiscard]] FigureSlope crossing_speed(std::size_t i) const {
     FigureSlope slope = position(i, -shape_.dot(arc(i).accelerations) / shape_.dot(arc(i).v));
     slope.weights[0].by_v = shape_;
     slope.by_device += by_device([&](const SwitchSlopes& s, std::size_t j) { return s.velocity(j, arc(i).v.data()); });
     return slope;
   }
-  // Of the time at which the contact point crosses a level at the end of an arc.
+  // Returns the slope of the time at which the contact point crosses a level at the end of an arc [s].
   [[nodiscard]] FigureSlope crossing_time(std::size_t i) const { return position(i, -1 / shape_.dot(arc(i).v)); }
 
-  // Turning points, and the ends of the run.
+  // Considers turning points and the ends of the run.
   void consider(std::size_t i) {
     const double at = shape_.dot(arc(i).q);
     if (touches_ == 0) {
@@ -129,7 +129,7 @@ class SlopeFinder {
     force_slope_ = slope_of([&](const ContactLaw& of, double d) { return contact_force(of, d, law, 0); });
   }
 
-  // True where a touch begins.
+  // Returns true where a touch begins.
   bool cross(std::size_t i, const PhaseChange& change) {
     using Kind = PhaseChange::Kind;
     if (change.kind == Kind::turn || change.level != plane_) return false;
@@ -197,7 +197,8 @@ class SlopeFinder {
     return true;
   }
 
-  // The energy above the closed equilibrium at the first touch under the hold levels, or when they are reached after it.
+  // Measures the energy above the closed equilibrium at the first touch under the hold levels, or when the drives reach these
+  // after it.
   void measure_landing(std::size_t i, bool begins_to_touch) {
     if (measured_ || touches_ == 0) return;
     const Arc& at = arc(i);
@@ -235,8 +236,8 @@ class SlopeFinder {
   bool touching_ = false, measured_ = false;
   double first_speed_ = 0, fastest_ = 0;                      // [m/s]
   double closest_ = std::numeric_limits<double>::infinity();  // [m]
-  double depth_ = 0, force_ = 0, largest_force_ = 0;          // of the touch under way [m], [N]; of all touches [N]
-  double height_ = 0, highest_ = 0;                           // of the rebound under way, of all [m]
+  double depth_ = 0, force_ = 0, largest_force_ = 0;          // depth [m] and force [N] of the current touch; largest force [N]
+  double height_ = 0, highest_ = 0;                           // height of the current rebound, and of the highest one [m]
   FigureSlope energy_slope_, force_slope_, height_slope_;
 };
 
@@ -269,11 +270,11 @@ std::optional<FigureSlope> cost_slope(const Aim& aim, const Metrics& figures, co
                         {&Metrics::impact_energy, step.impact_energy},
                         {&Metrics::landing_excess, step.landing_excess},
                         {&Metrics::peak_contact_force, step.peak_contact_force}};
-  FigureSlope sum;  // in the order of the parts, which decides its last bits
+  FigureSlope sum;  // summed in the order of the parts, which decides its last bits
   for (const Part& part : parts) {
     const double value = figures.*part.figure;
     if (!std::isfinite(value)) continue;
-    // The cost is a closed form of its figures, so that differences of it are good to about 1e-10.
+    // The cost is a closed form of its figures, so that differences are good to about 1e-10.
     const double size = std::abs(value) > 0 ? std::abs(value) : part.scale;
     if (!(size > 0) || !std::isfinite(size)) continue;
     const double h = 1e-6 * size;

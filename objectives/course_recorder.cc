@@ -10,7 +10,7 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t most_kept = 8;  // of a bucket
+constexpr std::size_t most_kept = 8;  // knots that a bucket keeps at most
 
 }  // namespace
 
@@ -78,7 +78,7 @@ void CourseRecorder::hand_over(Trajectory& run) {
   run.touches = std::move(touches_);
 }
 
-// The bucket that is not full yet becomes the last one, or is joined with it, as if it were.
+// Treats the bucket that is not full yet as full: it becomes the last bucket, or is joined with the last one.
 void CourseRecorder::coarsen() {
   const std::vector<TrajectoryPoint> all = std::exchange(points_, {});
   const std::vector<std::size_t> ends = std::exchange(ends_, {});

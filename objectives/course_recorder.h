@@ -1,9 +1,9 @@
-// Receives a closing and keeps what reports need of it in a memory that does not grow with its knots: figures, rebounds and
-// touches, and of the course the knots that draw the same picture.
+// Receives a closing and keeps what reports need of it: figures, rebounds and touches, and the knots that draw the same picture
+// of the course. The memory does not grow with the number of knots.
 //
-// All knots are kept until the contact point has been beyond the contact plane and they are more than most_recorded_knots. From
-// then on consecutive ones share a bucket, of which the first and the last stay and those of the smallest and largest position,
-// velocity and contact force; buckets are joined by twos as often as that is needed.
+// All knots are kept until the contact point has been beyond the contact plane and they are more than most_recorded_knots.
+// Consecutive knots share a bucket afterwards. A bucket keeps the first and the last knot, and those of the smallest and
+// largest position, velocity and contact force. Pairs of buckets are joined as often as that is needed.
 #pragma once
 
 #include <cstddef>
@@ -33,13 +33,13 @@ class CourseRecorder final : public ClosingObserver {
     return number < contacts_.size() ? contacts_[number].get() : nullptr;
   }
 
-  /// Figures of the run, once it has ended: see metrics(). Those of all knots.
+  /// Returns the figures of the run, from all knots, once it has ended: see metrics().
   [[nodiscard]] Metrics metrics(const Trajectory& end) { return figures_.metrics(end); }
-  /// rebounds() of all knots until the command to open.
+  /// Returns rebounds() of all knots until the command to open.
   [[nodiscard]] std::vector<Rebound> rebounds() const;
-  /// Whether some knots are left out.
+  /// True when some knots are left out.
   [[nodiscard]] bool is_thinned() const { return is_thinned_; }
-  /// Figures and rebounds of one of several contacts, once the run has ended.
+  /// Returns the figures of one of several contacts, once the run has ended.
   [[nodiscard]] Metrics metrics_of(std::size_t contact, const Trajectory& end);
   [[nodiscard]] std::vector<Rebound> rebounds_of(std::size_t contact) const { return contacts_[contact]->rebounds(); }
   /// Moves the knots and touches that are kept into the run.
@@ -47,10 +47,10 @@ class CourseRecorder final : public ClosingObserver {
 
  private:
   void coarsen();
-  // Of the bucket that is not full, in points_.
+  // Returns the index in points_ at which the bucket that is not full begins.
   [[nodiscard]] std::size_t last_begin() const { return ends_.empty() ? 0 : ends_.back(); }
   void reduce_long_last();
-  // Leaves of the points from `begin` on those that a bucket keeps.
+  // Keeps of the points from `begin` on only those that a bucket keeps.
   void reduce(std::size_t begin);
 
   double contact_gap_;
@@ -60,12 +60,12 @@ class CourseRecorder final : public ClosingObserver {
   ReboundFinder finder_;
   bool has_passed_ = false, is_thinned_ = false;
   std::vector<TrajectoryPoint> points_;
-  std::vector<std::size_t> ends_;  // of the buckets that are full, in points_
-  std::size_t bucket_ = 1;         // knots in a full one
-  std::size_t in_last_ = 0;        // knots since the last full one
+  std::vector<std::size_t> ends_;  // ends of the full buckets, in points_
+  std::size_t bucket_ = 1;         // number of knots in a full bucket
+  std::size_t in_last_ = 0;        // number of knots since the last full bucket
   std::vector<Touch> touches_;
   std::vector<Rebound> rebounds_;
-  bool opens_ = false;  // the command to open is past
+  bool opens_ = false;  // true once the command to open is past
   std::vector<std::unique_ptr<CourseRecorder>> contacts_;
 };
 

@@ -1,5 +1,5 @@
-// Figures of a switch that is closed and opened again and again in one run: those of every cycle, each from the state in which
-// the one before has left the switch.
+// Figures of a switch that is closed and opened again and again in one run. Every cycle has its own figures and begins in the
+// state that the cycle before has left.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,10 @@
 
 namespace softland {
 
-/// When cycles begin, and when they are commanded to open.
+/// Times at which cycles begin, and at which they are commanded to open.
 struct CycleTimes {
   double period = 0;   ///< [s]
-  double on_time = 0;  ///< from the begin of a cycle to its command [s]
+  double on_time = 0;  ///< time from the begin of a cycle to its command [s]
   std::size_t cycles = 1;
 
   [[nodiscard]] double begin(std::size_t cycle) const { return static_cast<double>(cycle) * period; }  ///< [s]
@@ -22,12 +22,12 @@ struct CycleTimes {
 /// One cycle of a run.
 struct CycleFigures {
   /// Figures of its closing until the command, and of the opening after it. Times count from the begin of the cycle, the drive
-  /// energy is what the sources give in it, and the first touch that of the connection.
+  /// energy is what the sources give in it, and the first touch is that of the connection.
   Metrics metrics;
-  bool closes = false;  ///< it begins open, and touches before the command
-  bool opens = false;   ///< it is open at the end
+  bool closes = false;  ///< true when the cycle begins open, and touches before the command
+  bool opens = false;   ///< true when the contact is open at the end
   double on_time = 0;   ///< time in which the switch is electrically closed [s], of an observer that hands on state()
-  double swing = 0;     ///< furthest from the open position in the last third of the time after the command [m]
+  double swing = 0;     ///< largest distance from the open position in the last third of the time after the command [m]
 };
 
 class CycleRecorder final : public ClosingObserver {
@@ -41,9 +41,10 @@ class CycleRecorder final : public ClosingObserver {
   [[nodiscard]] bool takes_energies() const override { return true; }
   void energies(double time, const EnergyBalance& balance) override;
 
-  /// How many have ended.
+  /// Returns the number of cycles that have ended.
   [[nodiscard]] std::size_t ended() const { return current_; }
-  /// Of one that has begun. `run`: with the hold force and the in-contact period of the closings, as far as they are known.
+  /// Returns the figures of a cycle that has begun. `run` carries the hold force and the in-contact period of the closings, as
+  /// far as they are known.
   [[nodiscard]] CycleFigures figures(std::size_t cycle, const Trajectory& run);
 
  private:
@@ -61,7 +62,7 @@ class CycleRecorder final : public ClosingObserver {
   CycleTimes times_;
   std::vector<Cycle> cycles_;
   std::size_t current_ = 0;
-  double work_before_ = 0;  // at the begin of the current cycle [J]
+  double work_before_ = 0;  // source work at the begin of the current cycle [J]
   std::size_t counted_ = 0;
   std::optional<double> closed_from_ = {};  // the switch is electrically closed since then [s]
 };

@@ -10,7 +10,7 @@ std::string Figure::label() const {
 
 double Figure::value(const Metrics& metrics) const {
   if (const auto* const number = std::get_if<double Metrics::*>(&member)) return metrics.**number;
-  // Counts and yes or no have no value that says "not known": what followed the first touch is known with the highest rebound.
+  // Counts and flags have no value for "not known": what follows the first touch is known where the highest rebound is known.
   if (asked == &AskedFigures::opening && is_count())
     return std::isfinite(metrics.opening_time) ? metrics.*std::get<int Metrics::*>(member) : Metrics::unset;
   const bool followed = std::isfinite(metrics.major_bounce_height) &&

@@ -1,5 +1,5 @@
-// The figures of merit of a closing in one table: what results call each of them, in which unit, which way is better, and what
-// decides its last digits. Every list of figures is this table or a selection of it.
+// The figures of merit of a closing in one table: name in results, unit, which direction is better, and what decides its last
+// digits. Every list of figures is this table or a selection of it.
 #pragma once
 
 #include <algorithm>
@@ -16,10 +16,10 @@
 
 namespace softland {
 
-/// Which way a figure is better.
+/// The direction in which a figure is better.
 enum class Better { lower, neither };
 
-/// What a figure depends on, and with that who can tell its error.
+/// What a figure depends on; this decides how its error can be estimated.
 enum class Conditioning {
   first_touch,   ///< the motion until first contact: two runs differ by the error
   high_rebound,  ///< one rebound: two runs differ by the error, unless they part before it
@@ -33,45 +33,47 @@ enum class Conditioning {
 struct Figure {
   using Member = std::variant<double Metrics::*, int Metrics::*, bool Metrics::*>;
 
-  std::string_view key;     ///< in every JSON; ends with the unit
-  std::string_view name;    ///< in tables for people
-  std::string_view also;    ///< another name that people know; may be empty
-  std::string_view symbol;  ///< a short name where there is none
+  std::string_view key;     ///< name in every JSON; ends with the unit
+  std::string_view name;    ///< name in tables for people
+  std::string_view also;    ///< another name in common use; may be empty
+  std::string_view symbol;  ///< short name, where the figure has one
   std::string_view unit;    ///< empty for a count and for yes or no
   Better better = Better::neither;
   Conditioning conditioning = Conditioning::first_touch;
   Member member;
-  /// Whose derivative is its own: that of the permanent contact is that of the last rebound's end. Null: it has none.
+  /// Figure whose derivative this figure has: that of the permanent contact is that of the last rebound's end. Null where it
+  /// has none.
   double Metrics::*slope = nullptr;
-  bool of_results = true, of_devices = false;              ///< whether results tell it of a closing; of devices that differ
-  bool AskedFigures::*asked = nullptr;                     ///< of scenes that ask for it; null: of every scene
-  double worst = std::numeric_limits<double>::infinity();  ///< what a device counts with that does not close
+  bool of_results = true, of_devices = false;  ///< true when results show the figure for a closing, for varied devices
+  bool AskedFigures::*asked = nullptr;  ///< request of a scene that makes results show the figure; null: every scene shows it
+  double worst = std::numeric_limits<double>::infinity();  ///< value that counts for a device that does not close
 
   [[nodiscard]] constexpr bool is_count() const { return std::holds_alternative<int Metrics::*>(member); }
   [[nodiscard]] constexpr bool is_yes_or_no() const { return std::holds_alternative<bool Metrics::*>(member); }
-  /// Whether the difference of two runs is an estimate of its error.
+  /// True when the difference of two runs is an estimate of the figure's error.
   [[nodiscard]] constexpr bool is_told_by_two_runs() const {
     return conditioning == Conditioning::first_touch || conditioning == Conditioning::high_rebound ||
            conditioning == Conditioning::every_touch || conditioning == Conditioning::open;
   }
-  /// True where results of a scene that asks for these tell it.
+  /// True when results show the figure for a scene with these requests.
   [[nodiscard]] constexpr bool is_asked(const AskedFigures& of_scene) const { return asked == nullptr || of_scene.*asked; }
-  /// Whether certify() gives it an error.
+  /// True when certify() gives the figure an error.
   [[nodiscard]] constexpr bool has_error() const { return !is_yes_or_no() && conditioning != Conditioning::drives; }
 
-  /// "Permanent contact (settling time)"
+  /// Returns for example "Permanent contact (settling time)".
   [[nodiscard]] std::string label() const;
-  /// The key without its unit: "initial_contact_time".
+  /// Returns the key without its unit: "initial_contact_time".
   [[nodiscard]] constexpr std::string_view quantity() const {
     return unit.empty() ? key : key.substr(0, key.size() - unit.size() - 1);
   }
-  /// The figure of a closing, 1 for yes and 0 for no; NaN where it is not known.
+  /// Returns the figure of a closing, 1 for yes and 0 for no; NaN where it is not known.
   [[nodiscard]] double value(const Metrics& metrics) const;
-  /// The same for comparisons: a rebound too low to count is as high as one that just counts, and a force as large as is steady.
+  /// Returns the value for comparisons: a rebound too low to count is as high as one that just counts, and a force as large as
+  /// is steady.
   [[nodiscard]] double counted(const Metrics& metrics, const MetricsOptions& options) const;
 };
 
-/// All there are.
+/// The table of all figures.
 inline constexpr auto figure_table = std::to_array<Figure>({
     {.key = "initial_contact_time_s",
      .name = "First contact",
@@ -384,7 +386,7 @@ inline constexpr auto figure_table = std::to_array<Figure>({
      .of_results = false},
 });
 
-/// A selection of the table, in its order.
+/// Returns a selection of the table, in its order.
 template <bool (*chosen)(const Figure&)>
 [[nodiscard]] consteval auto figures_that_are() {
   std::array<Figure, static_cast<std::size_t>(std::count_if(figure_table.begin(), figure_table.end(), chosen))> all{};
@@ -397,22 +399,22 @@ constexpr bool is_of_devices(const Figure& one) { return one.of_devices; }
 constexpr bool is_number_of_results(const Figure& one) { return one.of_results && !one.is_yes_or_no(); }
 constexpr bool is_derived(const Figure& one) { return one.slope != nullptr && (one.of_results || one.of_devices); }
 }  // namespace internal
-/// What results tell of a closing; of devices that differ, and conditions on these may be about; what conditions on one closing
-/// may be about; what has derivatives.
+/// The selections are: figures that results show for a closing; figures of varied devices, on which conditions on these may be
+/// set; figures that conditions on one closing may use; figures that have derivatives.
 inline constexpr auto all_figures = figures_that_are<internal::is_of_results>();
 inline constexpr auto device_figures = figures_that_are<internal::is_of_devices>();
 inline constexpr auto conditioned_figures = figures_that_are<internal::is_number_of_results>();
 inline constexpr auto derived_figures = figures_that_are<internal::is_derived>();
 
-/// Those of a selection that a scene asks for.
+/// Returns the figures of a selection that a scene asks for.
 [[nodiscard]] std::vector<Figure> asked_among(std::span<const Figure> figures, const AskedFigures& asked);
 
-/// The row of a member of Metrics.
+/// Returns the row of a member of Metrics.
 [[nodiscard]] constexpr const Figure& figure_of(Figure::Member member) {
   return *std::find_if(figure_table.begin(), figure_table.end(), [&](const Figure& one) { return one.member == member; });
 }
 [[nodiscard]] constexpr std::string_view key_of(Figure::Member member) { return figure_of(member).key; }
-/// Of this key, which must be among them.
+/// Returns the row with this key, which must be in the table.
 [[nodiscard]] constexpr const Figure& figure_of(std::string_view key) {
   return *std::find_if(figure_table.begin(), figure_table.end(), [&](const Figure& one) { return one.key == key; });
 }
@@ -420,11 +422,11 @@ inline constexpr auto derived_figures = figures_that_are<internal::is_derived>()
 /// The figures by which a closing is compared with one of another law or number of modes.
 inline constexpr std::array compared_figures{figure_of(&Metrics::initial_contact_time), figure_of(&Metrics::impact_velocity),
                                              figure_of(&Metrics::major_bounce_height)};
-/// The figures that the accuracy of a closing is about: these, and one that needs a contact law.
+/// The figures that an accuracy study of a closing looks at: the compared figures, and one that needs a contact law.
 inline constexpr std::array studied_figures{compared_figures[0], compared_figures[1], compared_figures[2],
                                             figure_of(&Metrics::peak_contact_force)};
 
-/// Something for every figure.
+/// One value of type T for every figure.
 template <class T>
 class PerFigure {
  public:
@@ -442,18 +444,19 @@ class PerFigure {
   }
 };
 
-/// A number for every figure: its value, or its error. NaN: not known.
+/// A number for every figure: its value, or its error. NaN where it is not known.
 class FigureValues : public PerFigure<double> {
  public:
   constexpr FigureValues() { values_.fill(Metrics::unset); }
   explicit FigureValues(const Metrics& metrics);
 
-  AskedFigures asked = {};  ///< by the scene: see Figure::is_asked()
+  AskedFigures asked = {};  ///< requests of the scene: see Figure::is_asked()
 };
 
-/// (value - reference) / max(|reference|, least): by which part of itself a figure changes. NaN where either is not known.
+/// Returns the relative change of a figure, (value - reference) / max(|reference|, least). NaN where either is not known.
 [[nodiscard]] double relative_change(double value, double reference, double least = 0);
-/// Its size, to be held against a tolerance: 0 where both are equal or neither is known, infinite where only one is known.
+/// Returns the size of the relative change, for comparison with a tolerance: 0 where both are equal or neither is known,
+/// infinite where only one is known.
 [[nodiscard]] double relative_difference(double value, double reference, double least = 0);
 
 }  // namespace softland

@@ -1,5 +1,5 @@
-// Figures of merit of a closing (names after Bognash 2019). Every figure is taken at the contact point. What each of them is
-// called in results, and in which unit, stands in objectives/figures.h.
+// Figures of merit of a closing (names after Bognash 2019). Every figure is taken at the contact point. objectives/figures.h
+// has their names and units in results.
 #pragma once
 
 #include <algorithm>
@@ -24,10 +24,10 @@ struct AskedFigures {
   bool opening = false;       ///< a run opens on command
   bool pressure = false;      ///< a contact that makes the connection has summits and a hardness
   bool charge = false;        ///< Device::load is given
-  bool break_charge = false;  ///< the same, and the run opens on command
+  bool break_charge = false;  ///< Device::load is given, and the run opens on command
   bool operator==(const AskedFigures&) const = default;
 };
-/// Returns what a device asks for.
+/// Returns the figures that a device asks for.
 [[nodiscard]] inline AskedFigures asked_figures(const Device& device) {
   return {.resistance = device.conducts(),
           .electrical = device.electrical.is_asked(),
@@ -40,7 +40,7 @@ struct MetricsOptions {
   double significant_rebound = 1e-9;  ///< a rebound counts when it is higher than this [m]
   double steady_force = 0.1;          ///< the contact force is steady from this share of the hold force on
   AskedFigures asked = {};
-  OpeningCommand opening = {};    ///< figures of the landing are those until then
+  OpeningCommand opening = {};    ///< command to open; figures of the landing count until then
   TransferOptions transfer = {};  ///< set where Device::load is given
 };
 
@@ -51,11 +51,11 @@ struct Metrics {
   double initial_contact_time = unset;     ///< t_i [s]
   double permanent_contact_time = unset;   ///< t_p [s]; NaN when not settled
   double bounce_time = unset;              ///< t_b = t_p - t_i [s]
-  int bounce_count = 0;                    ///< N_B, significant rebounds; meaningless when nothing touched
+  int bounce_count = 0;                    ///< N_B, number of significant rebounds; meaningless when nothing touched
   double major_bounce_height = unset;      ///< B_H [m]; 0 when there is no rebound
-  double first_rebound_time = unset;       ///< duration of the first significant rebound [s]; 0 when there is none
+  double first_rebound_time = unset;       ///< duration of the first significant rebound [s]; 0 without a rebound
   double impact_velocity = unset;          ///< v_i [m/s]
-  double peak_contact_force = unset;       ///< [N]
+  double peak_contact_force = unset;       ///< largest contact force of the run [N]
   double impact_energy = unset;            ///< sum over touches of the largest stored contact energy [J]
   double hold_force = unset;               ///< [N]
   double steady_force_time = unset;        ///< Trajectory::steady_force_time [s]
@@ -67,41 +67,45 @@ struct Metrics {
   double electrical_contact = unset;   ///< ElectricalOutcome::first_closed [s]
   double electrical_settling = unset;  ///< ElectricalOutcome::closed_from [s]
   int electrical_bounces = 0;          ///< ElectricalOutcome::openings; meaningless where it never closes
-  double pressure = unset;             ///< Touch::pressure, the largest
-  double make_charge = unset;   ///< see objectives/transferred_charge.h: until the command to open, or the end of the run [C]
-  double break_charge = unset;  ///< the same from the command on [C]
+  double pressure = unset;             ///< largest Touch::pressure of the run
+  double make_charge =
+      unset;  ///< charge passed until the command to open, or the end of the run [C]; see objectives/transferred_charge.h
+  double break_charge = unset;  ///< charge passed from the command on [C]
   AskedFigures asked = {};      ///< MetricsOptions::asked
-  // These are known where the drives command the switch to open: see OpeningOnCommand.
+  // These are known when the drives command the switch to open: see OpeningOnCommand.
   double open_command = unset;           ///< [s]
-  double opening_time = unset;           ///< from the command to the last break of the contact [s]
+  double opening_time = unset;           ///< time from the command to the last break of the contact [s]
   int release_bounces = 0;               ///< meaningless where the contact is closed at the end
-  double release_bounce_height = unset;  ///< [m]; 0 where there is none
-  double release_settling_time = unset;  ///< from the command on, to rest in the open state [s]
+  double release_bounce_height = unset;  ///< highest separation that ends in a touch [m]; 0 without a bounce
+  double release_settling_time = unset;  ///< time from the command to rest in the open state [s]
   double overshoot_open = unset;         ///< [m]
   double least_gap_open = unset;         ///< [m]
   double closed_time = unset;            ///< time in touch from the first touch to the last break [s]
-  double back_stop_velocity = unset;     ///< largest impact velocity on a back stop after it, 0 if none [m/s]; by simulate()
+  double back_stop_velocity =
+      unset;  ///< largest impact velocity on a back stop after the command, 0 if none [m/s]; by simulate()
   // Set by simulate() where nothing touched: see set_open_figures().
-  double static_deflection = unset;   ///< of the contact point in the open equilibrium under the hold levels [m]
-  double overshoot = unset;           ///< furthest beyond it, seen from where the run started [m]
-  double open_settling_time = unset;  ///< from when on the contact point stays near it [s]; NaN where it does not
+  double static_deflection = unset;  ///< position of the contact point in the open equilibrium under the hold levels [m]
+  double overshoot = unset;          ///< largest excursion beyond static_deflection, seen from where the run started [m]
+  double open_settling_time =
+      unset;  ///< time from which the contact point stays near static_deflection [s]; NaN where it does not
   // Set by simulate(), which knows the drives.
   double peak_voltage =
       unset;  ///< largest |V| of the electrodes' drives in the window, of the piezo where there is no electrode [V]
   double peak_slew = unset;                ///< largest |dV/dt| of any drive [V/s]; infinite for a jump
-  double largest_impact_velocity = unset;  ///< of all touches, which the first may not be [m/s]
-  // What costs are made of, and results do not show.
-  double closest = unset;           ///< smallest separation before the first touch [m]; of a run that never touches
-  double separated = unset;         ///< time above the first-touch plane after it [s]
-  double last_rebound_end = unset;  ///< of the significant ones, of the run where one is under way; t_i if none [s]
-  double landing_excess = unset;    ///< Trajectory::landing_excess, not below 0 [J]
-  double end = unset;               ///< of the run [s]
-  bool reopened = false;            ///< at the end of the run, by more than half of the contact gap
+  double largest_impact_velocity = unset;  ///< largest impact velocity of all touches, not only of the first [m/s]
+  // Costs use these; results do not show them.
+  double closest = unset;    ///< smallest separation before the first touch [m]; known also for a run that never touches
+  double separated = unset;  ///< time above the first-touch plane after it [s]
+  double last_rebound_end =
+      unset;                      ///< end of the last significant rebound, end of the run while one is under way; t_i if none [s]
+  double landing_excess = unset;  ///< Trajectory::landing_excess, not below 0 [J]
+  double end = unset;             ///< end of the run [s]
+  bool reopened = false;          ///< true when the contact is open at the end of the run, by more than half of the contact gap
 
   [[nodiscard]] bool touched() const { return std::isfinite(initial_contact_time); }
-  /// Whether it settled without a significant rebound.
+  /// True when the contact settled without a significant rebound.
   [[nodiscard]] bool lands() const { return settled && bounce_count == 0; }
-  /// Whether the closing could be followed to the end of its window.
+  /// True when the closing could be followed to the end of its window.
   [[nodiscard]] bool is_complete() const {
     return status == Status::done || status == Status::no_contact || status == Status::not_settled;
   }
@@ -116,14 +120,14 @@ class LandingFigures {
 
   /// The contact point as far as it was followed.
   struct Course {
-    bool sound = true;  ///< every knot was finite, and in order of time
+    bool sound = true;  ///< true when every knot was finite, and in order of time
     bool touched = false;
-    bool above = false;  ///< a rebound, which has been told, was under way at the end
+    bool above = false;  ///< true while a rebound, already passed to rebound(), was under way at the end
     double first_touch = Metrics::unset, impact_velocity = Metrics::unset;  ///< [s], [m/s]
-    double last_time = 0;                                                   ///< [s]
-    double closest = Metrics::unset;                                        ///< before the first touch [m]
+    double last_time = 0;                                                   ///< time of the last knot [s]
+    double closest = Metrics::unset;                                        ///< smallest separation before the first touch [m]
   };
-  /// Of the run, once it has ended: see metrics().
+  /// Returns the figures of the run, once it has ended: see metrics().
   [[nodiscard]] Metrics metrics(const Trajectory& end, const Course& course) const;
 
  private:
@@ -150,7 +154,7 @@ class MetricsObserver final : public ClosingObserver {
   void touch(const Touch& touch) override {
     if (touch.begin < options_.opening.time) figures_.touch(touch);
   }
-  /// Of the run, once it has ended: see metrics().
+  /// Returns the figures of the run, once it has ended: see metrics().
   [[nodiscard]] Metrics metrics(const Trajectory& end);
 
  private:
@@ -163,24 +167,27 @@ class MetricsObserver final : public ClosingObserver {
   TransferredCharge charge_;
   double contact_gap_, closest_;  // [m]
   TrajectoryPoint last_{.time = Metrics::unset};
-  double make_charge_ = Metrics::unset;            // once the opening has begun [C]
-  std::optional<CommandedOpening> opening_;        // from the command on
-  std::optional<LandingFigures::Course> landing_;  // until then
+  double make_charge_ = Metrics::unset;            // make charge, fixed once the opening has begun [C]
+  std::optional<CommandedOpening> opening_;        // opening on command; set from the command on
+  std::optional<LandingFigures::Course> landing_;  // course of the landing until the command
 };
 
-/// All rebounds, significant or not, in order, as far as the knots are finite; a separation below 1e-12 of the contact gap is
-/// none. The trajectory's heights come from the extremum of its interpolant, not from its knots.
+/// Returns all rebounds, significant or not, in order, as far as the knots are finite; a separation below 1e-12 of the contact
+/// gap does not count. The trajectory's heights come from the extremum of its interpolant, not from its knots.
 [[nodiscard]] std::vector<Rebound> rebounds(const Trajectory& trajectory);
 
 /// Never throws: trouble is in the status (the trajectory's own if that is not `done`, else done | no_contact | not_settled, or
-/// numerical_failure when a knot is not finite or goes back in time). A run that did not reach the end of its window gives
-/// initial_contact_time and impact_velocity when it touched before, and nothing else. Of several contacts these two are those of
-/// the first touch of any; rebounds count from where all that make the connection, or any of them, are closed, and a connection
-/// that never closes is not_settled. No touch: drive_energy and capacitance
-/// alone; so for a run that began closed, which has no landing and is not_settled until set_open_figures() finds it open and at
-/// rest. A run that ends at the touch, for want of a contact: initial_contact_time, impact_velocity and drive_energy. Not
-/// settled: less than one in_contact_period after permanent contact (first contact where there is no significant rebound), or a
-/// significant rebound and a period that is NaN.
+/// numerical_failure when a knot is not finite or goes back in time). The figures that are known depend on the run:
+///
+/// - A run that did not reach the end of its window: initial_contact_time and impact_velocity when it touched before, and
+/// nothing else.
+/// - Several contacts: these two are those of the first touch of any; rebounds count from where all that make the connection,
+/// or any of them, are closed, and a connection that never closes is not_settled.
+/// - No touch: drive_energy and capacitance alone. This also holds for a run that began closed: it has no landing and is
+/// not_settled until set_open_figures() finds it open and at rest.
+/// - A run that ends at the touch, for want of a contact: initial_contact_time, impact_velocity and drive_energy.
+/// - Not settled: less than one in_contact_period after permanent contact (first contact where there is no significant
+/// rebound), or a significant rebound and a period that is NaN.
 [[nodiscard]] Metrics metrics(const Trajectory& trajectory, const MetricsOptions& options = {});
 
 }  // namespace softland

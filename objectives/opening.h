@@ -1,5 +1,5 @@
-// Figures of an opening: how a closed switch lets go, and how long it swings once it has. Taken at the contact point, like those
-// of a closing.
+// Figures of an opening: how a closed switch releases, and how long it vibrates afterwards. They are taken at the contact
+// point, like those of a closing.
 #pragma once
 
 #include <limits>
@@ -11,15 +11,16 @@
 namespace softland {
 
 struct OpeningBand {
-  double open_position = 0;  ///< of the contact point at rest under the open drives [m]
-  double width = 0;          ///< the switch is open for good once it stays this near [m]
-  double drives_end = 0;     ///< from when on the drives stand at their open levels [s]
+  double open_position = 0;  ///< position of the contact point at rest under the open drives [m]
+  double width = 0;          ///< half-width of the band [m]: the switch is open for good once it stays this near
+  double drives_end = 0;     ///< time from which the drives stand at their open levels [s]
 };
 
 /// How the contact point comes to rest in a band.
 struct BandFigures {
-  double settled_from = std::numeric_limits<double>::quiet_NaN();  ///< from when on it stays in the band [s]; NaN: it does not
-  double below = 0, above = 0;  ///< furthest from the open position, away from the contact and towards it [m]; 0 if never
+  double settled_from =
+      std::numeric_limits<double>::quiet_NaN();  ///< time from which it stays in the band [s]; NaN where it does not
+  double below = 0, above = 0;  ///< largest excursion from the open position, away from the contact and towards it [m]; 0 if none
   double residual = std::numeric_limits<double>::quiet_NaN();  ///< OpeningFigures::residual_vibration
 };
 
@@ -44,43 +45,49 @@ class BandFollower {
 
 /// A command to open, while a run goes on.
 struct OpeningCommand {
-  double time = std::numeric_limits<double>::infinity();  ///< [s]
-  double open_position =
-      std::numeric_limits<double>::quiet_NaN();  ///< the contact point rests here under the levels that follow [m]; NaN: nowhere
+  double time = std::numeric_limits<double>::infinity();            ///< [s]
+  double open_position = std::numeric_limits<double>::quiet_NaN();  ///< rest position of the contact point under the levels that
+                                                                    ///< follow [m]; NaN where it has none
 };
 
 /// How a closed switch opens on a command. Times count from the command; NaN throughout where it is closed at the end.
 struct OpeningOnCommand {
-  double command = std::numeric_limits<double>::quiet_NaN();        ///< [s], from t = 0
-  double opening_time = std::numeric_limits<double>::quiet_NaN();   ///< to the last break of the contact [s]
-  double settling_time = std::numeric_limits<double>::quiet_NaN();  ///< from when on it stays at rest, within settled_band [s]
-  double overshoot = std::numeric_limits<double>::quiet_NaN();  ///< furthest beyond the open position, away from the contact [m]
-  double least_gap = std::numeric_limits<double>::quiet_NaN();  ///< smallest separation on its way back [m]; the last, if none
-  double highest_bounce = std::numeric_limits<double>::quiet_NaN();  ///< [m]; 0 where there is none
-  double separated = 0;                                              ///< time in separations until the last break [s]
-  int bounces = 0;  ///< separations above the significant rebound that end in a touch; meaningless where it is closed
+  double command = std::numeric_limits<double>::quiet_NaN();       ///< time of the command from t = 0 [s]
+  double opening_time = std::numeric_limits<double>::quiet_NaN();  ///< time to the last break of the contact [s]
+  double settling_time =
+      std::numeric_limits<double>::quiet_NaN();  ///< time from which the contact point stays at rest, within settled_band [s]
+  double overshoot =
+      std::numeric_limits<double>::quiet_NaN();  ///< largest excursion beyond the open position, away from the contact [m]
+  double least_gap = std::numeric_limits<double>::quiet_NaN();  ///< smallest separation on the way back [m]; the last separation
+                                                                ///< if it never comes back
+  double highest_bounce =
+      std::numeric_limits<double>::quiet_NaN();  ///< highest separation that ends in a touch [m]; 0 without a bounce
+  double separated = 0;                          ///< time in separations until the last break [s]
+  int bounces =
+      0;  ///< number of separations above the significant rebound that end in a touch; meaningless where the contact is closed
 };
 
-/// Of the contact gap: the contact has come to rest where it stays so near its open position.
+/// The contact has come to rest where it stays within this share of the contact gap of its open position.
 inline constexpr double settled_band = 0.02;
 
-/// Finds them while a run goes on.
+/// Finds the figures of an opening on a command while a run goes on.
 class CommandedOpening {
  public:
-  /// Lengths in m.
+  /// Lengths are in m.
   CommandedOpening(const OpeningCommand& command, double contact_gap, double significant_rebound);
   /// Takes the motion between two knots after the command.
   void follow(const TrajectoryPoint& a, const TrajectoryPoint& b);
   /// Takes a separation that ended in a touch after the command.
   void bounce(const Rebound& rebound);
-  /// Of the run, once it has ended at its last knot, with the contact open since the begin of `under_way`, or closed.
+  /// Returns the figures once the run has ended at its last knot. `under_way`: the separation in which the contact stands open;
+  /// none where it is closed.
   [[nodiscard]] OpeningOnCommand figures(const std::optional<Rebound>& under_way, const TrajectoryPoint& last) const;
 
  private:
   OpeningCommand command_;
   double contact_gap_, significant_;  // [m]
   BandFollower band_;
-  double nearest_ = std::numeric_limits<double>::quiet_NaN();  // position on its way back [m]
+  double nearest_ = std::numeric_limits<double>::quiet_NaN();  // smallest position on the way back [m]
   double highest_ = 0, separated_ = 0;                         // [m], [s]
   int bounces_ = 0;
 };
@@ -88,18 +95,19 @@ class CommandedOpening {
 struct OpeningFigures {
   static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
-  /// done: it opens, and stays in the band until the end of the window. not_settled: it is closed at the end, or outside the
-  /// band. Else that of the run.
+  /// done: the contact opens, and stays in the band until the end of the window. not_settled: it is closed at the end, or
+  /// outside the band. Otherwise the status of the run.
   Status status = Status::not_run;
-  double release_time = unset;   ///< the contact point leaves the contact for good [s]; NaN while it is closed at the end
-  double settling_time = unset;  ///< from when on it stays in the band [s]; NaN where it does not
-  double overshoot = unset;      ///< furthest beyond its open position, away from the contact [m]; 0 if never
+  double release_time =
+      unset;  ///< time at which the contact point leaves the contact for good [s]; NaN while it is closed at the end
+  double settling_time = unset;  ///< time from which it stays in the band [s]; NaN where it does not
+  double overshoot = unset;      ///< largest excursion beyond its open position, away from the contact [m]; 0 if none
   double residual_vibration =
       unset;        ///< largest distance from the open position once the drives stand [m]; NaN before that, or while closed
-  int touches = 0;  ///< of the contact after it has first left it
+  int touches = 0;  ///< number of touches of the contact after it has first left it
 };
 
-/// Of an opening (ClosingOptions::begins_closed). Of a run that did not come to its end the status alone.
+/// Returns the figures of an opening (ClosingOptions::begins_closed). A run that did not come to its end has the status alone.
 [[nodiscard]] OpeningFigures release_figures(const Trajectory& opening, const OpeningBand& band);
 
 }  // namespace softland

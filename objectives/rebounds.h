@@ -1,4 +1,4 @@
-// The rebounds of a closing, found as its knots come: nothing of what has passed is kept.
+// The rebounds of a closing, found as its knots arrive: no past knots are kept.
 #pragma once
 
 #include <algorithm>
@@ -16,21 +16,21 @@ namespace softland {
 /// An interval in which the contact point stands above the first-touch plane, after first contact.
 struct Rebound {
   double begin = 0;           ///< [s]
-  double end = 0;             ///< [s]; NaN when it is under way at the end of the window
-  double height = 0;          ///< largest separation in it [m]; a lower bound when it is under way
+  double end = 0;             ///< [s]; NaN while it is under way at the end of the window
+  double height = 0;          ///< largest separation of the rebound [m]; a lower bound while it is under way
   double time_of_height = 0;  ///< [s]
 };
 
 /// Follows the separation of the contact point from the plane. Between knots its turning points and its crossings of the plane
-/// are those of the quintic through them. A separation below 1e-12 of the contact gap is none: the integrator stops at the plane
-/// to rounding.
+/// are those of the quintic through them. A separation below 1e-12 of the contact gap does not count: the integrator stops at
+/// the plane to rounding.
 class ReboundFinder {
  public:
   /// `contact_gap` [m]
   explicit ReboundFinder(double contact_gap) : gap_(contact_gap), usable_(std::isfinite(contact_gap)) {}
 
-  /// Takes the next knot and calls found(rebound) for every rebound that ends before it. False, from then on, for a knot that is
-  /// not finite or goes back in time: neither it nor what follows counts.
+  /// Takes the next knot and calls found(rebound) for every rebound that ends before it. Returns false, from then on, for a
+  /// knot that is not finite or goes back in time: neither it nor what follows counts.
   template <class Found>
   bool knot(const TrajectoryPoint& next, Found&& found) {
     usable_ = usable_ && std::isfinite(next.time) && std::isfinite(next.position) && std::isfinite(next.velocity) &&
@@ -46,17 +46,19 @@ class ReboundFinder {
     return true;
   }
 
-  /// Whether every knot so far could be used.
+  /// True when every knot so far could be used.
   [[nodiscard]] bool usable() const { return usable_; }
   [[nodiscard]] bool touched() const { return touched_; }
-  [[nodiscard]] double first_touch() const { return first_touch_; }          ///< [s]; NaN before
-  [[nodiscard]] double impact_velocity() const { return impact_velocity_; }  ///< of the first touch [m/s]; NaN before
-  [[nodiscard]] double last_time() const { return last_.time; }              ///< of the last knot that counted [s]
-  /// The rebound that has not ended yet.
+  [[nodiscard]] double first_touch() const { return first_touch_; }  ///< time of the first touch [s]; NaN before
+  [[nodiscard]] double impact_velocity() const {
+    return impact_velocity_;
+  }                                                              ///< impact velocity of the first touch [m/s]; NaN before
+  [[nodiscard]] double last_time() const { return last_.time; }  ///< time of the last knot that counted [s]
+  /// Returns the rebound that has not ended yet.
   [[nodiscard]] const std::optional<Rebound>& under_way() const { return under_way_; }
 
  private:
-  /// A place between which and the next one the separation is monotone and keeps its sign.
+  /// A point from which the separation is monotone and keeps its sign up to the next one.
   struct Node {
     double time = 0;        ///< [s]
     double separation = 0;  ///< [m], 0 on the plane
@@ -64,7 +66,7 @@ class ReboundFinder {
   };
 
   [[nodiscard]] double snapped(double separation) const {
-    constexpr double on_the_plane = 1e-12;  // of the contact gap
+    constexpr double on_the_plane = 1e-12;  // share of the contact gap
     return std::abs(separation) <= on_the_plane * std::abs(gap_) ? 0.0 : separation;
   }
   [[nodiscard]] Node node(const TrajectoryPoint& p) const { return {p.time, snapped(gap_ - p.position), p.velocity}; }
@@ -107,8 +109,8 @@ class ReboundFinder {
     node_ = next;
   }
 
-  /// True when the control points of the quintic's Bernstein form are in order: a cheap proof that nothing turns between the
-  /// knots.
+  /// Returns true when the control points of the quintic's Bernstein form are in order: a cheap proof that the velocity keeps
+  /// its sign between the knots.
   [[nodiscard]] static bool surely_monotone(const TrajectoryPoint& a, const TrajectoryPoint& b) {
     const double h = b.time - a.time;
     const double from_a = a.velocity * h / 5;
