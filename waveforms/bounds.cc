@@ -35,13 +35,13 @@ struct Differentiated {
     cosine = c, sine = s;
   }
 
-  /// Whether it is a sine that stays as large as it is, whose bound is the same at all times.
+  /// True for a sine of constant size, whose bound is the same at all times.
   [[nodiscard]] bool is_steady() const {
     bool is_constant = decay == 0;
     for (std::size_t k = 1; k < size; ++k) is_constant = is_constant && cosine[k] == 0 && sine[k] == 0;
     return is_constant;
   }
-  /// On times from `first` to `last` after the piece began.
+  /// Returns a bound for times from `first` to `last` after the piece began.
   [[nodiscard]] double bound(double first, double last) const {
     const double longest = std::max(std::abs(first), std::abs(last));
     double power = 1, sum = 0;
@@ -50,7 +50,7 @@ struct Differentiated {
   }
 };
 
-/// A bound on a derivative of a piece, made once for all intervals.
+/// A bound on a derivative of a piece, computed once for all intervals.
 class DerivativeBound {
  public:
   DerivativeBound(const SignalPieceOf<double>& piece, int order) : piece_(piece), order_(order) {
@@ -84,7 +84,7 @@ class DerivativeBound {
   std::vector<Differentiated> others_;
 };
 
-/// What the voltage or the rate is made of, at most.
+/// Returns the sum of the largest sizes of all parts of the voltage, or of its rate.
 double size_of(const SignalPieceOf<double>& piece, bool of_rate, double from, double to) {
   double sum = 0;
   for (const TermOf<double>& term : piece.terms) {
@@ -98,8 +98,8 @@ double size_of(const SignalPieceOf<double>& piece, bool of_rate, double from, do
                         : std::abs(piece.value) + std::abs(piece.slope) * longest + swing);
 }
 
-/// A time in [from, to] at which the function is within `tolerance` of its maximum; `curvature(a, b)` bounds its second
-/// derivative between a and b. A chord of length h is at most h^2 / 8 of that below the function.
+/// Returns a time in [from, to] at which the function is within `tolerance` of its maximum. `curvature(a, b)` bounds its second
+/// derivative between a and b: a chord of length h is at most h^2 / 8 of that below the function.
 template <typename Function, typename Curvature>
 double time_of_maximum(Function function, const Curvature& curvature, double from, double to, double tolerance) {
   struct Interval {
@@ -107,7 +107,7 @@ double time_of_maximum(Function function, const Curvature& curvature, double fro
   };
   std::vector<Interval> open{{from, to, function(from), function(to)}};
   double place = open[0].at_begin >= open[0].at_end ? from : to, best = std::max(open[0].at_begin, open[0].at_end);
-  constexpr long most_values = 10'000'000;  // a waveform that needs more has no digit left in its angles
+  constexpr long most_values = 10'000'000;  // a waveform that needs more has no significant digit left in its angles
   for (long values = 0; !open.empty() && values < most_values; ++values) {
     const Interval i = open.back();
     open.pop_back();

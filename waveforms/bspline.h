@@ -1,4 +1,4 @@
-// B-spline: a cubic spline whose curvature is continuous, drawn by levels that it need not reach: it stays between the smallest
+// B-spline: a cubic spline with continuous curvature, defined by levels that it need not reach: it stays between the smallest
 // and the largest of them. With n levels and knots at the n - 2 times that divide the duration evenly, fourfold at both ends:
 //
 //   V(t) = sum over i of levels_i B_i(t) on [0, duration], B_i the cubic B-splines of these knots (de Boor, A Practical Guide to
@@ -36,19 +36,19 @@ struct FamilyOf<BSpline> {
 
 namespace internal {
 
-/// In span j of a spline of n levels, the four B-splines that are not 0: their cubic polynomials over the part of the span that
-/// is past, coefficients in rising order. The first one belongs to level j.
+/// Returns the four B-splines that are not 0 in span j of a spline of n levels: cubic polynomials over the share of the span
+/// that has passed, coefficients in rising order. The first one belongs to level j.
 [[nodiscard]] std::array<std::array<double, 4>, 4> bsplines_of_span(std::size_t j, std::size_t n);
 
-/// Whether the knots about span j are evenly spaced: the B-splines of all such spans are the same.
+/// True when the knots about span j are evenly spaced: the B-splines of all such spans are the same.
 [[nodiscard]] constexpr bool has_even_knots(std::size_t j, std::size_t n) { return j >= 3 && j + 7 <= n; }
 
-/// Knot `i` of the n + 4 knots of a spline of n levels, in spans.
+/// Returns knot `i` of the n + 4 knots of a spline of n levels, in spans.
 [[nodiscard]] double bspline_knot(std::size_t i, std::size_t n);
 
 }  // namespace internal
 
-/// The pieces of a valid spline.
+/// Returns the pieces of a valid spline.
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const BSplineOf<P>& spline) {
   const std::size_t n = spline.levels.size(), spans = n - 3;
@@ -72,7 +72,7 @@ template <class P>
   all.push_back({.begin = spline.duration, .value = spline.levels.back()});
   return all;
 }
-/// Throws InvalidParameter.
+/// Compiles the spline. Throws InvalidParameter.
 [[nodiscard]] Signal signal(const BSpline& spline, double before = 0);
 
 }  // namespace softland

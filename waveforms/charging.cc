@@ -9,7 +9,7 @@
 namespace softland {
 namespace {
 
-// Finds where `function` changes sign between two times at which it has opposite signs: bisection.
+// Finds by bisection the sign change of `function` between two times at which it has opposite signs.
 template <class Function>
 double sign_change(const Function& function, double low, double high) {
   constexpr int halvings = 50;
@@ -21,9 +21,9 @@ double sign_change(const Function& function, double low, double high) {
   return 0.5 * (low + high);
 }
 
-// Times in [begin, end] between which V^2 of a piece is monotone: it turns where V or dV/dt changes sign.
+// Returns times in [begin, end] between which V^2 of a piece is monotone: it turns where V or dV/dt changes sign.
 std::vector<double> turning_times(const SignalPiece& piece, double begin, double end, double resolving_step) {
-  constexpr double fewest = 64, most = 1e6;  // looks at a piece that is not straight
+  constexpr double fewest = 64, most = 1e6;  // number of samples of a piece that is not straight
   std::vector<double> times{begin, end};
   const auto voltage = [&](double t) { return piece.voltage(t); };
   const auto rate = [&](double t) { return piece.rate(t); };

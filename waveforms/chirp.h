@@ -21,15 +21,15 @@ namespace softland {
 template <class P>
 struct ChirpOf {
   P base = 0;                                              ///< [V]
-  P rise_time = 0;                                         ///< of the base [s], >= 0
-  P amplitude = 0;                                         ///< at the start [V]
-  P angular_frequency = 0;                                 ///< at the start [rad/s], > 0
-  P frequency_ratio = 1;                                   ///< of the frequency at the end to that at the start, > 0
-  P phase = 0;                                             ///< at the start [rad]
+  P rise_time = 0;                                         ///< rise time of the base [s], >= 0
+  P amplitude = 0;                                         ///< amplitude at the start [V]
+  P angular_frequency = 0;                                 ///< angular frequency at the start [rad/s], > 0
+  P frequency_ratio = 1;                                   ///< frequency at the end over that at the start, > 0
+  P phase = 0;                                             ///< phase at the start [rad]
   P start = 0;                                             ///< [s], >= 0
   P end = std::numeric_limits<double>::infinity();         ///< [s], > start; a finite end needs end - start >= 2 fade
   P fade = 0;                                              ///< [s], >= 0
-  P decay_time = std::numeric_limits<double>::infinity();  ///< in which the amplitude falls by 1/e [s], > 0
+  P decay_time = std::numeric_limits<double>::infinity();  ///< time in which the amplitude falls by 1/e [s], > 0
 };
 using Chirp = ChirpOf<double>;
 
@@ -64,7 +64,7 @@ struct FamilyOf<Chirp> {
   }
 };
 
-/// The pieces of a valid chirp, whose base rises from `before` [V].
+/// Returns the pieces of a valid chirp, whose base rises from `before` [V].
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const ChirpOf<P>& chirp, const P& before = P(0)) {
   using std::cos, std::exp, std::sin;
@@ -96,7 +96,7 @@ template <class P>
   }
   return all;
 }
-/// Throws InvalidParameter.
+/// Compiles the chirp. Throws InvalidParameter.
 [[nodiscard]] Signal signal(const Chirp& chirp, double before = 0);
 
 }  // namespace softland

@@ -22,7 +22,7 @@ using Complex = std::complex<double>;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Re[polynomial(s) exp(exponent s)], s after the piece began.
+/// The function Re[polynomial(s) exp(exponent s)], with s counted from the beginning of the piece.
 struct Exponential {
   std::array<Complex, 4> polynomial = {};
   Complex exponent = {};
@@ -36,7 +36,7 @@ Exponential exponential_of(const SignalTerm& term) {
   return e;
 }
 
-/// Everything in a piece without a sweep.
+/// Returns all parts of a piece without a sweep.
 std::vector<Exponential> exponentials_of(const SignalPiece& piece) {
   std::vector<Exponential> all{{.polynomial = {piece.value, piece.slope}}};
   if (piece.oscillates()) {
@@ -48,9 +48,9 @@ std::vector<Exponential> exponentials_of(const SignalPiece& piece) {
   return all;
 }
 
-/// The steady answer of T dV/dt + V = input.
+/// Returns the steady response of T dV/dt + V = input.
 Exponential answer(const Exponential& input, double time_constant) {
-  // Where the input decays as the filter does, it grows in proportion to time first.
+  // The response grows in proportion to time first where the input decays as the filter does.
   constexpr double same = 1e-6;
   const Complex factor = 1.0 + input.exponent * time_constant;
   Exponential out{.polynomial = {}, .exponent = input.exponent};
@@ -67,7 +67,7 @@ Exponential answer(const Exponential& input, double time_constant) {
   return out;
 }
 
-/// The same course, counted from a later time.
+/// Returns the same function, counted from a later time.
 Exponential later(const Exponential& e, double by) {
   Exponential moved{.polynomial = {}, .exponent = e.exponent};
   const auto& p = e.polynomial;
@@ -100,19 +100,19 @@ SignalPiece piece_of(double begin, const std::vector<Exponential>& parts) {
   return piece;
 }
 
-/// Whether a piece is one voltage, as a sample that is held.
+/// True when a piece is one voltage, as a held sample is.
 bool is_held_level(const SignalPiece& piece) { return piece.slope == 0 && !piece.oscillates() && piece.terms.empty(); }
 
-/// The answer of the filter to a level, with what is left of the output before it [V].
+/// Returns the response of the filter to a level, with the rest of the output before it [V].
 SignalPiece answer_to_level(const SignalPiece& level, double time_constant, double left) {
   SignalPiece piece{.begin = level.begin, .value = level.value};
   if (left != 0) piece.terms.push_back({.cosine = {left}, .decay = 1 / time_constant});
   return piece;
 }
 
-/// Pieces with a sweep as cubics that meet them with their rates.
+/// Replaces pieces with a sweep by cubics that match their values and rates.
 std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) {
-  constexpr double tolerance = 1e-6;  // of what the terms are at the most
+  constexpr double tolerance = 1e-6;  // relative to the largest size of the terms
   std::vector<SignalPiece> all;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const SignalPiece& piece = pieces[i];
@@ -120,7 +120,7 @@ std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) 
       all.push_back(piece);
       continue;
     }
-    // A cubic through values and rates is at most h^4 / 384 times the fourth derivative off.
+    // The error of a cubic through values and rates is at most h^4 / 384 times the fourth derivative.
     const double end = pieces[i + 1].begin, size = internal::derivative_bound(piece, 0, piece.begin, end);
     const double fourth = internal::derivative_bound(piece, 4, piece.begin, end);
     const double count = std::max(1.0, std::ceil((end - piece.begin) * std::pow(fourth / (384 * tolerance * size), 0.25)));
@@ -145,7 +145,7 @@ std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) 
 namespace internal {
 namespace {
 
-/// Between two voltages that a converter of so many bits gives [V].
+/// Returns the step between two voltages of a converter with this number of bits [V].
 double step_of(const DriverLimits& limits, int bits) { return (limits.max_voltage - limits.min_voltage) / (std::exp2(bits) - 1); }
 
 }  // namespace
@@ -195,13 +195,13 @@ Signal slewed(const Signal& held, double max_slew) {
 }
 
 Signal filtered(const Signal& input, double time_constant) {
-  constexpr double over = 40;  // time constants after which nothing is left
+  constexpr double over = 40;  // number of time constants after which the response is dropped
   const std::vector<SignalPiece> pieces = without_sweeps(input.pieces());
   std::vector<SignalPiece> all;
   double output = input.before();
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double begin = pieces[i].begin, end = i + 1 < pieces.size() ? pieces[i + 1].begin : infinite;
-    // A sampled waveform is thousands of these.
+    // A sampled waveform has thousands of these.
     if (is_held_level(pieces[i])) {
       const double left = begin + over * time_constant;
       const bool settles = output != pieces[i].value;
@@ -233,7 +233,7 @@ Signal filtered(const Signal& input, double time_constant) {
 }  // namespace internal
 
 DriverLimits limits_of_samples(DriverLimits limits, const DriverModel& model) {
-  constexpr double rounding = 1e-9;  // of differences of late times
+  constexpr double rounding = 1e-9;  // relative rounding in differences of late times
   if (model.sample_rate) limits.max_slew *= 1 + rounding;
   if (model.sample_rate && model.bits) limits.max_slew += internal::step_of(limits, *model.bits) * *model.sample_rate;
   return limits;

@@ -14,7 +14,7 @@
 namespace softland {
 namespace {
 
-/// Sines become polylines this far from them, relative to the signal's peak: below the step of a 12-bit generator.
+/// Largest distance of the polyline from a sine, relative to the signal's peak: below the step of a 12-bit generator.
 constexpr double sine_tolerance = 1e-4;
 
 void require_signals(const std::map<std::string, Signal>& signals) {
@@ -34,7 +34,7 @@ const std::string& column_name(const std::string& drive) {
   return drive;
 }
 
-/// The number of the sample that is held for ever.
+/// Returns the number of the sample that is held for ever.
 double last_sample(const Signal& held, double rate) { return std::round(held.pieces().back().begin * rate); }
 
 constexpr double most_chords = 1e7;
@@ -44,7 +44,8 @@ void require_few(double chords, double tolerance) {
                                              tolerance, chords, most_chords));
 }
 
-/// The same for a piece with terms, whose curvature may change along it: intervals are halved until chords are near enough.
+/// Appends the points of a piece with terms, whose curvature may change along it: intervals are halved until chords are near
+/// enough.
 void append_halved(std::vector<std::pair<double, double>>& points, const SignalPiece& piece, double begin, double end,
                    double tolerance) {
   std::vector<double> ends{end};
@@ -63,12 +64,12 @@ void append_halved(std::vector<std::pair<double, double>>& points, const SignalP
   }
 }
 
-/// Appends the points of a piece that is not straight strictly inside (begin, end): a chord of length h is at most
-/// h^2 max|V''| / 8 off.
+/// Appends the points of a piece that is not straight strictly inside (begin, end): the error of a chord of length h is at most
+/// h^2 max|V''| / 8.
 void append_inside(std::vector<std::pair<double, double>>& points, const SignalPiece& piece, double begin, double end,
                    double tolerance) {
   if (piece.is_straight() || !(end > begin)) return;
-  // Of a spline whose levels are all the same no share of its range is a tolerance: it is a line but for rounding.
+  // A spline of equal levels is a line but for rounding: no share of its range can be a tolerance.
   constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
   const double size = std::max(std::abs(piece.voltage(begin)), std::abs(piece.voltage(end))), length = end - begin;
   if (!piece.terms.empty() && length * length / 8 * internal::derivative_bound(piece, 2, begin, end) <= rounding * size) return;
@@ -91,7 +92,7 @@ void append_inside(std::vector<std::pair<double, double>>& points, const SignalP
 std::vector<std::pair<double, double>> polyline(const Signal& signal, double end, double tolerance, double jump_time) {
   require_end(end);
   require(jump_time >= 0 && std::isfinite(jump_time), fmt::format("jump_time is {} s; it must be finite and >= 0", jump_time));
-  // A jump must end well before the next corner, which it would cut off otherwise.
+  // A jump must end well before the next corner; otherwise it would cut that off.
   constexpr double share_of_interval = 1e-3;
   const std::vector<SignalPiece>& pieces = signal.pieces();
   std::vector<std::pair<double, double>> points;
@@ -134,7 +135,7 @@ std::string csv(const std::map<std::string, Signal>& signals, double end, const 
   }
   text += '\n';
   const auto append = [&](double time, auto voltage) {
-    // Shortest text that reads back to the same double.
+    // Write the shortest text that reads back to the same double.
     fmt::format_to(std::back_inserter(text), "{}", time);
     for (const auto& [drive, signal] : signals) fmt::format_to(std::back_inserter(text), ",{}", voltage(signal));
     text += '\n';
@@ -182,7 +183,7 @@ std::string spice_name(const std::string& drive) {
 
 std::string spice_pwl(const std::map<std::string, Signal>& signals, double end, std::string_view about) {
   require_signals(signals);
-  // Far below any time a switch knows, and resolved by the 17 digits of a time of a second.
+  // The jump time is far below any time constant of a switch, and resolved by the 17 digits of a time of a second.
   const double jump_time = std::min(1e-12, 1e-7 * end);
   std::string text = fmt::format("* {}\n", about);
   std::set<std::string> names;
@@ -193,7 +194,7 @@ std::string spice_pwl(const std::map<std::string, Signal>& signals, double end, 
     fmt::format_to(std::back_inserter(text), ".subckt {} plus minus\nVdrive plus minus PWL(\n", name);
     double last = -1;
     for (const auto& [time, voltage] : polyline(signal, end, sine_tolerance * signal.peak(), jump_time)) {
-      // Only jumps a rounding error apart can meet here; SPICE wants times that increase.
+      // Only jumps a rounding error apart can coincide here; SPICE requires increasing times.
       if (!(time > last)) continue;
       fmt::format_to(std::back_inserter(text), "+ {} {}\n", time, voltage);
       last = time;

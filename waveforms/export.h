@@ -1,4 +1,4 @@
-// Waveform files other programs read.
+// Waveform files for other programs.
 #pragma once
 
 #include <map>
@@ -11,42 +11,42 @@
 
 namespace softland {
 
-/// Breakpoints [s, V] whose straight connections stay within `tolerance` [V] of the signal on [0, end]; pulses and steps come out
-/// exact. A jump at t becomes points at t and at t + jump_time [s], or a thousandth of the interval after t if that is shorter;
-/// with jump_time = 0 both have the time t. The 0 V before t = 0 count: a signal that starts above them starts with a jump. The
-/// last point is at `end`, or one jump_time later. Throws InvalidInput unless end and jump_time are finite and >= 0, the
-/// tolerance of a curve > 0, and the points of a piece at most 1e7.
+/// Returns breakpoints [s, V] whose straight connections stay within `tolerance` [V] of the signal on [0, end]; pulses and
+/// steps come out exact. A jump at t becomes points at t and at t + jump_time [s], or a thousandth of the interval after t if
+/// that is shorter; with jump_time = 0 both have the time t. The 0 V before t = 0 count: a signal that starts above them starts
+/// with a jump. The last point is at `end`, or one jump_time later. Throws InvalidInput unless end and jump_time are finite and
+/// >= 0, the tolerance of a curve > 0, and the points of a piece at most 1e7.
 [[nodiscard]] std::vector<std::pair<double, double>> polyline(const Signal& signal, double end, double tolerance,
                                                               double jump_time);
 
-/// CSV with a header `time_s,<drive>,<drive>...` on the union of all breakpoints; readable by the table family. A jump of any
-/// drive is two rows of the same time; sines and other curves are sampled so that straight lines stay within 1e-4 of the drive's
-/// peak. A step, pulse or table that ends before `end` and stands alone reads back to the same signal bit for bit; together with
-/// other drives its ramps are split at their breakpoints, to rounding. Throws InvalidInput when there is no signal, a name does
-/// not fit into a header, or `end` is not finite and >= 0.
+/// Writes CSV with a header `time_s,<drive>,<drive>...` on the union of all breakpoints; the table family reads it. A jump of
+/// any drive is two rows of the same time; sines and other curves are sampled so that straight lines stay within 1e-4 of the
+/// drive's peak. A step, pulse or table that ends before `end` and stands alone reads back to the same signal bit for bit;
+/// together with other drives its ramps are split at their breakpoints, to rounding. Throws InvalidInput when there is no
+/// signal, a name does not fit into a header, or `end` is not finite and >= 0.
 ///
-/// `sample_rates`: drives that are samples, held from k / rate on until the next [Hz]. They have a row for each, up to that from
-/// which on they are held for ever, and give the same samples when they are read back.
+/// `sample_rates`: rates of the drives that are samples, held from k / rate on until the next [Hz]. Each sample has a row, up
+/// to the one that is held for ever, and reading the file gives the same samples.
 [[nodiscard]] std::string csv(const std::map<std::string, Signal>& signals, double end,
                               const std::map<std::string, double>& sample_rates = {});
 
 /// Samples as the integers of a converter.
 struct Coded {
-  Signal held;                      ///< the samples, each until the next
+  Signal held;                      ///< samples, each held until the next
   double sample_rate = 0;           ///< [Hz]
   int bits = 0;                     ///< 0 to 2^bits - 1 ...
   double minimum = 0, maximum = 0;  ///< ... stand for these voltages [V]
 };
-/// CSV with a header `index,<drive>,<drive>...` and a row for each sample k / rate, up to that from which on all are held. Throws
-/// InvalidInput when there is none, and where the rates differ.
+/// Writes CSV with a header `index,<drive>,<drive>...` and a row for each sample k / rate, up to the one from which on all are
+/// held. Throws InvalidInput without drives, and when their rates differ.
 [[nodiscard]] std::string codes(const std::map<std::string, Coded>& drives);
 
-/// What SPICE calls a drive: letters of it become lower case, and what is neither letter nor digit an underscore.
+/// Returns the name of a drive in SPICE: letters become lower case, and other characters than letters and digits an underscore.
 [[nodiscard]] std::string spice_name(const std::string& drive);
-/// A SPICE file with one subcircuit `softland_<drive> plus minus` per drive, which holds one PWL voltage source; usable with
-/// .include in ngspice, LTspice, HSPICE. Jumps take 1 ps, or a ten-millionth of `end` or a thousandth of the interval after them
-/// if that is shorter; curves as in csv(). Letters of a name become lower case and what is neither letter nor digit an
-/// underscore. `about` stands in the first line. Throws InvalidInput as csv(), and when two drives get the same name.
+/// Writes a SPICE file with one subcircuit `softland_<drive> plus minus` per drive, which holds one PWL voltage source; usable
+/// with .include in ngspice, LTspice, HSPICE. Jumps take 1 ps, or a ten-millionth of `end` or a thousandth of the interval
+/// after them if that is shorter; curves as in csv(). Names are those of spice_name(). `about` stands in the first line. Throws
+/// InvalidInput as csv(), and when two drives get the same name.
 [[nodiscard]] std::string spice_pwl(
     const std::map<std::string, Signal>& signals, double end,
     std::string_view about = "Drive waveforms, one subcircuit each: Xname plus minus softland_drive");

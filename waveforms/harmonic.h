@@ -17,7 +17,7 @@ namespace softland {
 template <class P>
 struct HarmonicOf {
   P base = 0;                                       ///< [V]
-  P rise_time = 0;                                  ///< of the base [s], >= 0
+  P rise_time = 0;                                  ///< rise time of the base [s], >= 0
   P amplitude = 0;                                  ///< [V]
   P angular_frequency = 0;                          ///< [rad/s], > 0
   P phase = 0;                                      ///< [rad]
@@ -48,7 +48,7 @@ struct FamilyOf<Harmonic> {
 
 namespace internal {
 
-/// From 0 to 1 and back.
+/// Returns the envelope, which rises from 0 to 1 and falls back.
 template <class P>
 [[nodiscard]] std::vector<Stretch<P>> envelope(const HarmonicOf<P>& h) {
   const bool ends = decided(h.end < std::numeric_limits<double>::infinity());
@@ -68,13 +68,14 @@ template <class P>
 
 }  // namespace internal
 
-/// The pieces of a valid harmonic, whose base rises from `before` [V].
+/// Returns the pieces of a valid harmonic, whose base rises from `before` [V].
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const HarmonicOf<P>& h, const P& before = P(0)) {
   const std::vector<internal::Stretch<P>> envelope = internal::envelope(h);
   std::vector<P> begins;
   for (const internal::Stretch<P>& stretch : envelope) begins.push_back(stretch.begin);
-  // In volts and by one division: a ramp whose slope is rounded twice ends beside the base, which would count as a jump.
+  // Compute in volts and by one division: a ramp whose slope is rounded twice ends beside the base, which would count as a
+  // jump.
   std::vector<internal::Stretch<P>> straight_line{{.begin = P(0), .value = h.base}};
   if (!(internal::vanishes(h.base) && internal::vanishes(before)) && internal::decided(h.rise_time > 0)) {
     const auto same = std::find_if(begins.begin(), begins.end(), [&](const P& t) { return internal::coincide(t, h.rise_time); });
@@ -88,7 +89,7 @@ template <class P>
     const internal::Stretch<P>& straight = internal::stretch_at(straight_line, begin);
     const internal::Stretch<P>& swing = internal::stretch_at(envelope, begin);
     all.push_back({.begin = begin, .value = straight.at(begin), .slope = straight.slope});
-    // Where the envelope is 0 all along there is no sine.
+    // The sine is left out of a stretch in which the envelope is 0.
     if (!internal::decided(swing.value > 0) && !internal::decided(swing.slope > 0)) continue;
     all.back().amplitude = h.amplitude * swing.at(begin);
     all.back().amplitude_slope = h.amplitude * swing.slope;
@@ -97,12 +98,12 @@ template <class P>
   }
   return all;
 }
-/// Throws InvalidParameter.
+/// Compiles the harmonic. Throws InvalidParameter.
 [[nodiscard]] Signal signal(const Harmonic& harmonic, double before = 0);
 
 namespace internal {
 
-/// The rules of what a harmonic has; `what` it is stands in messages. Throws InvalidParameter.
+/// Checks the rules of a harmonic; `what` is its name in messages. Throws InvalidParameter.
 void require_dither(std::string_view what, const Harmonic& harmonic);
 
 }  // namespace internal

@@ -1,4 +1,4 @@
-// What a voltage source can do, and whether a signal stays inside.
+// Limits of a voltage source, and the check of a signal against them.
 #pragma once
 
 #include <limits>
@@ -15,8 +15,9 @@ struct DriverLimits {
   double max_slew = std::numeric_limits<double>::infinity();  ///< [V/s]
 };
 
-/// Empty when the signal stays inside the limits for ever (to 1e-12 relative), else one sentence with the value and the limit.
-/// The 0 V every signal starts from count, so that a min_voltage above 0 V is always violated. A limit that is NaN is violated.
+/// Returns an empty text when the signal stays inside the limits for ever (to 1e-12 relative), else one sentence with the value
+/// and the limit. The 0 V every signal starts from count, so that a min_voltage above 0 V is always violated. A limit that is
+/// NaN is violated.
 [[nodiscard]] std::string violation(const Signal& signal, const DriverLimits& limits);
 
 }  // namespace softland

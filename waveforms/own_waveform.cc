@@ -12,12 +12,12 @@ namespace softland {
 namespace {
 
 constexpr int most_halvings = 40;
-// Of the extreme points of Chebyshev polynomials of degree 3 and 2, as parts of a piece: a cubic through the former is held
-// against the waveform at points of its own.
+// Extreme points of Chebyshev polynomials of degree 3 and 2, as parts of a piece. A cubic interpolates at the former; the
+// latter check it against the waveform.
 constexpr std::array nodes{0.0, 0.25, 0.75, 1.0};
 constexpr std::array checks{0.1, 0.5, 0.9};
 
-// Newton's form through the nodes, as coefficients in rising order of the part of the piece.
+// Returns Newton's form through the nodes, as coefficients in rising order of the part of the piece.
 std::array<double, 4> cubic_through(std::array<double, 4> values) {
   for (std::size_t order = 1; order < 4; ++order) {
     for (std::size_t k = 3; k >= order; --k) values[k] = (values[k] - values[k - 1]) / (nodes[k] - nodes[k - order]);
@@ -32,7 +32,7 @@ std::array<double, 4> cubic_through(std::array<double, 4> values) {
 
 double at(const std::array<double, 4>& c, double part) { return c[0] + part * (c[1] + part * (c[2] + part * c[3])); }
 
-// The pieces of one waveform, in its own volts and seconds.
+// Builds the pieces of one waveform, in its own volts and seconds.
 class Following {
  public:
   explicit Following(const Own& own) : own_(own) {}
@@ -43,7 +43,7 @@ class Following {
     const double held = voltage(times.back());
     largest_ = std::max(largest_, std::abs(held));
     for (std::size_t k = 0; k + 1 < times.size(); ++k) {
-      // Where it jumps at the end of a stretch, the stretch ends on the value before that.
+      // A stretch at whose end the waveform jumps ends on the value before the jump.
       constexpr double rounding = 1e-12;
       const double end = times[k + 1], before = voltage(std::nextafter(end, times[k])), after = voltage(end);
       const double ends_on = std::abs(after - before) > rounding * largest_ ? before : after;
@@ -78,7 +78,8 @@ class Following {
     return times;
   }
 
-  // Without breakpoints it stands at its voltage at t = 0 for ever: that is what is meant where it is constant, and not 0 V.
+  // A waveform without breakpoints stands at its voltage at t = 0 for ever: that is meant only where it is constant, and not 0
+  // V.
   void check_constant() const {
     constexpr double first = 1e-12, last = 1e3;  // [s]
     constexpr int looks = 300;
@@ -96,7 +97,7 @@ class Following {
     });
   }
 
-  // How large the waveform is, as far as it is known before it is followed.
+  // Measures how large the waveform is, as far as it is known before it is followed.
   void see(double begin, double end) {
     constexpr int instants = 64;
     for (int k = 0; k < instants; ++k)

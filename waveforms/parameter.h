@@ -1,4 +1,4 @@
-// What a waveform family is called and what its parameters are: a scene reads, checks and writes a waveform by these tables.
+// Names of a waveform family and of its parameters: a scene reads, checks and writes a waveform by these tables.
 #pragma once
 
 #include <string_view>
@@ -9,18 +9,19 @@
 
 namespace softland {
 
-/// What a parameter is of the signal: this decides its unit, and how a scene may give it.
+/// The role of a parameter in the signal: this decides its unit, and how a scene may give it.
 enum class ParameterKind {
   level,              ///< [V]
   swing,              ///< [V] about a level; a scene may give a percentage of that level
   time,               ///< [s]
-  end_time,           ///< [s], after 0; absent from a scene: never
+  end_time,           ///< [s], after 0; "never" where a scene leaves it out
   angular_frequency,  ///< [rad/s]; a scene may give the frequency instead
   angle,              ///< [rad]
-  ratio,              ///< of two quantities of the signal, above 0; 1 where a scene says nothing
+  ratio,              ///< ratio of two quantities of the signal, above 0; 1 where a scene leaves it out
 };
 
-/// One parameter of a family: a number, or several levels, swings or times. One that is not required has the family's default.
+/// One parameter of a family: a number, or several levels, swings or times. A parameter that is not required has the family's
+/// default.
 template <class Family>
 struct Parameter {
   std::string_view name;
@@ -30,8 +31,8 @@ struct Parameter {
   std::string_view about = {};
 };
 
-/// Specialised beside each family, with its `name`, its `parameters` and an `example`, which tests of all families take;
-/// `from_file` where the rows may stand in a file.
+/// Traits of a family, specialised beside it: its `name`, its `parameters`, and an `example` for the tests of all families;
+/// `from_file` where a file may hold the rows.
 template <class Family>
 struct FamilyOf;
 

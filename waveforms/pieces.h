@@ -22,7 +22,7 @@ namespace softland {
 
 namespace internal {
 
-/// Whether a number is 0 for good. One with slopes, or one of several, is not: it may be a parameter that stands at 0.
+/// True when a number is 0 for good. A number with slopes, or a lane, is not: it may be a parameter whose value is 0.
 template <class P>
 [[nodiscard]] bool vanishes(const P& x) {
   if constexpr (std::is_same_v<P, double>) {
@@ -46,11 +46,11 @@ struct TermOf {
   Cubic cosine = {};        ///< [V], [V/s], [V/s^2], [V/s^3]
   Cubic sine = {};          ///< the same
   P decay = 0;              ///< [1/s]
-  P angular_frequency = 0;  ///< at the beginning of the piece [rad/s]
+  P angular_frequency = 0;  ///< angular frequency at the beginning of the piece [rad/s]
   P sweep = 0;              ///< [rad/s^2]
 
   [[nodiscard]] bool turns() const { return !internal::vanishes(angular_frequency) || !internal::vanishes(sweep); }
-  /// [V], s after the piece began
+  /// Returns the voltage [V] at s after the piece began.
   [[nodiscard]] P voltage(const P& s) const {
     using std::cos, std::exp, std::sin;
     P sum = at(cosine, s);
@@ -60,7 +60,7 @@ struct TermOf {
     }
     return internal::vanishes(decay) ? sum : sum * exp(P(0) - decay * s);
   }
-  /// [V/s]
+  /// Returns the rate [V/s].
   [[nodiscard]] P rate(const P& s) const {
     using std::cos, std::exp, std::sin;
     const P c = at(cosine, s);
@@ -81,23 +81,24 @@ struct TermOf {
 template <class P>
 struct SignalPieceOf {
   P begin = 0;                        ///< [s]
-  P value = 0;                        ///< [V] at begin
+  P value = 0;                        ///< voltage at begin [V]
   P slope = 0;                        ///< [V/s]
-  P amplitude = 0;                    ///< [V] at begin
+  P amplitude = 0;                    ///< amplitude at begin [V]
   P amplitude_slope = 0;              ///< [V/s]
   P angular_frequency = 0;            ///< [rad/s]
   P phase = 0;                        ///< [rad]; the sine's argument is angular_frequency t + phase with t from 0, not from begin
   std::vector<TermOf<P>> terms = {};  ///< their times count from begin
-  /// Whether the terms are a Fourier series: sines and cosines of 1, 2, 3 ... times the first one's angular frequency, of fixed
-  /// sizes. They are found by turning on, one sine and cosine for all.
+  /// True when the terms are a Fourier series: sines and cosines of 1, 2, 3 ... times the first one's angular frequency, of
+  /// fixed sizes. They are found by rotation, with one sine and cosine for all.
   bool is_series = false;
 
   [[nodiscard]] bool oscillates() const { return !internal::vanishes(amplitude) || !internal::vanishes(amplitude_slope); }
-  /// Whether it is a straight line and nothing else.
+  /// True for a straight line and nothing else.
   [[nodiscard]] bool is_straight() const { return !oscillates() && terms.empty(); }
-  /// Whether it stays at its value.
+  /// True when the piece stays at its value.
   [[nodiscard]] bool is_level() const { return internal::vanishes(slope) && is_straight(); }
-  /// [V]. The formula goes on past both ends of the piece, so that an integrator may look a little beyond a breakpoint.
+  /// Returns the voltage [V]. The formula continues past both ends of the piece, so that an integrator may step a little beyond
+  /// a breakpoint.
   [[nodiscard]] P voltage(P time) const {
     using std::sin;
     const P elapsed = time - begin;
@@ -115,7 +116,7 @@ struct SignalPieceOf {
     }
     return sum;
   }
-  /// dV/dt [V/s]
+  /// Returns dV/dt [V/s].
   [[nodiscard]] P rate(P time) const {
     using std::cos, std::sin;
     const auto swinging = [&] {
@@ -155,7 +156,7 @@ using Pieces = std::vector<SignalPieceOf<P>>;
 
 namespace internal {
 
-/// Whether a condition on a waveform's times holds. Throws InvalidInput where it holds for some devices of a lane only: their
+/// True when a condition on a waveform's times holds. Throws InvalidInput where it holds for some devices of a lane only: their
 /// signals do not have the same pieces.
 template <class Condition>
 [[nodiscard]] bool decided(const Condition& condition) {
@@ -167,8 +168,9 @@ template <class Condition>
   }
 }
 
-/// True when two times [s] that a user means to be one, such as an edge that ends where the next one begins, differ by no more
-/// than the rounding of one sum and of their decimal text. A piece between them would be shorter than any integrator can step.
+/// Returns true for two times [s] that differ by no more than the rounding of one sum and of their decimal text. A user means
+/// such times to be one: an edge that ends where the next one begins. A piece between them would be shorter than any integrator
+/// can step.
 template <class P>
 [[nodiscard]] bool coincide(const P& time, const P& other) {
   using std::abs;
@@ -176,7 +178,7 @@ template <class P>
   return !decided(abs(time - other) > roundings * epsilon * abs(other));
 }
 
-/// Straight connections of points [s, V], times in order; two points of the same time are a jump.
+/// Returns straight connections of points [s, V], times in order; two points of the same time are a jump.
 template <class P>
 [[nodiscard]] Pieces<P> straight_pieces(const std::vector<std::pair<P, P>>& points) {
   Pieces<P> pieces;
@@ -194,13 +196,13 @@ template <class P>
 template <class P>
 struct Stretch {
   P begin = 0;  ///< [s]
-  P value = 0;  ///< at begin
+  P value = 0;  ///< value at begin
   P slope = 0;  ///< [1/s]
 
   [[nodiscard]] P at(const P& time) const { return value + slope * (time - begin); }
 };
 
-/// The stretch that holds from `time` on; the first one begins at 0.
+/// Returns the stretch that holds from `time` on; the first one begins at 0.
 template <class P>
 [[nodiscard]] const Stretch<P>& stretch_at(const std::vector<Stretch<P>>& line, const P& time) {
   std::size_t found = 0;

@@ -16,7 +16,7 @@ namespace softland {
 template <class P>
 struct PulseOf {
   std::vector<P> levels = {};  ///< [V], n >= 1
-  std::vector<P> times = {};   ///< [s], n - 1, increasing by at least edge; the first at least edge
+  std::vector<P> times = {};   ///< n - 1 switching times [s], increasing by at least edge; the first at least edge
   P edge = 0;                  ///< [s], >= 0
 };
 using Pulse = PulseOf<double>;
@@ -32,7 +32,7 @@ struct FamilyOf<Pulse> {
   [[nodiscard]] static Pulse example() { return {.levels = {1, -2, 0.5}, .times = {1, 4}, .edge = 0.5}; }
 };
 
-/// The points [s, V] that straight lines connect, of a valid pulse, which begins at `before` [V].
+/// Returns the points [s, V] that straight lines connect, for a valid pulse that begins at `before` [V].
 template <class P>
 [[nodiscard]] std::vector<std::pair<P, P>> points(const PulseOf<P>& pulse, const P& before = P(0)) {
   std::vector<std::pair<P, P>> all{{P(0), before}};
@@ -50,13 +50,13 @@ template <class P>
 [[nodiscard]] Pieces<P> pieces(const PulseOf<P>& pulse, const P& before = P(0)) {
   return internal::straight_pieces(points(pulse, before));
 }
-/// Throws InvalidParameter.
+/// Compiles the pulse. Throws InvalidParameter.
 [[nodiscard]] Signal signal(const Pulse& pulse, double before = 0);
 
 namespace internal {
 
-/// The rules of a waveform of n levels, n - 1 times and one duration of all edges; `what` it is stands in messages. Throws
-/// InvalidParameter.
+/// Checks the rules of a waveform of n levels, n - 1 times and one duration of all edges; `what` is its name in messages.
+/// Throws InvalidParameter.
 void require_levels_and_edges(std::string_view what, const std::vector<double>& levels, const std::vector<double>& times,
                               double edge);
 

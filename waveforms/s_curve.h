@@ -19,7 +19,7 @@ namespace softland {
 template <class P>
 struct SCurveOf {
   std::vector<P> levels = {};  ///< [V], n >= 1
-  std::vector<P> times = {};   ///< [s], n - 1, increasing by at least edge; the first at least edge
+  std::vector<P> times = {};   ///< n - 1 switching times [s], increasing by at least edge; the first at least edge
   P edge = 0;                  ///< [s], >= 0
 };
 using SCurve = SCurveOf<double>;
@@ -35,7 +35,7 @@ struct FamilyOf<SCurve> {
   [[nodiscard]] static SCurve example() { return {.levels = {1, -2, 0.5}, .times = {1, 4}, .edge = 0.5}; }
 };
 
-/// The pieces of a valid S-curve, which begins at `before` [V].
+/// Returns the pieces of a valid S-curve, which begins at `before` [V].
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const SCurveOf<P>& curve, const P& before = P(0)) {
   const bool has_edges = internal::decided(curve.edge > P(0));
@@ -59,7 +59,7 @@ template <class P>
   all.push_back({.begin = edge_end, .value = level});
   return all;
 }
-/// Throws InvalidParameter.
+/// Compiles the S-curve. Throws InvalidParameter.
 [[nodiscard]] Signal signal(const SCurve& curve, double before = 0);
 
 }  // namespace softland

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-/// The end value [V] whose straight connection from (piece.begin, piece.value) has the piece's slope bit for bit, where there is
-/// one; `favourite` is tried first. A table that jumps after a ramp, and its export, need it: value + slope * duration is off by
-/// rounding.
+/// Returns the end value [V] whose straight connection from (piece.begin, piece.value) has the piece's slope bit for bit, if
+/// one exists; `favourite` is tried first. A table that jumps after a ramp, and its export, need it: value + slope * duration
+/// has a rounding error.
 double end_of_straight(const SignalPiece& piece, double end, double favourite) {
   const double duration = end - piece.begin;
   if (piece.slope == 0) return piece.value;
@@ -23,7 +23,7 @@ double end_of_straight(const SignalPiece& piece, double end, double favourite) {
   if (has_the_slope(favourite)) return favourite;
   const double rise = piece.slope * duration;
   const double computed = piece.value + rise;
-  // Roundings stand between the original end value and `rise`; one step has been enough in 2e7 random ramps, two leave room.
+  // Roundings separate the original end value from `rise`; one step has been enough in 2e7 random ramps, two leave room.
   constexpr int reach = 2;
   double rise_up = rise, rise_down = rise, value_up = computed, value_down = computed;
   for (int i = 0; i <= reach; ++i) {
@@ -38,13 +38,13 @@ double end_of_straight(const SignalPiece& piece, double end, double favourite) {
   return computed;
 }
 
-/// What rounding can put between the end of a piece and the value it was meant to end on [V].
+/// Returns the largest rounding error between the end of a piece and the value it was meant to end on [V].
 double rounding_at_end(const SignalPiece& piece, double end) {
   constexpr double roundings = 16;
   const double duration = end - piece.begin;
   const double straight = std::abs(piece.value) + std::abs(piece.slope * duration);
   const double swing = std::abs(piece.amplitude) + std::abs(piece.amplitude_slope * duration);
-  double of_terms = 0;  // as large as they would be without decay: what is left of an exponential is no jump
+  double of_terms = 0;  // size of the terms without decay: the rest of an exponential is not a jump
   double rate = std::abs(piece.slope);
   for (const SignalTerm& term : piece.terms) {
     double power = 1, before = 0, size = 0;
@@ -60,13 +60,14 @@ double rounding_at_end(const SignalPiece& piece, double end) {
          (rate * end + straight + swing * (1 + piece.angular_frequency * end + std::abs(piece.phase)) + of_terms);
 }
 
-/// Where `function` changes sign in (low, high): bisection to the last bit that matters, nothing if it does not change sign.
+/// Appends a sign change of `function` in (low, high), found by bisection to the last bit that matters; appends nothing without
+/// one.
 template <typename Function>
 void append_root(std::vector<double>& times, Function function, double low, double high) {
   const double at_low = function(low);
   const double at_high = function(high);
   if (!((at_low < 0 && at_high > 0) || (at_low > 0 && at_high < 0))) return;
-  // A quarter period halved 40 times: an extremum is flat, so that its value is exact long before.
+  // A quarter period is halved 40 times: an extremum is flat, so that its value is exact long before.
   constexpr int halvings = 40;
   for (int i = 0; i < halvings; ++i) {
     const double middle = 0.5 * (low + high);
@@ -77,15 +78,15 @@ void append_root(std::vector<double>& times, Function function, double low, doub
 
 /// Appends times in [low, high] among which are all extrema of voltage and rate there; low and high are among them.
 ///
-/// With A = amplitude + amplitude_slope (t - begin): V'' ~ 2 A' cos - A w sin. Inside a quarter period in which A keeps its sign
-/// this is either of one sign or monotone, so it has one root at most; between such roots V' is monotone and has one root at
-/// most.
+/// With A = amplitude + amplitude_slope (t - begin): V'' ~ 2 A' cos - A w sin. Inside a quarter period in which A keeps its
+/// sign this is either of one sign or monotone, so it has one root at most; between such roots V' is monotone and has one root
+/// at most.
 void append_extrema(std::vector<double>& times, const SignalPiece& piece, double low, double high) {
   const double quarter = 0.5 * std::numbers::pi;
   std::vector<double> grid{low, high};
   const double first = std::ceil((piece.angular_frequency * low + piece.phase) / quarter);
   const double last = std::floor((piece.angular_frequency * high + piece.phase) / quarter);
-  // A period has four quarters; more than a few can only be an angle beyond 2^53, where the sine itself has no digit left.
+  // A period has four quarters; more than a few occur only for an angle beyond 2^53, where the sine itself has no digit left.
   constexpr int most_quarters = 6;
   for (int k = 0; k <= most_quarters && first + k <= last; ++k) {
     grid.push_back(((first + k) * quarter - piece.phase) / piece.angular_frequency);
@@ -109,7 +110,7 @@ void append_extrema(std::vector<double>& times, const SignalPiece& piece, double
 
 enum class Of { voltage, rate };
 
-/// Times in [piece.begin, end] among which are those of the extreme voltages or of the extreme rates.
+/// Returns times in [piece.begin, end] among which are those of the extreme voltages or of the extreme rates.
 ///
 /// At a fixed angle of the sine, V and V' are linear in the number of the period: no period between the first and the last can
 /// exceed both.
@@ -117,7 +118,7 @@ std::vector<double> extreme_times(const SignalPiece& piece, double end, Of what)
   std::vector<double> times{piece.begin};
   if (std::isfinite(end)) times.push_back(end);
   if (!piece.terms.empty()) {
-    // Of the last piece the terms decay: a sine that goes on reaches its own extremes within a period.
+    // The terms of the last piece decay: a sine that goes on reaches its own extremes within a period.
     const double over = internal::duration_of_terms(piece);
     const double last =
         std::isfinite(end) ? end : piece.begin + over + (piece.oscillates() ? 2 * std::numbers::pi / piece.angular_frequency : 0);
@@ -141,7 +142,7 @@ void for_each_extreme(const std::vector<SignalPiece>& pieces, double end, Of wha
   }
 }
 
-/// Throws InvalidInput unless all of it is finite and it does not grow.
+/// Throws InvalidInput unless all numbers of the term are finite and it does not grow.
 void check_term(const SignalTerm& term, std::size_t piece) {
   bool is_finite = std::isfinite(term.decay) && std::isfinite(term.angular_frequency) && std::isfinite(term.sweep);
   for (const double coefficient : term.cosine) is_finite = is_finite && std::isfinite(coefficient);
@@ -158,7 +159,7 @@ Signal::Signal(std::vector<SignalPiece> pieces, double before) : pieces_(std::mo
   require(!pieces_.empty(), "a signal has no pieces; it must have at least one");
   require(pieces_.front().begin == 0,
           fmt::format("the first piece of a signal begins at {} s; it must begin at 0 s", pieces_.front().begin));
-  // Measured tables have very many pieces: no message is composed before it is needed.
+  // Measured tables have very many pieces: a message is composed only when it is needed.
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const SignalPiece& piece = pieces_[i];
     for (const auto& [name, number] :
@@ -291,7 +292,7 @@ double Signal::peak_slew(double end) const {
 }
 
 double Signal::resolving_step(double time) const {
-  // Fine enough for a controller of order 2 and more to see every swing, coarse enough to leave the step to its error test.
+  // The step resolves every oscillation for a controller of order 2 and more, yet leaves the step length to the error test.
   constexpr double steps_per_period = 20;
   const std::size_t at = piece_at(time);
   const SignalPiece& piece = pieces_[at];

@@ -17,7 +17,7 @@ bool have_same_pieces(const std::vector<Signal>& a, const std::vector<Signal>& b
   });
 }
 
-// Sums of durations leave the end of a waveform where it was but for rounding, at some points and not at others.
+// Sums of durations reproduce the end of a waveform up to rounding, at some points and not at others.
 bool are_equal(double a, double b) {
   constexpr double roundings = 16 * std::numeric_limits<double>::epsilon();
   return std::abs(a - b) <= roundings * std::max(std::abs(a), std::abs(b));
@@ -41,7 +41,7 @@ bool is_polynomial(const SignalPiece& piece) {
                                             [](const SignalTerm& term) { return !term.turns() && term.decay == 0; });
 }
 
-// The coefficients of a polynomial piece about another time.
+// Returns the coefficients of a polynomial piece about another time.
 std::array<double, 4> cubic_about(const SignalPiece& piece, double origin) {
   std::array<double, 4> c{piece.value, piece.slope};
   for (const SignalTerm& term : piece.terms) {
@@ -51,7 +51,8 @@ std::array<double, 4> cubic_about(const SignalPiece& piece, double origin) {
   return {c[0] + by * (c[1] + by * (c[2] + by * c[3])), c[1] + by * (2 * c[2] + by * 3 * c[3]), c[2] + 3 * by * c[3], c[3]};
 }
 
-// The derivative of a piece of which sizes alone change, with the terms that do; none where its times or angles change too.
+// Returns the derivative of a piece whose sizes alone change, with the terms that do; none where its times or angles change
+// too.
 std::shared_ptr<const SignalPiece> derivative(const SignalPiece& above, const SignalPiece& below, double step) {
   const auto turns_alike = [](const SignalTerm& a, const SignalTerm& b) {
     return a.decay == b.decay && a.angular_frequency == b.angular_frequency && a.sweep == b.sweep;
@@ -80,7 +81,7 @@ std::shared_ptr<const SignalPiece> derivative(const SignalPiece& above, const Si
   return std::make_shared<const SignalPiece>(std::move(piece));
 }
 
-// Time inside a piece, for ever after which the last one holds.
+// Returns a time inside a piece; the last piece holds for ever after.
 double inner_time(const std::vector<SignalPiece>& pieces, std::size_t k) {
   constexpr double share = 0.4;
   return k + 1 < pieces.size() ? std::lerp(pieces[k].begin, pieces[k + 1].begin, share) : pieces[k].begin * (1 + share);
@@ -93,7 +94,7 @@ struct SignalSlopes::Neighbourhood {
   const SignalsOf& signals;
   std::span<const double> x, lower, upper;
 
-  // The parameter after `share` of the step that differences are taken over.
+  // Returns the parameter after `share` of the step that differences are taken over.
   [[nodiscard]] double beside(std::size_t k, double share) const {
     return std::clamp(x[k] + share * share_of_range * (upper[k] - lower[k]), lower[k], upper[k]);
   }
@@ -126,7 +127,7 @@ SignalSlopes::SignalSlopes(const SignalsOf& signals, std::span<const double> x, 
   find_one_by_one(near, here);
 }
 
-// Whether so many groups take fewer differences than the parameters: there is one more, for the check.
+// Returns whether this number of groups takes fewer differences than the parameters: one more is needed for the check.
 bool SignalSlopes::saves(std::size_t groups) const { return groups + 1 < parameters_; }
 
 void SignalSlopes::find_one_by_one(const Neighbourhood& near, const Signals& here) {
@@ -167,7 +168,7 @@ bool SignalSlopes::find_in_groups(const Neighbourhood& near, const Signals& here
 }
 
 bool SignalSlopes::holds_along_all(const Neighbourhood& near, const Signals& here) const {
-  constexpr double tolerance = 1e-5;  // of the largest change; a parameter that is missed is off by all of its own
+  constexpr double tolerance = 1e-5;  // relative to the largest change; a missed parameter is wrong by all of its own
   const auto share = [](std::size_t k) {
     const double golden = std::fmod(0.618033988749895 * static_cast<double>(k + 1), 1.0);
     return (k % 2 == 0 ? 1 : -1) * (0.5 + golden / 2);
@@ -231,7 +232,7 @@ bool SignalSlopes::add(Mover&& mover, Signals above, Signals below) {
 
 std::vector<ParameterGroup> SignalSlopes::groups() const {
   using Moved = std::vector<std::pair<std::size_t, std::size_t>>;
-  std::vector<Moved> moved(parameters_);  // drive and piece
+  std::vector<Moved> moved(parameters_);  // index by drive and piece
   ParameterGroup none;
   for (std::size_t drive = 0; drive < slopes_.size(); ++drive) {
     none.movers.emplace_back(slopes_[drive].size());

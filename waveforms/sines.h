@@ -1,4 +1,4 @@
-// Sines: a band-limited course about a step, a sum of sines that are all 0 where they begin and where they end.
+// Sines: a band-limited signal on a step, a sum of sines that are all 0 where they begin and where they end.
 //
 //   V(t) = b(t) + sum over k = 1 ... N of amplitudes_k sin(k pi (t - start) / duration)
 //
@@ -20,7 +20,7 @@ namespace softland {
 template <class P>
 struct SinesOf {
   P base = 0;                      ///< [V]
-  P rise_time = 0;                 ///< of the base [s], >= 0
+  P rise_time = 0;                 ///< rise time of the base [s], >= 0
   std::vector<P> amplitudes = {};  ///< [V], at least one
   P start = 0;                     ///< [s], >= 0
   P duration = 0;                  ///< [s], > 0
@@ -43,7 +43,7 @@ struct FamilyOf<Sines> {
   }
 };
 
-/// The pieces of valid sines, whose base rises from `before` [V].
+/// Returns the pieces of valid sines, whose base rises from `before` [V].
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const SinesOf<P>& sines, const P& before = P(0)) {
   const P end = sines.start + sines.duration;
@@ -70,7 +70,7 @@ template <class P>
   }
   return all;
 }
-/// Throws InvalidParameter.
+/// Compiles the sines. Throws InvalidParameter.
 [[nodiscard]] Signal signal(const Sines& sines, double before = 0);
 
 }  // namespace softland

@@ -10,14 +10,14 @@ namespace softland {
 namespace {
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
-constexpr double most_of_gap = 0.49;  // by which an edge may move towards its neighbour
+constexpr double most_of_gap = 0.49;  // largest move of an edge towards its neighbour, as a share of the time between them
 
 /// Breakpoints that move together.
 struct Edge {
   std::size_t first, last;
 };
 
-/// Whether nothing but a carrier moves.
+/// True when nothing but a carrier moves.
 bool is_level(const SignalPiece& piece) { return piece.slope == 0 && piece.amplitude_slope == 0 && piece.terms.empty(); }
 
 std::vector<Edge> edges_of(const Signal& signal) {
@@ -33,7 +33,7 @@ std::vector<Edge> edges_of(const Signal& signal) {
   return edges;
 }
 
-/// When the pieces begin [s]; that of a first piece that is no edge means nothing.
+/// Returns the times at which the pieces begin [s]; that of a first piece that is not an edge means nothing.
 std::vector<double> begins(const std::vector<SignalPiece>& pieces, const std::vector<Edge>& edges, const SourceErrors& errors) {
   std::vector<double> all;
   for (const SignalPiece& piece : pieces) all.push_back(piece.begin + errors.delay);
@@ -46,8 +46,8 @@ std::vector<double> begins(const std::vector<SignalPiece>& pieces, const std::ve
   return all;
 }
 
-/// The piece between other times, with the straight line and the envelope from and to the same values, the carrier late by
-/// `late`, and the terms stretched with it.
+/// Returns the piece between other times: the straight line and the envelope run from and to the same values, the carrier is
+/// late by `late`, and the terms are stretched with it.
 SignalPiece moved(const Signal& signal, std::size_t i, double begin, double end, double offset, double late) {
   const SignalPiece& piece = signal.pieces()[i];
   SignalPiece own = piece;
@@ -95,7 +95,7 @@ Signal with_errors(const Signal& given, const SourceErrors& errors, double origi
   if (begin[0] > 0) all.push_back({.value = signal.before() + errors.offset});
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double end = i + 1 < pieces.size() ? begin[i + 1] : no_bound;
-    // Late by much more than it lasts, a piece may have lost its duration to rounding.
+    // A piece that is late by much more than it lasts may have lost its duration to rounding.
     if (end > begin[i]) all.push_back(moved(signal, i, begin[i], end, errors.offset, errors.delay - origin));
   }
   return Signal(std::move(all), given.before());

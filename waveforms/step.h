@@ -25,12 +25,12 @@ struct FamilyOf<Step> {
   [[nodiscard]] static Step example() { return {.level = 3, .rise_time = 1}; }
 };
 
-/// The pieces of a valid step, which begins at `before` [V].
+/// Returns the pieces of a valid step, which begins at `before` [V].
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const StepOf<P>& step, const P& before = P(0)) {
   return internal::straight_pieces<P>({{P(0), before}, {step.rise_time, step.level}});
 }
-/// Throws InvalidParameter.
+/// Compiles the step. Throws InvalidParameter.
 [[nodiscard]] Signal signal(const Step& step, double before = 0);
 
 }  // namespace softland

@@ -31,7 +31,7 @@ struct FamilyOf<Table> {
   [[nodiscard]] static Table example() { return {.time = {0, 1, 1, 2}, .voltage = {1, 2, 3, -1}}; }
 };
 
-/// The points [s, V] that straight lines connect, of a valid table.
+/// Returns the points [s, V] that straight lines connect, for a valid table.
 template <class P>
 [[nodiscard]] std::vector<std::pair<P, P>> points(const TableOf<P>& table) {
   std::vector<std::pair<P, P>> all;
@@ -43,14 +43,14 @@ template <class P>
 [[nodiscard]] Pieces<P> pieces(const TableOf<P>& table) {
   return internal::straight_pieces(points(table));
 }
-/// Throws InvalidInput.
+/// Compiles the table. Throws InvalidInput.
 [[nodiscard]] Signal signal(const Table& table, double before = 0);
 
 /// Reads column `drive` of a CSV file with a header line: `time_s` and one column per drive [V]. Throws InvalidInput with file,
 /// line and rule.
 [[nodiscard]] Table read_table(const std::string& file, const std::string& drive);
 
-/// The same for the content of such a file; `file` stands for it in messages.
+/// Reads the content of such a file; `file` stands for it in messages.
 [[nodiscard]] Table parse_table(std::string_view content, const std::string& file, const std::string& drive);
 
 }  // namespace softland

@@ -9,7 +9,7 @@
 namespace softland {
 namespace {
 
-/// Looks for the farthest row to which a straight line may lead.
+/// Finds the farthest row to which a straight line may lead.
 class Thinning {
  public:
   Thinning(const Table& table, double limit) : time_(table.time), voltage_(table.voltage), limit_(limit) {
@@ -18,7 +18,7 @@ class Thinning {
       area_[i] = area_[i - 1] + (voltage_[i - 1] + voltage_[i]) / 2 * (time_[i] - time_[i - 1]);
   }
 
-  /// The row after `from`, and how the integral of the difference goes on.
+  /// Returns the row after `from`, and continues the integral of the difference.
   std::size_t next(std::size_t from) {
     constexpr std::size_t growth = 4, least_window = 8;
     const std::size_t farthest = std::min(from + growth * last_length_ + least_window, jump_after(from));
@@ -37,7 +37,7 @@ class Thinning {
   [[nodiscard]] double largest_excess() const { return largest_; }
 
  private:
-  /// The first row at or after `from` + 1 whose next one has the same time, or the last row.
+  /// Returns the first row at or after `from` + 1 whose next one has the same time, or the last row.
   std::size_t jump_after(std::size_t from) {
     if (jump_ <= from) {
       jump_ = from + 1;
@@ -46,13 +46,13 @@ class Thinning {
     }
     return jump_;
   }
-  /// Integral of the line from row i to row j, less that of the table [V s].
+  /// Returns the integral of the line from row i to row j, less that of the table [V s].
   [[nodiscard]] double excess_to(std::size_t i, std::size_t j) const {
     return (voltage_[i] + voltage_[j]) / 2 * (time_[j] - time_[i]) - (area_[j] - area_[i]);
   }
   bool stays_within(std::size_t i, std::size_t j) {
     const double slope = (voltage_[j] - voltage_[i]) / (time_[j] - time_[i]);
-    double before = 0, largest = 0;  // difference at the row before
+    double before = 0, largest = 0;  // difference at the row before; largest integral so far
     for (std::size_t k = i + 1; k <= j; ++k) {
       const double line = voltage_[i] + slope * (time_[k] - time_[i]), difference = line - voltage_[k];
       double excess = excess_ + (voltage_[i] + line) / 2 * (time_[k] - time_[i]) - (area_[k] - area_[i]);

@@ -24,21 +24,21 @@
 namespace softland {
 
 using Waveform = std::variant<Step, Harmonic, Pulse, Table, SCurve, Chirp, BSpline, Sines, Own>;
-/// Waveforms by the name of their drive, of some of a scene's drives or of all.
+/// Waveforms by the name of their drive, for some of a scene's drives or for all.
 using DriveWaveforms = std::map<std::string, Waveform>;
-/// Those that a scene can hold: all but what is made outside softland, which is the last.
+/// Number of families that a scene can hold: all but the own waveform, which is the last.
 inline constexpr std::size_t families_of_scenes = std::variant_size_v<Waveform> - 1;
 
-/// The waveform from t = 0 on, and `before` until then [V], where an edge that begins it begins too. Throws InvalidInput naming
-/// the parameter, its value and the rule.
+/// Returns the waveform from t = 0 on, and `before` until then [V]; an edge at its beginning starts there. Throws InvalidInput
+/// naming the parameter, its value and the rule.
 [[nodiscard]] Signal signal(const Waveform& waveform, double before = 0);
 [[nodiscard]] std::vector<Signal> signals_of(const std::vector<Waveform>& waveforms);
-/// The limits of a driver that the signal of a waveform is held against: of an own one, which is followed to
-/// own_waveform_accuracy, wider by as much, and its slew by 1e-3.
+/// Returns the limits of a driver for the signal of a waveform. They are wider by own_waveform_accuracy for an own waveform,
+/// which is followed to that accuracy, and its slew by 1e-3.
 [[nodiscard]] DriverLimits limits_for(const Waveform& waveform, DriverLimits limits);
-/// The waveform with its voltages times `volts` and its times times `time` (frequencies over it), both positive.
+/// Returns the waveform with its voltages times `volts` and its times times `time` (frequencies over it), both positive.
 [[nodiscard]] Waveform scaled(Waveform waveform, double volts, double time);
-/// step | harmonic | pulse | table | s-curve | chirp | bspline | sines; of an own waveform its name
+/// Returns step | harmonic | pulse | table | s-curve | chirp | bspline | sines; for an own waveform its name.
 [[nodiscard]] std::string_view family(const Waveform& waveform);
 
 /// Calls f with a default waveform of every family that a scene can hold, in the order of the variant.
