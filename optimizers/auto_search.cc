@@ -12,23 +12,23 @@ namespace softland::internal {
 namespace {
 
 // Shares of the budget of an epoch.
-constexpr double refining = 0.2;  // of what is given; as much again with a gradient
+constexpr double refining = 0.2;  // share of the given budget; the same again with a gradient
 constexpr double sampling = 0.15;
-constexpr double hopping = 0.6;  // of what is left after that, where a search goes on with a gradient
+constexpr double hopping = 0.6;  // share of the budget left after that, for a search that continues with a gradient
 constexpr double first_heat = 0.4;
 constexpr double later_heat = 0.2;
 
-constexpr long longest_epoch = 5000;  // evaluations: beyond that, other starts promise more than longer searches
+constexpr long longest_epoch = 5000;  // evaluations: beyond that, other starts are more promising than longer searches
 constexpr long epochs_with_gradient = 4, shortest_epoch = 600;
 constexpr std::size_t searches_at_once = 4;
 constexpr std::size_t starts_refined = 2;
 constexpr long shortest_refinement = 125;  // evaluations
 constexpr long shortest_heat = 20;  // evaluations: less than it takes to build a simplex or a model of 7 variables is wasted
 
-// Hops, each a local search from beside the best point: standard deviations of the variables, fractions of the box.
+// Standard deviations of hops, fractions of the box. Each hop is a local search from beside the best point.
 constexpr std::array hop_sizes = {0.0005, 0.002, 0.008, 0.03};
-constexpr std::size_t fewest_hopping = 16;  // variables: boxes of fewer are sampled with more success
-constexpr long iterations_of_hop = 8;       // and one for each variable, for a model of the curvature
+constexpr std::size_t fewest_hopping = 16;  // variables: sampling the box is more successful with fewer
+constexpr long iterations_of_hop = 8;       // iterations, and one more for each variable, for a model of the curvature
 constexpr long evaluations_of_iteration = 1 + evaluations_of_gradient;
 
 // Fractions of the box.
@@ -53,7 +53,8 @@ double distance(const Point& a, const Point& b) {
   return farthest;
 }
 
-/// The best known points that are apart from each other and from the explored ones; the distance shrinks until there are enough.
+/// Returns the best known points that are apart from each other and from the explored ones; the distance shrinks until there
+/// are enough.
 std::vector<Point> promising_points(std::vector<EvaluationRecord::Known> known, const std::vector<Point>& explored) {
   std::stable_sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.answer.value < b.answer.value; });
   std::vector<Point> chosen;
@@ -72,7 +73,7 @@ std::vector<Point> promising_points(std::vector<EvaluationRecord::Known> known, 
   return chosen;
 }
 
-/// Empty before a point was feasible.
+/// Returns the best point; empty before a point was feasible.
 Point best_point(const EvaluationRecord& record) {
   const auto& known = record.known();
   const auto best =
@@ -109,8 +110,8 @@ long share_of(long budget, double share, std::size_t searches) {
   return std::max(shortest_heat, static_cast<long>(share * static_cast<double>(budget) / static_cast<double>(searches)));
 }
 
-/// Monotonic basin hopping (Leary 2000, J. Glob. Optim. 18, 367): local searches from around the best point, and again from the
-/// better ones that they find, within a budget.
+/// Runs monotonic basin hopping (Leary 2000, J. Glob. Optim. 18, 367) within a budget: local searches from around the best
+/// point, and again from the better ones that they find.
 void hop(EvaluationRecord& record, const Method& method, long budget) {
   const long each =
       std::max(shortest_heat, evaluations_of_iteration * (iterations_of_hop + static_cast<long>(record.dimension())));
@@ -135,7 +136,7 @@ void hop(EvaluationRecord& record, const Method& method, long budget) {
   }
 }
 
-/// `finisher`: takes over from the searches after their first heat, where it is another method.
+/// `finisher` takes over from the searches after their first round, where it is another method.
 void search(EvaluationRecord& record, const std::array<const Method*, searches_at_once>& methods, const Method* finisher,
             const Method& polisher) {
   std::uint64_t points_sampled = 0;
@@ -144,17 +145,17 @@ void search(EvaluationRecord& record, const std::array<const Method*, searches_a
     return Search(method, start, step, random_bits(record.seed(), Stream::library_seed, searches_begun++));
   };
   std::vector<Point> explored;
-  // With a gradient a search ends sooner, and more of them find more valleys.
+  // A search with a gradient ends sooner, and more searches find more valleys.
   const long longest = record.has_gradient()
                            ? std::clamp(record.remaining() / epochs_with_gradient, shortest_epoch, longest_epoch)
                            : longest_epoch;
 
-  // Starts come with a reason: their neighbourhood is searched before the box, which would lead away from them.
+  // The user chose the starts: search their neighbourhood before the box, which would lead away from them.
   if (!record.starts().empty()) {
     const long budget = std::min(record.remaining(), longest_epoch);
     std::vector<Point> starts = promising_points(record.known(), explored);
     starts.resize(std::min(starts.size(), starts_refined));
-    std::vector<Search> refined;  // none where the search was told to end before its first evaluation
+    std::vector<Search> refined;  // none where the search was stopped before its first evaluation
     const auto go_on = [&] {
       if (refined.empty()) return;
       advance(record, refined, std::max(share_of(budget, refining, refined.size()), shortest_refinement));

@@ -1,4 +1,4 @@
-// The libraries, seen from the search: one run of one method from one point, answered by a BudgetedObjective.
+// Interface of the search to the libraries: one run of one method from one point, answered by a BudgetedObjective.
 #pragma once
 
 #include <cstdint>
@@ -18,28 +18,28 @@ struct Method {
   std::string_view name;
   Backend backend;
   Reach reach;
-  int nlopt_algorithm;  ///< of nlopt::algorithm
+  int nlopt_algorithm;  ///< a value of nlopt::algorithm
   bool uses_gradient;
   std::string_view description;
 };
 
-/// Throws InvalidInput for a name that is unknown or refused; the message says why and what there is.
+/// Throws InvalidInput for a name that is unknown or refused; the message gives the reason and the known names.
 [[nodiscard]] const Method& find_method(std::string_view name);
 
 struct Run {
   Point start;
   double step = 0.25;      ///< first step as a fraction of the box
   double population = 1;   ///< points of a generation, over the usual number
-  std::uint64_t seed = 0;  ///< of the library's random numbers
+  std::uint64_t seed = 0;  ///< seed of the library's random numbers
 };
 
 struct RunReport {
-  bool converged = false;  ///< ended by itself, and not by an error
-  std::string message;     ///< of the library
+  bool converged = false;  ///< true when the run ended by itself, and not by an error
+  std::string message;     ///< message of the library
 };
 
-/// Both always return, whatever the objective does. A run that is repeated with the same arguments asks for the same points in
-/// the same order, so that a search which ran out of budget is continued by repeating it: its past is answered from memory.
+/// Both always return, whatever the objective does. A run repeated with the same arguments evaluates the same points in the
+/// same order. So a search that ran out of budget is continued by repeating it: its past is answered from memory.
 [[nodiscard]] RunReport run_nlopt(const Method& method, const Run& run, BudgetedObjective& budgeted);
 [[nodiscard]] RunReport run_cma_es(const Run& run, BudgetedObjective& budgeted);
 [[nodiscard]] RunReport run_ipopt(const Run& run, BudgetedObjective& budgeted);

@@ -1,9 +1,9 @@
-// Covariance matrix adaptation evolution strategy, (mu/mu_w, lambda) with rank-one and rank-mu updates and cumulative step length
-// control. Draws lambda points m + sigma A z from a normal distribution, moves its mean m to the weighted best half and learns
-// its shape from the steps that succeeded. Only the order of the values counts, so that it follows curved valleys over kinks and
-// jumps. Points beyond a bound are mirrored back into the box.
-// Source: N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, algorithm and default parameters of appendix A,
-// without negative weights.
+// Covariance matrix adaptation evolution strategy, (mu/mu_w, lambda) with rank-one and rank-mu updates and cumulative step
+// length control. It draws lambda points m + sigma A z from a normal distribution, moves its mean m to the weighted best half
+// and adapts its shape to the steps that succeeded. Only the order of the values counts, so that it follows curved valleys over
+// kinks and jumps. Points beyond a bound are mirrored back into the box.
+// Source: N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, algorithm and default parameters of appendix
+// A, without negative weights.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -21,13 +21,13 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// In units of the box; below this the spread of the points is lost in the noise of the objective.
+// Smallest spread in units of the box; below it the spread of the points is lost in the noise of the objective.
 constexpr double smallest_spread = 1e-7;
 
 /// Folds the real line onto [0, 1].
 double mirror(double u) { return std::abs(std::remainder(u, 2.0)); }
 
-/// Weights of the better half of lambda children, the best first; they add up to 1.
+/// Returns the weights of the better half of lambda children, the best first; they add up to 1.
 VectorXd recombination_weights(Eigen::Index lambda) {
   const Eigen::Index mu = lambda / 2;
   const Eigen::ArrayXd rank = Eigen::ArrayXd::LinSpaced(mu, 1, static_cast<double>(mu));
@@ -60,8 +60,8 @@ struct Child {
   double value;
 };
 
-// The points lie about the mean as sigma axes diag(lengths) z does, with z from the standard normal distribution. The covariance
-// without sigma is axes diag(lengths)^2 axes^T; its lower triangle is kept.
+// The points lie about the mean as sigma axes diag(lengths) z does, with z from the standard normal distribution. The
+// covariance without sigma is axes diag(lengths)^2 axes^T; its lower triangle is kept.
 class Distribution {
  public:
   Distribution(const Strategy& strategy, VectorXd mean, double sigma)
@@ -82,7 +82,7 @@ class Distribution {
   [[nodiscard]] double spread() const { return sigma_ * lengths_.maxCoeff(); }
   void shrink(double factor) { sigma_ *= factor; }
 
-  // Moves the mean to the weighted best children and learns from their steps; children are sorted, the best first.
+  // Moves the mean to the weighted best children and adapts to their steps; children are sorted, the best first.
   void learn(const std::vector<Child>& children, long generation) {
     const Strategy& s = strategy_;
     VectorXd move = VectorXd::Zero(mean_.size());
@@ -102,7 +102,7 @@ class Distribution {
       lower.rankUpdate(children[static_cast<std::size_t>(j)].step, s.c_mu * s.weights[j]);
     const SymmetricEigen eigen = symmetric_eigen(covariance_);
     axes_ = eigen.vectors;
-    // Eigenvalues that are smaller still are rounding errors of the largest.
+    // Smaller eigenvalues are rounding errors of the largest.
     const double smallest = std::numeric_limits<double>::epsilon() * eigen.values.maxCoeff();
     lengths_ = eigen.values.cwiseMax(smallest).cwiseSqrt();
 

@@ -52,16 +52,16 @@ const Radau& radau() {
   return rule;
 }
 
-// How much of a variable a control is at a point.
+// The weight of a variable of the program in the control at a point.
 struct Part {
-  Index column;  // of the controls
+  Index column;  // column of the controls
   double weight;
 };
 
 struct Place {
   Index piece, stage;
-  double length;  // of the piece, a fraction of T
-  double at;      // fraction of T
+  double length;  // length of the piece, a fraction of T
+  double at;      // place in the piece, a fraction of T
   std::vector<Part> parts;
 };
 
@@ -268,7 +268,7 @@ class Program final : public Ipopt::TNLP {
   [[nodiscard]] VectorXd state_of(const double* x, Index point) const {
     return Eigen::Map<const VectorXd>(x + state(point, 0), n_);
   }
-  // The beginning of a piece, then its points.
+  // Returns the beginning of a piece for j = 0, else its point j.
   [[nodiscard]] VectorXd node_of(const double* x, Index piece, Index j) const {
     const Index point = piece * stages + j - 1;
     return point < 0 ? problem_.start : state_of(x, point);
@@ -299,7 +299,7 @@ class Program final : public Ipopt::TNLP {
     }
   }
 
-  // Calls entry(row, column, value) in the order of the sparse matrix. Without rates the values mean nothing.
+  // Calls entry(row, column, value) in the order of the sparse matrix. The values mean nothing without rates.
   template <class F>
   void for_jacobian(const std::vector<ControlledSystem::Rates>& rates, const double* x, F&& entry) const {
     Index row = 0;
@@ -346,7 +346,8 @@ class Program final : public Ipopt::TNLP {
     });
   }
 
-  // The lower triangle of the Lagrangian's second derivatives; the objective is linear. Without x the values mean nothing.
+  // Calls entry for the lower triangle of the Lagrangian's second derivatives; the objective is linear. The values mean nothing
+  // without x.
   template <class F>
   void for_hessian(const double* x, double time, const double* multipliers, F&& entry) {
     MatrixXd curvature = MatrixXd::Zero(n_ + nc_, n_ + nc_);
@@ -388,7 +389,7 @@ class Program final : public Ipopt::TNLP {
   Index columns_ = 0;
   std::vector<Place> points_;
   std::vector<bool> depends_;
-  std::vector<ControlledSystem::Rates> rates_;  // at the points
+  std::vector<ControlledSystem::Rates> rates_;  // rates at the points
 };
 
 void check(const ControlProblem& p, const ControlledCourse& guess) {
@@ -440,7 +441,7 @@ std::string words_of(Ipopt::ApplicationReturnStatus status) {
   }
 }
 
-// The index of the interval that holds a fraction, and how far it is inside.
+// Returns the index of the interval that holds a fraction, and the relative place inside it.
 std::pair<std::size_t, double> interval_of(const std::vector<double>& at, double fraction) {
   const auto above = std::upper_bound(at.begin() + 1, at.end() - 1, fraction);
   const auto i = static_cast<std::size_t>(above - at.begin()) - 1;
@@ -477,17 +478,17 @@ ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& gu
   options->SetIntegerValue("print_level", 0);
   options->SetStringValue("sb", "yes");
   options->SetNumericValue("tol", problem.tolerance);
-  options->SetNumericValue("compl_inf_tol", problem.tolerance);  // else controls stay away from their bounds
+  options->SetNumericValue("compl_inf_tol", problem.tolerance);  // otherwise controls stay away from their bounds
   options->SetIntegerValue("max_iter", static_cast<int>(problem.max_iterations));
   options->SetNumericValue("bound_relax_factor", 0.0);
   options->SetNumericValue("mu_init", 1e-3);
   options->SetNumericValue("bound_push", 1e-4);
   options->SetNumericValue("bound_frac", 1e-4);
-  // With its own pivots of 1e-6 MUMPS miscounts the signs of the eigenvalues where states differ by decades, and Ipopt adds ever
-  // more to the Hessian. Minimum degree fills these matrices less than the order that MUMPS would choose.
+  // With its own pivots of 1e-6 MUMPS miscounts the signs of the eigenvalues where states differ by decades, and Ipopt adds
+  // ever more to the Hessian. Minimum degree fills these matrices less than the order that MUMPS would choose.
   options->SetNumericValue("mumps_pivtol", 1e-3);
   options->SetIntegerValue("mumps_pivot_order", 0);
-  // An empty name: without it Ipopt would read a file ipopt.opt from the working directory.
+  // The name is empty: without it Ipopt would read a file ipopt.opt from the working directory.
   auto status = application->Initialize("");
   if (status == Ipopt::Solve_Succeeded) status = application->OptimizeTNLP(new Program(problem, guess, result));
   result.converged = status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level;
@@ -499,7 +500,7 @@ ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& gu
 std::vector<double> refined_knots(const ControlledCourse& course, const std::vector<ControlBound>& bounds, double shortest) {
   const std::vector<double>& knots = course.knots;
   const std::size_t intervals = knots.size() - 1;
-  constexpr double near = 0.01;  // of the range, to a bound
+  constexpr double near = 0.01;  // distance to a bound, as a share of the range
   std::vector<bool> changes(intervals, false);
   for (std::size_t i = 0; i < intervals; ++i) {
     for (std::size_t k = 0; k < bounds.size(); ++k) {

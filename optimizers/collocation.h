@@ -1,16 +1,16 @@
-// Optimal control by direct collocation: of all controls that take a system from where it begins to where it has to end, the one
-// that takes the least time, or ends best.
+// Optimal control by direct collocation: it finds, among all controls that take a system from its start to its required end,
+// the one that takes the least time, or ends best.
 //
 //   minimise T, or e.x(T)    over T, c(.)    subject to  x' = f(x, c) on [0, T],  x(0) = x_0,  lower <= c <= upper,  |c'| <=
 //   slew,
 //                                                         rows on the way and at the end:  lower <= r.x <= upper
 //
-// x states, c controls, T the time. Transcription: on each piece of the mesh x is a polynomial of degree three that fulfils the
-// differential equations at the three Radau points (Radau IIA, of fifth order at the ends of pieces; Hairer & Wanner, Solving
-// Ordinary Differential Equations II, 1996, sec. IV.5). A control is constant between its knots, or linear where its slew is
-// bounded; the knots are fractions of T, and a mesh of their own may divide what lies between them. The nonlinear program with
-// its sparse, exact first and second derivatives is solved by Ipopt (Betts, Practical Methods for Optimal Control, 2010, ch. 4).
-// Knows nothing of switches. All quantities should be of the order of one: the caller scales.
+// x are the states, c the controls, T the time. Transcription: on each piece of the mesh x is a polynomial of degree three. It
+// fulfils the differential equations at the three Radau points (Radau IIA, of fifth order at the ends of pieces; Hairer &
+// Wanner, Solving Ordinary Differential Equations II, 1996, sec. IV.5). A control is constant between its knots, or linear
+// where its slew is bounded; the knots are fractions of T, and a mesh of their own may divide the intervals between them. Ipopt
+// solves the nonlinear program with its sparse, exact first and second derivatives (Betts, Practical Methods for Optimal
+// Control, 2010, ch. 4). The code is independent of switches. All quantities should be of the order of one: the caller scales.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,25 +22,25 @@
 
 namespace softland {
 
-/// x' = f(x, c), with derivatives.
+/// A system x' = f(x, c), with derivatives.
 class ControlledSystem {
  public:
   virtual ~ControlledSystem() = default;
   [[nodiscard]] virtual Eigen::Index states() const = 0;
   [[nodiscard]] virtual Eigen::Index controls() const = 0;
-  /// Whether rate `r` can depend on entry `k` of (x, c): what cannot is left out of the sparse matrices.
+  /// True when rate `r` can depend on entry `k` of (x, c); other entries are left out of the sparse matrices.
   [[nodiscard]] virtual bool depends(Eigen::Index r, Eigen::Index k) const = 0;
   struct Rates {
     Eigen::VectorXd value;  ///< f
-    Eigen::MatrixXd slope;  ///< by (x, c): states rows
+    Eigen::MatrixXd slope;  ///< derivatives by (x, c), one row per state
   };
   [[nodiscard]] virtual Rates rates(const Eigen::VectorXd& x, const Eigen::VectorXd& c) = 0;
-  /// Second derivatives of multipliers.f by (x, c): symmetric.
+  /// Returns the second derivatives of multipliers.f by (x, c): a symmetric matrix.
   [[nodiscard]] virtual Eigen::MatrixXd curvature(const Eigen::VectorXd& x, const Eigen::VectorXd& c,
                                                   const Eigen::VectorXd& multipliers) = 0;
 };
 
-/// lower <= row.x <= upper
+/// The condition lower <= row.x <= upper.
 struct StateCondition {
   Eigen::VectorXd row;
   double lower = -std::numeric_limits<double>::infinity();
@@ -50,10 +50,11 @@ struct StateCondition {
 struct ControlBound {
   double lower = 0;
   double upper = 1;
-  /// Largest |c'|: the control is linear between its knots and begins at `before`. Infinite: constant between them, with jumps.
+  /// Largest |c'|: the control is linear between its knots and begins at `before`. Where it is infinite, the control is
+  /// constant between its knots, with jumps.
   double slew = std::numeric_limits<double>::infinity();
   double before = 0;
-  /// What a control with a slew ends on, where that is given.
+  /// Value on which a control with a slew ends, where it is given.
   std::optional<double> after = {};
 };
 
@@ -61,22 +62,22 @@ struct ControlProblem {
   ControlledSystem* system = nullptr;
   Eigen::VectorXd start = {};                   ///< x_0
   std::vector<ControlBound> bounds = {};        ///< one per control; all with jumps, or all with a slew
-  std::vector<StateCondition> on_the_way = {};  ///< at the ends of all pieces but the last
+  std::vector<StateCondition> on_the_way = {};  ///< conditions at the ends of all pieces but the last
   std::vector<StateCondition> at_the_end = {};
   double shortest = 0, longest = 0;               ///< bounds of T
-  std::optional<Eigen::VectorXd> ends_best = {};  ///< e; none: the least time
-  std::vector<double> knots = {};                 ///< of the controls, fractions of T from 0 to 1
-  double longest_piece = 1;                       ///< of the mesh, a fraction of T
+  std::optional<Eigen::VectorXd> ends_best = {};  ///< e; the least time is sought without it
+  std::vector<double> knots = {};                 ///< knots of the controls, fractions of T from 0 to 1
+  double longest_piece = 1;                       ///< longest piece of the mesh, a fraction of T
   long max_iterations = 500;
-  double tolerance = 1e-8;                  ///< of the optimality conditions
-  const std::atomic<bool>* stop = nullptr;  ///< set from outside: ends the solve
+  double tolerance = 1e-8;                  ///< tolerance of the optimality conditions
+  const std::atomic<bool>* stop = nullptr;  ///< set from outside; ends the solve
 };
 
 /// A control and the course of the states under it.
 struct ControlledCourse {
   bool converged = false;
   bool interrupted = false;
-  std::string message = {};  ///< of Ipopt
+  std::string message = {};  ///< message of Ipopt
   int iterations = 0;
   double time = 0;                  ///< T
   std::vector<double> knots = {};   ///< fractions of T
@@ -87,11 +88,12 @@ struct ControlledCourse {
   [[nodiscard]] Eigen::VectorXd control_at(double fraction) const;
 };
 
-/// Solves the problem from a guess, any course of the same states and controls; it need not fulfil anything. Throws InvalidInput
-/// for a problem whose parts do not fit; numerical trouble is in the result.
+/// Solves the problem from a guess: any course of the same states and controls, which need not fulfil any condition. Throws
+/// InvalidInput for a problem whose parts do not fit; numerical trouble is in the result.
 [[nodiscard]] ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& guess);
 
-/// Knots with those intervals halved, of at least `shortest`, in which a control is about to change, and their neighbours.
+/// Returns the knots with intervals halved, but not below `shortest`, in which a control is about to change, and their
+/// neighbours.
 [[nodiscard]] std::vector<double> refined_knots(const ControlledCourse& course, const std::vector<ControlBound>& bounds,
                                                 double shortest);
 

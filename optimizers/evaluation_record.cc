@@ -23,11 +23,11 @@ double compress(double value) {
   if (size <= large_value) return value;
   return std::copysign(large_value * (1 + std::log(size / large_value)), value);
 }
-// Above compress(x) for every finite x (the largest is 6.8e14).
+// First penalty: above compress(x) for every finite x (the largest is 6.8e14).
 constexpr double first_penalty = 1e15;
 
-// Short, because the smooth pieces of an objective may be: those of the cost of a closing are narrower than a thousandth of the
-// box. The noise of about 1e-9 that objectives carry is then 1e-4 of a slope of order 1.
+// The step is short, because the smooth pieces of an objective may be: those of the cost of a closing are narrower than a
+// thousandth of the box. The noise of about 1e-9 that objectives carry is then 1e-4 of a slope of order 1.
 constexpr double difference_step = 1e-5;
 
 // Libraries step over a bound by a rounding error, and into NaN when the objective leads them there. Adding 0 turns -0 to 0.
@@ -37,7 +37,7 @@ Point inside(std::span<const double> point) {
   return moved;
 }
 
-// A search that is continued first walks through its own past, so the limit grows with what is known.
+// A search that is continued first repeats its own past, so the limit grows with the number of known points.
 constexpr long circles_allowed = 1000;
 
 }  // namespace
@@ -110,7 +110,8 @@ Answer BudgetedObjective::remember(const Point& point, double value) {
   return answer;
 }
 
-// Above everything seen, yet of the same size: a wall of 1e15 next to values of order 1 would blind the methods that fit models.
+// The penalty is above every value seen, yet of the same size: a wall of 1e15 next to values of order 1 would blind the methods
+// that fit models.
 double BudgetedObjective::penalty() const {
   if (worst_seen_ < best_seen_) return first_penalty;
   const double spread = worst_seen_ - best_seen_;
@@ -129,7 +130,7 @@ Values BudgetedObjective::values(std::span<const double> point) {
   return {found->second, answer.feasible};
 }
 
-// False where there are none; they are NaN where they are not known.
+// Returns false where the problem has no gradients; unknown gradients are NaN.
 bool BudgetedObjective::known_gradients(const Point& point, std::span<double> gradients) {
   if (!record_.has_gradient()) return false;
   const auto recall = [&](const Numbers& known) {
@@ -157,7 +158,7 @@ void BudgetedObjective::gradients(std::span<const double> point, std::span<doubl
     const auto of = [&](std::size_t value) -> double& { return gradients[value * n + i]; };
     const auto is_finite = [&](std::size_t value) { return std::isfinite(of(value)); };
     if (are_known && std::ranges::all_of(all, is_finite)) continue;
-    // Two offsets from here; both to the same side next to a bound.
+    // Take two offsets from here; both to the same side next to a bound.
     double a = -difference_step;
     double b = difference_step;
     if (point[i] + a < 0) a = 2 * difference_step;
@@ -201,7 +202,7 @@ Point EvaluationRecord::to_point(std::span<const double> x) const {
   Point point;
   for (const std::size_t i : free_) {
     const Variable& variable = problem_.variables[i];
-    // Halves: the width of the widest box would overflow.
+    // Halves are subtracted: the width of the widest box would overflow.
     const double part = (0.5 * x[i] - 0.5 * variable.lower) / (0.5 * variable.upper - 0.5 * variable.lower);
     point.push_back(std::clamp(part, 0.0, 1.0) + 0.0);
   }
@@ -303,7 +304,7 @@ long EvaluationRecord::run(const std::vector<Task>& tasks) {
   return evaluations_ - before;
 }
 
-// With an exception the conditions stand as kept: the value alone tells then.
+// After an exception only the value is known, and the conditions stand as kept.
 std::vector<double> EvaluationRecord::values(BudgetedObjective& budgeted, const Point& point, const Answer& answer) const {
   std::vector<double> kept(1 + problem_.conditions.count, 0.0);
   kept[0] = answer.value;
@@ -319,7 +320,7 @@ std::vector<double> EvaluationRecord::values(BudgetedObjective& budgeted, const 
   return kept;
 }
 
-// By the point of the search. An exception leaves them to differences.
+// Returns the gradients by the point of the search. An exception leaves them to differences.
 std::vector<double> EvaluationRecord::gradients(BudgetedObjective& budgeted, const Point& point) const {
   std::vector<double> scaled((1 + problem_.conditions.count) * free_.size(), std::numeric_limits<double>::quiet_NaN());
   try {

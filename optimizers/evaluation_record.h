@@ -1,9 +1,10 @@
-// The record of one minimisation: every evaluation is made, counted and remembered here, never by a library.
+// The record of one minimisation: it makes, counts and remembers every evaluation; no library does.
 //
-// Work comes in rounds of tasks. A task is sequential and has a fixed budget; the tasks of a round run in parallel. The order of
-// evaluations is (round, task, position within the task), whatever thread made them when: "first", "best so far" and "already
-// seen" refer to it, so that results do not depend on the number of jobs. When a task reaches the target, later tasks of the
-// round are cut and left out, earlier ones complete: this is what running the tasks one after the other would have given.
+// Work comes in rounds of tasks. A task is sequential and has a fixed budget; the tasks of a round run in parallel. The order
+// of evaluations is (round, task, position within the task), whatever thread made them when. "First", "best so far" and
+// "already seen" refer to this order, so that results do not depend on the number of jobs. When a task reaches the target,
+// later tasks of the round are cut and left out, and earlier ones complete: running the tasks one after the other would have
+// given the same.
 #pragma once
 
 #include <atomic>
@@ -24,16 +25,16 @@ namespace softland::internal {
 /// A point of the search: the variables that are free to move, each scaled to [0, 1].
 using Point = std::vector<double>;
 
-/// Thrown out of a BudgetedObjective to end a library's run; backends translate it to whatever ends theirs.
+/// BudgetedObjective throws it to end a library's run; backends translate it to whatever ends theirs.
 struct Cut {};
 
-/// What a search is told about a point. For an infeasible one the value is a finite penalty above all values seen before.
+/// Answer to a search about a point. The value of an infeasible point is a finite penalty above all values seen before.
 struct Answer {
   double value;
   bool feasible;
 };
 
-/// {what is to be minimised, g_1, ... g_n}
+/// The values {cost, g_1, ... g_n}: what is minimised, then the conditions.
 struct Values {
   std::vector<double> all;
   bool feasible;
@@ -44,32 +45,33 @@ struct PointHash {
 };
 using Memory = std::unordered_map<Point, Answer, PointHash>;
 using Numbers = std::unordered_map<Point, std::vector<double>, PointHash>;
-/// What the gradients of the problem at one point count as, in evaluations.
+/// Cost of the gradients of the problem at one point, in evaluations.
 inline constexpr long evaluations_of_gradient = 3;
 
 class EvaluationRecord;
 
-/// The evaluations of one task, made by one thread. Libraries are given nothing but this.
+/// The evaluations of one task, made by one thread. Libraries receive nothing but this.
 class BudgetedObjective {
  public:
-  /// Throws Cut when the share of the budget is used up, the minimisation is over, or the search goes in circles (many times only
-  /// points it knows). A point that was seen before is answered from memory and costs nothing.
+  /// Throws Cut when the share of the budget is used up, the minimisation is over, or the search goes in circles (many times
+  /// only points it knows). A point that was seen before is answered from memory and costs nothing.
   Answer operator()(std::span<const double> point);
-  /// With the conditions of the problem; the value alone where it has none. At an infeasible point no condition is broken. Throws
-  /// Cut.
+  /// Returns the value with the conditions of the problem; the value alone where the problem has none. No condition is broken
+  /// at an infeasible point. Throws Cut.
   Values values(std::span<const double> point);
-  /// Of the values, one after the other. Those of the problem where it has them, else central differences; these are one-sided at
-  /// the bounds and next to infeasible points; 0 where nothing around is feasible. Throws Cut.
+  /// Writes the gradients of all values, one after the other. They are the problem's own where it has them, else central
+  /// differences. Differences are one-sided at the bounds and next to infeasible points, and 0 where nothing around is
+  /// feasible. Throws Cut.
   void gradients(std::span<const double> point, std::span<double> gradients);
-  /// Of the problem.
+  /// Returns the number of conditions of the problem.
   [[nodiscard]] std::size_t conditions() const;
 
-  /// Whether a further evaluation would be refused for good.
+  /// True when a further evaluation would be refused for good.
   [[nodiscard]] bool over() const;
-  /// To be called before every run of a library: circles are counted anew.
+  /// Counts circles anew. Call it before every run of a library.
   void begin_search() { repeats_ = 0; }
   [[nodiscard]] long evaluations() const { return static_cast<long>(records_.size()); }
-  /// The lowest feasible value this task has found; infinite without one.
+  /// Returns the lowest feasible value this task has found; infinite without one.
   [[nodiscard]] double best_of_task() const { return best_of_task_; }
   [[nodiscard]] const Point& best_point_of_task() const { return best_point_of_task_; }
 
@@ -78,7 +80,7 @@ class BudgetedObjective {
   struct Record {
     Point point;
     Answer answer;
-    double value;  ///< as the objective gave it
+    double value;  ///< value as returned by the objective
   };
   BudgetedObjective(EvaluationRecord& record, std::size_t task, long budget, long first_index);
 
@@ -98,8 +100,8 @@ class BudgetedObjective {
   Point best_point_of_task_;
   Memory memory_;
   std::vector<Record> records_;
-  Numbers values_;     ///< with conditions
-  Numbers gradients_;  ///< of the problem
+  Numbers values_;     ///< values of evaluations with conditions
+  Numbers gradients_;  ///< gradients of the problem
   std::optional<std::string> first_exception_;
 };
 
@@ -107,7 +109,7 @@ class EvaluationRecord {
  public:
   struct Task {
     long budget;
-    std::function<void(BudgetedObjective&)> body;  ///< may leave by Cut; any other exception is a failure
+    std::function<void(BudgetedObjective&)> body;  ///< work of the task; may leave by Cut; any other exception is a failure
   };
   struct Known {
     Point point;
@@ -129,12 +131,13 @@ class EvaluationRecord {
     return options_.max_evaluations - evaluations_ - evaluations_of_gradient * static_cast<long>(gradients_.size());
   }
   [[nodiscard]] bool over() const { return remaining() <= 0 || target_reached_ || outside_ != Termination::not_run; }
-  /// Everything evaluated in the rounds so far, in order.
+  /// Returns everything evaluated in the rounds so far, in order.
   [[nodiscard]] const std::vector<Known>& known() const { return known_; }
-  /// Whether work on the current round is to end early for a reason that is not the evaluation budget. Cheap; for waiting loops.
+  /// Returns true when work on the current round should end early for a reason other than the evaluation budget. It is cheap
+  /// and serves waiting loops.
   [[nodiscard]] bool cut_off(std::size_t task);
 
-  /// The result; `message` is what the last search said, `converged` that it ended by itself.
+  /// Returns the result; `message` is that of the last search, `converged` whether it ended by itself.
   [[nodiscard]] OptimizerResult result(bool converged, const std::string& message) const;
 
  private:
@@ -156,9 +159,9 @@ class EvaluationRecord {
   std::chrono::steady_clock::time_point begin_;
   std::vector<std::size_t> free_;  ///< indices of the variables with lower < upper
   std::vector<Point> starts_;
-  std::unordered_map<Point, std::vector<double>, PointHash> exact_;  ///< user's digits of the starts: scaling would round them
+  std::unordered_map<Point, std::vector<double>, PointHash> exact_;  ///< user's digits of the starts, which scaling would round
 
-  // Between rounds only.
+  // These change between rounds only.
   std::vector<Known> known_;
   Memory memory_;
   Numbers values_, gradients_;
@@ -169,7 +172,7 @@ class EvaluationRecord {
   bool target_reached_ = false;
   OptimizerResult best_;
 
-  // Shared by the threads of a round.
+  // The threads of a round share these.
   std::atomic<std::size_t> target_task_;
   std::atomic<Termination> outside_ = Termination::not_run;
   std::mutex report_mutex_;

@@ -1,6 +1,6 @@
 // Ipopt 3.11.9 as a quasi-Newton method under bounds and conditions. Ipopt answers an objective it cannot evaluate by
-// shortening steps, thousands of times; the BudgetedObjective counts, and its Cut passes through Ipopt, which catches whatever
-// callbacks throw and returns NonIpopt_Exception_Thrown.
+// shortening steps, thousands of times. So the BudgetedObjective counts, and its Cut passes through Ipopt, which catches
+// whatever callbacks throw and returns NonIpopt_Exception_Thrown.
 #include <IpIpoptApplication.hpp>
 #include <IpTNLP.hpp>
 #include <algorithm>
@@ -27,7 +27,7 @@ class StrandProblem final : public Ipopt::TNLP {
   }
   bool get_bounds_info(Ipopt::Index n, Ipopt::Number* lower, Ipopt::Number* upper, Ipopt::Index m, Ipopt::Number* least,
                        Ipopt::Number* most) override {
-    constexpr double unbounded = -2e19;  // to Ipopt, from -1e19 on
+    constexpr double unbounded = -2e19;  // Ipopt takes values beyond -1e19 as unbounded
     std::fill_n(lower, n, 0.0);
     std::fill_n(upper, n, 1.0);
     std::fill_n(least, m, unbounded);
@@ -51,7 +51,7 @@ class StrandProblem final : public Ipopt::TNLP {
     if (m > 0) std::copy_n(strand_.values(view(x, n)).all.begin() + 1, m, values);
     return true;
   }
-  // Without `values` the places of its entries are asked for: all of them, row by row.
+  // A call without `values` asks for the places of the entries: all of them, row by row.
   bool eval_jac_g(Ipopt::Index n, const Ipopt::Number* x, bool, Ipopt::Index m, Ipopt::Index, Ipopt::Index* rows,
                   Ipopt::Index* columns, Ipopt::Number* values) override {
     if (m == 0) return true;
@@ -73,7 +73,7 @@ class StrandProblem final : public Ipopt::TNLP {
 
  private:
   static std::span<const double> view(const Ipopt::Number* x, Ipopt::Index n) { return {x, static_cast<std::size_t>(n)}; }
-  // Of the cost, then of each condition.
+  // Returns the gradient of the cost, then that of each condition.
   [[nodiscard]] std::vector<double> gradients(const Ipopt::Number* x, Ipopt::Index n) {
     std::vector<double> all((1 + strand_.conditions()) * static_cast<std::size_t>(n));
     strand_.gradients(view(x, n), all);
@@ -117,14 +117,14 @@ RunReport run_ipopt(const Run& run, BudgetedObjective& budgeted) {
   options->SetIntegerValue("print_level", 0);
   options->SetStringValue("sb", "yes");
   options->SetStringValue("hessian_approximation", "limited-memory");
-  options->SetNumericValue("bound_relax_factor", 0.0);  // points outside the bounds are never asked for
+  options->SetNumericValue("bound_relax_factor", 0.0);  // points outside the bounds are never evaluated
   // Starts are good points, some of them near a bound: the usual barrier would first push them to the middle of the box.
   options->SetNumericValue("mu_init", 1e-4);
   options->SetNumericValue("bound_push", 1e-6);
   options->SetNumericValue("bound_frac", 1e-6);
-  options->SetNumericValue("tol", 1e-6);  // of gradients that may be differences
+  options->SetNumericValue("tol", 1e-6);  // tolerance of gradients that may be differences
   options->SetIntegerValue("max_iter", 1000);
-  // An empty name: without it Ipopt would read a file ipopt.opt from the working directory.
+  // The name is empty: without it Ipopt would read a file ipopt.opt from the working directory.
   if (const auto status = application->Initialize(""); status != Ipopt::Solve_Succeeded) return report_of(status);
   return report_of(application->OptimizeTNLP(new StrandProblem(run.start, budgeted)));
 }

@@ -8,10 +8,10 @@
 
 namespace softland::internal {
 
-/// Waits until no other solve is at work, or until `gave_up()`; then there is no turn.
+/// Waits until no other solve is at work, or until `gave_up()`; then the returned lock is not held.
 [[nodiscard]] inline std::unique_lock<std::mutex> ipopt_turn(const std::function<bool()>& gave_up) {
   static std::mutex one_solve_at_a_time;
-  constexpr std::chrono::milliseconds look_up{1};  // how often to see whether it is our turn, or too late
+  constexpr std::chrono::milliseconds look_up{1};  // interval between attempts to take the lock
   std::unique_lock turn(one_solve_at_a_time, std::defer_lock);
   while (!turn.try_lock()) {
     if (gave_up()) break;

@@ -46,10 +46,10 @@ void check(const Problem& problem, const OptimizerOptions& options) {
   require(!std::isnan(options.target), "target must not be NaN");
 }
 
-// A search begun at an infeasible point sees a plateau: it is worth a few evaluations to begin elsewhere.
+// A search from an infeasible point sees a plateau: another start is worth a few evaluations.
 constexpr std::uint64_t infeasible_starts_skipped = 20;
 
-// Runs that end without a single new evaluation: the method has nothing more to offer, from anywhere.
+// Number of runs that end without a new evaluation: after these the method finds nothing more from any start.
 constexpr int idle_runs_allowed = 20;
 
 RunReport search_single_method(EvaluationRecord& record, const Method& method, const OptimizerOptions& options) {

@@ -1,9 +1,8 @@
-// NLopt 2.7.1. What its methods need that its interface does not say:
-// - Its own limits are not enough: several methods report success on NaN, hang, or swallow exceptions. The BudgetedObjective
-// counts, keeps
-//   the best point and cuts; nothing that NLopt returns but the words is used.
+// NLopt 2.7.1. Its methods have needs that its interface does not say:
+// - Its own limits are not enough: several methods report success on NaN, hang, or swallow exceptions. So the BudgetedObjective
+//   counts, keeps the best point and cuts; of what NLopt returns only the message is used.
 // - Random numbers come from a generator of the calling thread, seeded from the clock unless nlopt::srand is called in it.
-// - MLSL is the one that starts from random points: the Sobol sequence of its variant cannot be seeded.
+// - MLSL is the variant that starts from random points: the Sobol sequence of the other one cannot be seeded.
 // - DIRECT divides the box at fixed places; a bent scale per variable, drawn from the seed, moves them.
 #include <fmt/format.h>
 
@@ -17,15 +16,16 @@
 namespace softland::internal {
 namespace {
 
-// In units of the box. Far below what the noise of an objective allows to resolve, so that no method gives up on a narrow valley.
+// Tolerance in units of the box. It is far below what the noise of an objective allows to resolve, so that no method gives up
+// on a narrow valley.
 constexpr double step_tolerance = 1e-7;
 // MLSL polishes many minima and needs only to tell them apart.
 constexpr double step_tolerance_inside_mlsl = 1e-4;
 
 struct Callback {
   BudgetedObjective& budgeted;
-  bool with_conditions;             ///< those of the problem are followed
-  std::vector<double> bent_middle;  ///< where 0.5 goes; empty for a straight scale
+  bool with_conditions;             ///< true when the conditions of the problem are followed
+  std::vector<double> bent_middle;  ///< image of 0.5; empty for a straight scale
 
   [[nodiscard]] Point to_point(const std::vector<double>& x) const {
     Point point = x;
@@ -53,7 +53,7 @@ double call(const std::vector<double>& x, std::vector<double>& gradient, void* d
   }
 }
 
-// For methods with a gradient, whose scale is straight.
+// Serves methods with a gradient, whose scale is straight.
 void call_conditions(unsigned count, double* values, unsigned dimension, const double* x, double* gradient, void* data) {
   BudgetedObjective& budgeted = static_cast<Callback*>(data)->budgeted;
   const std::span<const double> point(x, dimension);

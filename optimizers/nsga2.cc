@@ -21,14 +21,14 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int idle_generations_allowed = 100;
-constexpr double least_difference = 1e-14;  // of two parents, as a part of the box: closer ones are equal
+constexpr double least_difference = 1e-14;  // least difference of two parents, as a part of the box: closer ones are equal
 
 using Point = std::vector<double>;  // scaled to [0, 1]
 
 struct Member {
   Point point;
   ParetoValue value;
-  std::size_t rank = 0;  // 0: no member is better
+  std::size_t rank = 0;  // 0 where no member is better
   double crowding = 0;   // distance to its neighbours in the front
 };
 
@@ -51,7 +51,7 @@ class Draws {
   std::uint64_t count_ = 0;
 };
 
-/// Fronts of ever higher rank: the members of each are not beaten by one of it or of a later one.
+/// Returns fronts of rising rank: the members of each are not dominated by one of it or of a later one.
 std::vector<std::vector<std::size_t>> ranked(std::vector<Member>& members) {
   std::vector<std::size_t> better_than_it(members.size(), 0);
   std::vector<std::vector<std::size_t>> beaten(members.size());
@@ -81,7 +81,7 @@ std::vector<std::vector<std::size_t>> ranked(std::vector<Member>& members) {
   return fronts;
 }
 
-/// In every objective the distance between the two neighbours, over the range of the front; infinite at its ends.
+/// Sums over the objectives the distance between the two neighbours, over the range of the front; infinite at its ends.
 void measure_crowding(std::vector<Member>& members, std::vector<std::size_t> front) {
   for (const std::size_t k : front) members[k].crowding = 0;
   const std::size_t objectives = members[front.front()].value.objectives.size();
@@ -96,7 +96,7 @@ void measure_crowding(std::vector<Member>& members, std::vector<std::size_t> fro
   }
 }
 
-/// The best `size` of them: whole fronts, and of the first that has no room the least crowded members.
+/// Returns the best `size` members: whole fronts, and the least crowded members of the first front that does not fit.
 std::vector<Member> survivors(std::vector<Member> members, std::size_t size) {
   std::vector<Member> chosen;
   for (std::vector<std::size_t>& front : ranked(members)) {
@@ -119,7 +119,8 @@ const Member& tournament(const std::vector<Member>& members, Draws& draws) {
   return b.crowding > a.crowding ? b : a;
 }
 
-/// How far children spread, in halves of the distance of their parents: by the distribution that a bound at `room` cuts off.
+/// Returns the spread of children in halves of the distance of their parents, from the distribution that a bound at `room` cuts
+/// off.
 double spread_factor(double u, double room, double index) {
   const double all = 2 - std::pow(room, -(index + 1));
   const double part = u * all;
@@ -163,7 +164,7 @@ class Evaluations {
   [[nodiscard]] bool over() const { return ended_ != Termination::not_run; }
   [[nodiscard]] Termination ended() const { return ended_; }
 
-  /// Members at these points, without those that the budget or the clock left out.
+  /// Returns members at these points, without those that the budget or the clock left out.
   std::vector<Member> members_at(const std::vector<Point>& points) {
     std::vector<std::vector<double>> fresh;
     std::set<std::vector<double>> seen;
@@ -225,7 +226,7 @@ class Evaluations {
     return x;
   }
 
-  // What `evaluate` makes of a point, infeasible where it makes nothing of it.
+  // Returns the value of `evaluate` at a point; infeasible where `evaluate` fails.
   [[nodiscard]] ParetoValue value_at(const std::vector<double>& x, std::string& exception) const {
     ParetoValue value;
     try {
@@ -273,7 +274,7 @@ class Evaluations {
   const ParetoOptions& options_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::vector<ParetoEvaluation> log_;
-  std::map<std::vector<double>, std::size_t> known_;  // by x, number in the log
+  std::map<std::vector<double>, std::size_t> known_;  // number in the log, by x
   std::string first_exception_;
   Termination ended_ = Termination::not_run;
   std::mutex mutex_;

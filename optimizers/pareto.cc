@@ -23,13 +23,13 @@ void require_length(std::span<const double> point, std::size_t objectives) {
   require(point.size() == objectives, fmt::format("a point has {} objectives where others have {}", point.size(), objectives));
 }
 
-/// What points of two objectives dominate of the box below a corner. The boundary is kept as steps: at x and to the right of it
-/// lies everything above y that is dominated.
+/// The part of the box below a corner that points of two objectives dominate. The boundary is kept as steps: at x and to the
+/// right of it everything above y is dominated.
 class Staircase {
  public:
   Staircase(double x_reference, double y_reference) : steps_{{-unbounded, y_reference}, {x_reference, -unbounded}} {}
 
-  /// The point lies below the corner in both objectives.
+  /// Adds a point that lies below the corner in both objectives.
   void insert(double x, double y) {
     auto step = std::prev(steps_.upper_bound(x));
     if (step->second <= y) return;
@@ -87,7 +87,7 @@ std::vector<std::size_t> pareto_front(std::span<const Objectives> points) {
   std::vector<std::size_t> front;
   for (const std::size_t k : order) {
     const auto covers = [&](std::size_t other) { return points[other] == points[k] || dominates(points[other], points[k]); };
-    // The last ones first: they are the nearest.
+    // Check the last ones first: they are the nearest.
     if (std::none_of(front.rbegin(), front.rend(), covers)) front.push_back(k);
   }
   std::sort(front.begin(), front.end());

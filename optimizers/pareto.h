@@ -1,8 +1,8 @@
-// Points of several objectives, all of them to be minimised: which of them no other one dominates, how much of the space of
-// objectives they dominate together, and where their front bends.
+// Points of several objectives, all of them to be minimised: the points that no other one dominates, the share of the space of
+// objectives that they dominate together, and the knee of their front.
 //
-// A point dominates another one if it is nowhere worse and somewhere better. A point with a value that is not finite is no point:
-// it is never part of a front.
+// A point dominates another one if it is nowhere worse and somewhere better. A point with a value that is not finite is never
+// part of a front.
 #pragma once
 
 #include <cstddef>
@@ -12,35 +12,35 @@
 
 namespace softland {
 
-/// One value per objective.
+/// Values of a point, one per objective.
 using Objectives = std::vector<double>;
 
-/// Throws InvalidInput for points of different lengths.
+/// Returns true when `a` dominates `b`. Throws InvalidInput for points of different lengths.
 [[nodiscard]] bool dominates(std::span<const double> a, std::span<const double> b);
 
-/// Numbers of the points that none dominates, ascending. Of equal points the first stands for all. Throws InvalidInput where
-/// points have different numbers of objectives.
+/// Returns the numbers of the points that none dominates, ascending. The first of equal points stands for all. Throws
+/// InvalidInput where points have different numbers of objectives.
 [[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const Objectives> points);
 
-/// The volume between the points and `reference`, the worst corner: what they dominate of the box below it. Exact, for one to
-/// three objectives, in n log n and, for three, at most n^2 steps; what does not lie below the reference in every objective adds
-/// nothing. Throws InvalidInput for other numbers of objectives, for points that do not have those of the reference, and for a
-/// reference that is not finite.
-/// Source: E. Zitzler & L. Thiele, PPSN V 1998 (the measure); C. M. Fonseca, L. Paquete & M. Lopez-Ibanez, CEC 2006 (sweep along
-/// the last objective over a staircase of the others).
+/// Returns the volume of the box below `reference`, the worst corner, that the points dominate. It is exact, for one to three
+/// objectives, in n log n and, for three, at most n^2 steps; a point that does not lie below the reference in every objective
+/// adds nothing. Throws InvalidInput for other numbers of objectives, for points that do not have those of the reference, and
+/// for a reference that is not finite.
+/// Source: E. Zitzler & L. Thiele, PPSN V 1998 (the measure); C. M. Fonseca, L. Paquete & M. Lopez-Ibanez, CEC 2006 (sweep
+/// along the last objective over a staircase of the others).
 [[nodiscard]] double hypervolume(std::span<const Objectives> points, std::span<const double> reference);
 
-/// The smallest and the largest value of every objective over the points.
+/// The smallest and the largest value of an objective over the points.
 struct ObjectiveRange {
   double lowest = 0;
   double highest = 0;
 };
 [[nodiscard]] std::vector<ObjectiveRange> objective_ranges(std::span<const Objectives> points);
 
-/// The number of the point where the front bends most: with every objective scaled to [0, 1] over the points, the one farthest
-/// below the plane through (1, 0, ...), (0, 1, 0, ...) and so on. For two objectives this is the line between the two ends of the
-/// front. None where no point lies below it by more than rounding: a front that is straight or bulges outwards has no knee, nor
-/// has one whose points agree in an objective.
+/// Returns the number of the point at the knee of the front: with every objective scaled to [0, 1] over the points, the one
+/// farthest below the plane through (1, 0, ...), (0, 1, 0, ...) and so on. For two objectives this is the line between the two
+/// ends of the front. Returns none where no point lies below it by more than rounding: a front that is straight or bulges
+/// outwards has no knee, nor has one whose points agree in an objective.
 /// Source: I. Das, "On characterizing the knee of the Pareto curve based on normal-boundary intersection", Structural
 /// Optimization 18 (1999) 107.
 [[nodiscard]] std::optional<std::size_t> pareto_knee(std::span<const Objectives> front);

@@ -8,7 +8,8 @@
 namespace softland::internal {
 namespace {
 
-// Boost's tables end at 3667 dimensions; far earlier, a Sobol sequence of any affordable length is no better than random points.
+// Boost's tables end at 3667 dimensions; far earlier, a Sobol sequence of any affordable length is no better than random
+// points.
 constexpr std::size_t most_dimensions = 64;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Points spread evenly over a box, any of them without those before it.
+// Points spread evenly over a box, each of them available without those before it.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace softland::internal {
 
-/// `count` points of a Sobol sequence in [0, 1)^dimension, from number `first` on, shifted digit by digit (exclusive or) by the
-/// seed: each point is uniform over the box, and together they keep the even spread of the sequence.
+/// Returns `count` points of a Sobol sequence in [0, 1)^dimension, from number `first` on. They are shifted digit by digit
+/// (exclusive or) by the seed: each point is uniform over the box, and together they keep the even spread of the sequence.
 [[nodiscard]] std::vector<std::vector<double>> sobol_points(std::uint64_t seed, std::size_t dimension, std::uint64_t first,
                                                             std::size_t count);
 
