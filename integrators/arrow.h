@@ -12,11 +12,12 @@ namespace softland {
 
 class ArrowEquations {
  public:
-  /// `size` unknowns, the first `core` of them dense, the rest in blocks of `block`.
+  /// Takes `size` unknowns, the first `core` of them dense, the rest in blocks of `block`.
   ArrowEquations(Eigen::Index size, Eigen::Index core, Eigen::Index block)
       : size_(size), core_(core), block_(block), blocks_(static_cast<std::size_t>((size - core) / block)) {}
 
-  /// Column-major matrix of size x size; entries outside the arrow are not looked at. False: singular.
+  /// Factorises a column-major matrix of size x size; entries outside the arrow are ignored. Returns false for a singular
+  /// matrix.
   bool factor(const double* matrix) {
     const Eigen::Map<const Eigen::MatrixXd> a(matrix, size_, size_);
     const Eigen::Index rest = size_ - core_;

@@ -13,15 +13,15 @@ struct DormandPrince {
                                            {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
                                            {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
                                            {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
-  /// Fifth minus fourth order.
+  /// Weights of the error estimate, fifth minus fourth order.
   static constexpr double difference[7] = {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 
   static constexpr float integral = 0.04F, proportional = 0.2F - 0.75F * integral;
   static constexpr double safety = 0.9;
   static constexpr double least_growth = 0.2, most_growth = 10;
-  static constexpr double first_growth = 1e4;  ///< a first step is a guess
-  static constexpr float least_error = -13;    ///< what the controller remembers at the least, binary logarithm
-  static constexpr double not_finite = 0.1;    ///< shrinks a step whose error is not a number
+  static constexpr double first_growth = 1e4;  ///< growth after the first step, which is a guess
+  static constexpr float least_error = -13;    ///< smallest error that the controller remembers, as a binary logarithm
+  static constexpr double not_finite = 0.1;    ///< factor of a step whose error is not a number
 };
 
 }  // namespace softland

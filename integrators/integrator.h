@@ -1,4 +1,4 @@
-// The integrators a closing can be run with, and what they are called.
+// The integrators of a closing, and their names.
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 namespace softland {
 
 enum class Integrator {
-  automatic,   ///< chosen by the caller for the equations at hand: a stepper cannot be made of it
-  lawson,      ///< explicit Runge-Kutta 5(4) on top of the free motion of the modes, ours
+  automatic,   ///< the caller chooses for its equations; no stepper can be made of it
+  lawson,      ///< explicit Runge-Kutta 5(4) on top of the free motion of the modes, own code
   arkode_erk,  ///< the same pair on the motion itself, ARKODE
   esdirk,      ///< diagonally implicit Runge-Kutta 5(4), ARKODE, exact Jacobian
   bdf,         ///< CVODE, exact Jacobian
@@ -21,14 +21,14 @@ struct IntegratorDescriptor {
   bool implicit;  ///< solves equations with the Jacobian in every step
 };
 
-/// One line per integrator; `automatic` is none.
+/// Names and properties, one line per integrator except `automatic`.
 inline constexpr std::array integrator_descriptors{
     IntegratorDescriptor{Integrator::lawson, "lawson", false}, IntegratorDescriptor{Integrator::arkode_erk, "arkode-erk", false},
     IntegratorDescriptor{Integrator::esdirk, "esdirk", true},  IntegratorDescriptor{Integrator::bdf, "bdf", true},
     IntegratorDescriptor{Integrator::adams, "adams", false},
 };
 
-/// Those that can be chosen between.
+/// All integrators that a user can choose.
 inline constexpr auto all_integrators = [] {
   std::array<Integrator, integrator_descriptors.size()> all{};
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = integrator_descriptors[i].integrator;

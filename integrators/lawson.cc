@@ -57,7 +57,7 @@ void Lawson::turn_to_nodes(double h) {
   for (std::size_t b = 0; b < omega_.size(); b += lanes) {
     const Lane phase = h * lane(omega_, b);
     for (std::size_t s = 1; s < stages; ++s) {
-      if (s == last) {  // at the node of the stage before
+      if (s == last) {  // the stage is at the node of the stage before
         for (const auto member : {&Stage::cosine, &Stage::sine, &Stage::slack})
           lane(k_[s].*member, b) = lane(k_[s - 1].*member, b);
         continue;

@@ -1,8 +1,8 @@
 // Explicit Runge-Kutta steps of the pair 5(4) on top of the free motion of the modes.
 //
-// The modes swing by themselves faster than the forces on them change: two turns of the fourth mode pass while the gap hardly
-// moves. So a step carries along the exact motion of every mode under the force at the begin of the step, and the Runge-Kutta
-// method is left with what the force changes. With theta = omega t and a the acceleration at the begin,
+// The modes oscillate faster than the forces on them change: two periods of the fourth mode pass while the gap hardly moves. So
+// a step carries along the exact motion of every mode under the force at the begin of the step, and the Runge-Kutta method
+// integrates only what the force changes. With theta = omega t and a the acceleration at the begin,
 //
 //   q = q0 + (a / omega^2) (1 - cos theta) + P cos theta + (v0 + R) sin theta / omega
 //   v = (v0 + R) cos theta + (a / omega) sin theta - P omega sin theta
@@ -12,14 +12,14 @@
 // Dormand & Prince 1980, RK5(4)7M; the fifth order is carried on, the last stage is the first of the next step. Step size
 // control: proportional-integral (Gustafsson 1991) with the exponents of Hairer & Wanner 1996, IV.2. The error of a step is the
 // root mean square, over the unknowns, of the embedded estimate over the absolute tolerances. An estimate that is not a number
-// rejects the step. What follows the modes in the state is integrated by the pair as it is. A step turns the fastest mode by two
-// radians at the most.
+// rejects the step. The pair alone integrates the unknowns that follow the modes in the state. A step turns the fastest mode by
+// two radians at the most.
 //
-// How stiff the equations are shows in the last two stages, which are at the same time: what their slopes differ by over what
-// their states do (Hairer & Wanner 1996, IV.2).
+// The last two stages, which are at the same time, show how stiff the equations are: by the difference of their slopes over
+// that of their states (Hairer & Wanner 1996, IV.2).
 //
-// The reference closing takes 2100 right-hand sides at a tolerance of 1e-6 where the pair by itself takes 4200, and its B_H is
-// then 3e-7 off instead of 2e-4.
+// The reference closing takes 2100 right-hand sides at a tolerance of 1e-6 where the pair by itself takes 4200, and the error
+// of its B_H is then 3e-7 instead of 2e-4.
 #pragma once
 
 #include <array>
@@ -43,12 +43,12 @@ class Lawson final : public Stepper {
 
  private:
   static constexpr std::size_t stages = 7;
-  using Modal = std::vector<double>;  // per mode, padded to whole lanes
+  using Modal = std::vector<double>;  // one value per mode, padded to whole lanes
 
   struct Stage {
     Modal q, v;                 // P', R'
-    Modal cosine, sine, slack;  // of the phase up to the stage's node; slack: (1 - cosine) / omega^2
-    std::vector<double> rest;   // slope of what follows the modes
+    Modal cosine, sine, slack;  // functions of the phase up to the stage's node; slack: (1 - cosine) / omega^2
+    std::vector<double> rest;   // slope of the unknowns that follow the modes
   };
 
   void turn_to_nodes(double h);
@@ -61,10 +61,10 @@ class Lawson final : public Stepper {
   Modal omega_, inverse_;
   double fastest_ = 0;
   std::vector<double> y_, trial_, rates_, next_rates_, weight_;
-  Modal q_, v_, a_;  // at the begin of the step
+  Modal q_, v_, a_;  // values at the begin of the step
   Modal q_weight_, v_weight_;
   std::array<Stage, stages> k_;
-  double turned_ = 0;  // the step that the phases are for
+  double turned_ = 0;  // step length that the phases belong to
   double t_ = 0, h_ = 0, max_step_ = 0;
   float last_error_ = 0;  // binary logarithm
   bool first_ = true;

@@ -1,6 +1,6 @@
-// Motion of one point of the beam within a step: every mode as if the force on it stayed what it is at the begin, which is exact
-// (integrators/phase.h), plus a quintic that makes position, velocity and acceleration right at the end. What the force changes
-// in a step is small, so this holds where the quintic through both ends does not: over steps of a radian and more of the fastest
+// Motion of one point of the beam within a step. Every mode moves as if the force on it stayed as at the begin, which is exact
+// (integrators/phase.h); a quintic added to it makes position, velocity and acceleration right at the end. The force changes
+// little in a step, so this holds where the quintic through both ends does not: over steps of a radian and more of the fastest
 // mode.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace softland {
 /// The quintic that starts from rest at 0 and is p, v and a at the end of a step of length 1.
 template <class T>
 struct Remainder {
-  std::array<T, 3> factors{};  ///< of the powers 3 to 5
+  std::array<T, 3> factors{};  ///< coefficients of the powers 3 to 5
 
   Remainder() = default;
   Remainder(const T& p, const T& v, const T& a) : factors{10 * p - 4 * v + a / 2, -15 * p + 7 * v - a, 6 * p - 3 * v + a / 2} {}
@@ -29,15 +29,15 @@ class ModalMotion {
     double position, velocity, acceleration;  ///< [m], [m/s], [m/s^2]
   };
 
-  /// Angular frequencies [rad/s] and values of the modes at the point [kg^(-1/2)].
+  /// Takes angular frequencies [rad/s] and values of the modes at the point [kg^(-1/2)].
   ModalMotion(const std::vector<double>& frequencies, const std::vector<double>& shape)
       : modes_(frequencies.size()), omega_(padded_to_lanes(frequencies, 1)), shape_(padded_to_lanes(shape, 0)) {
     pull_.resize(omega_.size());
     push_.resize(omega_.size());
   }
 
-  /// A step of `length` [s] from modal coordinates, velocities and accelerations to what the point does at its end, in equal
-  /// pieces. The fastest mode's phase must not exceed largest_phase.
+  /// Sets a step of `length` [s] in equal pieces, from modal coordinates, velocities and accelerations to the motion of the
+  /// point at its end. The fastest mode's phase must not exceed largest_phase.
   void set(double length, int pieces, const double* q, const double* v, const double* a, const Sample& end) {
     per_length_ = 1 / length;
     Lane start = Lane::Zero();
@@ -62,10 +62,10 @@ class ModalMotion {
     for (int k = 1; k <= pieces; ++k) add_rest(static_cast<double>(k) / pieces, knots_[static_cast<std::size_t>(k) - 1]);
   }
 
-  /// After k pieces, 1 <= k <= pieces.
+  /// Returns the motion after k pieces, 1 <= k <= pieces.
   [[nodiscard]] const Sample& knot(int k) const { return knots_[static_cast<std::size_t>(k) - 1]; }
 
-  /// `time` after the begin, at most the step's length [s].
+  /// Returns the motion at `time` after the begin, at most the step's length [s].
   [[nodiscard]] Sample at(double time) const {
     Sample s{start_, 0, 0};
     for (std::size_t b = 0; b < omega_.size(); b += lanes) add_free(b, turn(lane(omega_, b) * time), s);
@@ -81,7 +81,7 @@ class ModalMotion {
     s.acceleration += (omega * omega * (pull * turned.cosine - push * turned.sine)).sum();
   }
 
-  // At the share x of the step.
+  // Adds the quintic at the share x of the step.
   void add_rest(double x, Sample& s) const {
     s.position += rest_.position(x);
     s.velocity += per_length_ * rest_.velocity(x);
@@ -91,7 +91,7 @@ class ModalMotion {
   std::size_t modes_;
   std::vector<double> omega_, shape_, pull_, push_;
   std::vector<Sample> knots_;
-  Remainder<double> rest_;  // in units of the step's length
+  Remainder<double> rest_;  // quintic, in units of the step's length
   double start_ = 0, per_length_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// How far free modes turn in a time: the exact motion between two instants of q'' = -omega^2 q + constant, for a few modes at
+// Rotation of free modes in a time: the exact motion between two instants of q'' = -omega^2 q + constant, for a few modes at
 // once.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace softland {
 
-/// Largest phase turn() is exact for, to rounding.
+/// Largest phase for which turn() is exact to rounding.
 inline constexpr double largest_phase = 2;
 
 struct Turn {
@@ -20,7 +20,7 @@ struct Turn {
 /// Taylor series of cosine and sine at half the phase; the first term left out is below 1e-18.
 [[nodiscard]] inline Turn turn(const Lane& phase) {
   constexpr std::size_t degree = 18;
-  constexpr auto factors = [] {  // (-1)^(k/2) / k!, even and odd k in turn
+  constexpr auto factors = [] {  // (-1)^(k/2) / k!, alternating even and odd k
     std::array<double, degree + 2> f{1, 1};
     for (std::size_t k = 2; k < degree + 2; ++k) f[k] = -f[k - 2] / static_cast<double>(k * (k - 1));
     return f;
@@ -35,7 +35,7 @@ struct Turn {
   return {.cosine = 1 - slack, .sine = 2 * sine * cosine, .slack = slack};
 }
 
-/// One turn after the other.
+/// Returns one turn after the other.
 [[nodiscard]] inline Turn operator+(const Turn& a, const Turn& b) {
   const Lane slack = a.slack + b.slack - a.slack * b.slack + a.sine * b.sine;
   return {.cosine = 1 - slack, .sine = a.sine * b.cosine + a.cosine * b.sine, .slack = slack};

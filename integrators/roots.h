@@ -8,7 +8,7 @@
 namespace softland {
 
 namespace internal {
-/// A function of one number that lives where it is called from.
+/// A reference to a function of one number; the function must outlive it.
 struct Function {
   const void* object;
   double (*call)(const void* object, double at);
@@ -17,8 +17,8 @@ struct Function {
 double bracketed_zero(Function f, double low, double high);
 }  // namespace internal
 
-/// A zero of f in [low, high] where f(low) and f(high) differ in sign, to rounding: TOMS algorithm 748 (Alefeld, Potra & Shi
-/// 1995). Where they do not differ, the end at which |f| is less.
+/// Returns a zero of f in [low, high] where f(low) and f(high) differ in sign, to rounding, by TOMS algorithm 748 (Alefeld,
+/// Potra & Shi 1995). Returns the end at which |f| is less where they do not differ.
 template <class F>
 double bracketed_zero(const F& f, double low, double high) {
   return internal::bracketed_zero(
@@ -34,8 +34,8 @@ struct Places {
   [[nodiscard]] const double* end() const { return at.data() + count; }
 };
 
-/// Where the polynomial c[0] + c[1] s + ... + c[N] s^N changes sign in 0 < s < 1: between the zeros of its derivative it is
-/// monotone.
+/// Returns the places at which the polynomial c[0] + c[1] s + ... + c[N] s^N changes sign in 0 < s < 1: between the zeros of
+/// its derivative it is monotone.
 template <std::size_t M>
 [[nodiscard]] Places<M - 1> sign_changes(const std::array<double, M>& c) {
   constexpr std::size_t degree = M - 1;

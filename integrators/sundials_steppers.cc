@@ -24,7 +24,7 @@
 namespace softland {
 namespace {
 
-// ArrowEquations as a direct solver of SUNDIALS.
+// Wraps ArrowEquations as a direct solver of SUNDIALS.
 SUNLinearSolver arrow_solver(const OdeSystem& system, SUNContext context) {
   SUNLinearSolver solver = SUNLinSolNewEmpty(context);
   solver->content = new ArrowEquations(static_cast<Eigen::Index>(system.size), static_cast<Eigen::Index>(system.core),
@@ -57,7 +57,7 @@ struct Destroy {
 template <class Handle>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy>;
 
-/// The library gives a null pointer for what it could not make, which is memory that is short.
+/// Takes ownership. The library returns a null pointer for what it could not make, which means that memory is short.
 template <class Handle>
 Owned<Handle> made(Handle handle) {
   if (handle == nullptr) throw std::bad_alloc();
@@ -78,12 +78,12 @@ class Context {
   SUNContext context_ = nullptr;
 };
 
-/// What the steppers of SUNDIALS share: context, vectors, tolerances, the equations as its callbacks, its messages. The equations
-/// must not throw.
+/// The common part of the SUNDIALS steppers: context, vectors, tolerances, the equations as its callbacks, its messages. The
+/// equations must not throw.
 class SundialsStepper : public Stepper {
  public:
   explicit SundialsStepper(const OdeSystem& system) : system_(system), y_(new_vector()), weights_(new_vector()) {
-    // One pass over a stage's sum instead of one per term: the vectors are short, the calls are not.
+    // One pass over a stage's sum replaces one per term: the vectors are short, but the calls take time.
     N_VEnableFusedOps_Serial(y_.get(), SUNTRUE);
     last_.rates.resize(system.size - system.frequencies.size());
   }
@@ -110,12 +110,12 @@ class SundialsStepper : public Stepper {
  protected:
   /// Allocates the library's memory for the equations from (t, y_) on.
   virtual bool create(double t) = 0;
-  /// What is set once.
+  /// Sets the options that are set once.
   virtual bool set_up() = 0;
   virtual bool reinitialize(double t) = 0;
   virtual bool set_steps(double first, double longest) = 0;
 
-  /// Whether a call of the library succeeded; keeps what it said where it did not.
+  /// True when a call of the library succeeded; keeps the library's message where it did not.
   bool ok(int flag, std::string_view function) {
     if (flag >= 0) return true;
     message_ =
@@ -151,7 +151,7 @@ class SundialsStepper : public Stepper {
     static_cast<SundialsStepper*>(self)->system_.jacobian(t, N_VGetArrayPointer(y), SUNDenseMatrix_Data(j));
     return 0;
   }
-  // SUNDIALS refuses tolerances below the rounding of what they are about, which those in a stiff contact are.
+  // SUNDIALS refuses tolerances below the rounding of their unknowns, which those in a stiff contact are.
   static int error_weights(N_Vector y, N_Vector ewt, void* self) {
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
     const auto* me = static_cast<SundialsStepper*>(self);
@@ -194,7 +194,7 @@ class SundialsStepper : public Stepper {
 
   void load(double t, const double* y, const double* rates, const std::vector<double>& absolute) {
     t_ = t;
-    last_.t = std::numeric_limits<double>::quiet_NaN();  // of another stretch
+    last_.t = std::numeric_limits<double>::quiet_NaN();  // the last evaluation belongs to another stretch
     begin_.t = t;
     begin_.y.assign(y, y + system_.size);
     begin_.rates.assign(rates, rates + last_.rates.size());
@@ -208,11 +208,11 @@ class SundialsStepper : public Stepper {
 };
 
 constexpr long unbounded_steps = -1;               // the caller bounds the work
-constexpr double smallest_change_of_step = 1e-10;  // relative; larger ones factorise anew
+constexpr double smallest_change_of_step = 1e-10;  // relative; larger changes factorise anew
 constexpr int steps_of_a_jacobian = 2;
-// What an iteration for a stage begins with: the state before the step or, extrapolated from the last step, with a lower order
-// the later the stage. On a compressible film the first takes 0.5 of the time at 1e-4, the second 0.4 at 1e-8, and both the same
-// at 1e-5.
+// Predictor of the iteration for a stage: the state before the step or, extrapolated from the last step, with a lower order the
+// later the stage. On a compressible film the first takes 0.5 of the time at 1e-4, the second 0.4 at 1e-8, and both the same at
+// 1e-5.
 constexpr int predictor_trivial = 0, predictor_of_falling_order = 2;
 constexpr double extrapolates_below = 3e-6;  // relative tolerance
 
@@ -239,7 +239,7 @@ class ErkStepper final : public SundialsStepper {
            ok(ERKStepSetTableNum(memory_, ARKODE_DORMAND_PRINCE_7_4_5), "ERKStepSetTableNum") &&
            ok(ERKStepWFtolerances(memory_, &SundialsStepper::error_weights), "ERKStepWFtolerances") &&
            ok(ERKStepSetMaxNumSteps(memory_, unbounded_steps), "ERKStepSetMaxNumSteps") &&
-           // The library's interpolant is never asked for.
+           // The library's interpolant is never used.
            ok(ERKStepSetInterpolantType(memory_, ARK_INTERP_LAGRANGE), "ERKStepSetInterpolantType") &&
            ok(ERKStepSetInterpolantDegree(memory_, 0), "ERKStepSetInterpolantDegree");
   }
@@ -278,8 +278,8 @@ class DirkStepper final : public SundialsStepper {
            ok(ARKStepWFtolerances(memory_, &SundialsStepper::error_weights), "ARKStepWFtolerances") &&
            ok(ARKStepSetLinearSolver(memory_, solver_.get(), matrix_.get()), "ARKStepSetLinearSolver") &&
            ok(ARKStepSetJacFn(memory_, &SundialsStepper::jacobian), "ARKStepSetJacFn") &&
-           // The library remembers how fast its iterations converge for as long as it keeps a factorisation. Where one hits by
-           // luck it would take the next ones for converged that are not, with stages a thousand times the tolerance off.
+           // The library remembers how fast its iterations converge for as long as it keeps a factorisation. After one lucky
+           // iteration it would accept the next ones too early, with stages a thousand times the tolerance wrong.
            ok(ARKStepSetDeltaGammaMax(memory_, smallest_change_of_step), "ARKStepSetDeltaGammaMax") &&
            ok(ARKStepSetJacEvalFrequency(memory_, steps_of_a_jacobian), "ARKStepSetJacEvalFrequency") &&
            ok(ARKStepSetPredictorMethod(memory_, predictor_), "ARKStepSetPredictorMethod") &&

@@ -1,5 +1,5 @@
-// The integrators of SUNDIALS as steppers: Hindmarsh et al. (2005), Gardner et al. (2022). Every answer of the library is looked
-// at; what it says of a failure is the stepper's message.
+// The integrators of SUNDIALS as steppers: Hindmarsh et al. (2005), Gardner et al. (2022). Every return value of the library is
+// checked; its message about a failure is the stepper's message.
 #pragma once
 
 #include <memory>
@@ -8,14 +8,14 @@
 
 namespace softland {
 
-/// Diagonally implicit Runge-Kutta 5(4) with eight stages (Kennedy & Carpenter 2003), ARKODE. At tight tolerances its stages
-/// begin from those of the last step.
+/// Makes a diagonally implicit Runge-Kutta 5(4) with eight stages (Kennedy & Carpenter 2003), ARKODE. At tight tolerances its
+/// stages begin from those of the last step.
 [[nodiscard]] std::unique_ptr<Stepper> make_esdirk(const OdeSystem& system, double tolerance);
-/// Backward differentiation, orders 1 to 5, CVODE.
+/// Makes backward differentiation, orders 1 to 5, CVODE.
 [[nodiscard]] std::unique_ptr<Stepper> make_bdf(const OdeSystem& system);
-/// Adams-Moulton with functional iteration, orders 1 to 12, CVODE.
+/// Makes Adams-Moulton with functional iteration, orders 1 to 12, CVODE.
 [[nodiscard]] std::unique_ptr<Stepper> make_adams(const OdeSystem& system);
-/// Explicit Runge-Kutta 5(4) of Dormand & Prince (1980), ARKODE.
+/// Makes explicit Runge-Kutta 5(4) of Dormand & Prince (1980), ARKODE.
 [[nodiscard]] std::unique_ptr<Stepper> make_arkode_erk(const OdeSystem& system);
 
 }  // namespace softland
