@@ -18,17 +18,17 @@
 
 namespace softland::internal {
 
-/// The file breaks the rules of its format.
+/// Thrown when the file breaks the rules of its format.
 class DamagedStore : public InvalidInput {
  public:
   using InvalidInput::InvalidInput;
 };
 
-/// A statement that a sound store understands and this one does not, or that fails at one of its rows.
+/// Thrown for a statement that a sound store accepts and this one does not, or that fails at one of its rows.
 class StatementFailed : public DamagedStore {
  public:
   StatementFailed(const std::string& message, std::string reason) : DamagedStore(message), reason_(std::move(reason)) {}
-  /// In the words of SQLite.
+  /// Returns the reason in the words of SQLite.
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:
@@ -37,28 +37,28 @@ class StatementFailed : public DamagedStore {
 
 /// How a database is opened.
 enum class Access {
-  write,      ///< what is there, to change it
-  create,     ///< the same, made where it is missing
-  recover,    ///< to read, from a place that may be written to: what a process that died has left unfinished is put in order
-  read_only,  ///< from a place that may not
-  immutable   ///< from one that nobody writes to and that has no log: nothing is locked
+  write,      ///< an existing database, to change it
+  create,     ///< the same, created where it is missing
+  recover,    ///< to read, from a writable place: the unfinished work of a process that died is put in order
+  read_only,  ///< to read, from a place that is not writable
+  immutable   ///< to read, from a place that nobody writes to, without a log: nothing is locked
 };
 
-/// Device and inode: what a file is under any name. None where there is no file.
+/// Device and inode, which identify a file under any name; none where the file does not exist.
 using FileNumber = std::pair<unsigned long long, unsigned long long>;
 [[nodiscard]] std::optional<FileNumber> number_of(const std::filesystem::path& file);
 
-/// Remembers that this process has the file open. SQLite's locks are those of the process and vanish when it closes any other
-/// descriptor of the file, so that nobody looks into one that is open.
+/// Remembers that this process has the file open. SQLite's locks belong to the process and vanish when it closes any other
+/// descriptor of the file, so nobody may look into a file that is open.
 class OpenFile {
  public:
   explicit OpenFile(const std::filesystem::path& file);
   ~OpenFile();
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
-  /// Whether one of these remembers it.
+  /// True when an OpenFile remembers this file.
   [[nodiscard]] static bool is_open(const std::filesystem::path& file);
-  /// Whether this is the file.
+  /// True when this is the file at the path.
   [[nodiscard]] bool is(const std::filesystem::path& file) const { return number_ && number_ == number_of(file); }
 
  private:
@@ -69,24 +69,24 @@ class Statement;
 
 class Database {
  public:
-  /// Throws as every function here: OutputLost where what is written does not reach the disk, DamagedStore, Interrupted, or
-  /// InvalidInput; `shown` names the file in messages.
+  /// Throws as every function here: OutputLost where data does not reach the disk, DamagedStore, Interrupted, or InvalidInput;
+  /// `shown` names the file in messages.
   Database(const std::filesystem::path& file, Access access, std::string shown);
 
   /// Runs statements that return nothing of interest.
   void run(const std::string& sql) const;
   [[nodiscard]] Statement prepare(const std::string& sql) const;
-  /// The first column of the first row.
+  /// Returns the first column of the first row.
   [[nodiscard]] std::string text_of(const std::string& sql) const;
   [[nodiscard]] std::int64_t number_of(const std::string& sql) const;
-  /// Throws what a result code means.
+  /// Throws the exception that belongs to a result code.
   [[noreturn]] void fail(int code) const;
 
-  /// Whether the file at this path is the open one: somebody may have removed, moved or replaced it.
+  /// True when the file at this path is the open one: somebody may have removed, moved or replaced it.
   [[nodiscard]] bool is_at(const std::filesystem::path& path) const;
-  /// Leaves the log where it is when this is closed: what has its name then belongs to another file.
+  /// Leaves the log where it is when the database is closed: the file of that name then belongs to another database.
   void leave_log() const;
-  /// Writes all that it holds into a file of its own, which may not hold anything yet.
+  /// Writes the whole content into a new file, which must be empty or missing.
   void copy_to(const std::filesystem::path& file) const;
 
   [[nodiscard]] sqlite3* handle() const { return handle_.get(); }
@@ -102,25 +102,25 @@ class Database {
   std::unique_ptr<sqlite3, Close> handle_;
 };
 
-/// Parameters are numbered from 1, columns from 0, as SQLite does. The database has to outlive it.
+/// A prepared statement. Parameters are numbered from 1, columns from 0, as SQLite does. The database must outlive it.
 class Statement {
  public:
   Statement(const Database& database, const std::string& sql);
 
   Statement& bind(int parameter, std::int64_t value);
-  Statement& bind(int parameter, double value);  ///< NaN: NULL
+  Statement& bind(int parameter, double value);  ///< NaN becomes NULL
   Statement& bind(int parameter, std::string_view value);
   Statement& bind(int parameter, std::span<const unsigned char> value);
-  /// Without a copy: what is lent has to live until the statement has been run.
+  /// Binds without a copy: the value must live until the statement has been run.
   Statement& lend(int parameter, std::string_view value);
   Statement& lend(int parameter, std::span<const unsigned char> value);
-  /// Whether there is a row; where there is none the statement can be bound and run again.
+  /// Returns true when there is a row; after false the statement can be bound and run again.
   bool step();
   void reset();
 
   [[nodiscard]] std::int64_t integer(int column) const { return sqlite3_column_int64(handle_.get(), column); }
   [[nodiscard]] bool is_null(int column) const { return sqlite3_column_type(handle_.get(), column) == SQLITE_NULL; }
-  [[nodiscard]] double number(int column) const;  ///< NULL: NaN
+  [[nodiscard]] double number(int column) const;  ///< NULL becomes NaN
   [[nodiscard]] std::string text(int column) const;
   [[nodiscard]] std::span<const unsigned char> blob(int column) const;
   [[nodiscard]] sqlite3_stmt* handle() const { return handle_.get(); }
@@ -149,7 +149,7 @@ class StopWatched {
   const Watch& watch_;
 };
 
-/// All or nothing: what was not committed is rolled back.
+/// A transaction: changes that were not committed are rolled back.
 class Transaction {
  public:
   explicit Transaction(const Database& database) : database_(database) { database_.run("BEGIN IMMEDIATE"); }
@@ -164,7 +164,7 @@ class Transaction {
   const Database& database_;
 };
 
-/// While it lives everything that is read is of one moment, whoever writes.
+/// While it lives all reads see the same moment, whoever writes.
 class Snapshot {
  public:
   explicit Snapshot(const Database& database) : database_(database), begun_(sqlite3_get_autocommit(database.handle()) != 0) {

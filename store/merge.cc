@@ -46,7 +46,7 @@ class Part {
 
 using Parts = std::vector<std::unique_ptr<Part>>;
 
-// Every part is one open file, or three where its writer was killed.
+// Raises the limit of open files: every part is one, or three where its writer was killed.
 void allow_files(std::size_t parts) {
   rlimit limit{};
   const rlim_t needed = 4 * parts + 64;
@@ -70,7 +70,7 @@ Parts opened(const std::vector<fs::path>& paths) {
   return parts;
 }
 
-// The first few parts of the plan that nobody gave.
+// Adds the first few parts of the plan that are missing.
 void add_missing_parts(std::vector<std::string>& notes, const Parts& parts) {
   constexpr std::size_t most_names = 20;
   const int count = parts.front()->plan().shard.count;
@@ -88,7 +88,7 @@ void add_missing_parts(std::vector<std::string>& notes, const Parts& parts) {
   notes.push_back(fmt::format("no part was given of {}", fmt::join(names, ", ")));
 }
 
-// Points that no part holds, told by the parts of the plan that they belong to.
+// Returns notes on points that no part holds, listed by the parts of the plan that they belong to.
 std::vector<std::string> notes_on(const Parts& parts, const StoredPlan& plan, std::int64_t rows) {
   std::vector<std::string> notes;
   if (rows < plan.points) notes.push_back(fmt::format("{} of {} points are missing", plan.points - rows, plan.points));
@@ -110,7 +110,7 @@ std::vector<std::string> notes_on(const Parts& parts, const StoredPlan& plan, st
 // Writes the rows of all parts in the order of their points.
 std::int64_t write_rows(const Database& database, std::int64_t number, Parts& parts, const StoredPlan& plan, std::int64_t session,
                         const Watch& watch) {
-  // Of those with the same point the part that was named first.
+  // Rows of the same point are taken in the order in which their parts were named.
   const auto later = [&](std::size_t a, std::size_t b) {
     return std::pair(parts[a]->row().point, a) > std::pair(parts[b]->row().point, b);
   };
@@ -163,7 +163,7 @@ Merged merge_studies(const std::vector<fs::path>& paths, const fs::path& out, co
   const UnnamedStore made(out);
   {
     const Database database(made.path(), Access::create, out.string());
-    // Nobody reads it before it has its name, and a failure leaves nothing.
+    // Nobody reads the file before it has its name, and a failure leaves nothing.
     database.run("PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF");
     create_tables(database, merged.plan.columns);
     Transaction transaction(database);

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view magic{"SQLite format 3\0", 16};
 using Header = std::array<unsigned char, 100>;
-constexpr std::size_t version_for_reading = 19, application_id = 68;  // places in the header
+constexpr std::size_t version_for_reading = 19, application_id = 68;  // positions in the header
 constexpr int write_ahead = 2;
 
 fs::path beside(const fs::path& path, const char* ending) {
@@ -42,7 +42,7 @@ bool has_content(const fs::path& file) {
   return fs::file_size(file, error) > 0 && !error;
 }
 
-// The first bytes; nothing where the file is shorter or cannot be read.
+// Returns the first bytes; nothing where the file is shorter or cannot be read.
 std::optional<Header> header_of(const fs::path& path) {
   Header header{};
   std::ifstream in(path, std::ios::binary);
@@ -56,7 +56,7 @@ std::uint32_t big_endian(const Header& header, std::size_t place) {
   return value;
 }
 
-// What keeps the file from being a store; empty: nothing does.
+// Returns the reason why the file is not a store; empty for a store.
 std::string fault_of(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -97,7 +97,7 @@ bool same_bytes(const fs::path& a, const fs::path& b) {
   return one.eof() && other.eof();
 }
 
-// Whether what was written to a file or folder is on the disk.
+// Returns true when the content of a file or folder is on the disk.
 bool synced(const fs::path& path, int flags) {
   const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
   if (descriptor < 0) return false;
@@ -239,15 +239,16 @@ void UnnamedStore::give_name() const {
   const auto taken = [&] { return InvalidInput(fmt::format("{}: exists already; it is not replaced", name_.string())); };
   if (!synced(path_, O_RDONLY)) throw failed("be written");
   int code = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, name_.c_str(), RENAME_NOREPLACE);
-  if (code != 0 && (errno == EINVAL || errno == ENOSYS)) {  // a file system without it; the lock keeps other runs off the name
+  if (code != 0 &&
+      (errno == EINVAL || errno == ENOSYS)) {  // not supported by this file system; the lock keeps other runs off the name
     std::error_code ignored;
     if (fs::exists(fs::symlink_status(name_, ignored))) throw taken();
     code = ::rename(path_.c_str(), name_.c_str());
   }
   if (code != 0 && errno == EEXIST) throw taken();
   if (code != 0) throw failed("be given its name");
-  static_cast<void>(
-      synced(fs::absolute(name_).parent_path(), O_RDONLY | O_DIRECTORY));  // not every file system can; the name is given
+  static_cast<void>(synced(fs::absolute(name_).parent_path(),
+                           O_RDONLY | O_DIRECTORY));  // not every file system supports this; the name is already given
 }
 
 }  // namespace internal

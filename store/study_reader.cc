@@ -18,7 +18,7 @@ using namespace internal;
 
 namespace {
 
-// What an expression may call: functions of its arguments that change nothing and take no time.
+// Functions that an expression may call: they change nothing and take no time.
 constexpr std::array<std::string_view, 26> harmless{
     "abs",   "acos", "asin", "atan",  "atan2", "ceil", "coalesce", "cos",    "exp", "floor", "glob", "ifnull", "iif",
     "instr", "like", "ln",   "log10", "lower", "max",  "min",      "nullif", "pow", "round", "sin",  "sqrt",   "upper"};
@@ -32,8 +32,8 @@ int authorize(void*, int action, const char* first, const char* second, const ch
   return SQLITE_DENY;
 }
 
-// Whether the parentheses of an expression are its own: none closes what stands around it, and nothing is a comment or a second
-// statement. Text in quotes is skipped.
+// Returns true when the parentheses of an expression are balanced, so that none closes an outer one, and it contains no comment
+// and no second statement. Text in quotes is skipped.
 bool is_closed(std::string_view where) {
   int depth = 0;
   for (std::size_t i = 0; i < where.size(); ++i) {
@@ -76,7 +76,7 @@ std::string columns_of(const StoredPlan& plan) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-// Looks at an expression before it becomes part of a statement.
+// Checks an expression before it becomes part of a statement.
 void check_where(const Database& database, const StoredPlan& plan, const std::string& where) {
   require_where(is_closed(where), where,
                 "is no expression over the columns: parentheses and quotes have to be closed, and nothing follows it");

@@ -57,7 +57,8 @@ Shard shard_from(std::string_view text) {
 namespace {
 
 constexpr std::size_t rows_that_wait = 16 * rows_per_commit;
-constexpr std::uintmax_t checked_size = std::uintmax_t{64} << 20;  // [byte] above it damage shows where it is read
+constexpr std::uintmax_t checked_size = std::uintmax_t{64}
+                                        << 20;  // [byte]; damage to a larger file shows when the damaged part is read
 
 void require_only_name(const fs::path& path) {
   struct stat found {};
@@ -114,7 +115,7 @@ class StudyStore::Implementation {
   std::vector<bool> done_;
 
   mutable std::mutex finding_;
-  std::unique_ptr<const Database> earlier_;  // of its own, so that find() does not wait for the disk
+  std::unique_ptr<const Database> earlier_;  // separate connection, so that find() does not wait for the disk
   mutable std::optional<Statement> find_;
 
  private:
@@ -134,19 +135,19 @@ class StudyStore::Implementation {
 
   std::optional<RowWriter> rows_;
   std::optional<SessionTally> tally_;
-  fs::path log_;  // of the database; empty: it has none
+  fs::path log_;  // log of the database; empty where it has none
   std::optional<FileNumber> log_number_;
   std::string
-      rescued_;  // where everything went from a store that is no longer there, in words; of the writer, until it has ended
+      rescued_;  // where everything went from a store that no longer exists, in words; owned by the writer until it has ended
 
   std::mutex mutex_;
   std::condition_variable for_writer_, for_callers_;
   std::vector<StoredRow> waiting_;
   std::chrono::steady_clock::time_point due_;
   bool committing_ = false, hurried_ = false, stopping_ = false;
-  std::exception_ptr failure_;        // to write rows, which still wait
-  std::exception_ptr contradiction_;  // of a row, which was left out
-  std::string lost_;                  // rescued_, for callers
+  std::exception_ptr failure_;        // failure to write rows, which still wait
+  std::exception_ptr contradiction_;  // contradiction of a row, which was left out
+  std::string lost_;                  // copy of rescued_ for callers
   std::thread writer_;
 };
 
@@ -166,7 +167,7 @@ StudyStore::Implementation::Implementation(const fs::path& path, const StoredPla
   else
     require_room(path);
   lock_ = lock_store(path, origin.command);
-  const bool resumed = is_there();  // another run may have made it meanwhile
+  const bool resumed = is_there();  // another run may have created it meanwhile
   if (!resumed) create_store(path, plan, origin);
   try {
     open();
@@ -211,7 +212,7 @@ void StudyStore::Implementation::start_session(const StoredOrigin& origin, bool 
   prepare_finding();
 }
 
-// Before anything is written: a damaged store is left as it is.
+// Runs before anything is written: a damaged store is left as it is.
 void StudyStore::Implementation::read_done() {
   done_.resize(static_cast<std::size_t>(plan_.points));
   if (number_ == 0) return;
@@ -238,7 +239,7 @@ void StudyStore::Implementation::prepare_finding() {
 StudyStore::Implementation::~Implementation() {
   try {
     close();
-  } catch (...) {  // said by close() to whoever wants to know
+  } catch (...) {  // close() reports errors to a caller that asks for them
   }
 }
 
@@ -250,7 +251,7 @@ void StudyStore::Implementation::let_go() {
   database_.reset();
 }
 
-// A file that was removed is still written to, and is gone when it is closed. What it holds, and what comes, goes to another one.
+// A removed file is still writable, and is lost when it is closed. Move its content, and later rows, to another file.
 void StudyStore::Implementation::keep_in_place() {
   if (!rescued_.empty()) return;
   if (!database_->is_at(path_)) {
@@ -274,7 +275,7 @@ void StudyStore::Implementation::move_to_rescue(const std::string& what) {
   rescued_ = fmt::format("{}; all that the store held and what was computed since is in {}, a store", said, rescue.string());
 }
 
-// Tells the caller what went wrong since the last call, after which the rows that wait are tried again.
+// Reports to the caller errors since the last call; the waiting rows are tried again afterwards.
 void StudyStore::Implementation::throw_told() {
   for (std::exception_ptr* told : {&failure_, &contradiction_}) {
     if (!*told) continue;
@@ -303,7 +304,7 @@ void StudyStore::Implementation::add(StoredRow row) {
 
 void StudyStore::Implementation::flush() {
   std::unique_lock lock(mutex_);
-  failure_ = nullptr;  // what could not be written is tried now
+  failure_ = nullptr;  // rows that could not be written are tried again now
   hurried_ = true;
   for_writer_.notify_one();
   for_callers_.wait(lock, [&] { return failure_ != nullptr || (waiting_.empty() && !committing_); });
@@ -337,13 +338,13 @@ void StudyStore::Implementation::close() {
   if (failure) std::rethrow_exception(failure);
 }
 
-// Leaves one file, of which it is known that it stands where it should.
+// Leaves one file, which is known to be at its place.
 void StudyStore::Implementation::end_log() {
   const bool was_told = !rescued_.empty();
   if (rows_) keep_in_place();
   find_.reset();
   earlier_.reset();
-  // Where somebody reads, the log stays until the last one has done.
+  // A reader keeps the log until it has finished.
   sqlite3_busy_timeout(database_->handle(), 0);
   sqlite3_exec(database_->handle(), "PRAGMA journal_mode = DELETE", nullptr, nullptr, nullptr);
   log_.clear();
@@ -351,7 +352,7 @@ void StudyStore::Implementation::end_log() {
   if (!was_told && !rescued_.empty()) throw OutputLost(rescued_);
 }
 
-// The thread that writes. After a failure it waits for the next call, which is told.
+// The writing thread. After a failure it waits for the next call, which reports the failure.
 void StudyStore::Implementation::work() {
   std::unique_lock lock(mutex_);
   for (;;) {
@@ -383,7 +384,7 @@ void StudyStore::Implementation::commit_batch(std::unique_lock<std::mutex>& lock
     if (!failure) keep_in_place();
   } catch (...) {
     failure = std::current_exception();
-    rows.clear();  // the database has them
+    rows.clear();  // the database holds the rows now
   }
   lock.lock();
   committing_ = false;
@@ -394,7 +395,7 @@ void StudyStore::Implementation::commit_batch(std::unique_lock<std::mutex>& lock
   for_callers_.notify_all();
 }
 
-// Rows that contradict what the store holds are left out and told; all others are written.
+// Rows that contradict the store are left out and reported; all others are written.
 void StudyStore::Implementation::commit(const std::vector<StoredRow>& rows) {
   std::optional<Contradiction> contradiction;
   std::map<std::string, std::int64_t> by_status;

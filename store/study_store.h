@@ -1,13 +1,13 @@
-// A study that outlives a power cut: one file that holds a plan, the points of it that are done, and who computed them.
+// A study that survives a power cut: one file that holds a plan, its completed points, and who computed them.
 //
-// The file is a database of SQLite 3 and reads on every machine. It has one writer at a time, which holds FILE.lock while it
-// works, and any number of readers at any time. Rows become durable in batches of `rows_per_commit` or `seconds_per_commit`,
-// whichever comes first: whatever happens to process or machine, at most the rows of that last second are lost, and what is there
-// is whole.
+// The file is a database of SQLite 3 and is readable on every machine. It has one writer at a time, which holds FILE.lock while
+// it works, and any number of readers at any time. Rows become durable in batches of `rows_per_commit` or `seconds_per_commit`,
+// whichever comes first. Whatever happens to process or machine, at most the rows of that last second are lost, and the rest of
+// the store is whole.
 //
-// A row belongs to a point of a plan by its number, and to what was computed by its content: the key of the resolved scene. When
-// a study goes on with another plan of the same columns, a finer grid or a larger sample, find() gives the rows that the earlier
-// plans hold for equal content, so that no point is computed twice.
+// A row belongs to a point of a plan by its number, and to a computation by its content: the key of the resolved scene. A study
+// may continue with another plan of the same columns, a finer grid or a larger sample. find() then gives the rows that the
+// earlier plans hold for equal content, so that no point is computed twice.
 //
 //   StudyStore store("map.sqlite", plan, origin, StudyStore::Opening::resume);
 //   const std::vector<bool> done = store.done();
@@ -35,48 +35,48 @@ namespace softland {
 /// Version of the tables. A store of a later one is refused.
 inline constexpr int store_schema = 2;
 inline constexpr std::size_t rows_per_commit = 1000;
-inline constexpr double seconds_per_commit = 1;  ///< [s] after the first row that is not yet durable
+inline constexpr double seconds_per_commit = 1;  ///< time after the first row that is not yet durable [s]
 
-/// What a column holds: something that the plan varies, or a figure of a closing.
+/// The content of a column: something that the plan varies, or a figure of a closing.
 enum class ColumnKind { variable, figure };
 
 struct StoredColumn {
-  std::string key;   ///< in the database and in the header of CSV: "gap_contact_m"; see column_key()
-  std::string name;  ///< the key of the scene, "gap.contact", or the figure's name for people
-  std::string unit;  ///< of SI, "m/s"; empty for a count, a ratio, yes or no
+  std::string key;   ///< name in the database and in the header of CSV: "gap_contact_m"; see column_key()
+  std::string name;  ///< key of the scene, "gap.contact", or the figure's name for people
+  std::string unit;  ///< SI unit, "m/s"; empty for a count, a ratio, yes or no
   ColumnKind kind = ColumnKind::figure;
   bool operator==(const StoredColumn&) const = default;
 };
 
-/// A name with its unit as a word of letters, digits and underscores: ("gap.contact", "m") is "gap_contact_m".
+/// Returns a name with its unit as a word of letters, digits and underscores: ("gap.contact", "m") is "gap_contact_m".
 [[nodiscard]] std::string column_key(std::string_view name, std::string_view unit);
 
-/// Which points of a plan one part of a study computes: every `count`-th, from index - 1 on, so that all parts cost about the
-/// same.
+/// The share of a plan that one part of a study computes: every `count`-th point, from index - 1 on, so that all parts cost
+/// about the same.
 struct Shard {
   int index = 1;  ///< 1 to count
   int count = 1;
   [[nodiscard]] bool contains(std::int64_t point) const { return point % count == index - 1; }
-  /// How many of the points 0 ... points - 1 it contains.
+  /// Returns the number of points among 0 ... points - 1 that the shard contains.
   [[nodiscard]] std::int64_t size(std::int64_t points) const { return (points - index + count) / count; }
   bool operator==(const Shard&) const = default;
 };
 
-/// "3/8" is the third of eight. Throws InvalidInput unless 1 <= index <= count.
+/// Reads a shard: "3/8" is the third of eight. Throws InvalidInput unless 1 <= index <= count.
 [[nodiscard]] Shard shard_from(std::string_view text);
 
 struct StoredPlan {
-  std::string text;                   ///< canonical: equal plans are equal bytes. The shard is no part of it
-  std::int64_t points = 0;            ///< numbered 0 ... points - 1
-  std::vector<StoredColumn> columns;  ///< of every row, in this order
+  std::string text;                   ///< canonical text: equal plans are equal bytes. It does not include the shard
+  std::int64_t points = 0;            ///< number of points, numbered 0 ... points - 1
+  std::vector<StoredColumn> columns;  ///< columns of every row, in this order
   std::uint64_t seed = 0;
-  Shard shard = {};  ///< what this file holds of it
+  Shard shard = {};  ///< share of the plan that this file holds
 };
 
-/// What computes: it may change the last digits of what comes out.
+/// The program and processor of a computation: they may change the last digits of its results.
 struct StoredOrigin {
   std::string program;    ///< name, version and hash of the program
-  std::string processor;  ///< and the instructions that are used of it
+  std::string processor;  ///< name of the processor, and its instructions that are used
   std::string command;
 };
 
@@ -84,25 +84,26 @@ struct StoredRow {
   std::int64_t point = 0;
   ContentKey content = {};
   std::string status;          ///< how the computation ended: "done", "no_contact", "numerical_failure"
-  std::string reason = {};     ///< in words, where it did not succeed
-  std::vector<double> values;  ///< one per column [SI]; NaN: not known. Of zeros the sign is not kept
-  std::string extra = {};      ///< JSON of whatever else belongs to the point, the waveform found there; may be empty
+  std::string reason = {};     ///< reason in words, where it did not succeed
+  std::vector<double> values;  ///< values, one per column [SI]; NaN where not known. The sign of a zero is not kept
+  std::string extra = {};      ///< JSON of further data of the point, such as the waveform found there; may be empty
 };
 
 /// One run of the program on a store.
 struct StoredSession {
-  std::string program, processor, command;  ///< as StoredOrigin
+  std::string program, processor, command;  ///< see StoredOrigin
   std::string host;
   std::int64_t process = 0;
-  std::string began, last;  ///< UTC, "2026-01-31 12:00:00.000"; `last`: of the last commit
-  double seconds = 0;       ///< from `began` to `last`
-  std::int64_t rows = 0;    ///< written in it
+  std::string began, last;  ///< UTC, "2026-01-31 12:00:00.000"; `last`: time of the last commit
+  double seconds = 0;       ///< time between `began` and `last` [s]
+  std::int64_t rows = 0;    ///< number of rows written in the session
 };
 
-/// Whether this is a regular file that begins as a store does. Nothing else is opened: no pipe is waited for.
+/// Returns true for a regular file that begins as a store does. Nothing else is opened, so that it never waits for a pipe.
 [[nodiscard]] bool is_store(const std::filesystem::path& path);
 
-/// Who writes into the store now, in words ("process 4711 on node3 since ...: softland explore ..."); none: nobody.
+/// Returns the current writer of the store in words ("process 4711 on node3 since ...: softland explore ..."); none without
+/// one.
 [[nodiscard]] std::optional<std::string> writer_of(const std::filesystem::path& path);
 
 /// The one writer of a store.
@@ -110,35 +111,36 @@ class StudyStore {
  public:
   enum class Opening {
     fresh,  ///< the file must not exist
-    resume  ///< one that exists is continued: this plan, or another of the same columns and shard
+    resume  ///< an existing one is continued: this plan, or another of the same columns and shard
   };
 
-  /// Creates or continues the store. Throws InvalidInput with path and reason where `path` exists and should not, is no store, is
-  /// one of a later schema or of other columns, where it cannot be written to, or another process writes into it, with the name
-  /// of that; OutputLost where the disk is full. A damaged store is left as it is, with a copy of it beside: FILE.damaged.
+  /// Creates or continues the store. Throws InvalidInput with path and reason where `path` exists and should not, is not a
+  /// store, is a store of a later schema or of other columns, or cannot be written to; and, with its name, where another
+  /// process writes into it. Throws OutputLost where the disk is full. A damaged store is left as it is, with a copy of it
+  /// beside: FILE.damaged.
   StudyStore(const std::filesystem::path& path, const StoredPlan& plan, const StoredOrigin& origin, Opening opening);
-  /// Commits what it can and says nothing: call close() to learn of errors.
+  /// Commits what it can without reporting errors: call close() to learn of them.
   ~StudyStore();
   StudyStore(const StudyStore&) = delete;
   StudyStore& operator=(const StudyStore&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const;
-  /// Of every point of the plan whether the store held it when it was opened.
+  /// Returns, for every point of the plan, whether the store held it when it was opened.
   [[nodiscard]] std::vector<bool> done() const;
-  /// Whether it holds rows of other plans, so that find() may find something.
+  /// True when the store holds rows of other plans, so that find() may find something.
   [[nodiscard]] bool has_earlier_plans() const;
-  /// How many rows these are.
+  /// Returns the number of these rows.
   [[nodiscard]] std::int64_t earlier_rows() const;
-  /// A row of an earlier plan with this content. May be called on any thread.
+  /// Returns a row of an earlier plan with this content. May be called on any thread.
   [[nodiscard]] std::optional<StoredRow> find(const ContentKey& content) const;
 
-  /// Takes a row to be written; returns soon. A row that the store holds with the same bits changes nothing. Throws InvalidInput
-  /// where it has a row of this point with other bits, or the row does not fit the plan; OutputLost where rows taken before could
-  /// not be written, which are kept and tried again with the next call. May be called on any thread.
+  /// Takes a row to be written; returns soon. A row that the store holds with the same bits changes nothing. Throws
+  /// InvalidInput where the store has a row of this point with other bits, or the row does not fit the plan. Throws OutputLost
+  /// where earlier rows could not be written; these are kept and tried again with the next call. May be called on any thread.
   void add(StoredRow row);
   /// Waits until all rows taken are durable. Throws as add().
   void flush();
-  /// flush(), and leaves the file alone in its folder, without log or lock. Throws as add().
+  /// Calls flush(), then leaves the file alone in its folder, without log or lock. Throws as add().
   void close();
 
  private:
@@ -146,28 +148,29 @@ class StudyStore {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Which rows, in the words of SQL: an expression over the columns and `point`, `status`, `reason`; empty: all of them.
+/// A selection of rows in the words of SQL: an expression over the columns and `point`, `status`, `reason`; empty for all rows.
 struct StudyQuery {
   std::string where = {};
 };
 
-/// A store as it stands, whether or not somebody writes into it. Never changes what it holds.
+/// A store in its current state, whether or not somebody writes into it. It never changes the content.
 class StudyReader {
  public:
-  /// Throws InvalidInput with path and reason where this is no store, one of a later schema, a damaged one, or cannot be read.
+  /// Throws InvalidInput with path and reason where this is not a store, a store of a later schema, a damaged one, or cannot be
+  /// read.
   explicit StudyReader(const std::filesystem::path& path);
   ~StudyReader();
   StudyReader(StudyReader&&) noexcept;
   StudyReader& operator=(StudyReader&&) noexcept;
 
   [[nodiscard]] const std::filesystem::path& path() const;
-  /// The plan of the last session.
+  /// Returns the plan of the last session.
   [[nodiscard]] const StoredPlan& plan() const;
   [[nodiscard]] std::vector<StoredSession> sessions() const;
-  /// How many rows of the plan ended in each status.
+  /// Returns the number of rows of the plan by their status.
   [[nodiscard]] std::map<std::string, std::int64_t> by_status() const;
 
-  /// Calls row(...) for the rows of the plan that the query asks for, in the order of their points. Throws InvalidInput naming
+  /// Calls row(...) for the rows of the plan that the query selects, in the order of their points. Throws InvalidInput naming
   /// --where and the expression where that cannot be understood or does more than compare; Interrupted when asked to stop.
   void read(const std::function<void(const StoredRow&)>& row, const StudyQuery& query = {}, const Watch& watch = {}) const;
 
@@ -177,20 +180,20 @@ class StudyReader {
 };
 
 struct MergeOptions {
-  bool complete = false;  ///< nothing is written while points are missing
+  bool complete = false;  ///< true to write nothing while points are missing
   Watch watch = {};
 };
 
-/// What a merge has found.
+/// The result of a merge.
 struct Merged {
-  StoredPlan plan;  ///< with the shard 1/1
+  StoredPlan plan;  ///< plan of the study, with the shard 1/1
   std::int64_t rows = 0;
   bool written = false;
-  std::vector<std::string> notes;  ///< points that are missing, parts of several programs or processors
+  std::vector<std::string> notes;  ///< notes on missing points, and on parts of several programs or processors
 };
 
-/// Writes one store of the parts of a study to `out`, which must not exist. Throws InvalidInput with the names where parts are of
-/// different plans, or hold a point with different bits.
+/// Merges the parts of a study into one store `out`, which must not exist. Throws InvalidInput with the names where parts are
+/// of different plans, or hold a point with different bits.
 [[nodiscard]] Merged merge_studies(const std::vector<std::filesystem::path>& paths, const std::filesystem::path& out,
                                    const StoredOrigin& origin, const MergeOptions& options = {});
 

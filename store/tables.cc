@@ -20,10 +20,10 @@
 namespace softland::internal {
 namespace {
 
-constexpr std::size_t most_columns = 1900;  // SQLite takes 2000
-// SQLite knows no date after the year 9999, to which a clock may be set.
+constexpr std::size_t most_columns = 1900;  // SQLite accepts 2000
+// SQLite has no date after the year 9999, to which a clock may be set.
 constexpr const char* now = "ifnull(strftime('%Y-%m-%d %H:%M:%f', 'now'), 'after the year 9999')";
-constexpr int first_with_checksums = 2;  // schema
+constexpr int first_with_checksums = 2;  // first schema with checksums
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -43,20 +43,21 @@ ContentKey key_of(std::span<const unsigned char> bytes) {
   return key;
 }
 
-// As SQL writes a name.
+// Returns a name as SQL writes it.
 std::string sql_name(std::string_view name) {
   std::string text = "\"";
   for (const char c : name) text += c == '"' ? "\"\"" : std::string(1, c);
   return text + "\"";
 }
 
-// What the database gives back of a number.
+// Returns a number as the database gives it back.
 double kept(double value) { return value + 0.0; }
 
 bool has_checksums(const Database& database) { return database.number_of("PRAGMA user_version") >= first_with_checksums; }
 
-// 32 bits of what is added, the same on every machine. A change of one word always changes them before they are cut, and two
-// texts do not run into each other. It is quicker than a hash of the text that a row would be: rows are written 300 000 a second.
+// A checksum of 32 bits over added words and texts, the same on every machine. A change of one word always changes it before it
+// is cut, and two texts do not run into each other. It is quicker than a hash of the text that a row would be: rows are written
+// 300 000 a second.
 class Checksum {
  public:
   void add(std::uint64_t word) { state_ = (std::rotl(state_, 27) ^ word) * 0x9E3779B97F4A7C15; }
@@ -190,7 +191,7 @@ std::vector<StoredColumn> columns_in(const Database& database) {
   return found;
 }
 
-// What has to hold of numbers before anything is computed of them.
+// Checks numbers before anything is computed from them.
 void require_sound(const Database& database, std::int64_t points, std::int64_t index, std::int64_t count) {
   constexpr std::int64_t most_points = std::int64_t{1} << 53;
   const auto damaged = [&](const std::string& what) {
@@ -304,7 +305,7 @@ std::map<std::string, std::int64_t> tally_of(const Database& database, std::int6
 }
 
 std::string select_rows(const Database& database, const std::vector<StoredColumn>& columns) {
-  // One that was lost is another one, and no row of a store that has none.
+  // A lost checksum counts as a wrong one, except in a store without checksums.
   std::string sql =
       fmt::format("SELECT point, content, status, reason, extra, {}", has_checksums(database) ? "ifnull(checksum, 0)" : "NULL");
   for (const StoredColumn& column : columns) sql += ", " + sql_name(column.key);

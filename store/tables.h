@@ -1,4 +1,4 @@
-// The tables of a store, and what stands in them.
+// The tables of a store, and their content.
 //
 //   study    one row per plan: its text, digest of that, points, seed, shard, checksum of these and of columns
 //   columns  of results, with name, unit and kind
@@ -6,7 +6,7 @@
 //   results  (plan, point) -> content, status, reason, extra, checksum of all that stands in the row, and the columns
 //   tally    (plan, status) -> rows
 //
-// Stores of schema 1 have no checksums; they are read, and gone on with, as they are.
+// Stores of schema 1 have no checksums; they are read, and continued, as they are.
 #pragma once
 
 #include <array>
@@ -27,10 +27,10 @@ inline constexpr std::array<const char*, 7> fixed_columns{"plan", "point", "cont
 /// Throws InvalidInput unless a store can hold such a plan.
 void check_plan(const StoredPlan& plan);
 
-/// Makes the tables for rows of these columns.
+/// Creates the tables for rows of these columns.
 void create_tables(const Database& database, const std::vector<StoredColumn>& columns);
 
-/// Throws InvalidInput where the tables are of a later schema, DamagedStore where they are not all there.
+/// Throws InvalidInput where the tables are of a later schema, DamagedStore where tables are missing.
 void check_schema(const Database& database);
 
 /// A plan as the store holds it.
@@ -38,17 +38,17 @@ struct NumberedPlan {
   std::int64_t number = 0;
   StoredPlan plan;
 };
-/// That of the last session.
+/// Returns the plan of the last session.
 [[nodiscard]] NumberedPlan current_plan(const Database& database);
-/// The number of a plan with this text, and the shard it has; none: 0.
+/// Returns the number of the plan with this text and its shard; 0 where no plan matches.
 [[nodiscard]] std::int64_t number_of_plan(const Database& database, const std::string& text);
 [[nodiscard]] std::int64_t insert_plan(const Database& database, const StoredPlan& plan);
 
-/// A session that begins now. Returns its number.
+/// Inserts a session that begins now. Returns its number.
 std::int64_t insert_session(const Database& database, std::int64_t plan, const StoredOrigin& origin);
-/// The same for one that another store holds.
+/// Inserts a session of another store.
 void insert_session(const Database& database, std::int64_t plan, const StoredSession& session);
-/// Notes rows that were written in it just now.
+/// Counts rows that were just written in a session.
 class SessionTally {
  public:
   SessionTally(const Database& database, std::int64_t plan, std::int64_t session);
@@ -61,23 +61,23 @@ class SessionTally {
 [[nodiscard]] std::vector<StoredSession> sessions_in(const Database& database);
 [[nodiscard]] std::map<std::string, std::int64_t> tally_of(const Database& database, std::int64_t plan);
 
-/// "SELECT ... FROM results" of the columns that row_in() reads.
+/// Returns "SELECT ... FROM results" with the columns that row_in() reads.
 [[nodiscard]] std::string select_rows(const Database& database, const std::vector<StoredColumn>& columns);
 [[nodiscard]] std::array<unsigned char, 16> bytes_of(const ContentKey& key);
-/// Throws DamagedStore where the row is not what was written.
+/// Returns the row. Throws DamagedStore where it is not what was written.
 [[nodiscard]] StoredRow row_in(const Database& database, const Statement& statement, std::size_t values);
 
-/// The rows of a plan in the order of their points.
+/// Reads the rows of a plan in the order of their points.
 class RowReader {
  public:
   enum class Of {
-    rows,   ///< all that stands in them
+    rows,   ///< the whole content of the rows
     points  ///< their numbers only, which is ten times as quick
   };
-  /// `where`: an expression over the columns; empty: all rows.
+  /// `where` is an expression over the columns; empty for all rows.
   RowReader(const Database& database, const NumberedPlan& plan, Of what, const std::string& where = {});
-  /// Goes to the next row; false: that was the last one. Throws DamagedStore where a row is not what was written, where points
-  /// do not rise or are none of the plan's, and at the end where there are more or fewer rows than were counted.
+  /// Goes to the next row; returns false after the last one. Throws DamagedStore where a row is not what was written, where
+  /// points do not rise or do not belong to the plan, and at the end where there are more or fewer rows than were counted.
   bool next();
   [[nodiscard]] const StoredRow& row() const { return row_; }
 
@@ -100,7 +100,7 @@ class RowReader {
   std::map<std::string, std::int64_t, std::less<>>::iterator counted_ = by_status_.end();
 };
 
-/// A row that is there already with other bits.
+/// Thrown for a row that the store holds with other bits.
 class Contradiction : public InvalidInput {
  public:
   using InvalidInput::InvalidInput;
@@ -110,7 +110,8 @@ class Contradiction : public InvalidInput {
 class RowWriter {
  public:
   RowWriter(const Database& database, std::int64_t plan, const std::vector<StoredColumn>& columns);
-  /// Whether the row was new. One that is there with the same bits stays. Throws Contradiction where it has others.
+  /// Returns true when the row was new. A row that the store holds with the same bits stays. Throws Contradiction where it has
+  /// other bits.
   bool write(const StoredRow& row);
 
  private:
@@ -121,7 +122,7 @@ class RowWriter {
   Statement insert_, select_;
 };
 
-/// What makes two rows of one point different, in words; empty: they hold the same bits.
+/// Returns the difference of two rows of one point, in words; empty where they hold the same bits.
 [[nodiscard]] std::string difference(const StoredRow& a, const StoredRow& b, const std::vector<StoredColumn>& columns);
 
 }  // namespace softland::internal
