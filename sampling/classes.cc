@@ -19,7 +19,7 @@ double square_distance(const SpacePoint& a, const SpacePoint& b) {
   return dx * dx + dy * dy + dz * dz;
 }
 
-// Fewer than `count` where the points are fewer.
+// Chooses start centres; fewer than `count` where there are fewer points.
 std::vector<SpacePoint> start_centres(std::span<const SpacePoint> points, std::size_t count, std::uint64_t seed,
                                       std::size_t start) {
   std::vector<SpacePoint> centres;
@@ -45,10 +45,10 @@ std::vector<SpacePoint> start_centres(std::span<const SpacePoint> points, std::s
 
 struct Sorted {
   Classes classes;
-  double square = std::numeric_limits<double>::infinity();  // sum of the distances
+  double square = std::numeric_limits<double>::infinity();  // sum of the square distances
 };
 
-// Sorts the points by these centres, and moves each centre to the mean of its points until none changes its class.
+// Sorts the points by these centres, and moves each centre to the mean of its points until no point changes its class.
 Sorted settle(std::span<const SpacePoint> points, std::vector<SpacePoint> centres) {
   Sorted sorted{.classes = {.centres = std::move(centres), .shares = {}}};
   std::vector<std::size_t> own(points.size(), points.size());

@@ -3,9 +3,9 @@
 //
 //   minimise  sum_i min_c |x_i - c|^2   over `count` centres c
 //
-// For a measured quantity this is the quantizer of least mean square error. Its classes are narrow where points are many and wide
-// where they are few, but not as wide as those of equal shares, whose outermost ones reach far: between equal shares and equal
-// widths. Found by Lloyd's iteration from several starts, each centre drawn with a probability in proportion to the square
+// For a measured quantity this is the quantizer of least mean square error. Its classes are narrow where points are many and
+// wide where they are few. They lie between classes of equal shares, whose outermost ones reach far, and classes of equal
+// widths. Lloyd's iteration finds them from several starts, each centre drawn with a probability in proportion to the square
 // distance to those before it; a better local minimum may exist.
 //
 // Sources: S. P. Lloyd, "Least squares quantization in PCM", IEEE Trans. Inf. Theory 28 (1982) 129; J. Max, "Quantizing for
@@ -24,15 +24,15 @@ using SpacePoint = std::array<double, 3>;
 [[nodiscard]] bool is_finite(const SpacePoint& point);
 
 struct Classes {
-  std::vector<SpacePoint> centres;  ///< in ascending order
-  std::vector<double> shares;       ///< of the points, by class
+  std::vector<SpacePoint> centres;  ///< centres in ascending order
+  std::vector<double> shares;       ///< share of the points in each class
 
-  /// The class of a point: the nearest centre, the first of several.
+  /// Returns the class of a point: the nearest centre, the first of several.
   [[nodiscard]] std::size_t nearest(const SpacePoint& point) const;
 };
 
-/// A function of its arguments alone. There are fewer classes than `count` where there are fewer distinct points. Throws
-/// InvalidInput for count 0, and unless there are points, all of them finite.
+/// Returns the classes, as a function of the arguments alone. There are fewer classes than `count` where there are fewer
+/// distinct points. Throws InvalidInput for count 0, and unless there are points, all of them finite.
 [[nodiscard]] Classes classes_of(std::span<const SpacePoint> points, std::size_t count, std::uint64_t seed);
 
 }  // namespace softland

@@ -1,8 +1,8 @@
 // Confidence intervals of figures of a sample of independent values, larger being worse and +infinity the worst (statistics.h).
 //
-// An interval of confidence c covers the figure of the distribution in a share c of all samples. The two sides share what is left
-// equally. Scrambled Sobol' points and Latin hypercubes are not independent samples: for means over them these intervals are too
-// wide.
+// An interval of confidence c covers the figure of the distribution in a share c of all samples. The two sides share the rest
+// equally. Scrambled Sobol' points and Latin hypercubes are not independent samples: for means over them these intervals are
+// too wide.
 //
 // Every function throws InvalidInput unless 0 < confidence < 1.
 #pragma once
@@ -16,22 +16,22 @@
 
 namespace softland {
 
-/// Of a probability of which `successes` of `trials` are known: Wilson's score interval, the p with
+/// Returns Wilson's score interval of a probability of which `successes` of `trials` are known, the p with
 ///
 ///   |s/n - p| <= z sqrt(p (1 - p) / n),   z = Phi^-1((1 + confidence) / 2)
 ///
-/// Never empty and never outside [0, 1], also where none or all succeed. The confidence holds on average over p; near 0 and 1 it
-/// can be less. [0, 1] without trials. Throws InvalidInput for more successes than trials. Source: E. B. Wilson, J. Am. Stat.
-/// Assoc. 22 (1927) 209; L. D. Brown, T. T. Cai & A. DasGupta, Statistical Science 16 (2001) 101.
+/// It is never empty and never outside [0, 1], also where none or all succeed. The confidence holds on average over p; near 0
+/// and 1 it can be less. Returns [0, 1] without trials. Throws InvalidInput for more successes than trials. Source: E. B.
+/// Wilson, J. Am. Stat. Assoc. 22 (1927) 209; L. D. Brown, T. T. Cai & A. DasGupta, Statistical Science 16 (2001) 101.
 [[nodiscard]] Interval wilson_interval(std::size_t successes, std::size_t trials, double confidence = 0.95);
 
-/// Of the quantile p of the distribution, whatever that is: between the order statistics x_l and x_u,
+/// Returns an interval of the quantile p of any distribution: between the order statistics x_l and x_u,
 ///
 ///   l = largest with P(B < l) <= (1 - confidence) / 2,   u = smallest with P(B >= u) <= (1 - confidence) / 2
 ///
-/// B binomial (n, p). It covers with at least this confidence. A side for which the sample is too small is -infinity, or
-/// +infinity; so is the upper one where x_u is a failure. Throws InvalidInput as sample_quantile, and unless 0 < p < 1. Source:
-/// H. A. David & H. N. Nagaraja, "Order Statistics", 3rd ed. 2003, section 7.1.
+/// B is binomial (n, p). The interval covers with at least this confidence. A side for which the sample is too small is
+/// -infinity, or +infinity; so is the upper one where x_u is a failure. Throws InvalidInput as sample_quantile, and unless 0 <
+/// p < 1. Source: H. A. David & H. N. Nagaraja, "Order Statistics", 3rd ed. 2003, section 7.1.
 [[nodiscard]] Interval quantile_interval(std::span<const double> sample, double p, double confidence = 0.95);
 
 struct BootstrapOptions {
@@ -40,24 +40,24 @@ struct BootstrapOptions {
   std::uint64_t seed = 1;
 };
 
-/// Of any figure of a sample: the quantiles of its values for samples that are drawn from this one, with replacement. Its error
-/// of coverage falls as n^-1/2 on each side, n^-1 on both; below some ten values it covers too seldom, and of the extremes of a
-/// sample it says nothing. The same for the same seed. NaN where a repetition gives NaN. Throws InvalidInput for a sample without
-/// values and unless there are at least 2 repetitions. Source: B. Efron & R. J. Tibshirani, "An Introduction to the Bootstrap",
-/// 1993, section 13.3 (percentile interval).
+/// Returns an interval of any figure of a sample: the quantiles of its values for samples that are drawn from this one, with
+/// replacement. Its error of coverage falls as n^-1/2 on each side, n^-1 on both. Below some ten values it covers too seldom,
+/// and for the extremes of a sample it is meaningless. The result is the same for the same seed, and NaN where a repetition
+/// gives NaN. Throws InvalidInput for a sample without values and unless there are at least 2 repetitions. Source: B. Efron &
+/// R. J. Tibshirani, "An Introduction to the Bootstrap", 1993, section 13.3 (percentile interval).
 [[nodiscard]] Interval bootstrap_interval(std::span<const double> sample,
                                           const std::function<double(std::span<const double>)>& statistic,
                                           const BootstrapOptions& options = {});
 
 namespace internal {
 
-/// Throws what bootstrap_interval throws for them.
+/// Throws what bootstrap_interval throws for these options.
 void check(const BootstrapOptions& options);
 
-/// Which of `count` rows stands at `place` of repetition number `repetition`.
+/// Returns which of `count` rows stands at `place` of repetition number `repetition`.
 [[nodiscard]] std::size_t bootstrap_row(std::uint64_t seed, std::size_t repetition, std::size_t place, std::size_t count);
 
-/// The middle `confidence` of the values of a figure over the repetitions; NaN where one of them is.
+/// Returns the middle `confidence` of the values of a figure over the repetitions; NaN where one of them is.
 [[nodiscard]] Interval percentile_interval(std::span<const double> values, double confidence);
 
 }  // namespace internal

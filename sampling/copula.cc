@@ -20,7 +20,7 @@ void require_in_range(double value) {
   require(-1 <= value && value <= 1, "a correlation of " + rounded_text(value) + " must be between -1 and 1");
 }
 
-// The variables that the vector consists of, most of all: those with at least half of its largest element.
+// Returns the main variables of the vector: those with at least half of its largest element.
 std::string main_parts(const Eigen::VectorXd& vector, const std::vector<std::string>& names) {
   const double largest = vector.cwiseAbs().maxCoeff();
   std::string parts;

@@ -2,12 +2,12 @@
 //
 //   v_i = Phi((L z)_i),   z_i = Phi^-1(u_i),   L L^T = R
 //
-// u, v uniform in (0, 1), Phi the standard normal distribution, R the correlation matrix, L its Cholesky factor, lower: v_1 =
-// u_1. R is the correlation of the underlying normal numbers. That of the variables themselves, which have other distributions,
-// is smaller in size; what the distributions leave alone is the rank correlation (Spearman), rho_S = 6/pi asin(rho / 2), and
-// Kendall's tau = 2/pi asin(rho). Extreme values of two variables are independent in the limit, whatever rho < 1 (no tail
-// dependence). rho = +-1 makes R singular and is refused: two such variables are one. Source: R. B. Nelsen, "An Introduction to
-// Copulas", 2nd ed. 2006; W. H. Kruskal, J. Am. Stat. Assoc. 53 (1958) 814 (ranks).
+// u, v are uniform in (0, 1), Phi is the standard normal distribution, R the correlation matrix, L its lower Cholesky factor:
+// v_1 = u_1. R is the correlation of the underlying normal numbers. That of the variables themselves, which have other
+// distributions, is smaller in size. The distributions leave the rank correlation (Spearman) unchanged, rho_S = 6/pi asin(rho /
+// 2), and Kendall's tau = 2/pi asin(rho). Extreme values of two variables are independent in the limit, whatever rho < 1 (no
+// tail dependence). rho = +-1 makes R singular and is refused: two such variables are one. Source: R. B. Nelsen, "An
+// Introduction to Copulas", 2nd ed. 2006; W. H. Kruskal, J. Am. Stat. Assoc. 53 (1958) 814 (ranks).
 #pragma once
 
 #include <Eigen/Core>
@@ -23,22 +23,22 @@ class GaussianCopula {
   /// The least eigenvalue that a correlation matrix may have.
   static constexpr double least_eigenvalue = 1e-10;
 
-  /// `names` are those of the variables in messages; "variable 1", ... where there are none. Throws InvalidParameter,
-  /// `correlation`, unless the matrix is square and symmetric with a unit diagonal, all others are between -1 and 1, and all
-  /// eigenvalues are at least least_eigenvalue. The message names the variables to blame.
+  /// `names` are the variables in messages; "variable 1", ... without names. Throws InvalidParameter, `correlation`, unless the
+  /// matrix is square and symmetric with a unit diagonal, all other elements are between -1 and 1, and all eigenvalues are at
+  /// least least_eigenvalue. The message names the variables to blame.
   explicit GaussianCopula(const Eigen::MatrixXd& correlation, const std::vector<std::string>& names = {});
 
   [[nodiscard]] std::size_t dimensions() const { return static_cast<std::size_t>(factor_.rows()); }
 
-  /// Turns independent u into correlated ones, in place. They stay between 2^-53 and 1 - 2^-53. Throws InvalidInput unless there
-  /// are as many as dimensions, each above 0 and below 1.
+  /// Turns independent u into correlated ones, in place. They stay between 2^-53 and 1 - 2^-53. Throws InvalidInput unless
+  /// there is one per dimension, each above 0 and below 1.
   void correlate(std::span<double> u) const;
 
  private:
-  Eigen::MatrixXd factor_;  // lower triangular
+  Eigen::MatrixXd factor_;  // lower triangular factor
 };
 
-/// Spearman's rank correlation of two variables whose underlying normal numbers have this correlation, and the inverse,
+/// Return Spearman's rank correlation of two variables whose underlying normal numbers have this correlation, and the inverse,
 /// 2 sin(pi rho_S / 6). Throw InvalidInput unless the argument is between -1 and 1.
 [[nodiscard]] double rank_correlation(double correlation);
 [[nodiscard]] double correlation_of_ranks(double rank_correlation);

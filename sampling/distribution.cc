@@ -26,15 +26,15 @@ void require_positive(std::string_view parameter, double value) {
              std::string(parameter) + " = " + text(value) + " must be finite and above 0");
 }
 
-double standard_normal_density(double z) { return std::exp(-z * z / 2); }  // but for a factor
+double standard_normal_density(double z) { return std::exp(-z * z / 2); }  // constant factor omitted
 
-// The logarithm of a lognormal variable.
+// Returns the distribution of the logarithm of a lognormal variable.
 Normal logarithm_of(const Lognormal& d) {
   const double ratio = d.standard_deviation / d.mean, variance = std::log1p(ratio * ratio);
   return {.mean = std::log(d.mean) - variance / 2, .standard_deviation = std::sqrt(variance)};
 }
 
-// For each kind: its check, its support, its quantile, and the probabilities of a value of at most x and of one below x.
+// Each kind has its check, its support, its quantile, and the probabilities of a value of at most x and of one below x.
 
 void check(const Normal& d) {
   require_finite("mean", d.mean);
@@ -96,7 +96,7 @@ double quantile_of(const Empirical& d, double p) {
   const std::size_t i = std::min(static_cast<std::size_t>(place), d.values.size() - 2);
   return d.values[i] + (place - static_cast<double>(i)) * (d.values[i + 1] - d.values[i]);
 }
-// The probability between values i and i + 1, which differ, where the distribution reaches x.
+// Returns the probability between values i and i + 1, which differ, where the distribution reaches x.
 double between(const Empirical& d, std::size_t i, double x) {
   const double fraction = (x - d.values[i]) / (d.values[i + 1] - d.values[i]);
   return (static_cast<double>(i) + fraction) / static_cast<double>(d.values.size() - 1);
@@ -122,7 +122,8 @@ struct Moments {
   double mean, standard_deviation;
 };
 
-// Of value(t) where t has a density that is smooth between the breaks. Eight points are exact for polynomials of degree 15.
+// Returns the moments of value(t) where t has a density that is smooth between the breaks. Eight points are exact for
+// polynomials of degree 15.
 template <class Value, class Density>
 Moments moments(const std::vector<double>& breaks, Value value, Density density) {
   static const GaussRule rule = gauss_rule(8);
@@ -143,7 +144,7 @@ Moments moments(const std::vector<double>& breaks, Value value, Density density)
   return {.mean = mean, .standard_deviation = std::sqrt(variance)};
 }
 
-// From low to high in steps of at most half a standard deviation.
+// Returns breaks from low to high in steps of at most half a standard deviation.
 std::vector<double> normal_breaks(double low, double high) {
   const int count = std::max(1, static_cast<int>(std::ceil((high - low) / 0.5)));
   std::vector<double> breaks;
@@ -151,7 +152,7 @@ std::vector<double> normal_breaks(double low, double high) {
   return breaks;
 }
 
-// Beyond so many standard deviations a normal density, 2e-37 of its largest value, adds nothing.
+// A normal density beyond this number of standard deviations, 2e-37 of its largest value, adds nothing.
 constexpr double far_out = 13;
 
 Moments moments_within(const Normal& d, const Interval& x) {
@@ -203,7 +204,7 @@ Moments moments_within(const Empirical& d, const Interval& x) {
 Distribution::Distribution(Parameters parameters, const Truncation& truncation)
     : parameters_(std::move(parameters)), truncation_(truncation) {
   if (auto* const empirical = std::get_if<Empirical>(&parameters_)) {
-    check(*empirical);  // before the values are sorted, which NaN would upset
+    check(*empirical);  // check before the values are sorted, which NaN would upset
     std::sort(empirical->values.begin(), empirical->values.end());
   }
   std::visit([](const auto& d) { check(d); }, parameters_);
@@ -241,7 +242,7 @@ double Distribution::quantile(double p) const {
   if (!(p > 0 && p < 1)) require(false, "p = " + text(p) + " must be above 0 and below 1");
   const double of_whole = std::min(below_ + p * kept_, 1 - 0x1p-53);  // rounding may lead to 1, where a quantile is infinite
   const double value = std::visit([&](const auto& d) { return quantile_of(d, of_whole); }, parameters_);
-  return std::clamp(value, support_.low, support_.high);  // rounding may lead out
+  return std::clamp(value, support_.low, support_.high);  // rounding may lead out of the support
 }
 
 double Distribution::cdf(double x) const {

@@ -7,12 +7,12 @@
 //   triangular  f(x) rises from low to mode and falls to high         low <= mode <= high, low < high
 //   empirical   Q(p) = x_j + (h - j) (x_(j+1) - x_j),  h = 1 + (n - 1) p,  j = floor(h),  x_1 <= ... <= x_n
 //
-// The quantile of n values is linear between order statistics: definition 7 of Hyndman & Fan, The American Statistician 50 (1996)
-// 361. So an empirical distribution has no value outside those it was given, a step where values are equal, and a variance
-// slightly below that of the values.
+// The quantile of n values is linear between order statistics: definition 7 of Hyndman & Fan, The American Statistician 50
+// (1996) 361. So an empirical distribution has no value outside those it was given, a step where values are equal, and a
+// variance slightly below that of the values.
 //
-// Each may be truncated to [low, high]: X given low <= X <= high, Q_t(p) = Q(F(low-) + p (F(high) - F(low-))). All in the unit of
-// the variable.
+// Each may be truncated to [low, high]: X given low <= X <= high, Q_t(p) = Q(F(low-) + p (F(high) - F(low-))). All numbers are
+// in the unit of the variable.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ namespace softland {
 
 enum class DistributionKind { normal, lognormal, uniform, triangular, empirical };
 
-/// The keys are the names of the parameters, as they stand in the messages of InvalidParameter.
+/// Name and keys of a kind. The keys are the names of the parameters in the messages of InvalidParameter.
 struct DistributionRow {
   DistributionKind value;
   std::string_view name;
@@ -48,8 +48,8 @@ struct Normal {
   double standard_deviation = 0;
 };
 struct Lognormal {
-  double mean = 0;                ///< of the variable, not of its logarithm
-  double standard_deviation = 0;  ///< likewise
+  double mean = 0;                ///< mean of the variable, not of its logarithm
+  double standard_deviation = 0;  ///< standard deviation of the variable, likewise
 };
 struct Uniform {
   double low = 0;
@@ -61,7 +61,7 @@ struct Triangular {
   double high = 0;
 };
 struct Empirical {
-  std::vector<double> values = {};  ///< at least two, in any order
+  std::vector<double> values = {};  ///< values, at least two, in any order
 };
 struct Truncation {
   double low = -std::numeric_limits<double>::infinity();
@@ -70,28 +70,29 @@ struct Truncation {
 
 class Distribution {
  public:
-  /// In the order of DistributionKind.
+  /// The alternatives stand in the order of DistributionKind.
   using Parameters = std::variant<Normal, Lognormal, Uniform, Triangular, Empirical>;
 
-  /// The least probability that a truncation may keep: one with less is a mistake of units, and rounding would be seen in it.
+  /// The least probability that a truncation may keep: a smaller one is a mistake of units, and rounding would be visible in
+  /// it.
   static constexpr double least_kept = 1e-6;
 
   /// Throws InvalidParameter: `parameter()` is a key of distribution_kinds, or truncate_low or truncate_high.
   explicit Distribution(Parameters parameters, const Truncation& truncation = {});
 
   [[nodiscard]] DistributionKind kind() const { return static_cast<DistributionKind>(parameters_.index()); }
-  /// As given, with the values of an empirical distribution sorted.
+  /// Returns the parameters as given, with the values of an empirical distribution sorted.
   [[nodiscard]] const Parameters& parameters() const { return parameters_; }
   [[nodiscard]] const Truncation& truncation() const { return truncation_; }
 
-  /// The least x with cdf(x) >= p. Throws InvalidInput unless 0 < p < 1.
+  /// Returns the least x with cdf(x) >= p. Throws InvalidInput unless 0 < p < 1.
   [[nodiscard]] double quantile(double p) const;
-  /// The probability of a value of at most x.
+  /// Returns the probability of a value of at most x.
   [[nodiscard]] double cdf(double x) const;
-  /// Of the truncated distribution, to 1e-12 of the standard deviation or of the mean, whichever is larger.
+  /// Return moments of the truncated distribution, to 1e-12 of the standard deviation or of the mean, whichever is larger.
   [[nodiscard]] double mean() const { return mean_; }
   [[nodiscard]] double standard_deviation() const { return standard_deviation_; }
-  /// Where it has its values.
+  /// Returns the interval in which the distribution has its values.
   [[nodiscard]] const Interval& support() const { return support_; }
 
  private:
@@ -100,8 +101,8 @@ class Distribution {
   Parameters parameters_;
   Truncation truncation_;
   Interval support_;
-  double below_ = 0;  // the probability of what the truncation cuts off below,
-  double kept_ = 1;   // and of what it keeps
+  double below_ = 0;  // probability that the truncation cuts off below
+  double kept_ = 1;   // probability that the truncation keeps
   double mean_ = 0, standard_deviation_ = 0;
 };
 

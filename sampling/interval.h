@@ -1,11 +1,11 @@
-// An interval of the real line: where a distribution has its values, or where a figure lies with some confidence.
+// An interval of the real line: the support of a distribution, or a confidence interval of a figure.
 #pragma once
 
 #include <limits>
 
 namespace softland {
 
-/// Closed; a side without a bound is infinite, an interval that is not known has NaN for both.
+/// A closed interval; a side without a bound is infinite, an interval that is not known has NaN for both.
 struct Interval {
   double low = std::numeric_limits<double>::quiet_NaN();
   double high = std::numeric_limits<double>::quiet_NaN();

@@ -9,9 +9,9 @@
 namespace softland {
 namespace {
 
-constexpr int resolved_bits = 32;  // of a coordinate, by the direction numbers
+constexpr int resolved_bits = 32;  // bits of a coordinate that the direction numbers give
 
-// The middle of one of 2^52 equal intervals, from the highest bits.
+// Returns the middle of one of 2^52 equal intervals, from the highest bits.
 double in_open_interval(std::uint64_t bits) { return (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52; }
 
 std::vector<std::uint32_t> direction_numbers(std::size_t dimensions) {
@@ -25,7 +25,7 @@ std::vector<std::uint32_t> direction_numbers(std::size_t dimensions) {
   return directions;
 }
 
-// 64 bits of which the highest 32 are those of `digits`, scrambled.
+// Returns 64 bits of which the highest 32 are those of `digits`, scrambled.
 std::uint64_t scrambled(std::uint64_t key, std::uint32_t digits) {
   // Node 2^j + (the first j bits) decides on bit j, counted from 0 at the highest.
   std::uint32_t flips = 0;
@@ -37,7 +37,7 @@ std::uint64_t scrambled(std::uint64_t key, std::uint32_t digits) {
   return std::uint64_t{digits ^ flips} << resolved_bits | below >> resolved_bits;
 }
 
-// Where a random permutation of 0, ..., size - 1 takes k.
+// Returns the image of k under a random permutation of 0, ..., size - 1.
 std::uint64_t permuted(std::uint64_t key, std::uint64_t k, std::uint64_t size) {
   constexpr std::uint64_t rounds = 8;  // four suffice for large halves; a half may be one bit
   const int width = static_cast<int>(std::bit_width(size - 1)), right_width = (width + 1) / 2;
@@ -54,7 +54,8 @@ std::uint64_t permuted(std::uint64_t key, std::uint64_t k, std::uint64_t size) {
   return k;
 }
 
-// Inside stratum `stratum` of `size`: as many bits as leave the sum exact, so that it rounds neither to the next one nor to 1.
+// Returns a number inside stratum `stratum` of `size`. Its bits leave the sum exact, so that it rounds neither to the next
+// stratum nor to 1.
 double in_stratum(std::uint64_t bits, std::uint64_t stratum, std::uint64_t size) {
   const int kept = 52 - static_cast<int>(std::bit_width(size - 1));
   const double inside = (static_cast<double>(bits >> (64 - kept)) + 0.5) / static_cast<double>(std::uint64_t{1} << kept);
@@ -69,7 +70,7 @@ SamplePoints::SamplePoints(PointSet kind, std::size_t dimensions, std::uint64_t 
              "dimensions = " + std::to_string(dimensions) + " must be between 1 and " + std::to_string(most_dimensions));
   require_of("size", 1 <= size && size <= largest_size,
              "size = " + std::to_string(size) + " must be between 1 and " + std::to_string(largest_size));
-  // Not a draw of the stream, so that it stays free for other numbers of the same purpose.
+  // The key is not a draw of the stream, so that the stream stays free for other numbers of the same purpose.
   for (std::size_t i = 0; i < dimensions; ++i) keys_.push_back(split_mix_64(random_bits(seed, stream, 0), i));
   if (kind == PointSet::sobol) directions_ = direction_numbers(dimensions);
 }

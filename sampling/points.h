@@ -1,5 +1,5 @@
-// Sets of points in the open unit cube (0, 1)^d, any of them at the cost of one: point k is a function of seed, stream, k and,
-// for a Latin hypercube, the size of the set. Neither order nor threads nor shards can change it.
+// Sets of points in the open unit cube (0, 1)^d. Every point costs the same: point k is a function of seed, stream, k and, for
+// a Latin hypercube, the size of the set. Neither order nor threads nor shards can change it.
 //
 //   sobol            a Sobol' sequence with Owen's nested uniform scrambling. Every point is uniform over the cube, so that means
 //                    over the set have no bias; together they are a digital net: of 2^m points, beginning at a multiple of 2^m,
@@ -10,13 +10,13 @@
 //                    depend on N: sets of different size have nothing in common.
 //   monte_carlo      independent and uniform; the error falls as N^-1/2. Point k is the same for every size.
 //
-// Coordinate i does not depend on the number of dimensions. All coordinates are multiples of 2^-53 but for the Latin hypercube,
-// whose division by N rounds.
+// Coordinate i does not depend on the number of dimensions. All coordinates are multiples of 2^-53 except in the Latin
+// hypercube, whose division by N rounds.
 //
-// Scrambling: bit j of a coordinate is flipped by a random bit that belongs to the bits before it, one bit for each node of a
-// binary tree, drawn by its number. 32 bits come from the direction numbers; those below are zero in the sequence, and a random
-// bit of their node whatever they were. Permutation: a Feistel network over the least power of two that holds N, walked until it
-// leads to a number below N.
+// Scrambling: each bit j of a coordinate is flipped by a random bit that belongs to the bits before it. There is one such bit
+// for each node of a binary tree, drawn by its number. 32 bits come from the direction numbers; those below are zero in the
+// sequence, and a random bit of their node whatever they were. Permutation: a Feistel network over the least power of two that
+// holds N, walked until it leads to a number below N.
 //
 // Sources: A. B. Owen, "Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995 (scrambling), and "Scrambled net variance for
 // integrals of smooth functions", Annals of Statistics 25 (1997) 1541; S. Joe & F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635
@@ -46,7 +46,7 @@ static_assert(is_complete<point_sets>());
 class SamplePoints {
  public:
   static constexpr std::uint64_t largest_size = std::uint64_t{1} << 31;
-  static constexpr std::size_t most_dimensions = 3667;  ///< for which Boost.Random has direction numbers
+  static constexpr std::size_t most_dimensions = 3667;  ///< largest number for which Boost.Random has direction numbers
 
   /// Throws InvalidParameter, `dimensions` or `size`, unless 1 <= dimensions <= most_dimensions and 1 <= size <= largest_size.
   SamplePoints(PointSet kind, std::size_t dimensions, std::uint64_t seed, Stream stream, std::uint64_t size);
@@ -61,9 +61,9 @@ class SamplePoints {
  private:
   PointSet kind_;
   std::uint64_t size_;
-  std::vector<std::uint64_t> keys_;  // of each dimension: the seed of its random numbers
+  std::vector<std::uint64_t> keys_;  // seed of the random numbers of each dimension
   std::vector<std::uint32_t>
-      directions_;  // those of bit r of the number of a point, for all dimensions, from r * dimensions() on
+      directions_;  // direction numbers for bit r of a point's number, for all dimensions, from r * dimensions() on
 };
 
 }  // namespace softland

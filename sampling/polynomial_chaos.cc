@@ -16,14 +16,14 @@ namespace {
 using Exponents = std::vector<int>;
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-constexpr int highest_degree = 50;  // beyond, powers of a normal germ overwhelm any sample
+constexpr int highest_degree = 50;  // powers of a normal germ above it overwhelm any sample
 constexpr double candidates_per_figure = 10;
 
-// The orthonormal polynomials of degree 0, ..., degree at u.
+// Returns the orthonormal polynomials of degree 0, ..., degree at u.
 std::vector<double> polynomials(Germ germ, int degree, double u) {
   std::vector<double> values(static_cast<std::size_t>(degree) + 1, 1);
   const double xi = germ == Germ::uniform ? 2 * u - 1 : standard_normal_quantile(u);
-  double before = 0, current = 1;  // by their usual recurrences: P_k, and He_k / sqrt(k!)
+  double before = 0, current = 1;  // the usual recurrences give P_k, and He_k / sqrt(k!)
   for (int k = 1; k <= degree; ++k) {
     const double next = germ == Germ::uniform ? ((2 * k - 1) * xi * current - (k - 1) * before) / k
                                               : (xi * current - std::sqrt(k - 1.0) * before) / std::sqrt(static_cast<double>(k));
@@ -34,7 +34,7 @@ std::vector<double> polynomials(Germ germ, int degree, double u) {
   return values;
 }
 
-// All exponents of this degree, to which those of the variables before `from` are given.
+// Adds all exponents of this degree; those of the variables before `from` are given.
 void add_terms(std::vector<Exponents>& terms, Exponents& term, std::size_t from, int degree) {
   if (from + 1 == term.size()) {
     term[from] = degree;
@@ -59,15 +59,15 @@ struct Value {
 // The terms of a matching pursuit in their order.
 struct Pursuit {
   std::vector<Eigen::Index> columns;
-  std::vector<double> errors;    // sum of squares of the predictions of what was held back, with 1, 2, ... terms
-  Eigen::VectorXd coefficients;  // of all terms
+  std::vector<double> errors;    // squared prediction errors, summed over the held-back rows, with 1, 2, ... terms
+  Eigen::VectorXd coefficients;  // coefficients of all terms
 };
 
-// At most `most` of the columns, the constant one first. `held` are the rows that were held back, `held_y` their figures.
+// Chooses at most `most` of the columns, the constant one first. `held` are the held-back rows, `held_y` their figures.
 Pursuit pursue(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, Eigen::Index most, const Eigen::MatrixXd& held,
                const Eigen::VectorXd& held_y) {
   const Eigen::RowVectorXd sizes = columns.colwise().norm();
-  // Psi = Q R for the chosen columns; their continuation to what was held back, Psi_held R^-1; R^-1.
+  // Psi = Q R for the chosen columns; their continuation to the held-back rows, Psi_held R^-1; R^-1.
   Eigen::MatrixXd q(columns.rows(), most), q_held(held.rows(), most), inverse = Eigen::MatrixXd::Zero(most, most);
   Eigen::VectorXd residual = y, held_residual = held_y, projections(most);
   std::vector<bool> used(static_cast<std::size_t>(columns.cols()), false);
@@ -81,7 +81,7 @@ Pursuit pursue(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, Eigen::
     }
     if (next < 0) break;
     used[static_cast<std::size_t>(next)] = true;
-    // Gram-Schmidt, twice: once leaves rounding of the size of what is taken away.
+    // Gram-Schmidt runs twice: once leaves rounding errors of the size of the removed part.
     Eigen::VectorXd direction = columns.col(next), shares = Eigen::VectorXd::Zero(k);
     for (int time = 0; time < 2; ++time) {
       const Eigen::VectorXd share = q.leftCols(k).transpose() * direction;
@@ -108,7 +108,7 @@ Pursuit pursue(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, Eigen::
   return made;
 }
 
-// Which tenth a figure belongs to, at random: neighbours in a set of points may have something in common.
+// Returns the fold of each figure, at random: neighbours in a set of points may have something in common.
 std::vector<std::size_t> folds_of(std::size_t figures) {
   constexpr std::size_t most_folds = 10;
   const SamplePoints order(PointSet::latin_hypercube, 1, 0, Stream::folds, figures);
@@ -122,7 +122,7 @@ std::vector<std::size_t> folds_of(std::size_t figures) {
   return fold;
 }
 
-// errors[k]: of predicting each fold from the others by k + 1 terms.
+// Returns errors[k], those of predicting each fold from the others by k + 1 terms.
 std::vector<double> prediction_errors(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y,
                                       const std::vector<std::size_t>& fold, Eigen::Index most) {
   std::vector<double> errors(static_cast<std::size_t>(most), 0);
@@ -131,7 +131,7 @@ std::vector<double> prediction_errors(const Eigen::MatrixXd& columns, const Eige
     std::vector<Eigen::Index> kept, held;
     for (std::size_t j = 0; j < fold.size(); ++j) (fold[j] == f ? held : kept).push_back(static_cast<Eigen::Index>(j));
     const Pursuit made = pursue(columns(kept, Eigen::all), y(kept), most, columns(held, Eigen::all), y(held));
-    // A pursuit that came to its end stays there.
+    // A pursuit that ended early keeps its last error.
     for (std::size_t k = 0; k < errors.size(); ++k) errors[k] += made.errors[std::min(k, made.errors.size() - 1)];
   }
   return errors;
@@ -159,10 +159,10 @@ PolynomialChaos::PolynomialChaos(const std::vector<Germ>& germs_of_variables, co
     : germs_(germs_of_variables) {
   check(germs_of_variables, points, figures, most_degree);
   const std::size_t n = figures.size(), d = dimensions();
-  // Terms by their degree: those of degree p and less are the first last[p].
+  // The terms are sorted by their degree: those of degree p and less are the first last[p].
   std::vector<Exponents> candidates;
   std::vector<std::size_t> last;
-  double count = 1;  // of the terms of degree p and less: the binomial coefficient of d + p and p
+  double count = 1;  // number of terms of degree p and less: the binomial coefficient of d + p and p
   for (int p = 0; p <= most_degree; ++p) {
     if (p > 0) count *= static_cast<double>(d + static_cast<std::size_t>(p)) / p;
     if (p > 1 && count > candidates_per_figure * static_cast<double>(n)) break;

@@ -3,19 +3,20 @@
 //   y(xi) = sum c_a psi_a(xi),   psi_a(xi) = prod psi_(a_i)(xi_i),   |a| = sum a_i <= p
 //
 // xi_i are independent germs: uniform in (-1, 1) with Legendre polynomials, or standard normal with Hermite's. c_0 is the mean,
-// sum_(a != 0) c_a^2 the variance, and the parts of it with the terms that hold xi_i alone, or at all, are Sobol's indices of
-// first order and in total (B. Sudret, Reliability Engineering & System Safety 93 (2008) 964).
+// sum_(a != 0) c_a^2 the variance. Its parts with the terms that hold xi_i alone, or at all, are Sobol's indices of first order
+// and in total (B. Sudret, Reliability Engineering & System Safety 93 (2008) 964).
 //
-// Which terms: orthogonal matching pursuit begins with the constant, and adds the term with which the residual correlates most.
-// The number k of terms, at most half the figures, and the degree p are those that predict best in a tenfold cross-validation:
-// each tenth of the figures is predicted from the others alone, by terms that were chosen without it,
+// Choice of terms: orthogonal matching pursuit begins with the constant, and adds the term with which the residual correlates
+// most. The number k of terms, at most half the figures, and the degree p are those that predict best in a tenfold
+// cross-validation. Each tenth of the figures is predicted from the others alone, by terms that were chosen without it,
 //
 //   q2 = 1 - sum (y_i - prediction_i)^2 / sum (y_i - mean)^2
 //
-// Leaving out one figure from a fit with given terms would be cheaper, and flatters: of 60 random numbers it takes 29 terms,
-// and a q2 of 0.6. The choice of k and p still flatters, by a tenth or two of 1 - q2. q2 is 1 for a polynomial, and near or
-// below 0 where the sum predicts no better than the mean. Degrees are tried up to `most_degree`, as long as they have at
-// most ten times as many terms as there are figures. A figure that jumps, or whose slope does, converges slowly: q2 says so.
+// Leaving out one figure from a fit with given terms would be cheaper but too optimistic: for 60 random numbers it takes 29
+// terms, and a q2 of 0.6. The choice of k and p is still optimistic, by a tenth or two of 1 - q2. q2 is 1 for a polynomial, and
+// near or below 0 where the sum predicts no better than the mean. Degrees are tried up to `most_degree`, as long as they have
+// at most ten times as many terms as there are figures. A figure that jumps, or whose slope does, converges slowly: q2 shows
+// it.
 //
 // Sources: N. Agarwal & N. R. Aluru, Journal of Microelectromechanical Systems 18 (2009) 1454 (electrostatic MEMS); G. Blatman &
 // B. Sudret, Journal of Computational Physics 230 (2011) 2345 (sparse terms); Y. C. Pati, R. Rezaiifar & P. S. Krishnaprasad,
@@ -41,23 +42,23 @@ static_assert(is_complete<germs>());
 
 class PolynomialChaos {
  public:
-  /// Row j of `points`, in the open unit cube, is where figure j was found; the germ of a variable is 2 u - 1, or Phi^-1(u).
+  /// Row j of `points`, in the open unit cube, is the point of figure j; the germ of a variable is 2 u - 1, or Phi^-1(u).
   /// Throws InvalidParameter: `points` unless they are inside the cube, with a column for each germ; `figures` unless they are
   /// finite, at least four, and as many as points; `most_degree` unless it is between 1 and 50.
   PolynomialChaos(const std::vector<Germ>& germs_of_variables, const Eigen::MatrixXd& points, std::span<const double> figures,
                   int most_degree = 10);
 
   [[nodiscard]] std::size_t dimensions() const { return germs_.size(); }
-  [[nodiscard]] int degree() const { return degree_; }               ///< p; 0 where nothing is better than the mean
-  [[nodiscard]] std::size_t terms() const { return terms_.size(); }  ///< with the constant
-  [[nodiscard]] double q2() const { return q2_; }                    ///< of the cross-validation; NaN where all figures are equal
+  [[nodiscard]] int degree() const { return degree_; }               ///< degree p; 0 where nothing is better than the mean
+  [[nodiscard]] std::size_t terms() const { return terms_.size(); }  ///< number of terms, with the constant
+  [[nodiscard]] double q2() const { return q2_; }  ///< q2 of the cross-validation; NaN where all figures are equal
 
-  /// The sum at a point of the open unit cube. Throws InvalidInput unless it has dimensions() coordinates, all inside.
+  /// Returns the sum at a point of the open unit cube. Throws InvalidInput unless it has dimensions() coordinates, all inside.
   [[nodiscard]] double operator()(std::span<const double> u) const;
 
   [[nodiscard]] double mean() const { return coefficients_[0]; }
   [[nodiscard]] double variance() const;
-  /// Sobol' indices of variable i; NaN where the variance is zero. Throw InvalidInput unless i < dimensions().
+  /// Return the Sobol' indices of variable i; NaN where the variance is zero. Throw InvalidInput unless i < dimensions().
   [[nodiscard]] double first_order(std::size_t i) const;
   [[nodiscard]] double total(std::size_t i) const;
 
@@ -65,8 +66,8 @@ class PolynomialChaos {
   std::vector<Germ> germs_;
   int degree_ = 0;
   double q2_ = 0;
-  std::vector<std::vector<int>> terms_;  // the exponents of each, the constant first
-  std::vector<double> coefficients_;     // of the terms
+  std::vector<std::vector<int>> terms_;  // exponents of each term, the constant first
+  std::vector<double> coefficients_;     // coefficients of the terms
 };
 
 }  // namespace softland

@@ -13,7 +13,7 @@ namespace {
 struct Rows {
   std::size_t dimensions, count;
   std::vector<double> sums, squares;       // f(A) + f(B), f(A)^2 + f(B)^2
-  std::vector<double> first_order, total;  // of row j and variable i at j d + i, times the variance
+  std::vector<double> first_order, total;  // terms of row j and variable i at j d + i, times the variance
 };
 
 Rows rows_of(std::size_t dimensions, const std::vector<double>& kept, double mean) {
@@ -37,7 +37,7 @@ struct Estimate {
   std::vector<double> first_order, total;
 };
 
-// Of the rows row_at(0), ..., row_at(count - 1).
+// Estimates from the rows row_at(0), ..., row_at(count - 1).
 template <class RowAt>
 Estimate estimate(const Rows& rows, RowAt row_at) {
   const std::size_t d = rows.dimensions;
@@ -53,7 +53,7 @@ Estimate estimate(const Rows& rows, RowAt row_at) {
     }
   }
   const double n = static_cast<double>(rows.count), mean = sum / (2 * n);
-  made.variance = squares / (2 * n) - mean * mean;  // of centred figures: next to nothing cancels
+  made.variance = squares / (2 * n) - mean * mean;  // the figures are centred, so that hardly anything cancels
   for (std::size_t i = 0; i < d; ++i) {
     made.first_order[i] /= n * made.variance;
     made.total[i] /= n * made.variance;

@@ -1,19 +1,20 @@
-// Sobol' indices: which share of the variance of a figure is due to which of its d variables.
+// Sobol' indices: the share of the variance of a figure that is due to each of its d variables.
 //
 //   first order   S_i = V(E(y | u_i)) / V(y),     estimated by  1/n sum f(B) (f(A_B^i) - f(A)) / V
 //   total         T_i = 1 - V(E(y | u_~i)) / V(y),              1/(2n) sum (f(A) - f(A_B^i))^2 / V
 //
-// The variables u_i are independent and uniform; u_~i are all but u_i. Row j of A and of B is two points of the unit cube, A_B^i
-// is A with coordinate i of B, and V is the variance of f over A and B together. S_i is the variance that would be gone if u_i
-// were known; T_i is what would be left if only u_i were not. 0 <= S_i <= T_i; the sum of S_i is at most 1, and 1 where nothing
-// interacts. f is centred by its mean, which changes no expectation and takes most of the noise out of S_i.
+// The variables u_i are independent and uniform; u_~i are all but u_i. Row j of A and of B is two points of the unit cube,
+// A_B^i is A with coordinate i of B, and V is the variance of f over A and B together. S_i is the variance that would disappear
+// if u_i were known; T_i is what would remain if all but u_i were known. 0 <= S_i <= T_i; the sum of S_i is at most 1, and 1
+// without interactions. f is centred by its mean, which changes no expectation and takes most of the noise out of S_i.
 //
 // Estimates may leave these bounds: a first-order index near zero is as often below it. Each has an interval by bootstrap over
-// the rows, as if they were independent: too wide for Sobol' points. An index is distinguishable from zero where its interval is
-// above it.
+// the rows, as if they were independent: too wide for Sobol' points. An index is distinguishable from zero where its interval
+// is above it.
 //
-// Figures that are not finite, of switches that failed, have no variance. A row with one of them is left out as a whole, which
-// makes the indices those of the switches that do not fail; with more than `most_failed` of the rows there are none.
+// Figures that are not finite, of switches that failed, have no variance. A row with one of them is left out as a whole, so
+// that the indices are those of the switches that do not fail. There are no indices when more than `most_failed` of the rows
+// are left out.
 //
 // Sources: A. Saltelli, P. Annoni, I. Azzini, F. Campolongo, M. Ratto & S. Tarantola, Computer Physics Communications 181 (2010)
 // 259, table 2 (b); M. J. W. Jansen, Computer Physics Communications 117 (1999) 35 (total).
@@ -31,12 +32,12 @@
 
 namespace softland {
 
-/// The points at which the figure is needed, each computed by its number. Evaluation m belongs to row m / (d + 2), and within it
-/// to A (0), B (1) or A_B^i (2 + i). So the evaluations of a row stand together, and with Sobol' or Monte Carlo points those of
-/// fewer rows are the first of more.
+/// The points at which the figure is needed, each computed by its number. Evaluation m belongs to row m / (d + 2), and within
+/// it to A (0), B (1) or A_B^i (2 + i). So the evaluations of a row stand together, and with Sobol' or Monte Carlo points those
+/// of fewer rows are the first of more.
 class SobolDesign {
  public:
-  /// From points of 2 d dimensions, stream `indices`. Throws what SamplePoints throws.
+  /// Takes points of 2 d dimensions, stream `indices`. Throws what SamplePoints throws.
   SobolDesign(PointSet kind, std::size_t dimensions, std::uint64_t seed, std::uint64_t rows);
 
   [[nodiscard]] std::size_t dimensions() const { return points_.dimensions() / 2; }
@@ -53,10 +54,10 @@ class SobolDesign {
 struct SobolIndex {
   double value = std::numeric_limits<double>::quiet_NaN();
   Interval interval = {};
-  bool above_zero = false;  ///< whether it is distinguishable from zero
+  bool above_zero = false;  ///< true when the index is distinguishable from zero
 };
 
-/// Of the rows that were used. Where all figures are equal there is no variance to share: the indices are NaN.
+/// Indices from the rows that were used. They are NaN where all figures are equal and there is no variance to share.
 struct SobolIndices {
   double mean = std::numeric_limits<double>::quiet_NaN();
   double variance = std::numeric_limits<double>::quiet_NaN();
@@ -70,13 +71,13 @@ struct SobolEstimate {
 
 struct SobolOptions {
   BootstrapOptions bootstrap = {};
-  /// The largest share of the rows that may hold figures that are not finite. One in a hundred that is left out can move an index
-  /// by some hundredths, as much as a thousand rows leave open.
+  /// The largest share of the rows that may hold figures that are not finite. One row in a hundred left out can move an index
+  /// by some hundredths, as much as the error of a thousand rows.
   double most_failed = 0.01;
 };
 
-/// From the figures of all evaluations of a design, in its order. Throws InvalidInput unless there are rows of d + 2 of them, and
-/// what bootstrap_interval throws for its options.
+/// Estimates the indices from the figures of all evaluations of a design, in its order. Throws InvalidInput unless there are
+/// rows of d + 2 of them, and what bootstrap_interval throws for its options.
 [[nodiscard]] SobolEstimate sobol_indices(std::size_t dimensions, std::span<const double> figures,
                                           const SobolOptions& options = {});
 
