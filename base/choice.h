@@ -1,5 +1,5 @@
-// Choices by name: one table per enumeration, with a row per enumerator that says what it is called and whatever else belongs to
-// it. A table that misses an enumerator, or has one twice, does not compile.
+// Choices by name: one table per enumeration, with a row per enumerator that holds its name and other properties. A table that
+// misses an enumerator, or has one twice, does not compile.
 #pragma once
 
 #include <algorithm>
@@ -41,14 +41,14 @@ class Words {
 namespace internal {
 template <auto value>
 [[nodiscard]] consteval bool is_enumerator() {
-  // What has no name is printed as a number in brackets: "[value = softland::Side::far]", "[value = (softland::Side)3]".
+  // A value without a name is printed as a number in brackets: "[value = softland::Side::far]", "[value = (softland::Side)3]".
   constexpr std::string_view text = __PRETTY_FUNCTION__, what = "value = ";
   return text[text.find(what) + what.size()] != '(';
 }
 }  // namespace internal
 
-/// Whether the rows stand for all enumerators, in the order of the enumeration, and have names of their own. Every table asserts
-/// it.
+/// Returns true when the rows stand for all enumerators, in the order of the enumeration, and have distinct names. Every table
+/// asserts it.
 template <const auto& rows>
 [[nodiscard]] consteval bool is_complete() {
   using E = decltype(rows[0].value);
@@ -71,7 +71,7 @@ template <class Row, std::size_t n>
   return row_of(rows, value).name;
 }
 
-/// Null when there is none.
+/// Returns the row with this name, or null.
 template <class Row, std::size_t n>
 [[nodiscard]] constexpr const Row* find_named(const std::array<Row, n>& rows, std::string_view name) {
   for (const Row& row : rows) {
@@ -87,7 +87,7 @@ template <class Row, std::size_t n>
   return names;
 }
 
-/// "bounce, count or energy"
+/// Returns for example "bounce, count or energy".
 template <class Row, std::size_t n>
 [[nodiscard]] std::string listed(const std::array<Row, n>& rows) {
   std::string text;
@@ -95,7 +95,7 @@ template <class Row, std::size_t n>
   return text;
 }
 
-/// "bounce, count and energy", of a list of texts.
+/// Returns for example "bounce, count and energy" for a list of texts.
 template <class Texts>
 [[nodiscard]] std::string in_words(const Texts& texts, const std::string& last = " and ") {
   std::string words;
@@ -104,7 +104,7 @@ template <class Texts>
   return words;
 }
 
-/// The names of the rows whose `keys` hold this one.
+/// Returns the names of the rows whose `keys` hold this one.
 template <class Row, std::size_t n>
 [[nodiscard]] std::vector<std::string_view> with_key(const std::array<Row, n>& rows, std::string_view key) {
   std::vector<std::string_view> names;

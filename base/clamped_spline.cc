@@ -10,7 +10,7 @@
 namespace softland {
 namespace {
 
-// Integral of f g, exact where that is a polynomial of degree 7 at most between two points.
+// Returns the integral of f g, exact where f g is a polynomial of degree 7 at most between two points.
 template <class F, class G>
 double integral_of_product(const std::vector<double>& points, F f, G g) {
   constexpr int exact = 4;

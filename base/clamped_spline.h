@@ -1,10 +1,10 @@
-// A cubic spline through points, of which the first one is clamped and the last one is free, or clamped as well.
+// A cubic spline through points. The first point is clamped, the last one free or clamped as well.
 //
 //   s(x_k) = y_k,   s''' is constant between points,   s'(x_0) = 0,   s''(x_n) = 0 or s'(x_n) = 0
 //
-// This is how a beam that is clamped at x_0 bends: a natural spline (s''(x_0) = 0) is wrong at the clamp, where
-// the curvature of a beam is largest. The error falls with the fourth power of the distance of the points for a function that
-// keeps both ends. Source: de Boor, A Practical Guide to Splines, 1978, ch. IV.
+// A beam that is clamped at x_0 bends in this way: a natural spline (s''(x_0) = 0) is wrong at the clamp, where the curvature
+// of a beam is largest. The error falls with the fourth power of the distance of the points for a function that keeps both
+// ends. Source: de Boor, A Practical Guide to Splines, 1978, ch. IV.
 #pragma once
 
 #include <vector>
@@ -19,12 +19,12 @@ class ClampedSpline {
   /// Throws InvalidInput unless there are as many y as x, two at least, and x rises.
   ClampedSpline(std::vector<double> x, std::vector<double> y, SplineEnd end = SplineEnd::free);
 
-  /// Beyond the ends the cubic there goes on.
+  /// Returns the value; the outermost cubics continue beyond the ends.
   [[nodiscard]] double value(double x) const;
   [[nodiscard]] double slope(double x) const;
-  /// Integral of s^2 from the first point to the last.
+  /// Returns the integral of s^2 from the first point to the last.
   [[nodiscard]] double integral_of_square() const;
-  /// Integral of s' t' from the first point to the last, t being another spline through the same places.
+  /// Returns the integral of s' t' from the first point to the last, t being another spline through the same places.
   [[nodiscard]] double integral_of_slopes(const ClampedSpline& other) const;
 
  private:
@@ -33,10 +33,10 @@ class ClampedSpline {
   std::vector<double> x_, y_, curvature_;  // curvature: s'' at the points
 };
 
-/// Tells whether y leaves its first place with a slope, as at a hinge. A clamped beam leaves its clamp with the square of the
-/// distance, a hinged one with the distance itself. Too few places near the first one tell nothing: false.
+/// Returns true when y leaves its first place with a slope, as at a hinge. A clamped beam leaves its clamp with the square of
+/// the distance, a hinged one with the distance itself. Returns false where too few places are near the first one to decide.
 [[nodiscard]] bool is_hinged(const std::vector<double>& x, const std::vector<double>& y);
-/// The same of the last place, seen from there.
+/// Returns the same for the last place, seen from there.
 [[nodiscard]] bool is_hinged_at_end(std::vector<double> x, std::vector<double> y);
 
 }  // namespace softland

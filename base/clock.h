@@ -1,11 +1,11 @@
-// The time that budgets are held against. What spends one takes its clock as an option, so that a test can give it another.
+// The time for budgets. A computation with a budget takes its clock as an option, so that a test can pass another.
 #pragma once
 
 #include <chrono>
 
 namespace softland {
 
-/// Of this machine, since some moment [s].
+/// Returns the time of this machine since some moment [s].
 [[nodiscard]] inline double wall_clock() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }

@@ -1,4 +1,4 @@
-// The files that a database keeps beside it while it is written: what has their names belongs to it.
+// The files that a database keeps beside it while it is written: files of these names belong to it.
 #pragma once
 
 #include <array>
@@ -9,18 +9,18 @@
 
 namespace softland {
 
-/// Ends of the names of what SQLite, and the lock of a store, keep beside a file.
+/// Endings of the files that SQLite, and the lock of a store, keep beside a file.
 inline constexpr std::array<std::string_view, 4> companion_endings{"-wal", "-shm", "-journal", ".lock"};
 
-/// Whether `path` is a companion that the database `of` has or may get, by its name.
+/// Returns true when `path` is, by its name, a companion that the database `of` has or may get.
 [[nodiscard]] bool is_companion(const std::filesystem::path& path, const std::filesystem::path& of);
 
-/// Throws InvalidInput, beginning with `shown`, where `path` is the companion of a database that is there: what is written to it
-/// destroys that.
+/// Throws InvalidInput, beginning with `shown`, where `path` is the companion of an existing database: writing to it would
+/// destroy the database.
 void require_no_companion(const std::filesystem::path& path, const std::string& shown);
 
-/// For databases that this process opens: they are not looked into again, since locks of a process go with any descriptor that it
-/// closes.
+/// Marks a database that this process opens: it is not looked into again, since locks of a process go with any descriptor that
+/// it closes.
 void mark_as_database(const std::filesystem::path& path);
 
 }  // namespace softland

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <bit>
 
-// MurmurHash3_x64_128 of Austin Appleby (public domain), seed 0: not against those who want two contents of one key, but 128 bits
-// wide, the same on every machine and ten times as quick as what is.
+// MurmurHash3_x64_128 of Austin Appleby (public domain), seed 0. It gives no protection against someone who wants two contents
+// of one key. It is 128 bits wide, the same on every machine and ten times as quick as a hash that does.
 namespace softland {
 namespace {
 

@@ -8,7 +8,7 @@
 
 namespace softland {
 
-/// A hash of 128 bits of what something was computed from. Equal content has equal keys on every machine.
+/// A hash of 128 bits of the input of a computation. Equal content has equal keys on every machine.
 struct ContentKey {
   std::uint64_t high = 0, low = 0;
   auto operator<=>(const ContentKey&) const = default;

@@ -25,7 +25,7 @@ std::vector<std::string_view> cells(std::string_view line) {
   }
 }
 
-/// The column of `name`, which must be there exactly once.
+/// Returns the index of column `name`, which must exist exactly once.
 std::size_t column(const std::vector<std::string_view>& header, std::string_view name, const std::string& place) {
   const auto count = std::count(header.begin(), header.end(), name);
   require(count == 1, [&] {
@@ -35,9 +35,9 @@ std::size_t column(const std::vector<std::string_view>& header, std::string_view
   return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
 }
 
-/// A finite number, or nothing.
+/// Returns a finite number, or nothing.
 std::optional<double> number(std::string_view text) {
-  // from_chars reads every decimal number to the nearest double whatever the locale, but knows no leading plus.
+  // from_chars reads every decimal number to the nearest double whatever the locale, but accepts no leading plus.
   const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
   double value = 0;
   const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);

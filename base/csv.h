@@ -1,5 +1,5 @@
-// Columns of numbers with a header line, separated by commas: what instruments and spreadsheets write. Blank lines, lines that
-// begin with '#', blanks around cells, a byte order mark and carriage returns are ignored.
+// Columns of numbers with a header line, separated by commas, as instruments and spreadsheets write them. Blank lines, lines
+// that begin with '#', blanks around cells, a byte order mark and carriage returns are ignored.
 #pragma once
 
 #include <functional>
@@ -10,13 +10,13 @@
 
 namespace softland {
 
-/// Where a row stands, "file:line", for messages about it.
+/// Returns the place of a row, "file:line", for messages about it.
 using CsvPlace = std::function<std::string()>;
 
 /// Calls row(values, place) for every row with the numbers of these columns. `file` stands for the content in messages;
-/// `expected` says what the header must hold ("time_s and one column per drive"). Throws InvalidInput with file, line and rule
-/// for a header without exactly one of each column, a row of another length, a cell of these columns that is no finite number,
-/// and for content without header or rows.
+/// `expected` describes the header ("time_s and one column per drive"). Throws InvalidInput with file, line and rule for a
+/// header without exactly one of each column, a row of another length, a cell of these columns that is not a finite number, and
+/// for content without header or rows.
 void read_csv(std::string_view content, const std::string& file, const std::vector<std::string>& columns,
               std::string_view expected, const std::function<void(std::span<const double>, const CsvPlace&)>& row);
 

@@ -11,12 +11,12 @@
 
 namespace softland {
 
-/// `value` [unit] with the prefix, femto to giga, that leaves one to three digits before the point: 6e-05, "m" -> "60 um". At
-/// most `digits` significant digits, but up to a million all of those before the point: 2500 stays 2500. Twelve do not show what
-/// arithmetic leaves behind in a number that was typed. No prefix for 0, for values beyond the prefixes, and for a unit that
-/// takes none: "kg/m^3", "1/m^2", "m^2", "Vdp", "".
+/// Returns `value` [unit] with the prefix, femto to giga, that leaves one to three digits before the point: 6e-05, "m" -> "60
+/// um". It has at most `digits` significant digits, but up to a million all of those before the point: 2500 stays 2500. Twelve
+/// digits do not show rounding errors in a number that was typed. There is no prefix for 0, for values beyond the prefixes, and
+/// for a unit that takes none: "kg/m^3", "1/m^2", "m^2", "Vdp", "".
 ///
-/// From 1 kV/s to 1 GV/us a slew rate is told in V/us, as drivers' data sheets do.
+/// A slew rate from 1 kV/s to 1 GV/us is shown in V/us, as drivers' data sheets do.
 [[nodiscard]] inline std::string engineering(double value, std::string_view unit, int digits = 12) {
   constexpr double fast = 1e3, fastest = 1e15, per_microsecond = 1e-6;
   if (unit == "V/s" && std::abs(value) >= fast && std::abs(value) < fastest)
@@ -29,7 +29,7 @@ namespace softland {
     std::array<char, 32> buffer;
     std::string shown(buffer.data(), static_cast<std::size_t>(
                                          std::snprintf(buffer.data(), buffer.size(), "%.*g", std::max(digits, whole), number)));
-    if (const std::size_t e = shown.find('e'); e != std::string::npos) {  // 1e-06 is 1e-6
+    if (const std::size_t e = shown.find('e'); e != std::string::npos) {  // write 1e-06 as 1e-6
       const std::size_t first = shown.find_first_of("123456789", e);
       shown.replace(e + 1, first - e - 1, shown[e + 1] == '-' ? "-" : "");
     }

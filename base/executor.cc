@@ -24,7 +24,7 @@ namespace {
 
 constexpr int most_threads = 256;  // oneTBB has no more on machines of up to 64 cores
 
-// How many further threads the machine gives, `wanted` at most.
+// Returns how many further threads the machine gives, `wanted` at most.
 int threads_available(int wanted) {
   std::latch counted(1);
   std::vector<std::jthread> probes;
@@ -38,17 +38,17 @@ int threads_available(int wanted) {
   return static_cast<int>(probes.size());
 }
 
-// The threads of oneTBB. It ends the process where it cannot start a thread that it is permitted, and it starts them late, one by
-// one. So it is permitted only as many as the machine has just given, and made to start them all at once.
+// The threads of oneTBB. It ends the process where it cannot start a permitted thread, and it starts them late, one by one. So
+// it is permitted only as many as the machine has just given, and made to start them all at once.
 class Workers {
  public:
-  // Its oneTBB threads end with the process, not before.
+  // The instance is never destroyed: its oneTBB threads end with the process, not before.
   static Workers& instance() {
     static auto* const workers = new Workers;
     return *workers;
   }
 
-  // Sees to it that there are `wanted` threads besides the calling one, or as many as the machine gives. Returns how many.
+  // Provides `wanted` threads besides the calling one, or as many as the machine gives. Returns how many.
   int provide(int wanted) {
     const std::scoped_lock lock(mutex_);
     if (wanted > count_) {
@@ -66,12 +66,12 @@ class Workers {
 
   void permit(int count) {
     count_ = count;
-    // The lowest of several limits holds, so the new one acts when the old one goes.
+    // The lowest of several limits holds, so the new one acts once the old one is removed.
     limit_ =
         std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count) + 1);
   }
 
-  // Gives every worker a task that lasts until all have one: for that each must have been started.
+  // Gives every worker a task that lasts until all have one: each must have been started for that.
   void start(int count) {
     permit(count);
     {
@@ -92,23 +92,23 @@ class Workers {
     all_here_.wait_for(lock, patience, [this] { return missing_ <= 0; });
   }
 
-  std::mutex mutex_;  // of provide()
+  std::mutex mutex_;  // guards provide()
   int count_ = 0;
   std::unique_ptr<tbb::global_control> limit_;
-  tbb::task_arena kept_{1};  // oneTBB ends its threads when the last arena goes
+  tbb::task_arena kept_{1};  // oneTBB ends its threads when the last arena is destroyed
 
   std::mutex meeting_;
   std::condition_variable all_here_;
   int missing_ = 0;
 };
 
-// Makes what one thread did before visible to the next. oneTBB does so too, but the thread sanitizer cannot look into it.
+// Makes the work of one thread visible to the next. oneTBB does so too, but the thread sanitizer cannot see it.
 void hand_over() {
   static std::mutex mutex;
   const std::scoped_lock lock(mutex);
 }
 
-// Threads of the loop whose task the current thread runs; 0 outside of any.
+// Number of threads of the loop whose task the current thread runs; 0 outside of any loop.
 [[gnu::tls_model("initial-exec")]] thread_local int threads_of_loop = 0;
 
 class Loop {
@@ -116,7 +116,7 @@ class Loop {
   Loop(std::size_t count, int threads, const std::function<void(std::size_t)>& task, const std::atomic<bool>* stop)
       : count_(count), threads_(threads), task_(task), stop_(stop), end_(count) {}
 
-  // Runs tasks until none is left: what every thread of the loop does. Tasks are taken in their order, so that all before one
+  // Runs tasks until none is left; every thread of the loop does this. Tasks are taken in their order, so that all before one
   // that throws have been begun.
   void work() {
     const int outer = std::exchange(threads_of_loop, threads_);
@@ -136,7 +136,7 @@ class Loop {
     threads_of_loop = outer;
   }
 
-  // work() on all threads of the arena, as far as there are tasks for them.
+  // Calls work() on all threads of the arena, as far as there are tasks for them.
   void work_together() {
     hand_over();
     const auto help = [this] {
@@ -150,7 +150,7 @@ class Loop {
     hand_over();
   }
 
-  // The number of tasks that were begun.
+  // Returns the number of tasks that were begun.
   [[nodiscard]] std::size_t result() const {
     if (failure_) std::rethrow_exception(failure_);
     return std::min(next_.load(), count_);
@@ -179,7 +179,7 @@ std::size_t run_tasks(std::size_t count, int jobs, const std::function<void(std:
   if (threads == 1) {
     loop.work();
   } else if (nested) {
-    // While it waits, the thread must not begin a task of the outer loop inside its own.
+    // The waiting thread must not begin a task of the outer loop inside its own.
     tbb::this_task_arena::isolate([&] { loop.work_together(); });
   } else {
     tbb::task_arena(threads).execute([&] { loop.work_together(); });

@@ -24,42 +24,42 @@
 
 namespace softland {
 
-/// A number that is not given.
+/// The value of a number that is not given.
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
-/// A number of the parameter struct `Owner`, a flag, or a word that chooses one of its enumerators. What has neither `in`,
-/// `count`, `flag` nor `words` is a number that sets no member: code of its own reads it.
+/// A number of the parameter struct `Owner`, a flag, or a word that chooses one of its enumerators. A field with neither `in`,
+/// `count`, `flag` nor `words` is a number that sets no member: separate code reads it.
 template <class Owner>
 struct Field {
-  std::string_view key;              ///< in a scene, and of messages
-  std::string_view unit = {};        ///< SI; empty for a plain number and for a word
-  std::string_view about = {};       ///< one line for people
-  double& (*in)(Owner&) = nullptr;   ///< the number, see reach(); null for what is no such number
-  int& (*count)(Owner&) = nullptr;   ///< a whole number
-  bool& (*flag)(Owner&) = nullptr;   ///< a flag
-  std::string_view or_word = {};     ///< a word that may stand instead of a whole number
-  bool required = false;             ///< else a scene may leave it out, and it keeps the value of an Owner{}
-  Range range = positive;            ///< ends that it leaves open are closed in a scene by the extent of the unit
-  std::string_view fallback = {};    ///< the value of an Owner{} as a scene writes it; empty where that means "none"
-  std::string_view instead_of = {};  ///< the key of another field of the law that this one excludes
-  std::string_view unless = {};      ///< the key in whose presence it is not required
-  std::string_view not_below = {};   ///< the key of another field of the law, whose value is the least one
-  std::string_view such_as = {};     ///< a value for messages, where what is usual of the unit would not do
+  std::string_view key;              ///< key in a scene, and in messages
+  std::string_view unit = {};        ///< SI unit; empty for a plain number and for a word
+  std::string_view about = {};       ///< one line of description for people
+  double& (*in)(Owner&) = nullptr;   ///< number of the struct, see reach(); null for other kinds of field
+  int& (*count)(Owner&) = nullptr;   ///< whole number of the struct
+  bool& (*flag)(Owner&) = nullptr;   ///< flag of the struct
+  std::string_view or_word = {};     ///< word that may stand instead of a whole number
+  bool required = false;             ///< true when a scene must give it; otherwise it keeps the value of an Owner{}
+  Range range = positive;            ///< allowed range; in a scene the extent of the unit closes open ends
+  std::string_view fallback = {};    ///< value of an Owner{} as a scene writes it; empty where that means "none"
+  std::string_view instead_of = {};  ///< key of another field of the law that this one excludes
+  std::string_view unless = {};      ///< key in whose presence it is not required
+  std::string_view not_below = {};   ///< key of another field of the law, whose value is the least one
+  std::string_view such_as = {};     ///< example value for messages, where the usual one of the unit would not do
   std::string_view beyond = {};      ///< advice for a value outside the range, which then binds scenes alone
-  std::string_view why_fixed = {};   ///< why devices cannot differ by it; empty: they can
+  std::string_view why_fixed = {};   ///< reason why varied devices cannot vary it; empty where they can
   std::string_view if_list = {};     ///< advice for a list in the place of the number
-  std::vector<std::string_view> (*words)() = nullptr;    ///< of a word: what it may be
-  void (*choose)(Owner&, std::string_view) = nullptr;    ///< of a word: sets the enumerator
-  std::string_view refused_word = {}, why_refused = {};  ///< of a word: one that people may expect here, and why it is not there
+  std::vector<std::string_view> (*words)() = nullptr;    ///< words that the field accepts
+  void (*choose)(Owner&, std::string_view) = nullptr;    ///< sets the enumerator of a word
+  std::string_view refused_word = {}, why_refused = {};  ///< word that people may expect here, and why it is refused
 };
 
-/// The member at the end of a path of members: reach<Law, &Law::summits, &Summits::radius>.
+/// Returns the member at the end of a path of members: reach<Law, &Law::summits, &Summits::radius>.
 template <class Owner, auto... path>
 [[nodiscard]] constexpr auto& reach(Owner& owner) {
   return (owner.*....*path);
 }
 
-/// The fields of several blocks of a law, one after the other.
+/// Returns the fields of several blocks of a law, one after the other.
 template <class Law, std::size_t... n>
 [[nodiscard]] consteval auto joined(const std::array<Field<Law>, n>&... arrays) {
   std::array<Field<Law>, (n + ...)> all{};
@@ -68,11 +68,11 @@ template <class Law, std::size_t... n>
   return all;
 }
 
-/// The fields of a law, made once.
+/// The fields of a law, computed once.
 template <class Law>
 inline constexpr auto fields_of = Law::fields();
 
-/// Whether a scene can name the law: not where that says `is_of_scenes = false`.
+/// Returns true when a scene can name the law: not where the law declares `is_of_scenes = false`.
 template <class Law>
 [[nodiscard]] consteval bool is_of_scenes() {
   if constexpr (requires { Law::is_of_scenes; }) return Law::is_of_scenes;
@@ -88,14 +88,14 @@ constexpr void for_each_law(F&& f) {
   (std::make_index_sequence<std::variant_size_v<Variant>>());
 }
 
-/// The name of the law in force.
+/// Returns the name of the law in force.
 template <class... Laws>
 [[nodiscard]] constexpr std::string_view name_of(const std::variant<Laws...>& law) {
   constexpr std::array names{Laws::name...};
   return names[law.index()];
 }
 
-/// The law of this name with its defaults; none where there is none.
+/// Returns the law of this name with its defaults; none for an unknown name.
 template <class Variant>
 [[nodiscard]] std::optional<Variant> law_named(std::string_view name) {
   std::optional<Variant> found;
@@ -111,7 +111,7 @@ template <class Variant>
   for_each_law<Variant>([&]<class Law>(std::type_identity<Law>) { names.push_back(Law::name); });
   return names;
 }
-/// "strip, veijola or linear"
+/// Returns for example "strip, veijola or linear".
 template <class Variant>
 [[nodiscard]] std::string listed_laws() {
   const std::vector<std::string_view> names = names_of_laws<Variant>();
@@ -121,7 +121,7 @@ template <class Variant>
   return text;
 }
 
-/// The field of a number under this key; null where there is none.
+/// Returns the field of a number under this key, or null.
 template <class Owner>
 [[nodiscard]] constexpr const Field<Owner>* find_field(std::span<const Field<Owner>> fields, std::string_view key) {
   for (const Field<Owner>& field : fields) {
@@ -130,7 +130,7 @@ template <class Owner>
   return nullptr;
 }
 
-/// The number that a law has under this key; null where it has none.
+/// Returns the number that a law has under this key; null where it has none.
 template <class Law>
 [[nodiscard]] double* number_of(Law& law, std::string_view key) {
   const Field<Law>* const field = find_field<Law>(fields_of<Law>, key);
@@ -140,14 +140,14 @@ template <class... Laws>
 [[nodiscard]] double* number_of(std::variant<Laws...>& law, std::string_view key) {
   return std::visit([&](auto& own) { return number_of(own, key); }, law);
 }
-/// The same by value; `otherwise` where the law has no such number.
+/// Returns the same by value; `otherwise` where the law has no such number.
 template <class... Laws>
 [[nodiscard]] double number_of(std::variant<Laws...> law, std::string_view key, double otherwise) {
   const double* const number = number_of(law, key);
   return number == nullptr ? otherwise : *number;
 }
 
-/// Another law with the numbers of this one, as far as both have them.
+/// Returns another law with the numbers of this one, as far as both have them.
 template <class... Laws>
 [[nodiscard]] std::variant<Laws...> under(std::variant<Laws...> own, std::variant<Laws...> other) {
   std::visit(
@@ -161,7 +161,7 @@ template <class... Laws>
   return other;
 }
 
-/// Whether the law in force has this key.
+/// Returns true when the law in force has this key.
 template <class... Laws>
 [[nodiscard]] bool has_key(const std::variant<Laws...>& law, std::string_view key) {
   return std::visit(

@@ -9,7 +9,7 @@ struct GaussRule {
   std::vector<double> points, weights;
 };
 
-/// n points, exact for polynomials of degree 2 n - 1 (Golub & Welsch 1969: eigenvalues of the Jacobi matrix).
+/// Returns n points, exact for polynomials of degree 2 n - 1 (Golub & Welsch 1969: eigenvalues of the Jacobi matrix).
 [[nodiscard]] GaussRule gauss_rule(int n);
 
 }  // namespace softland

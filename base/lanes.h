@@ -1,4 +1,4 @@
-// Four numbers at once: what the machine's vector instructions take, whatever the number of modes.
+// Four numbers at once: the size of the machine's vector instructions, whatever the number of modes.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,20 +10,20 @@ namespace softland {
 inline constexpr std::size_t lanes = 4;
 using Lane = Eigen::Array<double, lanes, 1>;
 
-/// Filled up to whole lanes with `idle`.
+/// Returns the values filled up to whole lanes with `idle`.
 [[nodiscard]] inline std::vector<double> padded_to_lanes(std::vector<double> values, double idle) {
   values.resize((values.size() + lanes - 1) / lanes * lanes, idle);
   return values;
 }
 
-/// The lane of a padded array that begins there.
+/// Returns the lane of a padded array that begins there.
 inline Eigen::Map<Lane> lane(std::vector<double>& values, std::size_t begin) { return Eigen::Map<Lane>(values.data() + begin); }
 inline Eigen::Map<const Lane> lane(const std::vector<double>& values, std::size_t begin) {
   return Eigen::Map<const Lane>(values.data() + begin);
 }
 
-/// Of an array of `size` numbers, those beyond its end 0. One by one where they do not fill a lane: a vector read from numbers
-/// just written one by one would wait for them.
+/// Loads a lane of an array of `size` numbers; numbers beyond its end are 0. They are loaded one by one where they do not fill
+/// a lane: a vector load of numbers that were just written one by one would wait for them.
 [[nodiscard]] inline Lane load_lane(const double* from, std::size_t begin, std::size_t size) {
   if (begin + lanes <= size) return Eigen::Map<const Lane>(from + begin);
   const std::size_t left = size - begin;

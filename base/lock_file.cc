@@ -18,8 +18,8 @@
 namespace softland {
 namespace {
 
-constexpr std::string_view word = "process ";  // that a lock begins with
-// Whoever asks for the holder has a shared lock for a moment.
+constexpr std::string_view word = "process ";  // first word of a lock
+// A process that asks for the holder has a shared lock for a moment.
 constexpr int most_attempts = 20;
 constexpr useconds_t between_attempts = 10'000;  // [us]
 
@@ -64,11 +64,11 @@ LockFile::LockFile(const std::filesystem::path& file, const LockedPlace& place, 
       throw InvalidInput(taken ? fmt::format("{}: {} ({})", place.name, place.occupied, who)
                                : fmt::format("{}: the {} cannot be locked: {}", place.name, place.kind, reason(error)));
     }
-    // Whoever held it may have removed the file between our opening and locking it.
+    // The previous holder may have removed the file between our opening and locking it.
     if (held()) break;
     ::close(descriptor_);
   }
-  // A file of that name that no run has made is somebody else's.
+  // A file of that name that no run has made belongs to somebody else.
   std::array<char, word.size()> begin{};
   const ssize_t there = ::pread(descriptor_, begin.data(), begin.size(), 0);
   if (there != 0 && (there < 0 || std::string_view(begin.data(), static_cast<std::size_t>(there)) != word)) {
@@ -78,7 +78,7 @@ LockFile::LockFile(const std::filesystem::path& file, const LockedPlace& place, 
   }
   const std::string text = owner(command);
   const bool written = ::ftruncate(descriptor_, 0) == 0 && ::pwrite(descriptor_, text.data(), text.size(), 0) >= 0;
-  static_cast<void>(written);  // on a full disk the lock holds without its words
+  static_cast<void>(written);  // on a full disk the lock holds without its text
 }
 
 LockFile::~LockFile() {

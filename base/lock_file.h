@@ -1,4 +1,5 @@
-// One process at a time: a file beside what is worked on, locked by whoever works there, in which it says who it is.
+// One process at a time: a file beside the place of work, locked by the process that works there, with its description as
+// content.
 #pragma once
 
 #include <filesystem>
@@ -7,22 +8,22 @@
 
 namespace softland {
 
-/// What a lock keeps other runs out of, in words for messages.
+/// The place that a lock protects from other runs, in words for messages.
 struct LockedPlace {
-  std::string name;      ///< "--out run1": messages begin with it
-  std::string kind;      ///< "folder": what cannot be written to where the lock cannot be made
-  std::string occupied;  ///< "another run works in this folder"
+  std::string name;      ///< messages begin with it: "--out run1"
+  std::string kind;      ///< kind of the place that cannot be written to where the lock cannot be made: "folder"
+  std::string occupied;  ///< message for a held lock: "another run works in this folder"
 };
 
-/// Keeps other runs out while it lives: flock on `file`, which it makes and removes. A process that died holds nothing.
+/// Keeps other runs out while it lives: flock on `file`, which it creates and removes. A process that died holds nothing.
 class LockFile {
  public:
-  /// Throws InvalidInput with the words of `place` where the file cannot be made, is no lock, or another run holds it.
+  /// Throws InvalidInput with the words of `place` where the file cannot be made, is not a lock, or another run holds it.
   LockFile(const std::filesystem::path& file, const LockedPlace& place, const std::string& command);
   ~LockFile();
   LockFile(const LockFile&) = delete;
   LockFile& operator=(const LockFile&) = delete;
-  /// Whether the lock still stands where it was made: somebody may have removed or renamed its folder.
+  /// True when the lock still exists where it was made: somebody may have removed or renamed its folder.
   [[nodiscard]] bool held() const;
 
  private:
@@ -30,10 +31,11 @@ class LockFile {
   int descriptor_ = -1;
 };
 
-/// "process 4711 on node3 since 2026-01-31 12:00:00 UTC: softland optimize": who holds the lock now; none: nobody.
+/// Returns the current holder of the lock, "process 4711 on node3 since 2026-01-31 12:00:00 UTC: softland optimize"; none if
+/// free.
 [[nodiscard]] std::optional<std::string> holder_of(const std::filesystem::path& file);
 
-/// The name of this machine; "?" where it has none.
+/// Returns the name of this machine; "?" where it has none.
 [[nodiscard]] std::string host_name();
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// Progress that never runs back, whatever a computation tells of itself.
+// Progress that never decreases, whatever a computation reports.
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 
 namespace softland {
 
-/// Makes of what a Watch is told (base/watch.h) something that only grows: a part that comes late, from another thread, is the
-/// one before; what begins again is another round of the same name, "closing (2)".
+/// Turns the reports to a Watch (base/watch.h) into progress that only grows. A report that comes late, from another thread,
+/// counts as the one before. A computation that begins again becomes another round of the same name, "closing (2)".
 class MonotoneProgress {
  public:
-  /// The name to show, and the part of it that is done, 0 to 1.
+  /// Returns the name to show, and the completed part, 0 to 1.
   [[nodiscard]] std::pair<std::string, double> told(std::string_view what, double part) {
-    constexpr double begins_again = 0.5;  // a part below this share of the one before
+    constexpr double begins_again = 0.5;  // largest share of the last part at which a computation begins again
     Round& round = rounds_[std::string(what)];
     if (part < begins_again * round.part) {
       ++round.number;

@@ -5,8 +5,8 @@
 
 namespace softland {
 
-/// Part of the output did not reach its place: the disk is full, the pipe closed, the limit of a file's size reached. The message
-/// names place and reason. The program turns it into an exit status of its own.
+/// Thrown when part of the output did not reach its place: the disk is full, the pipe closed, the limit of a file's size
+/// reached. The message names place and reason. The program turns it into a separate exit status.
 class OutputLost : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

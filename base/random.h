@@ -12,7 +12,7 @@
 
 namespace softland {
 
-/// What a number is drawn for. Each purpose has a number of its own, which keeps the streams of one seed apart; none may change,
+/// The purpose of a number. Each purpose has a number of its own, which keeps the streams of one seed apart; none may change,
 /// or the same seed gives other results than before.
 enum class Stream : std::uint64_t {
   sobol_shift = 1,
@@ -23,25 +23,25 @@ enum class Stream : std::uint64_t {
   perturbation = 6,
   spread = 7,              ///< the switches of an ensemble
   indices = 8,             ///< the evaluations for Sobol' indices
-  bootstrap = 9,           ///< which samples a repetition of a bootstrap takes
-  folds = 10,              ///< which figures a cross-validation holds back together
-  measurement = 11,        ///< errors of what is measured on a device
+  bootstrap = 9,           ///< samples that a repetition of a bootstrap takes
+  folds = 10,              ///< figures that a cross-validation holds back together
+  measurement = 11,        ///< errors of measurements on a device
   fresh = 12,              ///< seeds of devices that a search has not seen
   jitter = 13,             ///< times by which the edges of a drive are late
-  classes = 14,            ///< the devices that classes are made of, and where their search begins
+  classes = 14,            ///< the devices that classes are made from, and the starts of their search
   plan = 15,               ///< the points of an exploration
-  offspring = 16,          ///< which members of a population are parents, and how their child differs from them
-  hop = 17,                ///< how far a local search begins from the best point
-  race = 18,               ///< the searches of a race over devices
-  tuning = 19,             ///< devices that a belief about one of them is made of
-  practice_device = 21,    ///< the values of a device to practise on
-  practice_gain = 22,      ///< the gain of its sources, and its scatter
+  offspring = 16,          ///< members of a population that become parents, and the variation of their child
+  hop = 17,                ///< distance at which a local search begins from the best point
+  race = 18,               ///< the search over waveform families on devices
+  tuning = 19,             ///< devices that represent a belief about one of them
+  practice_device = 21,    ///< values of a device to practise on
+  practice_gain = 22,      ///< gain of its sources, and its scatter
   practice_edges = 23,     ///< errors of the times at which its contact is seen to close and open
   piezo_measurement = 24,  ///< errors of the deflection that a device's piezo gives
-  fit = 25,                ///< where the searches of a fit begin
+  fit = 25,                ///< starts of the searches of a fit
 };
 
-/// Output number n, counted from 0, of SplitMix64 with this seed.
+/// Returns output number n, counted from 0, of SplitMix64 with this seed.
 [[nodiscard]] constexpr std::uint64_t split_mix_64(std::uint64_t seed, std::uint64_t n) {
   std::uint64_t bits = seed + (n + 1) * 0x9e3779b97f4a7c15u;  // 2^64 divided by the golden ratio
   bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -49,25 +49,25 @@ enum class Stream : std::uint64_t {
   return bits ^ (bits >> 31);
 }
 
-/// 64 random bits; `counter` numbers the draws of a stream.
+/// Returns 64 random bits; `counter` numbers the draws of a stream.
 [[nodiscard]] constexpr std::uint64_t random_bits(std::uint64_t seed, Stream stream, std::uint64_t counter) {
   return split_mix_64(split_mix_64(split_mix_64(seed, 0), static_cast<std::uint64_t>(stream)), counter);
 }
 
-/// A multiple of 2^-53 in [0, 1) from 64 random bits.
+/// Returns a multiple of 2^-53 in [0, 1) from 64 random bits.
 [[nodiscard]] constexpr double to_unit_interval(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
-/// Uniform in [0, 1).
+/// Returns a number uniform in [0, 1).
 [[nodiscard]] constexpr double random_uniform(std::uint64_t seed, Stream stream, std::uint64_t counter) {
   return to_unit_interval(random_bits(seed, stream, counter));
 }
 
-/// Uniform in (0, 1), as the quantiles of distributions need it: the middle of one of 2^52 intervals.
+/// Returns a number uniform in (0, 1), as the quantiles of distributions need it: the middle of one of 2^52 intervals.
 [[nodiscard]] constexpr double random_probability(std::uint64_t seed, Stream stream, std::uint64_t counter) {
   return (static_cast<double>(random_bits(seed, stream, counter) >> 12) + 0.5) * 0x1p-52;
 }
 
-/// From the standard normal distribution: its quantile at a random probability, so that the size is at most 8.2.
+/// Returns a standard normal number: the quantile at a random probability, so that its size is at most 8.2.
 [[nodiscard]] double random_normal(std::uint64_t seed, Stream stream, std::uint64_t counter);
 
 }  // namespace softland

@@ -19,9 +19,9 @@
 namespace softland {
 namespace {
 
-// The files read so far and the names they were read by. By device and inode, since other names, links and relative paths lead to
-// the same file; with the names, since an inode is given to another file once its own is deleted, which a long process lives to
-// see.
+// The files read so far and their names. They are kept by device and inode, since other names, links and relative paths lead to
+// the same file. The names are kept too, since an inode is given to another file once its own is deleted, which happens in a
+// long process.
 using Identity = std::pair<dev_t, ino_t>;
 std::mutex guard;
 std::map<Identity, std::set<std::filesystem::path>>& files_read() {
@@ -29,7 +29,7 @@ std::map<Identity, std::set<std::filesystem::path>>& files_read() {
   return all;
 }
 
-// None where there is no such file.
+// Returns the identity; none where the file does not exist.
 std::optional<Identity> identity_of(const std::filesystem::path& path) {
   struct stat info {};
   if (::stat(path.c_str(), &info) != 0) return {};
@@ -45,7 +45,7 @@ std::string_view kind(mode_t mode) {
 
 class Descriptor {
  public:
-  // O_NONBLOCK: to open a pipe does not wait for whoever would write to it.
+  // O_NONBLOCK prevents that opening a pipe waits for a writer.
   explicit Descriptor(const std::filesystem::path& path) : number_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
@@ -77,7 +77,7 @@ std::string look_into(const std::filesystem::path& path) {
     check(count >= 0);
     if (count == 0) break;
     content.append(block, 0, static_cast<std::size_t>(count));
-    // The size is looked at here and not in `info`: files of /proc have none, and a file may grow.
+    // The size is checked here and not in `info`: files of /proc have none, and a file may grow.
     require(content.size() <= largest_file,
             name + ": is too large, it must have at most " + std::to_string(largest_file >> 20) + " MiB");
   }

@@ -1,4 +1,4 @@
-// Bad input is an exception that says what was wrong; numerical trouble is a status in a result, never an exception.
+// Invalid input is an exception that names the error; numerical trouble is a status in a result, never an exception.
 #pragma once
 
 #include <concepts>
@@ -9,34 +9,34 @@
 
 namespace softland {
 
-/// Input that breaks a stated rule. The message is complete: it names the value and the rule. The program turns it into exit
-/// status 2.
+/// Thrown for input that breaks a stated rule. The message is complete: it names the value and the rule. The program turns it
+/// into exit status 2.
 class InvalidInput : public std::runtime_error {
  public:
   explicit InvalidInput(const std::string& message, std::source_location where = std::source_location::current())
       : std::runtime_error(message), where_(where) {}
-  /// The line of our source that found it, for debugging; not shown to users.
+  /// Returns the line of our source that found it, for debugging; not shown to users.
   [[nodiscard]] const std::source_location& where() const noexcept { return where_; }
 
  private:
   std::source_location where_;
 };
 
-/// Throws InvalidInput with `message` unless `rule_holds`. Write the rule so that NaN fails it. Never compiled out.
+/// Throws InvalidInput with `message` unless `rule_holds`. Write the rule so that NaN fails it. It is never compiled out.
 inline void require(bool rule_holds, std::string_view message, std::source_location where = std::source_location::current()) {
   if (!rule_holds) throw InvalidInput(std::string(message), where);
 }
 
-/// The same with a message that is made when it is needed: message().
+/// The same; message() makes the message only when it is needed.
 template <std::invocable Message>
 void require(bool rule_holds, Message&& message, std::source_location where = std::source_location::current()) {
   if (!rule_holds) throw InvalidInput(message(), where);
 }
 
-/// The name of a field of a request, for the message of an InvalidRequest.
+/// Returns the name of a field of a request, for the message of an InvalidRequest.
 [[nodiscard]] inline std::string requested(std::string_view field) { return '\x02' + std::string(field) + '\x03'; }
 
-/// Words with `before` each of the fields that requested() has marked: "--" for a command line, "" for a library.
+/// Returns the text with `before` each of the fields that requested() has marked: "--" for a command line, "" for a library.
 [[nodiscard]] inline std::string with_fields(std::string_view words, std::string_view before) {
   std::string text;
   for (const char c : words) {
@@ -46,13 +46,13 @@ void require(bool rule_holds, Message&& message, std::source_location where = st
   return text;
 }
 
-/// A request, such as OptimizeOptions, that breaks a rule. Its message names the fields as requested() marks them; what() has
-/// their bare names.
+/// Thrown for a request, such as OptimizeOptions, that breaks a rule. Its message names the fields as requested() marks them;
+/// what() has their bare names.
 class InvalidRequest : public InvalidInput {
  public:
   explicit InvalidRequest(const std::string& message, std::source_location where = std::source_location::current())
       : InvalidInput(softland::with_fields(message, ""), where), message_(message) {}
-  /// The message with `before` each of its fields.
+  /// Returns the message with `before` each of its fields.
   [[nodiscard]] std::string with_fields(std::string_view before) const { return softland::with_fields(message_, before); }
 
  private:
@@ -65,7 +65,7 @@ void require_request(bool rule_holds, Message&& message, std::source_location wh
   if (!rule_holds) throw InvalidRequest(message(), where);
 }
 
-/// The same of one field and what was given for it: "FIELD GIVEN: " and broken(), the rule.
+/// The same for one field and its given value: "FIELD GIVEN: " and broken(), the rule.
 template <std::invocable Broken>
 void require_field(bool rule_holds, std::string_view field, std::string_view given, Broken&& broken,
                    std::source_location where = std::source_location::current()) {
@@ -73,12 +73,12 @@ void require_field(bool rule_holds, std::string_view field, std::string_view giv
       rule_holds, [&] { return requested(field) + ' ' + std::string(given) + ": " + std::string(broken()); }, where);
 }
 
-/// A parameter that breaks the rules of what it belongs to: a waveform family, a distribution.
+/// Thrown for a parameter that breaks the rules of its owner: a waveform family, a distribution.
 class InvalidParameter : public InvalidInput {
  public:
   InvalidParameter(std::string_view parameter, const std::string& message, std::source_location where)
       : InvalidInput(message, where), parameter_(parameter) {}
-  /// The name of the parameter.
+  /// Returns the name of the parameter.
   [[nodiscard]] const std::string& parameter() const noexcept { return parameter_; }
 
  private:
@@ -91,7 +91,7 @@ inline void require_of(std::string_view parameter, bool rule_holds, const std::s
   if (!rule_holds) throw InvalidParameter(parameter, message, where);
 }
 
-/// The same with a message that is made when it is needed: message().
+/// The same; message() makes the message only when it is needed.
 template <std::invocable Message>
 void require_of(std::string_view parameter, bool rule_holds, Message&& message,
                 std::source_location where = std::source_location::current()) {

@@ -1,5 +1,5 @@
 // Branches on values, written once for one number and for a lane of numbers, each with its own answer. A lane is a type such as
-// std::experimental::simd: it knows its size(), its mask_type, and where().
+// std::experimental::simd with size(), mask_type, and where().
 #pragma once
 
 #include <concepts>
@@ -20,8 +20,8 @@ void assign_where(const typename Lane::mask_type& condition, Lane& to, const Lan
   where(condition, to) = from;
 }
 
-/// then() where the condition holds, else otherwise(). Of one number only one of both is called; of a lane both are, so that each
-/// must give something, if only NaN, where it is not asked for.
+/// Returns then() where the condition holds, else otherwise(). One number calls only one of both. A lane calls both, so each
+/// must return something, if only NaN, where it is not needed.
 template <class Condition, class Then, class Otherwise>
 [[nodiscard, gnu::always_inline]] constexpr auto select(const Condition& condition, Then&& then, Otherwise&& otherwise) {
   if constexpr (std::same_as<Condition, bool>) {
@@ -33,7 +33,8 @@ template <class Condition, class Then, class Otherwise>
   }
 }
 
-/// f of a number, or of every number of a lane: for what a lane can only do one by one, such as looking up a table.
+/// Returns f of a number, or of every number of a lane: for operations that a lane can only do one by one, such as a table
+/// look-up.
 template <class S, class F>
 [[nodiscard, gnu::always_inline]] constexpr S one_by_one(const S& x, F&& f) {
   if constexpr (LaneOfNumbers<S>) {

@@ -4,7 +4,7 @@
 
 namespace softland {
 
-/// `text` without the spaces, tabs and carriage returns at its ends.
+/// Returns `text` without the spaces, tabs and carriage returns at its ends.
 [[nodiscard]] inline std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blank = " \t\r";
   const std::size_t begin = text.find_first_not_of(blank);

@@ -1,4 +1,4 @@
-// How a long computation is watched from outside: it can be asked to stop, and it tells how far it is.
+// How a long computation is watched from outside: it can be asked to stop, and it reports its progress.
 #pragma once
 
 #include <atomic>
@@ -8,15 +8,16 @@
 
 namespace softland {
 
-/// A computation was asked to stop before it had anything to return. The program turns it into exit status 130.
+/// Thrown when a computation was asked to stop before it had anything to return. The program turns it into exit status 130.
 class Interrupted : public std::exception {
  public:
   [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
 };
 
 struct Watch {
-  const std::atomic<bool>* stop = nullptr;  ///< set from outside (Ctrl-C): the computation ends with what there is
-  /// Told often, from the threads that compute, one at a time, what is being computed and which part of it is done, 0 to 1.
+  const std::atomic<bool>* stop = nullptr;  ///< set from outside (Ctrl-C); the computation ends with its result so far
+  /// Called often, from the threads that compute, one at a time, with the name of the computation and its completed part, 0 to
+  /// 1.
   std::function<void(std::string_view what, double part)> progress = {};
 
   [[nodiscard]] bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
