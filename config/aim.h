@@ -1,4 +1,4 @@
-// What a search minimises, from text: a target ("bounce"), or a weighted sum of several ("0.7 bounce + 0.3 energy").
+// The aim of a search, read from text: a target ("bounce"), or a weighted sum of several ("0.7 bounce + 0.3 energy").
 #pragma once
 
 #include <string_view>
@@ -7,7 +7,7 @@
 
 namespace softland {
 
-/// Throws InvalidInput with the broken rule.
+/// Reads an aim. Throws InvalidInput with the broken rule.
 [[nodiscard]] Aim parse_aim(std::string_view text);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// How devices differ where a scene does not say it: an assumption, so that a search looks at devices at all.
+// The assumed process variation of a scene that gives none, so that a search considers varied devices at all.
 //
 //   thickness and all gaps, by one factor       normal, 2 %
 //   Young's modulus                             normal, 3 %
@@ -11,11 +11,11 @@
 
 namespace softland {
 
-/// What is said where it is.
+/// Words for an assumed spread.
 inline constexpr std::string_view assumed_words = "The scene has no [spread]: a usual one is assumed.";
 
-/// Gives a scene without [spread] the assumed one. Returns whether it had none; one that is there and empty stays, and is refused
-/// where it is read.
+/// Gives a scene without [spread] the assumed one. Returns true when it had none. A section that exists and is empty stays, and
+/// is refused when it is read.
 bool assume_spread(SceneFile& file);
 
 }  // namespace softland

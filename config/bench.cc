@@ -30,12 +30,12 @@ constexpr std::string_view of_contact = "contact";
 constexpr std::array of_threshold{"threshold", "hysteresis", "closed", "merge"};
 constexpr std::array of_file{"column", "time_column", "interval", "skip", "time_unit", "decimal", "shift", "unit"};
 
-// One [[measurement]].
+// Reads one [[measurement]].
 class MeasurementReader {
  public:
   MeasurementReader(const toml::table& table, const std::string& file, const std::filesystem::path& directory)
       : table_(table), file_(file), directory_(directory) {}
-  /// The keys of an option.
+  /// Reads the keys of an option.
   MeasurementReader(const toml::table& table, const std::string& option)
       : table_(table), file_(option), directory_(option), is_option_(true) {}
 
@@ -109,10 +109,10 @@ class MeasurementReader {
   // ---- rows of a file
 
   struct Column {
-    std::string name;  // in the header
-    double unit = 1;   // of its numbers [SI unit]
+    std::string name;  // name in the header
+    double unit = 1;   // size of the unit of its numbers [SI unit]
   };
-  // "closing_time_us", "capacitance [fF]", "time_s"
+  // Returns the column of a name such as "closing_time_us", "capacitance [fF]", "time_s".
   [[nodiscard]] std::optional<Column> column_of(const std::vector<std::string>& header, std::string_view stem,
                                                 const Dimension& due) const {
     for (const std::string& name : header) {
@@ -168,7 +168,8 @@ class MeasurementReader {
         read_foreign(kind, path, m);
       }
     } catch (const InvalidInput& error) {
-      if (std::string_view(error.what()).find("measurement.") != std::string_view::npos) throw;  // it names the key already
+      if (std::string_view(error.what()).find("measurement.") != std::string_view::npos)
+        throw;  // the message names the key already
       refuse("file", error.what());
     }
   }
@@ -178,7 +179,7 @@ class MeasurementReader {
            : kind.has_level  ? fmt::format("voltage_V and {}", value)
                              : value;
   }
-  // Whether a header is of our own form, with another quantity perhaps.
+  // True when a header has softland's own form, perhaps with another quantity.
   [[nodiscard]] bool is_own(const std::vector<std::string>& header) const {
     return std::ranges::any_of(bench_quantities(), [&](const BenchQuantity& one) {
       return column_of(header, one.name, one.name == of_contact ? dimension::none : one.dimension).has_value();
@@ -285,7 +286,7 @@ class MeasurementReader {
     shift_times(trace, time_shift());
     const double unit = unit_of_trace(kind, channel_of(recording, keys, std::string(kind.name)));
     for (std::size_t k = 0; k < trace.times.size(); ++k) {
-      if (trace.times[k] < 0) continue;  // before the drives begin
+      if (trace.times[k] < 0) continue;  // leave out rows before the drives begin
       require(m.values.size() < most_rows, [&] { return fmt::format("{}: more than {} rows from t = 0 on", path, most_rows); });
       require(m.times.empty() || trace.times[k] > m.times.back(),
               [&] { return fmt::format("{}: times must rise from row to row", path); });
@@ -294,7 +295,7 @@ class MeasurementReader {
     }
     require(!m.values.empty(), [&] { return fmt::format("{}: all rows are before t = 0; shift moves them", path); });
   }
-  // What a number of the trace stands for [SI unit]: those in volts are volts.
+  // Returns the unit of the numbers of a trace [SI unit]: those in volts are volts.
   [[nodiscard]] double unit_of_trace(const BenchQuantity& kind, const Channel& channel) const {
     if (has("per_volt")) {
       refuse_where(!channel.is_voltage && !channel.unit.empty(), "per_volt",
@@ -327,7 +328,7 @@ class MeasurementReader {
     m.has_end = true;
   }
 
-  // Halfway between the rows on either side, which are open and closed.
+  // Finds each edge halfway between the rows on either side, which are open and closed.
   void find_edges(BenchMeasurement& m) const {
     const int edges = has("edges") ? whole("edges", 1, 3) : 1;
     std::vector<double> found;

@@ -1,4 +1,4 @@
-// What is measured on every device, from words: "Vdp,frequency:0.5 %", and " in 8 classes" where devices are sorted.
+// The per-device calibration, from words: "Vdp,frequency:0.5 %", and " in 8 classes" where devices are sorted.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace softland {
 
-/// Puts it in the place of the [calibration] of the scene: "none" takes that out, and an empty text leaves it. Throws
-/// InvalidRequest of the field `calibrate`.
+/// Replaces the [calibration] of the scene: "none" removes it, and an empty text leaves it. Throws InvalidRequest of the field
+/// `calibrate`.
 void set_calibration(SceneFile& file, const std::string& words);
 
 }  // namespace softland

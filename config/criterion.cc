@@ -20,7 +20,7 @@ struct Sign {
   std::string_view text;
   Comparison comparison;
 };
-// Longer signs before those they begin with.
+// Longer signs stand before those they begin with.
 constexpr auto signs = std::to_array<Sign>({{"<=", Comparison::at_most},
                                             {">=", Comparison::at_least},
                                             {"==", Comparison::equal},

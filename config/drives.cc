@@ -21,7 +21,7 @@ constexpr std::string_view main_drive = "main";
 
 enum class LimitChecks { without_pull_in, all };
 
-/// Every [section.NAME] must name a drive of the device.
+/// Checks that every [section.NAME] names a drive of the device.
 void check_names(const SceneFile::Impl& file, const std::string& section, const Device& device) {
   for (const std::string& name : file.names_in(section)) {
     const std::string path = join_path(section, name);
@@ -57,16 +57,16 @@ std::vector<double> volts(const std::vector<Quantity>& quantities, const PullInV
   return values;
 }
 
-/// What a waveform's keys may refer to.
+/// The values that a waveform's keys may refer to.
 struct References {
   std::string_view drive;
   const PullInVoltages& pull_in;
   const std::optional<double>& main_hold;                     ///< level at which the main electrode holds the switch [V]
-  double max_slew = std::numeric_limits<double>::infinity();  ///< of the driver [V/s]
+  double max_slew = std::numeric_limits<double>::infinity();  ///< slew limit of the driver [V/s]
   double before = 0;                                          ///< value before t = 0 [V]
 };
 
-/// Volts, or a percentage of the base or, for the piezo, of the main hold level.
+/// Returns volts, or a percentage of the base or, for the piezo, of the main hold level.
 double swing(const SectionReader& in, std::string_view key, const Quantity& given, const References& to, double base) {
   if (given.dimension != dimension::none || to.drive == dispersion_drive) return volts(given, to.pull_in);
   if (to.drive != piezo_drive) {
@@ -91,7 +91,7 @@ void read_list(const SectionReader& in, std::string_view key, ParameterKind kind
 template <class Family>
 Waveform read_parameters(const SectionReader& in, const References& to) {
   Family waveform;
-  double base = 0;  // the level before a swing
+  double base = 0;  // level before a swing
   for (const Parameter<Family>& p : FamilyOf<Family>::parameters) {
     const auto* one = std::get_if<double Family::*>(&p.member);
     if (one == nullptr) {
@@ -105,7 +105,7 @@ Waveform read_parameters(const SectionReader& in, const References& to) {
       value = swing(in, p.name, in.quantities(p.name).front(), to, base);
     } else if (p.kind == ParameterKind::angular_frequency && in.is_given(frequency_key)) {
       value = 2 * std::numbers::pi * in.number(frequency_key);
-    } else if (in.is_word(p.name)) {  // steepest_rise
+    } else if (in.is_word(p.name)) {  // the word is steepest_rise
       value = std::abs(base - to.before) / to.max_slew;
     } else if (in.has_value(p.name)) {
       value = in.number(p.name);
@@ -135,13 +135,13 @@ Signal compile(const SectionReader& in, const Waveform& waveform, double before)
   }
 }
 
-/// What a voltage can be, also one that is a multiple of another: resolved scenes are written in volts.
+/// Returns the range of a voltage, also of one that is a multiple of another: resolved scenes are written in volts.
 const Range& any_voltage() {
   static const Range range = Key{.dimensions = {dimension::voltage}}.range_of(dimension::voltage);
   return range;
 }
 
-/// Nothing when the drive has no limits. Without a pull-in voltage there is no default limit.
+/// Reads the limits; nothing when the drive has no limits. Without a pull-in voltage there is no default limit.
 std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_view drive, const PullInVoltages& known) {
   DriverLimits limits{.min_voltage = 0, .max_voltage = std::numeric_limits<double>::infinity()};
   if (known.dynamic_pull_in > 0 && drive != piezo_drive) {
@@ -160,7 +160,7 @@ std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_vie
   return limits;
 }
 
-/// What the source makes of a waveform; its load is that of the switch, which is not known here.
+/// Reads the source that applies a waveform; its load is the capacitance of the switch, which is not known here.
 DriverModel read_model(const SectionReader& in, std::string_view drive) {
   DriverModel model;
   if (!in.is_present()) return model;
@@ -185,7 +185,7 @@ DriverModel read_model(const SectionReader& in, std::string_view drive) {
   return model;
 }
 
-/// What the source makes of the voltage that it is asked for.
+/// Reads the errors by which the applied voltage differs from the commanded one.
 SourceErrors read_errors(const SectionReader& in) {
   SourceErrors errors;
   if (!in.is_present()) return errors;
@@ -202,7 +202,7 @@ void check_order(const SectionReader& in, const DriverLimits& limits) {
              fmt::format("min_voltage of {} V must be less than max_voltage of {} V", limits.min_voltage, limits.max_voltage));
 }
 
-// What a step needs that is faster than its driver, and nothing else is wrong with.
+// Returns advice for a step that is faster than its driver, where nothing else is wrong with it.
 std::string missing_rise(const Waveform& waveform, double before, const DriverLimits& limits) {
   const Step* const step = std::get_if<Step>(&waveform);
   if (step == nullptr || std::max(step->level, before) > limits.max_voltage || std::min(step->level, before) < limits.min_voltage)
@@ -211,7 +211,8 @@ std::string missing_rise(const Waveform& waveform, double before, const DriverLi
                      engineering(std::abs(step->level - before) / limits.max_slew, "s", 3));
 }
 
-/// The electrode whose hold level a percentage of the piezo's amplitude refers to; empty when there is none.
+/// Returns the electrode whose hold level a percentage of the piezo's amplitude refers to; empty when the device has no such
+/// electrode.
 std::string_view main_electrode(const Device& device) {
   for (const Electrode& electrode : device.electrodes) {
     if (electrode.name == main_drive || device.electrodes.size() == 1) return electrode.name;
@@ -219,7 +220,7 @@ std::string_view main_electrode(const Device& device) {
   return {};
 }
 
-/// Of files that were read it is told into `notes`, unless that is null.
+/// Reads all drives. Remarks on files that were read go to `notes`, unless that is null.
 Drives read_all(const SceneFile::Impl& file, const Device& device, const std::map<std::string, PullInVoltages>& pull_in,
                 LimitChecks checks, std::vector<std::string>* notes = nullptr) {
   std::vector<Drive> drives;
@@ -241,7 +242,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
-    const double offset = drive == dispersion_drive ? -1 : 0;  // the value of a force factor is what it has beyond 1
+    const double offset = drive == dispersion_drive ? -1 : 0;  // a drive holds the excess of the force factor over 1
     one.begins_closed = in.is_given(before_state_key) && in.text(before_state_key) == closed_state_word;
     if (in.is_given(before_key)) one.before = offset + volts(in.quantities(before_key).front(), known);
     Waveform waveform;
@@ -279,8 +280,8 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
   return Drives(std::move(drives));
 }
 
-/// The hold levels of all drives, in order, where every pull-in voltage that a scene needs is `volt` [V]. Of files that were read
-/// it is told into `notes`, unless that is null.
+/// Returns the hold levels of all drives, in order, where every pull-in voltage that a scene needs is `volt` [V]. Remarks on
+/// files that were read go to `notes`, unless that is null.
 std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene, double volt, std::vector<std::string>* notes) {
   std::map<std::string, PullInVoltages> pull_in;
   for (const std::string& drive : scene.need_pull_in) pull_in[drive] = {.static_pull_in = volt, .dynamic_pull_in = volt};
@@ -290,9 +291,9 @@ std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene,
   return levels;
 }
 
-/// Tells whether runs begin closed, and checks that all waveforms name one state.
+/// Returns true when runs begin closed; checks that all waveforms name one state.
 bool begins_closed(const SceneFile::Impl& file, const Device& device) {
-  std::string closed;  // the key of a drive that says so
+  std::string closed;  // key of a drive whose before_state is closed
   for (const std::string& drive : drive_names(device)) {
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present() || !in.is_given(before_state_key) || in.text(before_state_key) != closed_state_word) continue;
@@ -386,8 +387,8 @@ void check_drives(const SceneFile::Impl& file, Scene& scene) {
       if (waveform.keys_in_pull_in_units().empty()) scene.limits_in_pull_in.emplace_back(drive);
     }
   }
-  // The rules of a family do not depend on how large a volt is: any pull-in voltage will do for them. What another one changes is
-  // not given in volts.
+  // The rules of a family do not depend on the size of a volt, so any pull-in voltage serves to check them. Levels that change
+  // with it are not given in volts.
   scene.standing = levels_held(file, scene, 1, &scene.file_notes);
   scene.begins_closed = begins_closed(file, device);
   if (scene.need_pull_in.empty()) return;

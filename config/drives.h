@@ -1,4 +1,4 @@
-// Waveforms and driver limits of a scene: from text to volts. Internal to config/.
+// Reads waveforms and driver limits of a scene into volts. Internal to config/.
 #pragma once
 
 #include <array>
@@ -13,30 +13,30 @@
 
 namespace softland::internal {
 
-/// Keys that a parameter's own may be replaced by.
-inline constexpr std::string_view frequency_key = "frequency";  ///< of an angular frequency
-inline constexpr std::string_view file_key = "file";            ///< of the rows of a table
-/// Keys beside `file`: what a file of an instrument does not say.
+/// Keys that may replace a parameter's own key.
+inline constexpr std::string_view frequency_key = "frequency";  ///< replaces the key of an angular frequency
+inline constexpr std::string_view file_key = "file";            ///< replaces the key of the rows of a table
+/// Keys beside `file`, for what a file of an instrument does not contain.
 namespace file_keys {
 inline constexpr std::string_view column = "column", time_column = "time_column", interval = "interval", skip = "skip",
                                   unit = "unit", time_unit = "time_unit", decimal = "decimal", scale = "scale", shift = "shift";
-inline constexpr std::string_view uneven = "uneven";  ///< interval: times as they stand
-inline constexpr std::string_view first = "first";    ///< shift: the first row is at t = 0
+inline constexpr std::string_view uneven = "uneven";  ///< value of `interval`: times are taken as written
+inline constexpr std::string_view first = "first";    ///< value of `shift`: the first row is at t = 0
 inline constexpr std::array all{column, time_column, interval, skip, unit, time_unit, decimal, scale, shift};
 }  // namespace file_keys
-inline constexpr std::string_view before_key = "before";  ///< of every family: the value before t = 0
+inline constexpr std::string_view before_key = "before";  ///< key of every family: the value before t = 0
 /// Key of every family that names the equilibrium under the values before t = 0 in which a run begins.
 inline constexpr std::string_view before_state_key = "before_state", open_state = "open", closed_state_word = "closed";
-/// What may stand as the rise time of a step: that of the driver's max_slew.
+/// Word for the rise time of a step at the driver's max_slew.
 inline constexpr std::string_view steepest_rise = "driver";
 
-/// The unit of a parameter in a scene; a level's is decided by its drive.
+/// Returns the unit of a parameter in a scene; the drive decides that of a level.
 [[nodiscard]] Dimension dimension_of(ParameterKind kind);
 
-/// The waveform with every level raised by `by`.
+/// Returns the waveform with every level raised by `by`.
 [[nodiscard]] Waveform raised(Waveform waveform, double by);
 
-/// Why the device has no drive of this name, with a hint; empty where it has.
+/// Returns the reason why the device has no drive of this name, with a hint; empty where it has one.
 [[nodiscard]] std::string why_no_drive(const Device& device, const std::string& name);
 
 /// Throws InvalidInput for an electrode name that cannot name a drive.
@@ -46,7 +46,7 @@ void check_drive_name(const SceneFile::Impl& file, const std::string& electrode)
 /// Sets Scene::need_pull_in and Scene::standing.
 void check_drives(const SceneFile::Impl& file, Scene& scene);
 
-/// Everything in volts, waveforms inside their limits. Throws InvalidInput.
+/// Reads all drives in volts, with waveforms inside their limits. Throws InvalidInput.
 [[nodiscard]] Drives read_drives(const SceneFile::Impl& file, const Device& device,
                                  const std::map<std::string, PullInVoltages>& pull_in);
 

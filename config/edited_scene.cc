@@ -32,7 +32,7 @@ class Lines {
     }
     return i;
   }
-  // Where the line ends that a place is on, without its line break.
+  // Returns the end of the line of a place, without its line break.
   [[nodiscard]] std::size_t end(std::size_t place) const {
     std::size_t end = std::min(text_.find('\n', place), text_.size());
     if (end > place && text_[end - 1] == '\r') --end;
@@ -44,7 +44,7 @@ class Lines {
   std::vector<std::size_t> begins_;
 };
 
-// Where a number or a text in quotes ends that begins there.
+// Returns the end of the number or quoted text that begins there.
 std::size_t end_of_value(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   if (quote == '"' || quote == '\'') {
@@ -64,7 +64,7 @@ const toml::node* node_at(const toml::table& root, const std::vector<std::string
   return node;
 }
 
-// In the unit of what was written.
+// Writes the value in the unit of the previous text.
 std::string in_unit_of(const std::string& written, const Quantity& value) {
   constexpr const char* number_begins = "0123456789.eE+-−_";
   std::size_t end = 0;
@@ -100,7 +100,7 @@ std::string edited_scene(std::string_view text, const std::string& name, const s
   const toml::table root = internal::parse_toml(text, name);
   const Lines lines(text);
   std::vector<Replacement> all;
-  std::map<std::size_t, std::string> remarks;  // by end of line
+  std::map<std::size_t, std::string> remarks;  // remarks by the end of their line
   for (const SceneEdit& edit : edits) {
     const std::vector<std::string> path = internal::split_path(edit.path);
     const toml::node* node = node_at(root, path);
@@ -140,7 +140,8 @@ std::string edited_scene(std::string_view text, const std::string& name, const s
 
 namespace {
 
-// From a header of [spread] or [spread.NAME] to the next header of another section; none where there is no such header.
+// Returns the range from a header of [spread] or [spread.NAME] to the next header of another section; none without such a
+// header.
 std::optional<std::pair<std::size_t, std::size_t>> spread_of(std::string_view text) {
   std::optional<std::pair<std::size_t, std::size_t>> found;
   for (std::size_t begin = 0; begin < text.size();) {

@@ -1,4 +1,4 @@
-// The text of a scene with other numbers in it: comments, sources, order and units of what is written stay.
+// The text of a scene with some numbers replaced: comments, sources, order and units stay as written.
 #pragma once
 
 #include <string>
@@ -9,21 +9,21 @@
 
 namespace softland {
 
-/// A key of one quantity, or an element of a list of them, that gets another value.
+/// A new value for a key of one quantity, or for an element of a list.
 struct SceneEdit {
-  std::string path;         ///< "structure.thickness"
-  std::size_t element = 0;  ///< of a list, counted from 1; 0: the key is none
+  std::string path;         ///< path of the key: "structure.thickness"
+  std::size_t element = 0;  ///< element of a list, counted from 1; 0 for a key without a list
   Quantity value;
-  std::string remark = {};  ///< becomes a comment at the end of its line, before it what was written; empty: none
+  std::string remark = {};  ///< comment at the end of its line, after the previous text; empty for none
 };
 
-/// The value in the unit that is written there, to ten digits. A key that is not written is added to its section, or with its
-/// section at the end, in the SI unit. `name` stands for the text in messages. Throws InvalidInput for a text that is no TOML,
-/// and where a key cannot be added because its section is an inline table.
+/// Returns the text with the new values, each in the unit that is written there, to ten digits. A missing key is added to its
+/// section, or with its section at the end, in the SI unit. `name` stands for the text in messages. Throws InvalidInput for a
+/// text that is not TOML, and where a key cannot be added because its section is an inline table.
 [[nodiscard]] std::string edited_scene(std::string_view text, const std::string& name, const std::vector<SceneEdit>& edits);
 
-/// The text with the section [spread] of another scene in the place of its own, or at the end. Throws InvalidInput where its own
-/// is no section under a header.
+/// Returns the text with the section [spread] of another scene in the place of its own, or at the end. Throws InvalidInput
+/// where its own is not a section under a header.
 [[nodiscard]] std::string with_spread_of(std::string_view text, const std::string& name, const SceneFile& other);
 
 }  // namespace softland

@@ -26,7 +26,7 @@ bool says_something(const SectionReader& in) {
   return std::any_of(file_keys::all.begin(), file_keys::all.end(), [&](std::string_view key) { return in.is_given(key); });
 }
 
-/// Whether the header line, the first that is no comment, has the column of times that softland writes.
+/// True when the header line, the first that is not a comment, has the column of times that softland writes.
 bool is_own(std::string_view content) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (content.starts_with(byte_order_mark)) content.remove_prefix(byte_order_mark.size());
@@ -44,15 +44,15 @@ bool is_own(std::string_view content) {
   }
 }
 
-/// Smallest and largest value.
+/// Returns the smallest and largest value.
 std::pair<double, double> extremes(const std::vector<double>& values, std::size_t count) {
   const auto [least, most] = std::minmax_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
   return {*least, *most};
 }
 
-// A row that rounding leaves beside t = 0 is at 0.
+// Shifts the times; a row that rounding leaves beside t = 0 is put at 0.
 void shift_times(std::vector<double>& times, double shift) {
-  constexpr double rounding = 1e-6;  // of the mean step
+  constexpr double rounding = 1e-6;  // share of the mean step
   const double step = (times.back() - times.front()) / static_cast<double>(times.size());
   for (double& time : times) {
     time += shift;
@@ -60,9 +60,9 @@ void shift_times(std::vector<double>& times, double shift) {
   }
 }
 
-// What the switch stands at before t = 0: the mean of the rows before, which must be one value but for noise.
+// Returns the voltage before t = 0: the mean of the rows before, which must be one value up to noise.
 double level_before(const SectionReader& in, const Trace& trace, std::size_t count) {
-  constexpr double noise = 0.05;  // of the range of the record
+  constexpr double noise = 0.05;  // share of the range of the record
   const auto [least, most] = extremes(trace.values, count);
   const auto [smallest, largest] = extremes(trace.values, trace.values.size());
   if (most - least > noise * (largest - smallest)) {
@@ -77,7 +77,7 @@ double level_before(const SectionReader& in, const Trace& trace, std::size_t cou
   return least == most ? least : std::clamp(sum / static_cast<double>(count), least, most);
 }
 
-// Rows from t = 0 on, the first one at 0.
+// Returns the rows from t = 0 on, the first one at 0.
 FileRows from_zero(const SectionReader& in, const Trace& trace) {
   FileRows rows;
   const auto at_zero = std::find_if(trace.times.begin(), trace.times.end(), [](double time) { return time >= 0; });
@@ -109,7 +109,8 @@ FileRows from_zero(const SectionReader& in, const Trace& trace) {
   return rows;
 }
 
-// A long record with the rows that a source needs: that of [driver], or one so fast that it tells a two-thousandth of the record.
+// Thins a long record to the rows that a source needs: that of [driver], or one fast enough to resolve a two-thousandth of the
+// record.
 void thin(FileRows& rows, const SectionReader& driver) {
   constexpr std::size_t few = 4096;
   constexpr double relative_error = 1e-3, parts = 2000;
@@ -122,7 +123,7 @@ void thin(FileRows& rows, const SectionReader& driver) {
   const auto [least, most] = extremes(table.voltage, table.voltage.size());
   const std::size_t count = table.time.size();
   Thinned made = thinned(table, time_constant, relative_error * (most - least));
-  if (2 * made.table.time.size() > count) return;  // hardly any row can go
+  if (2 * made.table.time.size() > count) return;  // hardly any row can be left out
   table = std::move(made.table);
   rows.told += fmt::format("; thinned from {} to {} rows: behind {} of {} they differ by less than {}", count, table.time.size(),
                            has_bandwidth ? "the bandwidth" : "a bandwidth",
@@ -157,7 +158,7 @@ FileRows read_file_rows(const SectionReader& waveform, std::string_view drive, c
     return read_foreign(in, content, path, drive, driver);
   } catch (const InvalidInput& error) {
     const std::string_view what = error.what();
-    if (what.find(in.path()) != std::string_view::npos) throw;  // it names the key already
+    if (what.find(in.path()) != std::string_view::npos) throw;  // the message names the key already
     in.file().fail(in.path(file_key), what);
   }
 }

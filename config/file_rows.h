@@ -1,4 +1,4 @@
-// The rows of a table that stand in a file. Internal to config/.
+// Reads the rows of a table from a file. Internal to config/.
 #pragma once
 
 #include <optional>
@@ -11,14 +11,14 @@
 namespace softland::internal {
 
 struct FileRows {
-  Table table;                        ///< from t = 0 on
-  std::optional<double> before = {};  ///< mean of the rows before t = 0, where there are some [V]
-  std::string told = {};              ///< one line about a file that softland did not write; empty for one that it did
+  Table table;                        ///< rows from t = 0 on
+  std::optional<double> before = {};  ///< mean of the rows before t = 0, if the file has some [V]
+  std::string told = {};              ///< one line about a file that softland did not write; empty for its own files
 };
 
-/// Reads the file that [waveform.NAME] names. A file of softland (a column time_s) is taken to the bit unless a key says
-/// something about it; others are read by exchange/, and thinned to what the source of [driver.NAME] can pass where they are
-/// long. Throws InvalidInput with key and file.
+/// Reads the file that [waveform.NAME] names. A file of softland (a column time_s) is taken to the bit unless a key describes
+/// it. exchange/ reads others; long ones are thinned to what the source of [driver.NAME] can pass. Throws InvalidInput with key
+/// and file.
 [[nodiscard]] FileRows read_file_rows(const SectionReader& waveform, std::string_view drive, const SectionReader& driver);
 
 }  // namespace softland::internal

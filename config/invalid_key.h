@@ -1,4 +1,4 @@
-// Bad input of a scene file, for programs that point at it.
+// Invalid input of a scene file, for programs that point at it.
 #pragma once
 
 #include <source_location>
@@ -9,13 +9,13 @@
 
 namespace softland {
 
-/// A key or section of a scene that breaks a rule: its message says all of this in words.
+/// Thrown for a key or section of a scene that breaks a rule: its message says all of this in words.
 class InvalidKey : public InvalidInput {
  public:
   struct Place {
-    std::string key;   ///< its path, "gap.contact"
-    std::string file;  ///< as messages name it; empty where an option set the key
-    int line = 0;      ///< counted from 1; 0: not known
+    std::string key;   ///< path of the key: "gap.contact"
+    std::string file;  ///< name of the file in messages; empty where an option set the key
+    int line = 0;      ///< line, counted from 1; 0 where it is not known
   };
   InvalidKey(const std::string& message, Place place, std::source_location where = std::source_location::current())
       : InvalidInput(message, where), place_(std::move(place)) {}

@@ -22,7 +22,7 @@ constexpr std::string_view clamped = "clamped";
 
 double one_of_unit(const SectionReader& in, std::string_view key, const Dimension& due) {
   const std::string& unit = in.text(key);
-  if (due == dimension::mass && unit == "t") return 1e3;  // of models in mm, s and N
+  if (due == dimension::mass && unit == "t") return 1e3;  // tonne, the mass unit of models in mm, s and N
   Quantity one;
   try {
     one = parse_quantity("1 " + unit);
@@ -79,7 +79,7 @@ SplineEnd far_end_of(const SectionReader& in) {
   return in.is_given(keys::far_anchor) && in.text(keys::far_anchor) == clamped ? SplineEnd::clamped : SplineEnd::free;
 }
 
-// Empty where the face is straight.
+// Returns the offsets; empty where the face is straight.
 std::vector<double> offsets_of(ModeTable& table) {
   const bool is_straight = std::ranges::all_of(table.rest_offsets, [](double offset) { return offset == 0; });
   return is_straight ? std::vector<double>() : std::move(table.rest_offsets);

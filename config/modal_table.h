@@ -1,4 +1,4 @@
-// The table of modes that [structure] kind = "modes" names or holds. Internal to config/.
+// Reads the table of modes that [structure] kind = "modes" names or holds. Internal to config/.
 #pragma once
 
 #include <string_view>
@@ -9,7 +9,7 @@
 
 namespace softland::internal {
 
-/// Names of the keys that say where modes are, and how a file of them is read.
+/// Names of the keys for the place of the modes, and for the reading of their file.
 namespace modal_keys {
 inline constexpr std::string_view file = "file", axis = "axis", direction = "direction", length_unit = "length_unit",
                                   mass_unit = "mass_unit", mass = "mass", mass_normalised = "mass_normalised", clamp = "clamp",
@@ -17,11 +17,11 @@ inline constexpr std::string_view file = "file", axis = "axis", direction = "dir
                                   rest_offsets = "rest_offsets", widths = "widths", far_anchor = "far_anchor";
 }  // namespace modal_keys
 
-/// These keys, which stand before the fields of a ModalStructure.
+/// Returns these keys, which stand before the fields of a ModalStructure.
 [[nodiscard]] std::vector<Key> modal_table_keys();
 
-/// Sets table, length, width and the number of modes of the structure; what was taken from a file of another program becomes a
-/// note of the scene. Throws InvalidInput with key, file and rule for what cannot be read, and for a structure that is no beam of
+/// Sets table, length, width and the number of modes of the structure; data from a file of another program becomes a note of
+/// the scene. Throws InvalidInput with key, file and rule for unreadable data, and for a structure that is not a beam of
 /// constant width.
 void read_modal_table(Scene& scene, const SectionReader& in);
 

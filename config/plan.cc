@@ -31,7 +31,7 @@ using internal::KeyType;
 using internal::SectionReader;
 
 constexpr std::string_view plan_section = "plan";
-constexpr std::uint64_t most_values = 10'000'000;  // of one variable, or rows of a list
+constexpr std::uint64_t most_values = 10'000'000;  // largest number of values of one variable, or rows of a list
 constexpr std::uint64_t most_searched = 10'000'000;
 
 std::vector<std::string> split_trimmed(std::string_view text, char at) {
@@ -40,7 +40,7 @@ std::vector<std::string> split_trimmed(std::string_view text, char at) {
   return parts;
 }
 
-/// Digits alone.
+/// Reads digits alone.
 std::optional<std::uint64_t> whole_number(std::string_view text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -48,7 +48,7 @@ std::optional<std::uint64_t> whole_number(std::string_view text) {
   return value;
 }
 
-/// As parse_quantity(); the space before the unit may be missing, as it is easily in a shell.
+/// Reads as parse_quantity(); the space before the unit may be missing, as it easily is in a shell.
 Quantity plan_quantity(std::string_view given) {
   const std::string_view text = trimmed(given);
   double ignored = 0;
@@ -59,7 +59,7 @@ Quantity plan_quantity(std::string_view given) {
   return parse_quantity(fmt::format("{} {}", text.substr(0, length), text.substr(length)));
 }
 
-/// Rounded to 15 significant digits.
+/// Returns the value rounded to 15 significant digits.
 double in_few_digits(double value) {
   const std::string text = fmt::format("{:.15g}", value);
   double rounded = value;
@@ -67,7 +67,7 @@ double in_few_digits(double value) {
   return rounded;
 }
 
-/// The value at the part `t` of the way, 0 to 1.
+/// Returns the value at the share `t` of the range, 0 to 1.
 double between(const PlanVariable& variable, double t) {
   const double low = variable.low, high = variable.high;
   if (t == 0) return low;
@@ -75,7 +75,7 @@ double between(const PlanVariable& variable, double t) {
   return in_few_digits(variable.is_logarithmic ? low * std::pow(high / low, t) : std::lerp(low, high, t));
 }
 
-/// A value as canonical text in the unit of its variable.
+/// Returns a value as canonical text in the unit of its variable.
 std::string value_text(const PlanVariable& variable, double value) {
   return variable.words.empty() ? quantity_text(value, variable.dimension)
                                 : variable.words.at(static_cast<std::size_t>(value) - 1);
@@ -158,7 +158,7 @@ class KeyFinder {
   const SceneFile::Impl& file_;
 };
 
-/// One entry of a plan, read to a variable.
+/// Reads one entry of a plan to a variable.
 class EntryReader {
  public:
   EntryReader(const KeyFinder& finder, const std::string& name) {
@@ -173,7 +173,7 @@ class EntryReader {
     variable_.is_whole = type == KeyType::integer;
   }
 
-  /// The words of a choice, or the numbers of a list.
+  /// Reads the words of a choice, or the numbers of a list.
   PlanVariable of_list(const std::vector<std::string>& texts) && {
     const KeyType type = keys_.front().schema->type;
     if (type == KeyType::choice || type == KeyType::flag) {
@@ -184,7 +184,7 @@ class EntryReader {
     return finish();
   }
 
-  /// LOW:HIGH, LOW:HIGH:N, each with :log behind it; `is_sample`: without N.
+  /// Reads LOW:HIGH, LOW:HIGH:N, each with :log behind it; `is_sample`: without N.
   PlanVariable of_range(std::vector<std::string> parts, bool is_sample) && {
     const KeyType type = keys_.front().schema->type;
     require(type != KeyType::choice && type != KeyType::flag,
@@ -230,7 +230,7 @@ class EntryReader {
     if (variable_.is_whole) require_whole(*count);
   }
 
-  /// Equal steps from one whole number to another are whole numbers where their number divides the way.
+  /// Requires that equal steps from one whole number to another give whole numbers: the number of steps must divide the range.
   void require_whole(std::uint64_t count) const {
     if (count == 1) return;
     const auto way = static_cast<std::uint64_t>(std::abs(variable_.high - variable_.low));
@@ -244,7 +244,8 @@ class EntryReader {
                                                     count, variable_.low, variable_.high, fmt::join(counts, ", ")));
   }
 
-  /// All of one dimension, and of one that the key may have; plain numbers and percentages are factors where the key has a unit.
+  /// Reads quantities of one dimension that the key may have; plain numbers and percentages are factors where the key has a
+  /// unit.
   std::vector<Quantity> read(const std::vector<std::string>& texts) {
     std::vector<Quantity> all;
     bool is_percent = false;
@@ -266,7 +267,7 @@ class EntryReader {
     const Dimension given = all.front().dimension;
     const std::vector<Dimension>& allowed = keys_.front().schema->dimensions;
     const std::optional<Quantity>& base = keys_.front().base;
-    // Where a place is written as a length, a percentage is of that.
+    // A percentage of a place that is written as a length is a percentage of that length.
     const bool is_of_value = keys_.front().schema->bound.place != nullptr && given == dimension::none && is_percent && base &&
                              base->dimension != dimension::none;
     const bool fits = variable_.is_whole
@@ -315,7 +316,7 @@ class EntryReader {
   std::vector<KeyFinder::Found> keys_;
 };
 
-/// Turns what is said of an entry into what the user is told: with the place before it.
+/// Adds the place before errors about an entry.
 template <class Read>
 auto at_place(const PlanRequest& request, std::string_view key, std::size_t number, Read&& read) {
   try {
@@ -325,7 +326,7 @@ auto at_place(const PlanRequest& request, std::string_view key, std::size_t numb
   }
 }
 
-/// "KEY=..."
+/// Splits "KEY=...".
 std::pair<std::string, std::string> name_and_values(const std::string& entry) {
   const std::size_t equals = entry.find('=');
   require(equals != std::string::npos && equals > 0,
@@ -408,7 +409,7 @@ void Plan::read_rows(const PlanRequest& request) {
   std::vector<double> scale;
   at_place(request, "list", 0, [&] {
     for (const std::string& column : request.columns) {
-      // "structure.length [um]"; the bracket of a list's element has no blank before it.
+      // The column is named "structure.length [um]"; the bracket of a list's element has no blank before it.
       const std::size_t bracket = column.find(" [");
       const std::string name(trimmed(std::string_view(column).substr(0, bracket)));
       std::string unit;
@@ -425,7 +426,7 @@ void Plan::read_rows(const PlanRequest& request) {
   for (const std::vector<double>& row : request.rows) {
     std::vector<double> values;
     for (std::size_t i = 0; i < row.size(); ++i) {
-      // Scaled in decimal, so that 245 [um] is 245e-6 and not its neighbour.
+      // Numbers are scaled in decimal, so that 245 [um] is 245e-6 and not its neighbour.
       values.push_back(scale[i] == 1 ? row[i] : in_few_digits(row[i] * scale[i]));
       require(!variables_[i].is_whole || values.back() == std::round(values.back()), [&] {
         return fmt::format("{}: {} = {} must be a whole number", request.place("list", 0), variables_[i].name, values.back());
@@ -596,7 +597,7 @@ class PlanReader {
   [[noreturn]] void fail(std::string_view key, std::string_view rule) const { file_.fail(path(key), rule); }
   [[nodiscard]] static std::string path(std::string_view key) { return internal::join_path(std::string(plan_section), key); }
 
-  /// A text; numbers and flags as they are written.
+  /// Returns a text; numbers and flags as they are written.
   [[nodiscard]] std::optional<std::string> text(std::string_view key) const {
     const toml::node* node = find(key);
     if (node == nullptr) return std::nullopt;
@@ -647,7 +648,7 @@ class PlanReader {
     }
   }
   [[nodiscard]] PlanRequest::Place place() const {
-    // The file may be gone when the place is asked for.
+    // Places are copied: the file may be gone when one is needed.
     std::map<std::string, std::string, std::less<>> places;
     for (const auto& [key, node] : *find_section()) {
       const std::string at = path(key.str());

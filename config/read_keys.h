@@ -1,4 +1,4 @@
-// What the keys of a waveform say about the file of its rows.
+// The keys of a waveform that describe the file of its rows.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace softland {
 
-/// Of assignments KEY=VALUE as --set has them, such as `column=CH1`: those that say how a file is read, not what a scene makes of
-/// it. Throws InvalidInput with the option, the value and the rule.
+/// Reads assignments KEY=VALUE as --set has them, such as `column=CH1`: those that tell how to read a file, not how a scene
+/// uses it. Throws InvalidInput with the option, the value and the rule.
 [[nodiscard]] ReadKeys read_keys(const std::vector<std::string>& assignments);
 
 namespace internal {
 
 class SectionReader;
-/// Of the keys of [waveform.NAME].
+/// Reads the keys of [waveform.NAME].
 [[nodiscard]] ReadKeys read_keys(const SectionReader& in);
 
 }  // namespace internal

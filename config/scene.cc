@@ -38,7 +38,7 @@ void check_section_names(const SceneFile::Impl& file) {
   }
 }
 
-/// Sets the members that one section's keys are bound to, and checks what they mean together.
+/// Sets the members that one section's keys are bound to, and checks them together.
 void read_section(Scene& scene, const internal::Section& section, const SectionReader& in, std::string_view name = {}) {
   if (!in.is_present() && !section.always_in_force) return;
   const std::size_t entry = section.begin(scene, in, name);
@@ -60,7 +60,7 @@ void read_sections(Scene& scene, const SceneFile::Impl& file) {
   }
 }
 
-/// Electrodes must have room beside each other.
+/// Checks that the electrodes have room beside each other.
 void check_electrodes(const Device& device, const SceneFile::Impl& file) {
   const auto conflict = electrode_conflict(device.structure, device.electrodes);
   if (!conflict) return;
@@ -124,8 +124,8 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
     warnings.push_back(fmt::format(
         "{}: surface.residual_stress does nothing to a cantilever unless surface.cantilever_load says so", file.name));
   }
-  constexpr double wide = 5;          // width over thickness from which the beam bends more like a plate
-  constexpr double rounding = 1e-12;  // 20 um is not more than five times 4 um, whatever the last bit says
+  constexpr double wide = 5;          // width over thickness above which the beam bends more like a plate
+  constexpr double rounding = 1e-12;  // 20 um does not count as more than five times 4 um because of the last bit
   const Structure& structure = device.structure;
   const auto* const beam = structure.find<Beam>();
   if (beam != nullptr && structure.is_built() && !beam->plate_strain && !file.find({"structure", "plate_strain"})) {
@@ -172,7 +172,7 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
   return warnings;
 }
 
-/// Sections of a beam keep a number of their own while that of [structure] varies.
+/// Warns of sections of a beam that keep a number of their own while that of [structure] varies.
 void warn_of_fixed_sections(const SceneFile::Impl& file, const DeviceSpread& spread, std::vector<std::string>& warnings) {
   const auto* const beam_sections = file.find({"structure", "sections"});
   if (beam_sections == nullptr || !beam_sections->is_array()) return;
@@ -198,7 +198,7 @@ void warn_of_fixed_sections(const SceneFile::Impl& file, const DeviceSpread& spr
   }
 }
 
-/// Every section that is in force, but [spread] as resolved_spread() gives it; `keys_of` makes the table of one.
+/// Returns every section in force, except [spread] as resolved_spread() gives it; `keys_of` makes the table of one.
 template <class KeysOf>
 toml::table sections_of(const SceneFile::Impl& file, KeysOf&& keys_of) {
   toml::table root;
@@ -340,7 +340,7 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
   }
   if (!drivers.empty()) root.insert("driver", std::move(drivers));
 
-  // Written and read once more: like any other file, the result then has lines to cite.
+  // The scene is written and read once more: like any other file, the result then has lines to cite.
   SceneFile file = SceneFile::parse(internal::write_scene(root), impl.name + " (resolved)", impl.directory);
   if (impl.own_contact) file.add_contact(*impl.own_contact);
   for (const auto& [name, waveform] : drives.waveforms()) file.set_waveform(name, waveform);

@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::size_t deepest_path = 16;
 
-/// Past the string that begins at `begin`; a single-line string ends with its line at the latest.
+/// Returns the end of the string that begins at `begin`; a single-line string ends with its line at the latest.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string triple(3, quote);
@@ -44,9 +44,8 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// toml++ bounds nested values but not dotted keys, and a table some ten thousand levels deep overflows the stack when it is
-/// destroyed.
-/// Returns where such a key gets too long, npos if there is none.
+/// Returns where a dotted key gets too deep, npos if none does. toml++ bounds nested values but not dotted keys, and a table
+/// some ten thousand levels deep overflows the stack when it is destroyed.
 std::size_t find_deep_dotted_key(std::string_view text) {
   constexpr std::string_view ends_of_key = "\n=,[]{}";
   std::size_t dots = 0;
@@ -106,7 +105,7 @@ std::vector<std::string_view> key_names(const Section* section) {
   return names;
 }
 
-/// A section and what is below it. Inline tables stay inline: an entry of [spread] reads best on one line.
+/// Writes a section and its subsections. Inline tables stay inline: an entry of [spread] is most readable on one line.
 void write_section(std::string& out, const toml::table& table, const std::string& path, std::size_t depth,
                    const Section* section) {
   const bool holds_keys = section && (depth == (section->is_named ? 2U : 1U) || (section->may_be_named && depth == 2));
@@ -154,7 +153,7 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
-    // The usual slip of a newcomer, which the parser reports in its own terms only: length = 2 um.
+    // Explain a common beginner's error, which the parser reports only in its own terms: length = 2 um.
     const bool may_miss_quotes = error.description().find("expected a comment or whitespace") != std::string_view::npos;
     throw InvalidInput(fmt::format("{}:{}:{}: not TOML: {}{}", name, at.line, at.column, shortened(error.description(), 200),
                                    may_miss_quotes ? " (a quantity needs quotes: \"2 um\")" : ""));
@@ -273,7 +272,7 @@ std::vector<std::string> split_path(std::string_view given) {
     const toml::table parsed = parse_toml(std::string(path) + " = 0", "");
     for (const toml::table* table = &parsed; table != nullptr;) {
       if (table->size() != 1) throw InvalidInput(rule);
-      const auto first = table->begin();  // kept: what it points to lives in the iterator itself
+      const auto first = table->begin();  // keeps the iterator, which owns the key that it points to
       parts.emplace_back(first->first.str());
       table = first->second.as_table();
     }
@@ -303,7 +302,7 @@ namespace {
 
 using internal::join_path;
 
-/// Tables within one another.
+/// Returns the depth of nested tables.
 std::size_t levels(const toml::node& node) {
   const toml::table* table = node.as_table();
   if (!table) return 0;
@@ -328,7 +327,7 @@ void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::
     }
     const auto* inner = node.as_table();
     if (!inner) continue;
-    // A section and a dotted key in it, each short enough, may make a path that could be written but not read again.
+    // A section and a dotted key in it, each short enough, may form a path that could be written but not read again.
     require(parts < internal::deepest_path, fmt::format("{}: a key has more than {} parts", place, internal::deepest_path));
     record_origins(impl, *inner, key_path, parts + 1);
   }
@@ -353,13 +352,13 @@ const toml::node* SceneFile::Impl::find(const std::vector<std::string>& path) co
 
 SceneFile::Impl::Origin SceneFile::Impl::origin(std::string_view path) const {
   if (const auto exact = origins.find(path); exact != origins.end()) return exact->second;
-  // A key inside a value given as a whole, e.g. an option that replaced a section.
+  // Find a key inside a value given as a whole, e.g. an option that replaced a section.
   const Origin* nearest = nullptr;
   for (const auto& [known, place] : origins) {
     if (is_below(path, known)) nearest = &place;  // ancestors sort from the shortest to the longest
   }
   if (nearest) return *nearest;
-  // A section that exists only because an option set something in it.
+  // Find a section that exists only because an option set something in it.
   for (const auto& [known, place] : origins) {
     if (is_below(known, path)) return place;
   }
@@ -377,7 +376,7 @@ std::string SceneFile::Impl::written(std::string_view path) const {
 
 namespace {
 
-// "scenes/x.toml:12" as file and line.
+// Returns "scenes/x.toml:12" as file and line.
 InvalidKey::Place place_of_origin(std::string_view key, const SceneFile::Impl::Origin& origin) {
   InvalidKey::Place place{.key = std::string(key)};
   if (origin.is_option) return place;
@@ -594,7 +593,7 @@ void SceneFile::erase(const std::string& path) {
 void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
   if (const Own* own = std::get_if<Own>(&given))
     throw InvalidInput(fmt::format("waveform.{}: {} cannot be written into a scene file", drive, described(*own)));
-  static_cast<void>(signal(given));  // a waveform that breaks its family's rules would write a scene that cannot be read
+  static_cast<void>(signal(given));  // a waveform that breaks its family's rules would write an unreadable scene
   const bool is_factor = drive == dispersion_drive;
   const Waveform waveform = is_factor ? internal::raised(given, 1) : given;
   toml::table table{{"family", std::string(family(waveform))}};
@@ -641,7 +640,7 @@ SceneFile SceneFile::again(std::string name) const {
 
 namespace {
 
-// Throws InvalidInput where the scene has more than a file can say.
+// Throws InvalidInput where the scene contains more than a file can express.
 void require_writable(const SceneFile::Impl& impl) {
   const auto* const own = impl.own_contact ? std::get_if<OwnContact>(&impl.own_contact->model) : nullptr;
   require(!impl.own_contact, [&] {

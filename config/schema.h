@@ -1,5 +1,4 @@
-// Every section and key a scene may have, in one table: it drives reading, checking, hints, defaults and the order of written
-// scenes.
+// Every section and key of a scene, in one table: it drives reading, checking, hints, defaults and the order of written scenes.
 #pragma once
 
 #include <cstddef>
@@ -21,16 +20,16 @@ namespace softland::internal {
 
 class SectionReader;
 
-/// What may stand for the end of the beam where a place is due.
+/// The word for the end of the beam, in the place of a position.
 inline constexpr std::string_view tip = "tip";
 
 struct Section;
 
-/// `table`: keys in braces; `tables`: a list of such.
+/// The type of a key's value. `table`: keys in braces; `tables`: a list of such.
 enum class KeyType { text, texts, flag, integer, choice, quantity, quantities, table, tables };
 
-/// The member of a scene that a key sets, by its kind: of these at most one is there, but that a table may be a word instead. The
-/// second argument tells which electrode, or which table of a list, is meant, `element` which element of a list.
+/// The member of a scene that a key sets, by its kind. At most one is set, except that a word may stand for a table. The second
+/// argument selects the electrode, or the table of a list, `element` the element of a list.
 struct Bound {
   double& (*number)(Scene&, std::size_t) = nullptr;
   Place& (*place)(Scene&, std::size_t, std::size_t element) = nullptr;
@@ -44,29 +43,31 @@ struct Bound {
 struct Key {
   std::string_view name;
   KeyType type = KeyType::quantity;
-  /// quantity, quantities: the dimensions a value may have; empty: decided by another key. The first one names the key's SI unit.
+  /// For quantity, quantities: the dimensions a value may have; empty if another key decides. The first one names the key's SI
+  /// unit.
   std::vector<Dimension> dimensions = {};
   Range range = {};         ///< see range_of()
-  std::size_t count = 0;    ///< quantities: how many; 0: any number
-  bool any_word = false;    ///< integer: any text may stand instead of a number
-  bool may_be_one = false;  ///< quantities: a single one may stand instead of a list
-  bool is_nested = false;   ///< quantities: may be a list of such lists, read one after the other
+  std::size_t count = 0;    ///< quantities: their number; 0 for any number
+  bool any_word = false;    ///< integer: true when any text may stand instead of a number
+  bool may_be_one = false;  ///< quantities: true when a single one may stand instead of a list
+  bool is_nested = false;   ///< quantities: true when it may be a list of such lists, read one after the other
   std::vector<std::string_view> choices = {};
-  std::vector<std::string_view> words = {};  ///< integer, quantity, an element of quantities: what may stand instead of a number
-  std::string_view fallback = {};            ///< the default as TOML; empty: none
+  std::vector<std::string_view> words =
+      {};                          ///< integer, quantity, an element of quantities: words that may stand instead of a number
+  std::string_view fallback = {};  ///< default as TOML; empty for none
   bool required = false;
-  std::vector<std::string_view> only_for = {};    ///< choices of the section's selector this key belongs to; empty: all
+  std::vector<std::string_view> only_for = {};    ///< choices of the section's selector this key belongs to; empty for all
   std::vector<std::string_view> instead_of = {};  ///< keys this one excludes; any of them satisfies `required`
-  std::string_view about = {};                    ///< one line for people
-  std::string_view beyond = {};                   ///< what to do where a value must lie outside the range
-  std::string_view why_fixed = {};                ///< why devices cannot differ by it; empty: they can
-  std::string_view if_list = {};                  ///< quantity: what to do where a list is wanted
+  std::string_view about = {};                    ///< one line of description for people
+  std::string_view beyond = {};                   ///< advice where a value must lie outside the range
+  std::string_view why_fixed = {};                ///< reason why varied devices cannot vary it; empty where they can
+  std::string_view if_list = {};                  ///< quantity: advice where a list is wanted
   std::string_view like = {};                     ///< a value that a switch may have; empty: see example_of()
-  std::string_view unless = {};                   ///< the key in whose presence it is not required
-  const Section* (*part)() = nullptr;             ///< table, tables: the keys of one
+  std::string_view unless = {};                   ///< key in whose presence it is not required
+  const Section* (*part)() = nullptr;             ///< table, tables: the keys of one table
   Bound bound = {};
 
-  // What the makers of keys (config/schema/sections.h) leave open.
+  // Properties that the makers of keys (config/schema/sections.h) leave open.
   [[nodiscard]] Key needed() && { return required = true, std::move(*this); }
   [[nodiscard]] Key by_default(std::string_view toml) && { return fallback = toml, std::move(*this); }
   [[nodiscard]] Key of(std::vector<std::string_view> owners) && { return only_for = std::move(owners), std::move(*this); }
@@ -76,53 +77,53 @@ struct Key {
   [[nodiscard]] Key or_else(std::string_view advice) && { return beyond = advice, std::move(*this); }
   [[nodiscard]] Key such_as(std::string_view value) && { return like = value, std::move(*this); }
 
-  /// For messages: a value of this dimension that the key may have, such as "2 um": its own, or its default, or what is usual of
-  /// the dimension.
+  /// Returns a valid value of this dimension for messages, such as "2 um": the key's own example, its default, or a usual value
+  /// of the dimension.
   [[nodiscard]] std::string example_of(const Dimension& dimension) const;
-  /// The range for a value of this dimension: ends that `range` leaves open are those of the dimension.
+  /// Returns the range for a value of this dimension: ends that `range` leaves open are those of the dimension.
   [[nodiscard]] Range range_of(const Dimension& dimension) const;
-  /// No dimension is due: a TOML number is accepted as well.
+  /// True when the key has no dimension: a TOML number is accepted as well.
   [[nodiscard]] bool is_bare_number() const;
   [[nodiscard]] bool belongs_to(std::string_view choice) const;
 };
 
-/// An answer to an unknown key that has this word in it: the key that describes such a thing.
+/// An answer to an unknown key that contains this word: the key that describes such a thing.
 struct Advice {
   std::string_view word, text;
 };
 
 struct Section {
-  std::string_view name;         ///< empty: the keys above the first section
-  std::string_view entry = {};   ///< of a named section: the one NAME these keys are for; empty: every other one
-  bool is_named = false;         ///< [name.NAME], any number of them
-  bool may_be_named = false;     ///< [name], or [name.NAME] of several
-  std::string_view beside = {};  ///< a key that stands among the NAMEs and is read by code of its own
+  std::string_view name;         ///< name of the section; empty for the keys above the first section
+  std::string_view entry = {};   ///< NAME of a named section that these keys are for; empty: every other one
+  bool is_named = false;         ///< true for [name.NAME], any number of them
+  bool may_be_named = false;     ///< true for [name], or [name.NAME] of several
+  std::string_view beside = {};  ///< a key that stands among the NAMEs and is read by separate code
   bool required = false;
-  bool always_in_force = false;    ///< its defaults hold when the section is absent
-  bool may_vary = false;           ///< [spread] may name its numbers
-  std::string_view selector = {};  ///< the key whose choice decides which other keys there are
+  bool always_in_force = false;    ///< true when its defaults hold while the section is absent
+  bool may_vary = false;           ///< true when [spread] may name its numbers
+  std::string_view selector = {};  ///< key whose choice decides which other keys exist
   std::vector<Key> keys = {};
   std::string_view about = {};
   std::vector<Advice> advice = {};  ///< answers to unknown keys; the first that fits counts
-  /// Makes the part of the scene that the keys set, [section.NAME] being its name, and tells the number of an electrode. Null
-  /// where the keys set no member: waveforms, drivers and spread are read by code of their own.
+  /// Creates the part of the scene that the keys set, [section.NAME] being its name, and returns the number of an electrode.
+  /// Null where the keys set no member: separate code reads waveforms, drivers and spread.
   std::size_t (*begin)(Scene& scene, const SectionReader& in, std::string_view name) = nullptr;
-  /// Looks at what one key alone cannot decide, when the keys are set. Throws InvalidInput.
+  /// Checks what one key alone cannot decide, after the keys are set. Throws InvalidInput.
   void (*check)(Scene& scene, const SectionReader& in, std::size_t entry) = nullptr;
 
-  /// Null when there is none. Of keys with the same name the one that belongs to `choice` of the selector wins.
+  /// Returns the key, or null. The key that belongs to `choice` of the selector wins over others of its name.
   [[nodiscard]] const Key* find(std::string_view key, std::string_view choice = {}) const;
 };
 
-/// In the order of a written scene.
+/// Returns all sections in the order of a written scene.
 [[nodiscard]] const std::vector<Section>& schema();
-/// [name] or [name.ENTRY]. Null when there is none.
+/// Returns [name] or [name.ENTRY], or null.
 [[nodiscard]] const Section* find_section(std::string_view name, std::string_view entry = {});
 
-/// The key at a path whose parts may name elements of lists: {"structure", "sections[2]", "width"}. Null when there is none.
+/// Returns the key at a path whose parts may name elements of lists, or null: {"structure", "sections[2]", "width"}.
 [[nodiscard]] const Key* find_key(const std::vector<std::string>& path);
 
-/// " (did you mean 'thickness'?)" for a near miss, else " (known: a, b, c)"; empty when nothing is known.
+/// Returns " (did you mean 'thickness'?)" for a near miss, else " (known: a, b, c)"; empty when nothing is known.
 [[nodiscard]] std::string hint(std::string_view word, const std::vector<std::string_view>& known);
 
 }  // namespace softland::internal

@@ -14,7 +14,7 @@
 namespace softland::internal {
 namespace {
 
-/// `a length such as "2 um"`
+/// Returns for example `a length such as "2 um"`.
 std::string wanted(const Key& key) {
   switch (key.type) {
     case KeyType::text:
@@ -414,7 +414,7 @@ void SectionReader::set_members(Scene& scene, std::size_t entry) const {
     } else if (bound.element != nullptr) {
       for (std::size_t k = 0; k < quantities(name).size(); ++k) bound.element(scene, entry, k) = quantities(name)[k].value;
     } else if (bound.place != nullptr) {
-      if (is_word(name)) continue;  // the place that holds where none is said
+      if (is_word(name)) continue;  // the place for keys without a given one
       for (std::size_t k = 0; k < quantities(name).size(); ++k) bound.place(scene, entry, k) = place_of(quantities(name)[k]);
     } else if (bound.number != nullptr) {
       bound.number(scene, entry) = number(name);
@@ -431,7 +431,7 @@ void SectionReader::set_members(Scene& scene, std::size_t entry) const {
 }
 
 void SectionReader::require_of_structure(std::string_view key, std::string_view needed, const Structure& structure) const {
-  // The sections of a beam may have thicknesses of their own.
+  // Sections of a beam may have their own thicknesses.
   const bool may_lack =
       structure.is_rigid() || (needed == "thickness" && std::isnan(structure.thickness) && !structure.is_built());
   require(!may_lack || SectionReader(file_, "structure").is_given(needed), key,
@@ -451,7 +451,7 @@ std::string SectionReader::written_length(const Structure& structure) const {
 }
 
 void SectionReader::require_on_beam(std::string_view key, const Structure& beam) const {
-  constexpr double rounding = 1e-12;  // of a table in other units
+  constexpr double rounding = 1e-12;  // rounding of a table in other units
   const double length = beam.length;
   const std::vector<Quantity>& places = quantities(key);
   for (std::size_t k = 0; k + 1 < places.size(); k += 2) {

@@ -28,45 +28,45 @@ class SectionReader {
   /// or range. Keys that are not given take their defaults. `file` must outlive the reader.
   explicit SectionReader(const SceneFile::Impl& file, std::string_view section, std::string_view name = {});
 
-  /// The tables of a key that is in force: the one of a `table`, none where a word stands instead, or those of `tables`.
+  /// Returns the tables of a key in force: the one of a `table`, none where a word stands instead, or those of `tables`.
   [[nodiscard]] std::vector<SectionReader> parts(std::string_view key) const;
-  /// The table that holds the last key of a path below this one, as {"sections[2]", "holes", "pitch"}, and its number in the
-  /// list; none where there is no such table.
+  /// Returns the table that holds the last key of a path below this one, as {"sections[2]", "holes", "pitch"}, and its number
+  /// in the list; none where there is no such table.
   [[nodiscard]] std::optional<std::pair<SectionReader, std::size_t>> holder(std::span<const std::string> path,
                                                                             std::size_t entry = 0) const;
   [[nodiscard]] const std::vector<Key>& keys() const { return section_.keys; }
 
-  /// Whether the section stands in the file.
+  /// True when the section stands in the file.
   [[nodiscard]] bool is_present() const { return table_ != nullptr; }
-  /// Whether the key stands in the file.
+  /// True when the key stands in the file.
   [[nodiscard]] bool is_given(std::string_view key) const { return table_ && table_->contains(key); }
 
-  /// Whether the key is in force: given or with a default.
+  /// True when the key is in force: given or with a default.
   [[nodiscard]] bool has_value(std::string_view key) const { return values_.contains(key); }
-  /// The schema's entry of a key. Null when there is none.
+  /// Returns the schema's entry of a key, or null.
   [[nodiscard]] const Key* find(std::string_view key) const { return section_.find(key, choice_); }
 
-  /// The value or the default [SI unit]; NaN when there is neither.
+  /// Returns the value or the default [SI unit]; NaN without either.
   [[nodiscard]] double number(std::string_view key) const;
   [[nodiscard]] const std::vector<Quantity>& quantities(std::string_view key) const;
   [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
   [[nodiscard]] int integer(std::string_view key) const;
-  /// Whether a word stands where a number could.
+  /// True when a word stands where a number could.
   [[nodiscard]] bool is_word(std::string_view key) const;
-  /// True where the key has a list.
+  /// True when the key has a list.
   [[nodiscard]] bool is_list(std::string_view key) const { return is_given(key) && table_->get(key)->is_array(); }
-  /// Whether a list of lists stands there.
+  /// True when the key has a list of lists.
   [[nodiscard]] bool is_nested(std::string_view key) const;
   [[nodiscard]] bool flag(std::string_view key) const;
-  /// Of a text or a choice.
+  /// Returns the value of a text or a choice.
   [[nodiscard]] const std::string& text(std::string_view key) const;
   [[nodiscard]] const std::vector<std::string>& texts(std::string_view key) const;
 
-  /// Keys whose values are multiples of a pull-in voltage.
+  /// Returns the keys whose values are multiples of a pull-in voltage.
   [[nodiscard]] std::vector<std::string_view> keys_in_pull_in_units() const;
-  /// Every key that is in force with its TOML value: as written, or the default.
+  /// Returns every key in force with its TOML value: as written, or the default.
   [[nodiscard]] toml::table with_defaults() const;
-  /// The same with quantities in SI units: a value has one text, however it was written.
+  /// Returns the same with quantities in SI units: a value has one text, however it was written.
   [[nodiscard]] toml::table in_si_units() const;
 
   /// Sets the members of the scene that the keys in force are bound to; `entry` is the number of an electrode.
@@ -82,13 +82,13 @@ class SectionReader {
   void require_of_structure(std::string_view key, std::string_view needed, const Structure& structure) const;
   /// Throws InvalidInput unless the two lengths of this key increase and lie on the beam.
   void require_on_beam(std::string_view key, const Structure& beam) const;
-  /// Where the length of what moves is said, or how long it is.
+  /// Returns the written length of the moving structure for messages, or its value.
   [[nodiscard]] std::string written_length(const Structure& structure) const;
 
   [[nodiscard]] const SceneFile::Impl& file() const { return file_; }
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] std::string path(std::string_view key) const { return join_path(path_, key); }
-  /// `gap.electrode = "3.5 um"`
+  /// Returns for example `gap.electrode = "3.5 um"`.
   [[nodiscard]] std::string written(std::string_view key) const { return file_.written(path(key)); }
 
  private:

@@ -86,7 +86,7 @@ constexpr std::array drive_errors{
 };
 static_assert(is_complete<drive_errors>());
 
-/// The error of a drive that an entry of [spread] names. Throws InvalidInput unless it has this error.
+/// Returns the error of a drive that an entry of [spread] names. Throws InvalidInput unless the drive has this error.
 FoundKey find_drive_error(const SceneFile::Impl& file, const Device& device, const SectionReader& in,
                           const std::vector<std::string>& parts) {
   const std::string name = fmt::format("{}", fmt::join(parts, "."));
@@ -100,7 +100,7 @@ FoundKey find_drive_error(const SceneFile::Impl& file, const Device& device, con
   if (error == nullptr) fail(hint(parts[2], names_of(drive_errors)));
   const SectionReader of_drive(file, parts[0], parts[1]);
   const bool is_given = of_drive.is_present() && error->value != DriveError::jitter && of_drive.is_given(error->name);
-  // The jitter of edges is of either sign, and no key of a driver.
+  // The jitter of edges has either sign, and is not a key of a driver.
   const Key* const key = find_section(parts[0])->find(error->name);
   const Key any_value;
   const Key& ranged = error->value == DriveError::gain ? *key : any_value;
@@ -114,14 +114,14 @@ FoundKey find_drive_error(const SceneFile::Impl& file, const Device& device, con
           .dimensions = {error->dimension}};
 }
 
-/// Whether an end of a span is written as "tip".
+/// True when an end of a span is written as "tip".
 bool is_tip(const SceneFile::Impl& file, const std::vector<std::string>& path, std::size_t element) {
   const toml::node* node = file.find(path);
   const toml::node* end = node != nullptr && node->is_array() ? node->as_array()->get(element - 1) : nullptr;
   return end != nullptr && end->is_string() && end->as_string()->get() == tip;
 }
 
-/// The key that an entry of [spread] names. Throws InvalidInput unless it is a number that is in force in this scene.
+/// Returns the key that an entry of [spread] names. Throws InvalidInput unless it is a number in force in this scene.
 FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader& in, const std::string& name) {
   std::vector<std::string> parts;
   const auto [path, given_element] = without_element(name);
@@ -145,7 +145,7 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
     for (const Key& key : of_key.keys()) {
       const std::size_t size =
           key.bound.element != nullptr && of_key.has_value(key.name) ? of_key.quantities(key.name).size() : 0;
-      // A number of a list that belongs to something else is refused with the reason, too.
+      // A fixed number of a list is refused with the reason, too.
       const bool is_fixed_list = key.type == KeyType::quantities && !key.why_fixed.empty();
       const bool is_number =
           is_fixed_list                   ? true
@@ -197,7 +197,7 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
                                            hint(parts.back(), candidates)));
 }
 
-/// The numbers of an entry in the unit of what varies: of the one key, or of the factor.
+/// Converts the numbers of an entry to the unit of the variable: that of the one key, or of the factor.
 class Scale {
  public:
   Scale(const SectionReader& in, const std::vector<FoundKey>& keys) : in_(in), keys_(keys) {
@@ -225,17 +225,17 @@ class Scale {
 
   [[nodiscard]] bool is_factor() const { return is_factor_; }
   [[nodiscard]] bool is_added() const { return in_.is_given("weights"); }
-  /// The scene's value of what varies.
+  /// Returns the scene's value of the variable.
   [[nodiscard]] double nominal() const { return is_factor_ ? 1 : is_added() ? 0 : keys_.front().varied.nominal; }
   [[nodiscard]] double of(const Quantity& q) const {
     return is_factor_ || q.dimension != dimension::none ? q.value : q.value * keys_.front().varied.nominal;
   }
   [[nodiscard]] double of(std::string_view key) const { return of(in_.quantities(key).front()); }
-  /// The same of what cannot be negative.
+  /// Returns the size of a value that cannot be negative.
   [[nodiscard]] double width(std::string_view key) const { return std::abs(of(key)); }
   [[nodiscard]] double of(std::string_view key, double otherwise) const { return in_.is_given(key) ? of(key) : otherwise; }
 
-  /// One of the unit that values of a file are in.
+  /// Returns one unit of the values in a file.
   [[nodiscard]] Quantity unit() const {
     try {
       return parse_quantity("1 " + in_.text("unit"));
@@ -245,7 +245,7 @@ class Scale {
   }
 
  private:
-  // One amount in a unit is added to keys that have it.
+  // Checks weights: one amount in a unit is added to keys that have it.
   void check_weights() const {
     const std::vector<Quantity> weights = in_.quantities("weights");
     in_.require(weights.size() == keys_.size(), "weights",
@@ -260,7 +260,7 @@ class Scale {
                   fmt::format("one amount cannot be added to {} and {}", keys_.front().varied.name(), key.varied.name()));
     }
   }
-  // A plain number is a ratio, whatever the key; anything else must be of its dimension.
+  // A plain number is a ratio, whatever the key; any other value must have the key's dimension.
   void check(std::string_view key, const Dimension& given) {
     if (given == dimension::none) {
       ratio_ = key;
@@ -284,7 +284,7 @@ class Scale {
   std::string_view blamed_, ratio_;
 };
 
-/// The values of an empirical distribution that stand in a file, in its unit.
+/// Returns the values of an empirical distribution from a file, in its unit.
 std::vector<double> file_values(const SectionReader& in) {
   const std::string& name = in.text("file");
   in.require(!name.empty() && name.find('\0') == std::string::npos, "file", "must be the name of a file");
@@ -331,7 +331,7 @@ Distribution::Parameters parameters_of(const SectionReader& in, const Scale& sca
   return all;
 }
 
-/// The key of [spread.NAME] that sets a parameter of its distribution.
+/// Returns the key of [spread.NAME] that sets a parameter of its distribution.
 std::string_view key_of_parameter(const SectionReader& in, std::string_view parameter) {
   for (const std::string_view key :
        {parameter, std::string_view("cov"), std::string_view("half_width"), std::string_view("file")}) {
@@ -367,7 +367,7 @@ SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const st
                                          varied.unit.empty() ? "" : ": give it a standard_deviation in " + varied.unit));
     }
     if (varied.drive && varied.drive->error == DriveError::jitter) {
-      // Its value is no time, but what the times of the edges are drawn from.
+      // The value is not a time: the times of the edges are drawn from it.
       variable.is_drawn_per_edge = true;
       key.varied.refusal = [](double) { return std::string(); };
     }
@@ -388,7 +388,7 @@ SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const st
   return variable;
 }
 
-/// [[first, second, correlation], ...]
+/// Reads [[first, second, correlation], ...].
 void read_correlation(const SceneFile::Impl& file, DeviceSpread& spread) {
   const auto count = static_cast<Eigen::Index>(spread.variables.size());
   spread.correlation = Eigen::MatrixXd::Identity(count, count);
@@ -434,7 +434,7 @@ void read_correlation(const SceneFile::Impl& file, DeviceSpread& spread) {
   }
 }
 
-/// Two variables must not set one key.
+/// Checks that no two variables set the same key.
 void check_keys_once(const SceneFile::Impl& file, const DeviceSpread& spread) {
   std::set<std::string> seen;
   for (const SpreadVariable& variable : spread.variables) {

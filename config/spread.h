@@ -1,5 +1,5 @@
-// How manufactured devices differ from the drawing: which numbers of a scene vary, how they are distributed, and how they depend
-// on each other.
+// Process variation: how manufactured devices differ from the nominal design. It gives the varied numbers of a scene, their
+// distributions, and their correlations.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,9 +23,9 @@ struct Scene;
 /// An error of the source of a drive.
 enum class DriveError {
   gain,    ///< factor of its volts, nominally 1
-  offset,  ///< [V] from t = 0 on
-  delay,   ///< [s] of the whole waveform
-  jitter,  ///< [s] of every edge on its own
+  offset,  ///< offset from t = 0 on [V]
+  delay,   ///< delay of the whole waveform [s]
+  jitter,  ///< delay of every edge on its own [s]
 };
 
 struct VariedDrive {
@@ -35,60 +35,60 @@ struct VariedDrive {
 
 /// A number of a scene that varies from device to device.
 struct VariedKey {
-  std::string path;            ///< "structure.thickness", "driver.main.gain"
-  std::size_t element = 0;     ///< of a list, counted from 1; 0: it is none
+  std::string path;            ///< path of the key: "structure.thickness", "driver.main.gain"
+  std::size_t element = 0;     ///< element of a list, counted from 1; 0 for a key without a list
   std::string unit;            ///< SI unit
   double nominal = 0;          ///< the scene's value
-  Dimension measured_in = {};  ///< among the dimensions that the key may have
-  double weight = 1;           ///< of an amount that is added to the value
-  /// The member of a scene with the same sections. Null where the key sets no member by itself: then the scene has to be read
-  /// anew with this value.
+  Dimension measured_in = {};  ///< dimension of its values, one of those that the key may have
+  double weight = 1;           ///< weight of an amount that is added to the value
+  /// Returns the member of a scene with the same sections. Null where the key sets no member by itself: the scene must then be
+  /// read anew with this value.
   std::function<double&(Scene&)> member;
-  /// Of an error of a drive, which is no key of the scene and has no member.
+  /// Error of a drive; it is not a key of the scene and has no member.
   std::optional<VariedDrive> drive;
-  /// Why a device cannot have this value; empty where it can.
+  /// Returns the reason why a device cannot have this value; empty where it can.
   std::function<std::string(double)> refusal;
 
-  /// "electrode.main.span[2]"
+  /// Returns for example "electrode.main.span[2]".
   [[nodiscard]] std::string name() const { return element == 0 ? path : path + "[" + std::to_string(element) + "]"; }
 };
 
 /// A quantity that varies, with the keys that follow it.
 struct SpreadVariable {
-  std::string name;  ///< of its entry in [spread]
+  std::string name;  ///< name of its entry in [spread]
   std::vector<VariedKey> keys;
-  bool is_factor = true;  ///< it multiplies the scene's values; else it is the value of its one key, or
-  bool is_added = false;  ///< is added to the scene's values, times the weights of the keys
+  bool is_factor = true;  ///< true when it multiplies the scene's values; otherwise it is the value of its one key, or
+  bool is_added = false;  ///< true when it is added to the scene's values, times the weights of the keys
   Distribution distribution;
-  /// Of jitter: the distribution is that of every edge of every device. What a device has is a number in (0, 1), from which the
-  /// generator draws for its edges.
+  /// True for jitter: the distribution is that of every edge of every device. The value of a device is a number in (0, 1), from
+  /// which the generator draws for its edges.
   bool is_drawn_per_edge = false;
 
-  /// What the scene itself has [SI unit, or factor].
+  /// Returns the value in the scene itself [SI unit, or factor].
   [[nodiscard]] double nominal() const { return is_factor ? 1 : is_added ? 0 : keys.front().nominal; }
 };
 
 struct DeviceSpread {
-  std::vector<SpreadVariable> variables;  ///< by name
-  Eigen::MatrixXd correlation;            ///< of the underlying normals, variables x variables
-  std::optional<GaussianCopula> copula;   ///< none where all are independent
+  std::vector<SpreadVariable> variables;  ///< varied quantities, by name
+  Eigen::MatrixXd correlation;            ///< correlation of the underlying normals, variables x variables
+  std::optional<GaussianCopula> copula;   ///< none where all variables are independent
 
   [[nodiscard]] bool empty() const { return variables.empty(); }
-  /// Whether there are errors of drives among what varies.
+  /// True when errors of drives are among the variables.
   [[nodiscard]] bool varies_drives() const;
-  /// Takes a variable out, with its correlations.
+  /// Removes a variable, with its correlations.
   void leave_out(std::size_t variable);
   /// Gives the variables this correlation. Throws as GaussianCopula does.
   void correlate(const Eigen::MatrixXd& matrix);
   /// Turns a point of the open unit cube into values of the variables [SI unit, factor, or for jitter a number in (0, 1)], in
   /// place.
   void to_values(std::span<double> u) const;
-  /// The value of a key where its variable has the value `x` [SI unit].
+  /// Returns the value of a key where its variable has the value `x` [SI unit].
   [[nodiscard]] static double value(const SpreadVariable& variable, const VariedKey& key, double x) {
     if (variable.is_added) return key.nominal + key.weight * x;
     return variable.is_factor ? key.nominal * x : x;
   }
-  /// The time by which an edge is late [s], where the value of its variable is `x`; edges are numbered over all drives.
+  /// Returns the delay of an edge [s] where the value of its variable is `x`; edges are numbered over all drives.
   [[nodiscard]] static double jitter(const SpreadVariable& variable, double x, std::uint64_t edge);
 };
 

@@ -1,4 +1,4 @@
-// [spread] of a scene: from text to distributions. Internal to config/.
+// Reads [spread] of a scene into distributions. Internal to config/.
 #pragma once
 
 #include "config/scene.h"
@@ -6,10 +6,10 @@
 
 namespace softland::internal {
 
-/// Sets scene.spread; everything else of the scene has been read. Throws InvalidInput.
+/// Sets scene.spread after everything else of the scene has been read. Throws InvalidInput.
 void read_spread(Scene& scene, const SceneFile::Impl& file);
 
-/// [spread] with every default written out, and the values of a file instead of its name; empty where there is none.
+/// Returns [spread] with every default written out, and the values of a file instead of its name; empty without [spread].
 [[nodiscard]] toml::table resolved_spread(const SceneFile::Impl& file);
 
 }  // namespace softland::internal

@@ -1,4 +1,4 @@
-// A quantity that was told beside a scene, by an option.
+// A quantity given beside a scene, by an option.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,8 +12,8 @@
 
 namespace softland {
 
-/// Of this dimension, at least 0 [SI unit]. Throws InvalidRequest that names `what`, such as requested("marker"), the text and
-/// the rule.
+/// Reads a quantity of this dimension, at least 0 [SI unit]. Throws InvalidRequest that names `what`, such as
+/// requested("marker"), the text and the rule.
 [[nodiscard]] inline double told_quantity(std::string_view what, const std::string& text, const Dimension& due) {
   Quantity given;
   try {

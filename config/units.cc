@@ -20,7 +20,7 @@ struct Symbol {
   Dimension dimension;
   int exponent = 0;  ///< power of ten to SI
   bool takes_prefix = false;
-  double factor = 1;  ///< what no power of ten can say
+  double factor = 1;  ///< factor that is not a power of ten
 };
 
 constexpr std::array symbols{
@@ -60,7 +60,7 @@ constexpr std::array prefixes{Prefix{'y', -24}, Prefix{'z', -21}, Prefix{'a', -1
                               Prefix{'p', -12}, Prefix{'n', -9},  Prefix{'u', -6},  Prefix{'m', -3},
                               Prefix{'k', 3},   Prefix{'M', 6},   Prefix{'G', 9},   Prefix{'T', 12}};
 
-/// Characters of print, which reports and other programs use, and what the grammar calls them.
+/// Printed characters, as in reports and other programs, and their form in the grammar.
 struct Spelling {
   std::string_view printed;
   std::string_view plain;
@@ -77,7 +77,7 @@ constexpr std::array spellings{Spelling{"\u00b5", "u"},   // micro sign
 std::string plainly_spelt(std::string_view text) {
   std::string plain(text);
   const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
-  if (std::all_of(plain.begin(), plain.end(), is_ascii)) return plain;  // long lists of numbers are
+  if (std::all_of(plain.begin(), plain.end(), is_ascii)) return plain;  // fast path for long lists of numbers
   for (const Spelling& spelling : spellings) {
     for (auto at = plain.find(spelling.printed); at != std::string::npos; at = plain.find(spelling.printed, at)) {
       plain.replace(at, spelling.printed.size(), spelling.plain);
@@ -140,7 +140,7 @@ const Name* find_name(const Dimension& dimension) {
   return nullptr;
 }
 
-/// A unit's meaning: value [SI] = number * 10^exponent * factor.
+/// The meaning of a unit: value [SI] = number * 10^exponent * factor.
 struct Scale {
   Dimension dimension;
   int exponent = 0;
@@ -182,7 +182,7 @@ int parse_power(std::string_view text, std::string_view factor) {
   return power;
 }
 
-/// Whether a digit after this factor is its power: "m3" is a volume, and no symbol ends with a digit.
+/// True when a digit after this factor is its power: "m3" is a volume, and no symbol ends with a digit.
 bool has_digit_power(std::string_view factor) {
   if (factor.empty() || factor.back() < '2' || factor.back() > '9') return false;
   const auto unit = look_up(factor.substr(0, factor.size() - 1));
@@ -226,7 +226,7 @@ void apply_factors(Scale& scale, std::string_view text, int sign, std::string_vi
   }
 }
 
-/// Samples per second: S alone is siemens, of which nothing has a rate.
+/// Reads samples per second: S alone is siemens, and no quantity is siemens per second.
 std::optional<Scale> sample_rate(std::string_view unit) {
   const auto slash = unit.find('/');
   if (slash == std::string_view::npos || trim(unit.substr(slash + 1)) != "s") return std::nullopt;
@@ -252,7 +252,7 @@ Scale parse_unit(std::string_view unit) {
   return scale;
 }
 
-/// Length of the decimal number at the beginning of `text`; 0 if there is none.
+/// Returns the length of the decimal number at the beginning of `text`; 0 without a number.
 std::size_t number_length(std::string_view text) {
   std::size_t i = 0;
   const auto digits = [&] {
@@ -275,10 +275,10 @@ std::size_t number_length(std::string_view text) {
   return i;
 }
 
-/// Whether a unit may follow a number at once: "100um", but neither "2,5 um" nor "1_000 um".
+/// True when a unit may follow a number at once: "100um", but neither "2,5 um" nor "1_000 um".
 bool begins_unit(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%'; }
 
-/// number * 10^exponent, rounded once.
+/// Returns number * 10^exponent, rounded once.
 double scaled_number(std::string_view number, int exponent) {
   if (number.starts_with('+')) number.remove_prefix(1);
   const auto e = number.find_first_of("eE");
@@ -369,7 +369,7 @@ std::string percent_text(double value) {
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific).ptr;
   const std::string_view text(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
   const auto e = text.find('e');
-  int exponent = 0;  // from_chars knows no leading plus
+  int exponent = 0;  // from_chars accepts no leading plus
   std::from_chars(text.data() + e + (text[e + 1] == '+' ? 2 : 1), end, exponent);
   return exponent == -2 ? fmt::format("{} %", text.substr(0, e)) : fmt::format("{}e{} %", text.substr(0, e), exponent + 2);
 }

@@ -1,11 +1,11 @@
-// Quantities as text: "2 um", "1.86e-5 Pa s", "19300 kg/m^3", "15 %". Converted to SI once, here.
+// Quantities as text: "2 um", "1.86e-5 Pa s", "19300 kg/m^3", "15 %". They are converted to SI once, here.
 //
 // Grammar: number SPACE unit; the space may be missing before a letter or %. A unit is factors joined by spaces or `*`, with at
-// most one `/`; every factor after the `/` divides. A factor is a prefix (y z a f p n u m k M G T), a symbol and an integer power
-// `^n`; the whole numerator may be `1`. A text without unit is a plain number. S/s, with a prefix, are samples per second, as the
-// makers of converters write it. An exact symbol wins over prefix + symbol: "Pa s" is pascal second, "m Pa" metre pascal, "mPa"
-// millipascal. The spellings of print are read as well: µ (micro sign or Greek mu) for u, the no-break space, the minus sign, the
-// middle dot, ² and ³. So whatever softland prints as a quantity can be read again.
+// most one `/`; every factor after the `/` divides. A factor is a prefix (y z a f p n u m k M G T), a symbol and an integer
+// power `^n`; the whole numerator may be `1`. A text without unit is a plain number. S/s, with a prefix, are samples per
+// second, as the makers of converters write it. An exact symbol wins over prefix + symbol: "Pa s" is pascal second, "m Pa"
+// metre pascal, "mPa" millipascal. Printed spellings are read as well: µ (micro sign or Greek mu) for u, the no-break space,
+// the minus sign, the middle dot, ² and ³. So whatever softland prints as a quantity can be read again.
 //
 // Prefixes and `%` move the decimal exponent of the number before it is rounded, so that "2 um" is the double nearest to 2e-6,
 // and a number in SI base units is read bit for bit.
@@ -17,8 +17,8 @@
 
 namespace softland {
 
-/// Powers of m, kg, s, A, K, rad, Vsp, Vdp. An angle is a dimension, so that rad/s and Hz cannot be mixed up; so are the pull-in
-/// voltages of an electrode, whose volts are known only later.
+/// Powers of m, kg, s, A, K, rad, Vsp, Vdp. An angle is a dimension, so that rad/s and Hz cannot be mixed up. The pull-in
+/// voltages of an electrode are dimensions too: their volts are known only later.
 struct Dimension {
   std::array<int, 8> powers{};
   friend bool operator==(const Dimension&, const Dimension&) = default;
@@ -67,23 +67,24 @@ struct Quantity {
   Dimension dimension;
 };
 
-/// Throws InvalidInput with the broken rule only ("unknown unit 'u'"): the caller knows which key it was. The value is finite.
+/// Reads a quantity; its value is finite. Throws InvalidInput with the broken rule only ("unknown unit 'u'"): the caller adds
+/// the key.
 [[nodiscard]] Quantity parse_quantity(std::string_view given);
 
-/// The SI symbol: "m", "kg/m^3"; empty for a plain number; base units where there is no usual name.
+/// Returns the SI symbol: "m", "kg/m^3"; empty for a plain number; base units where no usual name exists.
 [[nodiscard]] std::string unit_symbol(const Dimension& dimension);
-/// For messages: "a length", "a plain number".
+/// Returns a noun for messages: "a length", "a plain number".
 [[nodiscard]] std::string_view noun(const Dimension& dimension);
-/// For messages: "a length [m]", "a plain number".
+/// Returns a description for messages: "a length [m]", "a plain number".
 [[nodiscard]] std::string describe(const Dimension& dimension);
-/// For messages: a text of this dimension, such as "2 um"; empty where there is no usual name.
+/// Returns an example for messages, a text of this dimension such as "2 um"; empty where no usual one exists.
 [[nodiscard]] std::string_view example(const Dimension& dimension);
 
-/// The shortest decimal text that reads back to the same bits.
+/// Returns the shortest decimal text that reads back to the same bits.
 [[nodiscard]] std::string number_text(double value);
-/// "2e-06 m": reads back to the same bits. `value` [SI unit of `dimension`].
+/// Returns "2e-06 m", which reads back to the same bits. `value` [SI unit of `dimension`].
 [[nodiscard]] std::string quantity_text(double value, const Dimension& dimension);
-/// "1.5e1 %" of 0.15: reads back to the same bits.
+/// Returns "1.5e1 %" for 0.15, which reads back to the same bits.
 [[nodiscard]] std::string percent_text(double value);
 
 }  // namespace softland

@@ -46,7 +46,7 @@ const Section* holes_keys() {
   return &keys;
 }
 
-// The ends of a linear width.
+// Returns the ends of a linear width.
 double& width_of_section(Scene& scene, std::size_t number, std::size_t element) {
   SectionPart& part = section_part(scene, number);
   return element == 0 ? part.width : part.end_width;

@@ -44,7 +44,8 @@ Key conduction_key(std::string_view name, const Dimension& dimension, Range rang
   return key;
 }
 
-// Resistance of the closed contact: see model/contact/resistance.h. The hardness of a law that has one is its own key.
+// Keys of the resistance of the closed contact: see model/contact/resistance.h. A law that has a hardness has its own key for
+// it.
 std::vector<Key> conduction_keys() {
   Key hardness =
       conduction_key<&Conduction::hardness>("hardness", dimension::pressure, positive,

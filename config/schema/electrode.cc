@@ -42,7 +42,7 @@ UniformAsperities& asperities(Scene& scene, std::size_t k) {
   return *one;
 }
 
-/// The keys of asperities on the face, which take no energy.
+/// Returns the keys of asperities on the face, which take no energy.
 std::vector<Key> asperity_keys() {
   std::vector<Key> keys;
   const auto add = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) {
@@ -116,7 +116,7 @@ std::size_t begin_electrode(Scene& scene, const SectionReader&, std::string_view
   return scene.device.electrodes.size() - 1;
 }
 
-/// A plate counts the length that gives the electrode's area.
+/// Sets the extent of a plate's electrode: the length that gives its area.
 void check_extent(const Structure& s, Electrode& e, const SectionReader& in) {
   if (s.is_rigid()) {
     in.require(!in.is_given("span"), "span", "belongs to a beam; the electrode of a plate has an area");
@@ -136,7 +136,7 @@ void check_extent(const Structure& s, Electrode& e, const SectionReader& in) {
 void check_fringing(const Structure& s, const Electrode& e, const SectionReader& in) {
   const FringingRow& law = row_of(fringing_laws, e.fringing);
   const SectionReader structure(in.file(), "structure");
-  // The sections of a beam may have thicknesses of their own: the field takes the local one.
+  // Sections of a beam may have their own thicknesses: the field takes the local one.
   const bool lacks_thickness = law.needs_thickness && std::isnan(s.thickness) && !s.is_built();
   const std::string fringing =
       fmt::format("fringing = {}{}", toml_string(law.name), in.is_given("fringing") ? "" : ", the default,");
@@ -149,7 +149,7 @@ void check_fringing(const Structure& s, const Electrode& e, const SectionReader&
   }
 }
 
-/// The face of a dielectric on which a beam lands is the contact of the scene.
+/// Makes the face of a dielectric on which a beam lands the contact of the scene.
 void check_landing(Device& d, const Electrode& e, const SectionReader& in) {
   if (!e.dielectric || !e.dielectric->landing) return;
   const SectionReader gap(in.file(), "gap");

@@ -13,7 +13,7 @@ namespace {
 Gap& gap(Scene& scene, std::size_t) { return scene.device.gap; }
 using OfGap = Of<gap>;
 
-/// A plate lands where every electrode has a dielectric.
+/// True when every electrode has a dielectric, on which a plate may land.
 bool may_land(const Structure& structure, const SceneFile::Impl& file) {
   const std::vector<std::string> electrodes = file.names_in("electrode");
   return structure.is_rigid() && !electrodes.empty() && std::ranges::all_of(electrodes, [&](const std::string& name) {
@@ -21,7 +21,7 @@ bool may_land(const Structure& structure, const SceneFile::Impl& file) {
          });
 }
 
-/// The face of a dielectric is where the beam lands.
+/// True when the beam lands on the face of a dielectric.
 bool has_landing(const SceneFile::Impl& file) {
   return std::ranges::any_of(file.names_in("electrode"), [&](const std::string& name) {
     return file.find({"electrode", name, "dielectric", "landing"}) != nullptr;
@@ -43,7 +43,7 @@ void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
     return;
   }
   in.require(gap.contact < gap.electrode, "contact", "must be less than " + in.written("electrode"));
-  // A run that comes within a hundredth of the electrode gap of the electrode has failed: see Switch::gap_floor().
+  // A run has failed when it comes within a hundredth of the electrode gap of the electrode: see Switch::gap_floor().
   constexpr double most = 0.99;
   in.require(gap.contact < most * gap.electrode, "contact",
              fmt::format("must be less than {:g} times {}: nearer than a hundredth of that gap no force law holds", most,

@@ -17,12 +17,12 @@
 
 namespace softland::internal {
 
-/// The number that the law in force has under the key of field i of `Law`; `part` gives the variant of a scene.
+/// Returns the number that the law in force has under the key of field i of `Law`; `part` gives the variant of a scene.
 template <auto part, class Law, std::size_t i>
 [[nodiscard]] double& bound_number(Scene& scene, std::size_t entry) {
   return *number_of(part(scene, entry), fields_of<Law>[i].key);
 }
-/// Sets what the law in force has under the key of field i of `Law` by a word.
+/// Sets by a word what the law in force has under the key of field i of `Law`.
 template <auto part, class Law, std::size_t i>
 void bound_word(Scene& scene, std::size_t entry, std::string_view word) {
   std::visit(
@@ -34,7 +34,7 @@ void bound_word(Scene& scene, std::size_t entry, std::string_view word) {
       part(scene, entry));
 }
 
-/// The key that a field describes, without the member that it sets.
+/// Returns the key that a field describes, without the member that it sets.
 template <class Owner>
 [[nodiscard]] Key described(const Field<Owner>& field) {
   Key key{.name = field.key,
@@ -76,7 +76,8 @@ template <auto part, class Law, std::size_t i>
   return key;
 }
 
-/// The key `model`, and after it the keys of all laws, each with the laws it belongs to, in an order that every law agrees with.
+/// Returns the key `model`, then the keys of all laws, each with the laws it belongs to, in an order that every law agrees
+/// with.
 template <class Variant, auto part>
 [[nodiscard]] std::vector<Key> keys_of_laws(std::string_view about) {
   Key model{.name = "model", .type = KeyType::choice, .required = true, .about = about};
@@ -97,7 +98,7 @@ template <class Variant, auto part>
   return keys;
 }
 
-/// The law that a section names, with its defaults. Throws InvalidInput where a word is refused.
+/// Returns the law that a section names, with its defaults. Throws InvalidInput where a word is refused.
 template <class Variant>
 [[nodiscard]] Variant law_of(const SectionReader& in) {
   const Variant law = *law_named<Variant>(in.text("model"));

@@ -25,7 +25,7 @@ Key connection_key() {
   return key;
 }
 
-// Which contacts make the connection, and whether it needs all of them.
+// Sets the contacts that make the connection, and whether it needs all of them.
 void set_connection(Device& d, const SectionReader& in) {
   if (!in.is_given("closed")) return;
   const bool is_list = in.is_list("closed");
@@ -46,8 +46,8 @@ void set_connection(Device& d, const SectionReader& in) {
   for (Contact& c : d.contacts) c.connects = std::ranges::find(given, c.name) != given.end();
 }
 
-// The first contact closes the switch and is what statics are about. The order must not depend on that of the file: those that
-// make the connection come first, back stops last, and of equals the outermost and then the nearest.
+// The first contact closes the switch, and statics concern it. The order must not depend on that of the file. Contacts that
+// make the connection come first, back stops last, and among equals the outermost and then the nearest.
 void order_contacts(Device& d) {
   if (d.contacts.size() < 2) return;
   d.contacts.front().gap = d.gap.contact;

@@ -13,12 +13,12 @@
 namespace softland::internal {
 namespace {
 
-/// The sizes [SI unit] that a quantity of a dimension can have in a scene: far beyond any switch, and so that no product of a few
-/// of them leaves double precision.
+/// The sizes [SI unit] that a quantity of a dimension can have in a scene. They are far beyond any switch, and no product of a
+/// few of them leaves double precision.
 struct Extent {
   Dimension dimension;
-  double smallest;  ///< of what must be positive
-  double largest;   ///< in absolute value
+  double smallest;  ///< smallest value of a positive quantity
+  double largest;   ///< largest absolute value
 };
 constexpr std::array extents{
     Extent{dimension::none, 1e-12, 1e12},
@@ -52,7 +52,7 @@ constexpr std::array extents{
     Extent{dimension::damping, 1e-18, 1e6},
 };
 
-/// Edits (insertion, deletion, substitution, swap of neighbours) from `a` to `b`.
+/// Returns the number of edits (insertion, deletion, substitution, swap of neighbours) from `a` to `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
@@ -86,7 +86,7 @@ Range Key::range_of(const Dimension& dimension) const {
 std::string Key::example_of(const Dimension& dimension) const {
   if (dimension == dimensions.front()) {
     if (!like.empty()) return std::string(like);
-    // The default as TOML is a text in quotes; what is 0 or no quantity tells nothing.
+    // The default as TOML is a quoted text; a default that is 0 or not a quantity is no example.
     if (type == KeyType::quantity && fallback.starts_with('\'') && !fallback.starts_with("'0 "))
       return std::string(fallback.substr(1, fallback.size() - 2));
   }
@@ -143,12 +143,12 @@ const Key* find_key(const std::vector<std::string>& path) {
 
 std::string hint(std::string_view word, const std::vector<std::string_view>& known) {
   if (known.empty()) return {};
-  constexpr std::size_t longest_word = 64;  // a longer one is no slip of the pen, and the distance costs the product of lengths
+  constexpr std::size_t longest_word = 64;  // a longer one is not a typing error, and the distance costs the product of lengths
   if (word.size() <= longest_word) {
     const auto distance = [&](std::string_view name) { return edit_distance(word, name); };
     const auto nearest = *std::min_element(known.begin(), known.end(), [&](auto a, auto b) { return distance(a) < distance(b); });
     if (distance(nearest) <= std::max<std::size_t>(2, nearest.size() / 3)) return fmt::format(" (did you mean '{}'?)", nearest);
-    // "poisson" of poissons_ratio: a word that only one name begins with.
+    // A word may begin exactly one name: "poisson" of poissons_ratio.
     constexpr std::size_t shortest_beginning = 4;
     const auto is_begun = [&](std::string_view name) { return word.size() >= shortest_beginning && name.starts_with(word); };
     if (std::ranges::count_if(known, is_begun) == 1)

@@ -21,7 +21,7 @@ inline constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
 /// An electrode's voltages may be multiples of its pull-in voltages.
 inline const std::vector<Dimension> drive_voltage{dimension::voltage, dimension::static_pull_in, dimension::dynamic_pull_in};
 
-/// A number that sets no member.
+/// Returns the key of a number that sets no member.
 [[nodiscard]] inline Key number(std::string_view name, std::vector<Dimension> dimensions, Range range, std::string_view about) {
   return {.name = name, .dimensions = std::move(dimensions), .range = range, .about = about};
 }
@@ -37,7 +37,8 @@ inline const std::vector<Dimension> drive_voltage{dimension::voltage, dimension:
   return {.name = name, .type = KeyType::choice, .choices = std::move(choices), .about = about};
 }
 
-/// Keys that set members of one part of a scene: `part` gives it, Structure& of a Scene& and the number of an electrode, say.
+/// Keys that set members of one part of a scene: `part` returns it, for example a Structure& of a Scene& and the number of an
+/// electrode.
 template <auto part>
 struct Of {
   template <auto member>
@@ -46,7 +47,7 @@ struct Of {
     key.bound.number = [](Scene& scene, std::size_t entry) -> double& { return part(scene, entry).*member; };
     return key;
   }
-  /// Begin and end: lengths, percentages of the beam's length, or its tip.
+  /// Returns the key of begin and end: lengths, percentages of the beam's length, or its tip.
   template <auto first, auto last>
   [[nodiscard]] static Key span(std::string_view name, std::string_view about) {
     Key key = internal::numbers(name, {dimension::length, dimension::none}, not_negative, about);
@@ -57,7 +58,7 @@ struct Of {
     };
     return key;
   }
-  /// The same of one or several pads.
+  /// Returns the key of the spans of one or several pads.
   template <auto first, auto last, auto further>
   [[nodiscard]] static Key spans(std::string_view name, std::string_view about) {
     Key key = span<first, last>(name, about);
@@ -77,7 +78,7 @@ struct Of {
                                                                    return part(scene, entry).*member;
                                                                  }}};
   }
-  /// One of the names in a table.
+  /// Returns the key of one of the names in a table.
   template <const auto& rows, auto member>
   [[nodiscard]] static Key choice(std::string_view name, std::string_view about) {
     Key key = one_of(name, names_of(rows), about);
@@ -88,11 +89,11 @@ struct Of {
   }
 };
 
-/// The keys of a beam's sections, layers and anchors.
+/// Returns the keys of a beam's sections, layers and anchors.
 [[nodiscard]] std::vector<Key> beam_part_keys();
 inline constexpr std::string_view dielectric_advice =
     "'dielectric' describes an insulator on the electrode: dielectric = { thickness = \"0.2 um\", permittivity = 7.6 }";
-/// Answers to unknown keys of [structure] that these describe, or a rest shape.
+/// Returns answers to unknown keys of [structure] that these, or a rest shape, describe.
 [[nodiscard]] std::vector<Advice> part_advice();
 
 [[nodiscard]] Section title_section();
@@ -104,7 +105,7 @@ inline constexpr std::string_view dielectric_advice =
 [[nodiscard]] Section piezo_section();
 [[nodiscard]] Section dispersion_section();
 [[nodiscard]] Section surface_section();
-/// Of every drive without a section of its own, which is that of the force factor.
+/// Returns the section of every drive without a section of its own; only the force factor has one.
 [[nodiscard]] Section waveform_section();
 [[nodiscard]] Section force_factor_section();
 [[nodiscard]] Section calibration_section();

@@ -6,7 +6,7 @@
 namespace softland::internal {
 namespace {
 
-/// In the unit of the key, or a ratio to the scene's value.
+/// Returns a number in the unit of the key, or a ratio to the scene's value.
 Key of_the_key(std::string_view name, std::string_view about) { return number(name, {}, any, about); }
 
 }  // namespace

@@ -20,7 +20,7 @@
 namespace softland::internal {
 namespace {
 
-/// The key of field i of a kind.
+/// Returns the key of field i of a kind.
 template <class Kind, std::size_t i>
 Key key_of_structure() {
   constexpr const Field<Structure>& field = structure_fields<Kind>[i];
@@ -39,7 +39,7 @@ bool is_same(const Key& a, const Key& b) {
   return a.name == b.name && a.about == b.about && a.required == b.required && a.why_fixed == b.why_fixed && a.words == b.words;
 }
 
-/// Keys that say more of a kind than its fields do: they stand before those.
+/// Returns keys that describe a kind in addition to its fields: they stand before those.
 template <class Kind>
 std::vector<Key> further_keys() {
   if constexpr (std::is_same_v<Kind, ModalStructure>) return modal_table_keys();
@@ -47,7 +47,7 @@ std::vector<Key> further_keys() {
   return {};
 }
 
-/// `kind`, and the keys of all kinds, each with those that it belongs to: none where it belongs to all of them.
+/// Returns `kind`, and the keys of all kinds, each with the kinds that it belongs to; keys that belong to all have none.
 std::vector<Key> structure_keys() {
   std::vector<Key> keys;
   const auto add = [&](Key key, std::string_view kind) {
@@ -71,7 +71,7 @@ std::vector<Key> structure_keys() {
 
 void check(Plate&, Structure& s, Scene&, const SectionReader& in) {
   const double area = in.number("area");
-  // Where no law needs its width a plate is as good as square.
+  // A plate counts as square where no law needs its width.
   if (!in.is_given("width")) s.width = std::sqrt(area);
   s.length = area / s.width;
   s.modes = 1;

@@ -6,7 +6,7 @@
 namespace softland::internal {
 namespace {
 
-/// The keys of one parameter of a family: two where it may be given in another way.
+/// Returns the keys of one parameter of a family: two where it may be given in another way.
 template <class Family>
 std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<Dimension>& level, bool factor) {
   Key key = std::holds_alternative<double Family::*>(parameter.member) ? number(parameter.name, level, any, parameter.about)
@@ -24,7 +24,7 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
       if (!key.required) key.fallback = factor ? "1.0" : "'0 V'";
       break;
     case ParameterKind::swing:
-      if (!factor) key.dimensions.push_back(dimension::none);  // a percentage
+      if (!factor) key.dimensions.push_back(dimension::none);  // allows a percentage
       break;
     case ParameterKind::time:
       take(dimension::time, not_negative, "'0 s'");
@@ -49,7 +49,7 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
   return {std::move(key)};
 }
 
-/// What a file of an instrument does not say.
+/// Returns keys for what a file of an instrument does not contain.
 std::vector<Key> keys_beside_file() {
   Key column{.name = file_keys::column,
              .type = KeyType::integer,
@@ -82,7 +82,8 @@ std::vector<Key> keys_beside_file() {
   return keys;
 }
 
-/// Waveforms of the drive `entry`, or of all without a section of their own, with levels of these dimensions.
+/// Returns the section for waveforms of the drive `entry`, or of all drives without a section of their own, with levels of
+/// these dimensions.
 Section section_of(std::string_view entry, const std::vector<Dimension>& level, std::string_view about) {
   std::vector<std::string_view> names;
   std::vector<Key> keys{one_of("family", {}, "shape of the voltage against time").needed(),
