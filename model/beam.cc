@@ -24,9 +24,9 @@ namespace {
 
 constexpr int functions = element_functions;
 constexpr int shortest_count = 6;     // elements over the length, at least
-constexpr double least_pivot = 2e-3;  // of the elimination: it magnifies the rounding by its inverse
+constexpr double least_pivot = 2e-3;  // smallest pivot of the elimination, which magnifies the rounding by its inverse
 
-// Combinations of the functions that the support permits, orthonormal in the elastic energy.
+// Returns combinations of the functions that the support permits, orthonormal in the elastic energy.
 Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) {
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(slopes.rows(), slopes.rows());
   if (beam.far_clamp) basis = orthogonal_complement(end);
@@ -40,25 +40,25 @@ Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::Matrix
   return basis;
 }
 
-// What a linear rigidity adds to the bending energy between the functions m and m + 1 of an element whose taper is 1: the
-// integral of xi and two neighbours of the normalised Legendre polynomials.
+// Returns what a linear rigidity adds to the bending energy between the functions m and m + 1 of an element whose taper is 1:
+// the integral of xi and two neighbours of the normalised Legendre polynomials.
 double taper_coupling(int m) { return (m + 1) / std::sqrt((2 * m + 1.0) * (2 * m + 3.0)); }
 
-// The phase of a mode over the beam where it bends as waves do that travel along it, and what it grows by with omega^2. It hardly
-// changes from a beam to a similar one.
+// The phase of a mode over the beam if it bends as waves do that travel along it, and its growth with omega^2. It hardly
+// changes between similar beams.
 struct WavePhase {
   double value = 0, slope = 0;
   WavePhase(const NormalisedModes::Beam& beam, double square) {
     for (const NormalisedModes::Beam::Section& s : beam.sections) {
       const double n = beam.axial_force / (2 * s.rigidity), root = std::sqrt(n * n + s.mass * square / s.rigidity);
-      const double number = std::sqrt(root - n);  // of waves: EI k^4 + N k^2 = mu omega^2
+      const double number = std::sqrt(root - n);  // wave number: EI k^4 + N k^2 = mu omega^2
       value += (s.end - s.begin) * number;
       slope += (s.end - s.begin) * s.mass / (4 * s.rigidity * root * number);
     }
   }
 };
 
-// omega^2 of a mode, roughly, from that of a similar beam.
+// Estimates omega^2 of a mode from that of a similar beam.
 double carried_over(double square, const NormalisedModes::Beam& from, const NormalisedModes::Beam& to) {
   constexpr int steps = 3;
   const double phase = WavePhase(from, square).value;
@@ -69,10 +69,10 @@ double carried_over(double square, const NormalisedModes::Beam& from, const Norm
   return square;
 }
 
-// Newton's method for four poles at once, and the motions there; none where it does not settle, or rounding may have grown.
+// Newton's method for four poles at once, with the motions there; none where it does not converge, or rounding may have grown.
 std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double place, const Lane& rounding, Lane& squares) {
   constexpr int most_steps = 10;
-  constexpr double least_motion = 1e-3;  // of the place, in a normalised mode
+  constexpr double least_motion = 1e-3;  // share of the place, in a normalised mode
   for (int i = 0; i < most_steps; ++i) {
     const Receptance::Answer at = receptance.at(squares, place);
     const Lane step = at.deflection / at.inertia;
@@ -85,9 +85,9 @@ std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double p
   return {};
 }
 
-// Finds 1 / omega^2 of the first mode of a general beam that is held at a place as well. `deflections` are those there of all its
-// motions of unit elastic energy. The receptance, the sum of r^2 / (1 - lambda / lambda_i), grows from the first frequency to the
-// second.
+// Finds 1 / omega^2 of the first mode of a general beam that is also held at a place. `deflections` are the deflections there
+// of all its motions of unit elastic energy. The receptance, the sum of r^2 / (1 - lambda / lambda_i), grows from the first
+// frequency to the second.
 double general_pinned_inverse_square(const Eigen::RowVectorXd& deflections, const Eigen::VectorXd& inverse_squares) {
   constexpr int bits = 60;
   const Eigen::Index last = inverse_squares.size() - 1;
@@ -100,30 +100,30 @@ double general_pinned_inverse_square(const Eigen::RowVectorXd& deflections, cons
   return 1 / high;
 }
 
-// What the axial force stretches the beam by, over the force: the integral of 1 / (E A) [m/N]. E is that as given: the sides of
-// the beam are free to contract.
+// Returns the stretch of the beam per axial force: the integral of 1 / (E A) [m/N]. E is used as given: the sides of the beam
+// are free to contract.
 double stretch_per_force(const Structure& s) {
   double sum = 0;
   for (const LocalSection& local : local_sections(s)) {
     const double length = local.end - local.begin, growth = local.end_width / local.width - 1;
     const double per_width = local.youngs_modulus * local.thickness * ligament_efficiency(local.holes);
-    // The mean of 1 / width over a linear one.
+    // Take the mean of 1 / width over a linear width.
     const double mean = growth == 0 ? 1 / local.width : std::log1p(growth) / (growth * local.width);
     sum += length * mean / per_width;
   }
   return sum;
 }
 
-// What is left in a beam between its anchors of the same stress everywhere before its release: sections pull at each other until
-// the force is the same all along [N].
+// Returns the axial force that a stress, equal everywhere before release, leaves in a beam between its anchors: sections pull
+// at each other until the force is the same all along [N].
 double axial_force(const Structure& s, double stress) {
-  double shrinks = 0;  // by which the beam would shrink if it were free [m]
+  double shrinks = 0;  // shortening of the beam if it were free [m]
   for (const LocalSection& local : local_sections(s)) shrinks += stress / local.youngs_modulus * (local.end - local.begin);
   return shrinks / stretch_per_force(s);
 }
 
-// The stretches of a beam of parts, between the edges of all of them, under a stress that grows by `gradient` [Pa/m] over the
-// thickness of the beam itself. A layer of piezo lies outside of all layers.
+// Returns the stretches of a beam of parts, between the edges of all parts, under a stress that grows by `gradient` [Pa/m] over
+// the thickness of the beam itself. A piezo layer lies outside of all layers.
 std::vector<BeamSection> built_sections(const Device& device, double gradient) {
   const Structure& s = device.structure;
   const Beam& beam = part_of<Beam>(s);
@@ -132,7 +132,7 @@ std::vector<BeamSection> built_sections(const Device& device, double gradient) {
                piezo_end = device.piezo ? std::min(device.piezo->end.on(s.length), s.length) : 0;
   if (device.piezo) edges.insert(edges.end(), {piezo_begin, piezo_end});
   std::ranges::sort(edges);
-  // Names of one place that differ by a rounding are one edge.
+  // Positions of one place that differ by a rounding are one edge.
   const auto same = [&](double a, double b) { return b - a < 1e-9 * s.length; };
   edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
   edges.back() = s.length;
@@ -154,7 +154,7 @@ std::vector<BeamSection> built_sections(const Device& device, double gradient) {
                     .stress = layer.stress});
     }
     const bool has_piezo = device.piezo && middle > piezo_begin && middle < piezo_end;
-    double piezo_middle = 0;  // height above the near face
+    double piezo_middle = 0;  // height of the middle of the layer above the near face
     if (has_piezo) {
       for (const Lamina& l : stack) piezo_middle += l.thickness;
       piezo_middle += device.piezo->thickness / 2;
@@ -179,8 +179,8 @@ std::vector<BeamSection> built_sections(const Device& device, double gradient) {
   return sections;
 }
 
-// Says whether both have the same modes. A general beam is searched for in full, so that it may differ by rounding: ratios of its
-// sections do, when all of them become thicker by one factor.
+// Returns true when both beams have the same modes. A general beam is searched in full, so that it may differ by rounding:
+// ratios of its sections do, when all of them become thicker by one factor.
 bool is_known(const NormalisedModes::Beam& beam, const NormalisedModes::Beam& known) {
   if (beam == known) return true;
   if (!beam.is_general() || !known.is_general() || beam.modes != known.modes || beam.far_clamp != known.far_clamp ||
@@ -300,18 +300,19 @@ std::vector<BeamSection> beam_sections(const Device& device) {
 }
 
 NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_(std::move(beam)) {
-  // A strong tension bends the beam close to its clamps only, over lengths of L / sqrt(N L^2 / EI).
+  // A strong tension bends the beam only close to its clamps, over lengths of L / sqrt(N L^2 / EI).
   const double layers = std::sqrt(std::max(0.0, beam_.axial_force)) / 5;
   const int count = std::max({shortest_count, beam_.modes, static_cast<int>(std::min(layers, 40.0))});
-  double lowest = std::numeric_limits<double>::infinity();  // fourth power of a wave number, over the square of the frequency
+  double lowest =
+      std::numeric_limits<double>::infinity();  // smallest fourth power of a wave number, over the square of the frequency
   for (const Beam::Section& s : beam_.sections) lowest = std::min(lowest, s.mass / s.rigidity);
   for (const Beam::Section& s : beam_.sections) {
-    // Waves are shorter where the beam is thin: at half their length and below, elements are, too.
+    // Waves are shorter where the beam is thin; below half their length, elements are shorter too.
     double shorter = std::max(1.0, std::sqrt(std::sqrt(s.mass / s.rigidity / lowest)) / 2);
-    if (s.taper != 0) shorter *= 1.5;  // a curvature over a linear rigidity is no polynomial
+    if (s.taper != 0) shorter *= 1.5;  // a curvature over a linear rigidity is not a polynomial
     const int parts = std::max(1, static_cast<int>(std::ceil((s.end - s.begin) * shorter * count - 1e-9)));
     for (int k = 0; k < parts; ++k) {
-      const double larger = 1 + s.taper * ((2 * k + 1.0) / parts - 1);  // than in the middle of the section
+      const double larger = 1 + s.taper * ((2 * k + 1.0) / parts - 1);  // ratio to the middle of the section
       elements_.push_back({.begin = s.begin + (s.end - s.begin) * k / parts,
                            .end = k + 1 == parts ? s.end : s.begin + (s.end - s.begin) * (k + 1) / parts,
                            .rigidity = s.rigidity * larger,
@@ -348,7 +349,7 @@ void NormalisedModes::search() {
   const Eigen::MatrixXd basis = is_general ? permitted_motions(end, slopes) : permitted(beam_, end, slopes);
   if (is_general || beam_.far_clamp || beam_.axial_force != 0) mass = basis.transpose() * mass * basis;
 
-  // M x = x / omega^2: the low modes, which matter, are the largest eigenvalues and so the most accurate ones.
+  // Solve M x = x / omega^2: the low modes, which matter, have the largest and so the most accurate eigenvalues.
   const SymmetricEigen modes = symmetric_eigen(mass);
   inverse_squares_.resize(beam_.modes);
   shapes_.resize(total, beam_.modes);
@@ -372,7 +373,8 @@ bool NormalisedModes::Beam::is_general() const {
          std::any_of(sections.begin(), sections.end(), [](const Section& s) { return s.taper != 0; });
 }
 
-// A stiff spring must not cost digits: the motions of its end are kept apart from those that leave it alone, the stiffer first.
+// A stiff spring must not cost digits: the motions of its end are kept apart from those that leave the end at rest, the stiffer
+// first.
 Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) const {
   const Eigen::Index total = slopes.rows();
   Eigen::MatrixXd energy = beam_.axial_force * slopes;
@@ -390,7 +392,7 @@ Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, c
 
   const double translation = beam_.far_clamp ? Anchor::rigid : beam_.far_translation,
                rotation = beam_.far_clamp ? Anchor::rigid : beam_.far_rotation;
-  std::vector<std::pair<double, Eigen::Index>> springs;  // with the column of `end`
+  std::vector<std::pair<double, Eigen::Index>> springs;  // springs, with the column of `end`
   std::vector<Eigen::Index> held;
   for (const auto& [stiffness, column] : {std::pair{translation, 0}, std::pair{rotation, 1}}) {
     if (std::isinf(stiffness)) held.push_back(column);
@@ -400,7 +402,8 @@ Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, c
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(total, total);
   if (!held.empty()) basis = orthogonal_complement(end(Eigen::all, held));
   const auto count = static_cast<Eigen::Index>(springs.size());
-  Eigen::MatrixXd along(basis.cols(), count), by_spring = Eigen::MatrixXd::Zero(count, count);  // orthonormal, and what moves it
+  // The columns of `along` are orthonormal motions; those of `by_spring` are the deflections of each spring in them.
+  Eigen::MatrixXd along(basis.cols(), count), by_spring = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index k = 0; k < count; ++k) {
     Eigen::VectorXd left = basis.transpose() * end.col(springs[static_cast<std::size_t>(k)].second);
     for (Eigen::Index j = 0; j < k; ++j) {
@@ -435,7 +438,7 @@ Eigen::MatrixXd NormalisedModes::slope_products() const {
 
 bool NormalisedModes::follow(const NormalisedModes& near) {
   const int modes = beam_.modes;
-  constexpr double least_end = 0.05;  // of the length: a far clamp that holds a shorter element costs digits
+  constexpr double least_end = 0.05;  // share of the length: a far clamp that holds a shorter element costs digits
   if (beam_.is_general() || near.beam_.is_general() || near.beam_.modes != modes || near.beam_.far_clamp != beam_.far_clamp ||
       near.beam_.sections.size() != beam_.sections.size() || (beam_.far_clamp && 2 * elements_.back().half() < least_end)) {
     return false;
@@ -459,7 +462,7 @@ bool NormalisedModes::follow(const NormalisedModes& near) {
   }
   orient();
 
-  // They are the first ones if they differ, none is below the first of them, and no more of them are below the last.
+  // The modes found are the first ones if they differ, none is below the first of them, and no further one is below the last.
   constexpr double apart = 1e-7, margin = 1e-8;
   for (int i = 1; i < modes; ++i) {
     if (!(inverse_squares_[i] * (1 + apart) < inverse_squares_[i - 1])) return false;
@@ -471,7 +474,7 @@ bool NormalisedModes::follow(const NormalisedModes& near) {
 }
 
 void NormalisedModes::orient() {
-  constexpr double close_to_the_clamp = 1e-3;  // of the length: far short of the first zero of forty modes
+  constexpr double close_to_the_clamp = 1e-3;  // share of the length: far short of the first zero of forty modes
   const bool is_held = beam_.far_clamp || beam_.far_rotation != 0 || beam_.far_translation != 0;
   const Eigen::RowVectorXd positive = shape(is_held ? close_to_the_clamp : 1, 0);
   for (Eigen::Index i = 0; i < shapes_.cols(); ++i) {
@@ -502,7 +505,7 @@ Eigen::RowVectorXd NormalisedModes::shape(const BeamElement& element, double xi,
     const double half = other.half();
     const bool inside = other.begin == element.begin;
     ElementRow local = (inside ? element_integrals(xi, derivative) : ends[derivative]) * (derivative == 0 ? half * half : half);
-    if (!inside && derivative == 0) local += (x - other.end) * half * ends[1];  // straight on
+    if (!inside && derivative == 0) local += (x - other.end) * half * ends[1];  // the beam continues straight
     row.segment<functions>(functions * static_cast<Eigen::Index>(e)) = local.array() * (orders / (half * other.rigidity)).sqrt();
   }
   if (shift_ > 0) row[bending] = derivative == 0 ? shift_ : 0;
@@ -516,10 +519,11 @@ Eigen::RowVectorXd NormalisedModes::shape(double x, int derivative) const {
   return shape(*element, 2 * (x - element->begin) / (element->end - element->begin) - 1, derivative);
 }
 
-// The receptance a grows from minus infinity at the first frequency to infinity at the second, or has no zero between where the
-// second mode does not move at x: that is the answer then. Newton's method for (lambda_2 - lambda) a, which is nearly linear.
+// The receptance a grows from minus infinity at the first frequency to infinity at the second. It has no zero between them
+// where the second mode does not move at x; the second frequency is then the answer. Newton's method solves (lambda_2 - lambda)
+// a, which is nearly linear.
 double NormalisedModes::pinned_inverse_square(double x, std::optional<double> near) const {
-  constexpr double rounding = 1e-12, last_step = 1e-8;  // Newton's step after that is rounding
+  constexpr double rounding = 1e-12, last_step = 1e-8;  // the Newton step after last_step is rounding
   constexpr int most_steps = 100;
   if (beam_.is_general()) return general_pinned_inverse_square(shape(x, 0) * all_motions_, all_inverse_squares_);
   Receptance receptance(elements_, beam_.axial_force, beam_.far_clamp);
@@ -582,7 +586,8 @@ double curl(const Device& device, double gradient, double x) {
   double offset = 0;
   for (const BeamSection& section : s.is_built() ? built_sections(device, gradient) : beam_sections(device)) {
     if (section.begin >= x) break;
-    const double near = x - section.begin, far = std::max(0.0, x - section.end);  // arms of its turn, from its begin and its end
+    const double near = x - section.begin,
+                 far = std::max(0.0, x - section.end);  // arms of the rotation, from its begin and its end
     offset += (s.is_built() ? section.curvature : moment / section.rigidity) * (near * near - far * far) / 2;
   }
   return offset;
@@ -591,7 +596,7 @@ double curl(const Device& device, double gradient, double x) {
 double lowest_curl(const Device& device, double gradient) {
   double lowest = 0, offset = 0, slope = 0;
   for (const BeamSection& section : built_sections(device, gradient)) {
-    const double length = section.end - section.begin, flat = -slope / section.curvature;  // where the curl turns back
+    const double length = section.end - section.begin, flat = -slope / section.curvature;  // place where the curl turns back
     if (flat > 0 && flat < length) lowest = std::min(lowest, offset + slope * flat / 2);
     offset += (slope + section.curvature * length / 2) * length;
     slope += section.curvature * length;
@@ -600,7 +605,7 @@ double lowest_curl(const Device& device, double gradient) {
   return lowest;
 }
 
-// Its moment m is linear over a stretch: the integral of m phi'' is that of (m phi')' - m' phi'.
+// The moment m of the layer is linear over a stretch: the integral of m phi'' is that of (m phi')' - m' phi'.
 Eigen::VectorXd piezo_forces(const Device& device, const BeamModes& modes) {
   Eigen::VectorXd forces = Eigen::VectorXd::Zero(modes.count());
   for (const BeamSection& s : beam_sections(device)) {

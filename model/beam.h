@@ -1,21 +1,24 @@
-// Bending modes of a beam (Euler-Bernoulli) whose rigidity and mass are constant or linear from stretch to stretch, clamped at
-// x = 0, its far end free or clamped, or on springs at either end, under an axial force.
+// Bending modes of a beam (Euler-Bernoulli) under an axial force. Its rigidity and mass are constant or linear from stretch to
+// stretch. It is clamped at x = 0, its far end free or clamped, or it stands on springs at either end.
 //
 //   (EI(x) phi'')'' - N phi'' = omega^2 mu(x) phi,   phi(0) = phi'(0) = 0
 //   free:     (EI phi'')(L) = (EI phi'')'(L) - N phi'(L) = 0          clamped:  phi(L) = phi'(L) = 0
 //   springs:  at either end a force k phi and a moment c phi' instead, k [N/m] and c [N m/rad] from 0 to rigid
 //
-// EI rigidity [N m^2], N axial force, positive in tension [N], mu mass per length [kg/m], omega [rad/s]. Modes are
-// mass-normalised, integral of mu phi_i phi_j = delta_ij, so phi has the unit kg^(-1/2), and positive at the free end; between
-// two clamps they leave x = 0 towards positive values. Discretisation: the curvature is a polynomial of degree 7 on each element,
-// written in Legendre polynomials, and integrated twice from the clamped end; nodes stand at every change of section. These
-// functions are orthonormal in the bending energy, so the stiffness is the unit matrix whatever the lengths of the elements, and
-// a handful of long elements reaches 1e-9. A far clamp leaves the combinations with no value and no slope there, and an axial
-// force makes them orthonormal in the elastic energy anew: what follows sees a unit stiffness again. In compression that fails at
-// the buckling load, where the straight beam stops being stable. Springs and linear stretches add their energies to that unit
-// matrix, and springs at x = 0 the two motions of a rigid beam to the functions. Source: textbook Ritz-Galerkin; integrated
-// Legendre shape functions: Szabo & Babuska, Finite Element Analysis, 1991, sec. 6; axial force and buckling: Timoshenko & Gere,
-// Theory of Elastic Stability, 1961, sec. 2.1.
+// EI is the rigidity [N m^2], N the axial force, positive in tension [N], mu the mass per length [kg/m], omega [rad/s]. Modes
+// are mass-normalised, integral of mu phi_i phi_j = delta_ij, so phi has the unit kg^(-1/2). They are positive at the free end;
+// between two clamps they leave x = 0 towards positive values.
+//
+// Discretisation: the curvature is a polynomial of degree 7 on each element, written in Legendre polynomials, and integrated
+// twice from the clamped end; nodes stand at every change of section. These functions are orthonormal in the bending energy, so
+// the stiffness is the unit matrix whatever the lengths of the elements, and a handful of long elements reaches 1e-9. A far
+// clamp leaves the combinations with no value and no slope there. An axial force makes them orthonormal in the elastic energy
+// anew: the rest of the computation has a unit stiffness again. In compression that fails at the buckling load, where the
+// straight beam stops being stable. Springs and linear stretches add their energies to that unit matrix, and springs at x = 0
+// the two motions of a rigid beam to the functions.
+//
+// Source: textbook Ritz-Galerkin; integrated Legendre shape functions: Szabo & Babuska, Finite Element Analysis, 1991, sec. 6;
+// axial force and buckling: Timoshenko & Gere, Theory of Elastic Stability, 1961, sec. 2.1.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,61 +34,62 @@
 
 namespace softland {
 
-/// One stretch of constant section, or of one that changes along it in proportion.
+/// One stretch of a beam, of constant section or of a section that changes linearly along it.
 struct BeamSection {
   double begin = 0;            ///< [m]
   double end = 0;              ///< [m]
   double rigidity = 0;         ///< EI [N m^2]
   double mass_per_length = 0;  ///< mu [kg/m]
-  double taper = 0;            ///< both above are those of its middle; at its end they are this share larger, linear in between
-  double curvature = 0;        ///< at rest, of a beam of parts, positive away from the near electrode [1/m]
-  double piezo_moment = 0;     ///< of a piezo layer, of a beam of parts, in its middle [N m / V]
+  double taper = 0;      ///< relative growth of both above from the middle, where they are given, to the end; linear in between
+  double curvature = 0;  ///< curvature at rest of a beam of parts, positive away from the near electrode [1/m]
+  double piezo_moment = 0;  ///< moment of a piezo layer of a beam of parts, in its middle [N m / V]
 };
 
 /// Bending of a two-layer section about its own neutral axis.
 struct CompositeSection {
-  double neutral_axis = 0;     ///< z_c, from the free face of the piezo layer [m]; 0 where there is no layer
+  double neutral_axis = 0;     ///< z_c, from the free face of the piezo layer [m]; 0 without a layer
   double rigidity = 0;         ///< EI [N m^2]
   double mass_per_length = 0;  ///< [kg/m]
 };
 
-/// E of the beam [Pa], or E / (1 - nu^2) with plate_strain.
+/// Returns E of the beam [Pa], or E / (1 - nu^2) with plate_strain.
 [[nodiscard]] double bending_modulus(const Structure& structure);
-/// The bare beam's section, with the skins it may have.
+/// Returns the bare beam's section, with the skins it may have.
 [[nodiscard]] CompositeSection plain_section(const Structure& structure, const std::optional<Surface>& surface = {});
-/// Beam with piezo layer (Zheng, Chen & Chen 2017, eqs. 5-6, equal widths).
+/// Returns the section of a beam with piezo layer (Zheng, Chen & Chen 2017, eqs. 5-6, equal widths).
 [[nodiscard]] CompositeSection layered_section(const Structure& structure, const Piezo& piezo);
-/// Bending moment of the layer per volt, e31 a (z_c - bp / 2) with e31 = d31 Ep [N m / V]: negative for d31 < 0.
+/// Returns the bending moment of the layer per volt, e31 a (z_c - bp / 2) with e31 = d31 Ep [N m / V]: negative for d31 < 0.
 [[nodiscard]] double piezo_moment_per_volt(const Structure& structure, const Piezo& piezo);
-/// The beam's sections in order.
+/// Returns the beam's sections in order.
 [[nodiscard]] std::vector<BeamSection> beam_sections(const Device& device);
-/// What residual_stress leaves in the released beam between two clamps [Pa]: all of a stress along the beam; of the equal biaxial
-/// stress of a film, sigma (1 - nu), since the beam's sides are free and its strain along the beam is held.
+/// Returns the stress that residual_stress leaves in the released beam between two clamps [Pa]. A stress along the beam stays
+/// whole. The equal biaxial stress of a film leaves sigma (1 - nu), since the beam's sides are free and its strain along the
+/// beam is held.
 [[nodiscard]] double axial_stress(const Bridge& bridge);
-/// Compressive stress at which the beam buckles [Pa], E I as plain_section(): 4 pi^2 E I / (A L^2) between two clamps, a
-/// sixteenth of that with a free end.
+/// Returns the compressive stress at which the beam buckles [Pa], E I as plain_section(): 4 pi^2 E I / (A L^2) between two
+/// clamps, a sixteenth of that with a free end.
 [[nodiscard]] double buckling_stress(const Structure& structure, const std::optional<Surface>& surface = {});
 
-/// Why the beam cannot rest straight under its axial stress; empty when it can.
+/// Returns the reason why the beam cannot rest straight under its axial stress; empty when it can.
 [[nodiscard]] std::string why_buckled(const Structure& structure, const std::optional<Surface>& surface = {});
 
-/// The rule that a beam breaks; empty: none.
+/// Returns the rule that a beam breaks; empty where it breaks none.
 [[nodiscard]] std::string why_no_beam(const Device& device);
 
 struct BeamSupport {
-  bool far_clamp = false;  ///< the end at L is clamped as well
+  bool far_clamp = false;  ///< true when the end at L is clamped as well
   double axial_force = 0;  ///< N, positive in tension [N]
-  Anchor near = {};        ///< the end at x = 0
-  Anchor far = free_end;   ///< the end at L unless it is clamped
+  Anchor near = {};        ///< anchor at x = 0
+  Anchor far = free_end;   ///< anchor at L unless it is clamped
 };
-/// Clamps, and the axial force that residual stresses of bulk and surfaces leave.
+/// Returns clamps, and the axial force that residual stresses of bulk and surfaces leave.
 [[nodiscard]] BeamSupport beam_support(const Structure& structure, const std::optional<Surface>& surface = {});
 
-/// The modes of a beam in units of its length and of the mass and rigidity of its first section: the same for every beam of that
-/// shape, whatever its size and material.
+/// The modes of a beam in units of its length and of the mass and rigidity of its first section. They are the same for every
+/// beam of that shape, whatever its size and material.
 class NormalisedModes {
  public:
-  /// What they depend on.
+  /// The properties that the modes depend on.
   struct Beam {
     struct Section {
       double begin = 0, end = 0, rigidity = 0, mass = 0, taper = 0;
@@ -97,39 +101,41 @@ class NormalisedModes {
     double axial_force = 0;                        ///< N L^2 / EI
     double near_rotation = Anchor::rigid;          ///< c L / EI
     double near_translation = Anchor::rigid;       ///< k L^3 / EI
-    double far_rotation = 0, far_translation = 0;  ///< unless far_clamp
-    /// Whether there is more to it than even sections between clamps and free ends.
+    double far_rotation = 0, far_translation = 0;  ///< used unless far_clamp
+    /// True for more than even sections between clamps and free ends.
     [[nodiscard]] bool is_general() const;
     [[nodiscard]] bool operator==(const Beam&) const = default;
   };
-  /// From those of a beam `near` this one, of as many sections and modes, where they lead to the same quickly, else by a full
-  /// search: the same modes, but for rounding. Throws InvalidInput below the buckling load.
+  /// Finds the modes. It starts from those of a similar beam `near`, of as many sections and modes, where this quickly leads to
+  /// the same result; else it searches in full. Both ways give the same modes up to rounding. Throws InvalidInput below the
+  /// buckling load.
   explicit NormalisedModes(Beam beam, const NormalisedModes* near = nullptr);
 
   [[nodiscard]] const Beam& beam() const { return beam_; }
-  /// omega^-2 of the modes, falling.
+  /// Returns omega^-2 of the modes, falling.
   [[nodiscard]] const Eigen::VectorXd& inverse_squares() const { return inverse_squares_; }
-  /// All modes at x in [0, 1].
+  /// Return all modes at x in [0, 1].
   [[nodiscard]] Eigen::VectorXd value(double x) const { return (shape(x, 0) * shapes_).transpose(); }
   [[nodiscard]] Eigen::VectorXd slope(double x) const { return (shape(x, 1) * shapes_).transpose(); }
-  /// Integrals of the products of slopes.
+  /// Returns the integrals of the products of slopes.
   [[nodiscard]] Eigen::MatrixXd slope_products() const;
-  /// omega^-2 of the first mode of the beam held at x as well. `near` is that of a similar beam.
+  /// Returns omega^-2 of the first mode of the beam that is also held at x. `near` is that of a similar beam.
   [[nodiscard]] double pinned_inverse_square(double x, std::optional<double> near = {}) const;
 
  private:
-  // Ritz's method: all modes at once.
+  // Searches by Ritz's method: all modes at once.
   void search();
-  // Rayleigh quotients that begin with other modes' frequencies; false where it cannot prove that it found the modes.
+  // Iterates Rayleigh quotients that begin with other modes' frequencies. Returns false where it cannot prove that it found the
+  // modes.
   [[nodiscard]] bool follow(const NormalisedModes& near);
-  // Where every mode moves.
+  // Returns a place where every mode moves.
   [[nodiscard]] double moving_place() const;
-  // All functions, x in units of the length; xi in [-1, 1] over an element.
+  // Return all functions, x in units of the length; xi in [-1, 1] over an element.
   [[nodiscard]] Eigen::RowVectorXd shape(double x, int derivative) const;
   [[nodiscard]] Eigen::RowVectorXd shape(const BeamElement& element, double xi, int derivative) const;
-  // Combinations of the functions that a general beam permits, orthonormal in its elastic energy.
+  // Returns combinations of the functions that a general beam permits, orthonormal in its elastic energy.
   [[nodiscard]] Eigen::MatrixXd permitted_motions(const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) const;
-  // Turned to the sign that they have by definition.
+  // Gives the modes the sign of their definition.
   void orient();
 
   Beam beam_;
@@ -137,36 +143,36 @@ class NormalisedModes {
   Eigen::MatrixXd shapes_;  // functions x modes
   Eigen::VectorXd inverse_squares_;
   double moving_place_ = 1;
-  double shift_ = 0, turn_ = 0;  // motions of the rigid beam, behind the functions of the elements; 0: x = 0 does not move so
-  // Of a general beam: all motions that Ritz's method knows, of unit elastic energy, with omega^-2 each.
+  double shift_ = 0, turn_ = 0;  // factors of the rigid motions, behind the elements' functions; 0: x = 0 does not move so
+  // All motions of a general beam that Ritz's method knows, of unit elastic energy, with omega^-2 each.
   Eigen::MatrixXd all_motions_;
   Eigen::VectorXd all_inverse_squares_;
 };
 
 class BeamModes {
  public:
-  /// The first `modes` modes; takes the normalised ones from `known` where they are those of this beam, and begins with them
-  /// where they are not. Throws InvalidInput unless sections join, are positive, modes is in [1, 40], and the axial force is
-  /// above the buckling load.
+  /// Finds the first `modes` modes. Takes the normalised ones from `known` where they are those of this beam, and starts from
+  /// them where they are not. Throws InvalidInput unless sections join and are positive, modes is in [1, 40], and the axial
+  /// force is above the buckling load.
   BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support = {},
             std::shared_ptr<const NormalisedModes> known = {});
 
   [[nodiscard]] int count() const { return static_cast<int>(frequencies_.size()); }
   [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s], rising
-  /// phi_i(x) of all modes [kg^(-1/2)], x in [0, L] [m].
+  /// Returns phi_i(x) of all modes [kg^(-1/2)], x in [0, L] [m].
   [[nodiscard]] Eigen::VectorXd value(double x) const { return scale_ * normalised_->value(x / length_); }
-  /// phi_i'(x) [kg^(-1/2)/m].
+  /// Returns phi_i'(x) [kg^(-1/2)/m].
   [[nodiscard]] Eigen::VectorXd slope(double x) const { return scale_ / length_ * normalised_->slope(x / length_); }
-  /// Integrals of phi_i' phi_j' over the beam [1/(kg m)].
+  /// Returns the integrals of phi_i' phi_j' over the beam [1/(kg m)].
   [[nodiscard]] Eigen::MatrixXd slope_products() const { return scale_ * scale_ / length_ * normalised_->slope_products(); }
-  /// First angular frequency of the beam held at deflection 0 at x as well [rad/s]: the beam while in contact.
+  /// Returns the first angular frequency of the beam that is also held at deflection 0 at x [rad/s]: the beam while in contact.
   [[nodiscard]] double pinned_frequency(double x) const {
     return frequency_scale_ / std::sqrt(normalised_->pinned_inverse_square(x / length_));
   }
 
   [[nodiscard]] const std::shared_ptr<const NormalisedModes>& normalised() const { return normalised_; }
   [[nodiscard]] double length() const { return length_; }                    ///< [m]
-  [[nodiscard]] double scale() const { return scale_; }                      ///< phi per normalised one [kg^(-1/2)]
+  [[nodiscard]] double scale() const { return scale_; }                      ///< phi over the normalised mode [kg^(-1/2)]
   [[nodiscard]] double frequency_scale() const { return frequency_scale_; }  ///< [rad/s]
 
  private:
@@ -177,20 +183,20 @@ class BeamModes {
   Eigen::VectorXd frequencies_;
 };
 
-/// How far a cantilever curls at x from its clamp [m], positive away from the near electrode, when the axial stress before
-/// release grows by `gradient` [Pa/m] over its thickness, in the direction away from that electrode. The stress turns every
+/// Returns the curl of a cantilever at x from its clamp [m], positive away from the near electrode. The axial stress before
+/// release grows by `gradient` [Pa/m] over its thickness, in the direction away from that electrode. The stress bends every
 /// section by M = gradient a b^3/12, so that the curvature is M/EI, gradient/E of a plain beam and less where a layer stiffens
 /// it. Source: W. Fang & J. A. Wickert 1996, J. Micromech. Microeng. 6, 301. Valid for slopes well below 1.
 [[nodiscard]] double curl(const Device& device, double gradient, double x);
-/// The least of it along the beam, at most 0.
+/// Returns the smallest curl along the beam, at most 0.
 [[nodiscard]] double lowest_curl(const Device& device, double gradient);
-/// Modal force of the piezo layer per volt on each mode, of a beam of parts: the integral of its moment per volt and phi_i''.
+/// Returns the modal force per volt of the piezo layer of a beam of parts: the integral of its moment per volt and phi_i''.
 [[nodiscard]] Eigen::VectorXd piezo_forces(const Device& device, const BeamModes& modes);
 
-/// Stretching of a beam between two clamps.
+/// Returns the stretching of a beam between two clamps.
 [[nodiscard]] MidPlaneStretching stretching_of(const BeamModes& modes, const Structure& structure);
 
-/// The modes of a device whose structure is a beam.
+/// Returns the modes of a device whose structure is a beam.
 [[nodiscard]] BeamModes beam_modes(const Device& device, std::shared_ptr<const NormalisedModes> known = {});
 
 }  // namespace softland

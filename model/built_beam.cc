@@ -63,7 +63,7 @@ std::optional<PartConflict> layer_conflict(const Device& d, std::size_t i) {
   return std::nullopt;
 }
 
-/// Anchors that leave the beam free to move as one.
+/// True for anchors that leave the beam free to move as a rigid body.
 bool is_mechanism(const Anchor& near, const Anchor& far) {
   const auto holds = [](double stiffness) { return stiffness > 0; };
   const bool turns = holds(near.rotation) || holds(far.rotation);
@@ -152,7 +152,7 @@ std::vector<LocalSection> local_sections(const Structure& s) {
     local.density = given_or(part.density, known(beam->density));
     local.holes = part.holes;
   }
-  all.back().end = s.length;  // which is their sum, but for rounding
+  all.back().end = s.length;  // equal to their sum up to rounding
   return all;
 }
 

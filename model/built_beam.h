@@ -1,17 +1,17 @@
-// What the parts of a beam (model/structure/beam_parts.h) make of it: its local size, and the rules that the parts keep.
+// Local size of a beam made of parts (model/structure/beam_parts.h), and the rules that the parts keep.
 //
 // The lower faces of all sections and layers lie in one plane before release, as on a flat sacrificial layer: gaps count from
-// there. A section's width is constant or linear, so that rigidity, mass and moments of a stretch grow with it by the same
+// that plane. A section's width is constant or linear, so that rigidity, mass and moments of a stretch grow with it by the same
 // factor.
 //
-// Square holes of side s in a square pattern of pitch p leave the share 1 - (s/p)^2 of the area, by which mass and electrode area
-// fall. The stiffness falls by the ligament efficiency
+// Square holes of side s in a square pattern of pitch p leave the share 1 - (s/p)^2 of the area; mass and electrode area fall
+// by this factor. The stiffness falls by the ligament efficiency
 //
 //   k = (k_low + k_high) / 2,   k_low = 1 - r,   k_high = (1 - r) / (1 - r + r^2),   r = s/p
 //
 // Both are bounds. Stress in the ligaments alone, 1 - r of the width, is in equilibrium: least complementary energy. Sections
 // that stay plane, full between the holes and 1 - r of the width beside them, in series, are possible displacements: least
-// energy. The half distance of the bounds is 9 % of k at r = 0.2, and 14 % at r = 0.5, where it is largest. Derived.
+// energy. The half distance of the bounds is 9 % of k at r = 0.2, and 14 % at r = 0.5, where it is largest. Derived here.
 #pragma once
 
 #include <optional>
@@ -22,12 +22,12 @@
 
 namespace softland {
 
-/// One stretch of a structure where its width is linear and all else is constant.
+/// One stretch of a structure with linear width and constant other properties.
 struct LocalSection {
   double begin = 0, end = 0;                               ///< [m]
-  double width = 0, end_width = 0;                         ///< across the beam, with its holes [m]
+  double width = 0, end_width = 0;                         ///< width across the beam at both ends, with its holes [m]
   double thickness = 0;                                    ///< [m]
-  double youngs_modulus = not_given, density = not_given;  ///< of a beam [Pa], [kg/m^3]
+  double youngs_modulus = not_given, density = not_given;  ///< Young's modulus and density of a beam [Pa], [kg/m^3]
   Holes holes = {};
 
   [[nodiscard]] double width_at(double x) const {
@@ -36,29 +36,29 @@ struct LocalSection {
   [[nodiscard]] bool is_even() const { return end_width == width; }
 };
 
-/// Share of the area that holes leave.
+/// Returns the share of the area that holes leave.
 [[nodiscard]] double area_left(const Holes& holes);
-/// Share of the stiffness along the beam that holes leave, k above.
+/// Returns the share of the stiffness along the beam that holes leave, k above.
 [[nodiscard]] double ligament_efficiency(const Holes& holes);
 
-/// The structure from end to end: one stretch unless it has sections, or is a table of modes with widths.
+/// Returns the structure from end to end: one stretch unless it has sections, or is a table of modes with widths.
 [[nodiscard]] std::vector<LocalSection> local_sections(const Structure& structure);
-/// The stretch at this place: of two that meet there, the second.
+/// Returns the stretch at this place; the second of two that meet there.
 [[nodiscard]] LocalSection section_at(const Structure& structure, double x);
-/// Across the structure at this place, with its holes [m].
+/// Returns the width across the structure at this place, with its holes [m].
 [[nodiscard]] double width_at(const Structure& structure, double x);
-/// Where sections and layers of a beam begin and end, from 0 to the length [m]: both of these alone for all other structures.
+/// Returns the edges of sections and layers of a beam, from 0 to the length [m]; only these two for all other structures.
 [[nodiscard]] std::vector<double> edges_of_parts(const Structure& structure);
 
-/// Where the table of a beam's rest shape has kinks, between its ends [m]; empty where it has no such table.
+/// Returns the places where the table of a beam's rest shape has kinks, between its ends [m]; empty without such a table.
 [[nodiscard]] std::vector<double> kinks_at_rest(const Structure& structure);
 
-/// A part that a device cannot have, and why.
+/// A part that a device cannot have, and the reason.
 struct PartConflict {
-  std::string key;  ///< "layers[2].span"
+  std::string key;  ///< key of the part: "layers[2].span"
   std::string rule;
 };
-/// Nothing when the beam can be built.
+/// Returns nothing when the beam can be built.
 [[nodiscard]] std::optional<PartConflict> part_conflict(const Device& device);
 
 }  // namespace softland

@@ -17,7 +17,7 @@
 namespace softland {
 namespace {
 
-// Of the energy that bends the beam by the contact gap: see closing.h.
+// Shares of the energy that bends the beam by the contact gap: see closing.h.
 constexpr double worth_warning = 0.01, not_credible = 0.2;
 
 class Run {
@@ -107,11 +107,11 @@ class Run {
     check_interval(step->field);
   }
 
-  // At an event: settles the energies, records what it is, and goes on to the next phase.
+  // Handles an event: settles the energies, records what it is, and enters the next phase.
   void pass(const Event& event) {
     FollowedContact& c = parts_.contacts[event.contact];
     TrajectoryPoint& p = c.course.last_waiting();
-    if (event.edge) p.position = event.edge->level;  // to rounding
+    if (event.edge) p.position = event.edge->level;  // equal up to rounding
     if (p.position == c.plane && !model_.has_spread_contact(event.contact)) p.contact_force = 0;
     audit_.settle(here());
     if (c.touches.note(event, p)) {
@@ -129,7 +129,7 @@ class Run {
       c.phase.enter(event.edge->next, event.edge->zone);
     } else {
       change.kind = PhaseChange::Kind::turn;
-      // What is left of the velocity still carries it this much deeper.
+      // The remaining velocity still carries it this much deeper.
       c.phase.turn(p.position - c.plane - (p.acceleration < 0 ? p.velocity * p.velocity / (2 * p.acceleration) : 0));
     }
     change.after = c.phase.law();
@@ -137,7 +137,7 @@ class Run {
     restart();
   }
 
-  // On a rigid contact: reverses the velocity, or ends the motion where the rebound would be too low.
+  // Handles an impact on a rigid contact: reverses the velocity, or ends the motion where the rebound would be too low.
   void strike() {
     const RestingPlate::Impact impact = parts_.plate.strike(here());
     Touch& touch = parts_.first().touches.last();
@@ -155,7 +155,7 @@ class Run {
     parts_.push(here());
   }
 
-  // The plate rests until its drives stop pressing it on.
+  // Lets the plate rest until its drives no longer press it on.
   void stay() {
     const RestingPlate::Stay stay = parts_.plate.stay(here(), stop_);
     stepping_.count_step();
@@ -172,7 +172,7 @@ class Run {
     check_interval(field);
   }
 
-  // A beam that lands on the face of a dielectric may swing lower beside the electrode than over it.
+  // True where the beam is over the electrode: a beam that lands on the face of a dielectric may swing lower beside it.
   [[nodiscard]] bool is_over_electrode() {
     const Device& device = model_.device();
     if (!device.lands_along_face() || device.structure.is_rigid()) return true;
@@ -189,7 +189,7 @@ class Run {
     return false;
   }
 
-  // After a step, at whose end these figures were found.
+  // Checks a step, at whose end these figures were found.
   void check_interval(const FieldFigures& field) {
     if (ended_) return;
     if (field.smallest_gap < model_.gap_floor() && is_over_electrode()) {
@@ -215,7 +215,7 @@ class Run {
     }
   }
 
-  // At the first touch under the hold levels, or when they are reached after it.
+  // Measures the landing at the first touch under the hold levels, or when they are reached after it.
   void measure_landing() {
     if (ended_ || !parts_.has_touched() || std::isfinite(out_.landing_excess)) return;
     if (!std::isfinite(options_.closed_potential) || !parts_.drives.at_hold()) return;
@@ -270,7 +270,7 @@ class Run {
     }
   }
 
-  // Takes over what the contacts did. Where there are several, it tells of their connection too.
+  // Collects the results of the contacts, and those of their connection where there are several.
   void gather_contacts() {
     if (parts_.electrical) {
       if (!parts_.closing_is_over) parts_.electrical->finish(here().time);
@@ -303,7 +303,7 @@ class Run {
   const Switch& model_;
   const ClosingOptions& options_;
   std::span<const Signal> signals_;
-  double plane_;  // of first touch [m]
+  double plane_;  // plane of first touch [m]
   ClosingParts parts_;
   Stepping stepping_;
   EnergyAudit audit_;

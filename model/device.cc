@@ -31,11 +31,11 @@ void span(double begin, double end, double length, const std::string& name) {
   });
 }
 
-/// The numbers of `owner`, a part of the device; those that a scene may leave out may be as they are in `unset`.
+/// Checks the numbers of `owner`, a part of the device; those that a scene may leave out may be as they are in `unset`.
 template <class Owner>
 void check_fields(const std::string& part, Owner owner, Owner unset, std::span<const Field<Owner>> fields) {
   for (const Field<Owner>& field : fields) {
-    // A scene's bound that has a way beyond it, and what a rule of its own decides.
+    // Skip a scene's bound that can be exceeded, and what a separate rule decides.
     if (field.in == nullptr || !field.beyond.empty() || field.range == Range{}) continue;
     const double value = field.in(owner), missing = field.in(unset);
     const bool may_miss = !field.required || !field.instead_of.empty() || !field.unless.empty();
@@ -149,7 +149,7 @@ void check_gap_and_electrodes(const Device& d) {
   }
 }
 
-/// A structure that is not straight at rest touches nothing there.
+/// Checks that a structure that is not straight at rest touches nothing there.
 void check_rest_shape(const Device& d) {
   const double lowest = std::visit(
       [&](const auto& kind) {
@@ -307,8 +307,8 @@ const Landing* Device::landing() const {
 
 namespace {
 
-// Where a beam that bends under the pads of its faces touches them first: at the free end, or in the middle between two clamps,
-// or at the edge of a pad that lies nearest to it.
+// Returns where a beam that bends under the pads of its faces touches them first: at the free end, or in the middle between two
+// clamps, or at the edge of a pad that lies nearest to it.
 Place first_touch_on(const Device& d) {
   const double length = d.structure.length, aim = d.structure.has_far_clamp() ? length / 2 : length;
   Place nearest;
@@ -326,7 +326,7 @@ Place first_touch_on(const Device& d) {
   return nearest;
 }
 
-// The length of all pads on whose face the beam may land [m].
+// Returns the length of all pads on whose face the beam may land [m].
 double length_of_faces(const Device& d) {
   double sum = 0;
   for (const Electrode& e : d.electrodes) {
@@ -343,7 +343,7 @@ void set_face_contact(Device& d) {
   if (landing == nullptr) return;
   const double plane = d.gap.electrode - landing->begin();
   const auto set = [&](Contact& face) {
-    // The stiffness of a wall is that of the switch, which finds it from its modes.
+    // The stiffness of a wall is a property of the switch, which derives it from its modes.
     face.model = LinearSpring{.stiffness = landing->is_wall() ? 1 : landing->stiffness};
     if (landing->asperities) face.model = *landing->asperities, face.pad_length = length_of_faces(d);
     if (!d.structure.is_rigid()) face.at = first_touch_on(d);
@@ -418,14 +418,14 @@ std::optional<ElectrodeConflict> electrode_conflict(const Structure& s, const st
   const double rounding = 1e-12 * s.length;
   for (const Side side : {Side::near, Side::far}) {
     const std::string_view side_name = side == Side::near ? "near" : "far";
-    std::vector<Pad> here;  // from the clamped end on
+    std::vector<Pad> here;  // pads from the clamped end on
     for (std::size_t k = 0; k < electrodes.size(); ++k) {
       if (electrodes[k].side != side && electrodes[k].side != Side::both) continue;
       for (const Stretch& pad : electrodes[k].pads(s.length)) here.push_back({k, pad});
     }
     const bool plate = s.is_rigid();
     if (!plate) std::ranges::stable_sort(here, {}, [](const Pad& pad) { return pad.at.begin; });
-    double taken = 0;  // of the length: up to here on a beam, in all on a plate
+    double taken = 0;  // occupied length: up to here on a beam, in total on a plate
     for (std::size_t i = 0; i < here.size(); ++i) {
       const Stretch& pad = here[i].at;
       if (i > 0 && (plate ? taken + pad.end - pad.begin > s.length + rounding : pad.begin < taken - rounding)) {
@@ -474,7 +474,7 @@ std::optional<ContactConflict> contact_conflict(const Device& d) {
 }
 
 std::string why_not_along_pad(const Structure& structure, const Contact& contact) {
-  constexpr double longest = 0.1;  // of the beam: the first mode is then straight along the pad to 5e-5
+  constexpr double longest = 0.1;  // share of the beam's length: the first mode is then straight along the pad to 5e-5
   if (structure.is_rigid()) return "a plate touches with all of its pad at once, as at the centre";
   if (contact.at) return "needs a pad that ends at the free end: 'at' says another place";
   if (structure.has_far_clamp()) {

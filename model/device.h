@@ -1,5 +1,5 @@
-// The described switch, as plain numbers in SI units. A part that is absent is an effect that is not simulated.
-// Coordinates: x along the beam from the clamped end; deflection y and every force positive towards the electrode.
+// The description of a switch, as plain numbers in SI units. The simulation ignores the effect of an absent part. Coordinates:
+// x along the beam from the clamped end; deflection y and every force positive towards the electrode.
 #pragma once
 
 #include <algorithm>
@@ -31,40 +31,41 @@ struct Gap {
 /// neither a stiffness nor asperities are given.
 struct Landing {
   double stiffness = std::numeric_limits<double>::quiet_NaN();  ///< stiffness of a bed per area [Pa/m]
-  double from = 0;                                              ///< how far above the face the pressure of a bed begins [m]
-  std::optional<UniformAsperities> asperities = {};             ///< they stand on the face, without damping
+  double from = 0;                                   ///< height above the face at which the pressure of a bed begins [m]
+  std::optional<UniformAsperities> asperities = {};  ///< asperities on the face, without damping
 
   [[nodiscard]] bool is_wall() const { return std::isnan(stiffness) && !asperities; }
-  /// How far above the face the pressure begins [m]: of asperities at the height of the highest one.
+  /// Returns the height above the face at which the pressure begins [m]; for asperities that of the highest one.
   [[nodiscard]] double begin() const { return asperities ? asperities->height : from; }
 };
 
-/// An insulator on an electrode, which faces the moving part: the gaps of the scene end at its face, the metal lies deeper.
+/// An insulator on an electrode, facing the moving part: the gaps of the scene end at its face, the metal lies deeper.
 struct Dielectric {
-  double thickness = 0;                 ///< [m]
-  double permittivity = 1;              ///< relative
-  double roughness = 0;                 ///< air that is left where its summits touch [m]
-  double charge = 0;                    ///< per area, on its face [C/m^2], of either sign
-  std::optional<Landing> landing = {};  ///< none: what reaches it has failed, or is a plate that stands on a contact
+  double thickness = 0;     ///< [m]
+  double permittivity = 1;  ///< relative
+  double roughness = 0;     ///< air gap that is left where its summits touch [m]
+  double charge = 0;        ///< charge per area on its face [C/m^2], of either sign
+  std::optional<Landing> landing =
+      {};  ///< landing; without one, anything that reaches the face has failed, or is a plate that stands on a contact
 
-  /// What it adds to the gap of the field, t / eps_r + roughness [m].
+  /// Returns its contribution to the gap of the field, t / eps_r + roughness [m].
   [[nodiscard]] double depth() const { return thickness / permittivity + roughness; }
-  /// V0, the voltage of the electrode at which the charge leaves no field in the air, -charge t / (eps_r eps0) [V].
+  /// Returns V0, the voltage of the electrode at which the charge leaves no field in the air, -charge t / (eps_r eps0) [V].
   [[nodiscard]] double neutral_voltage() const;
 };
 
 /// One voltage, on one pad or several.
 struct Electrode {
   std::string name = {};
-  Place begin;  ///< of a plate only the length counts: the electrode's area over the plate's width
+  Place begin;  ///< on a plate only the length counts: the electrode's area over the plate's width
   Place end;
   std::vector<Span> further = {};  ///< pads beside that first one
   Fringing fringing = Fringing::meijs_fokkema;
   Side side = Side::near;
-  double gap = 0;                             ///< far, both: rest distance of the face on the far side to the moving part [m]
-  std::optional<Dielectric> dielectric = {};  ///< near side alone
+  double gap = 0;                             ///< for far, both: rest distance of the face on the far side to the moving part [m]
+  std::optional<Dielectric> dielectric = {};  ///< dielectric; on the near side alone
 
-  /// All pads on a beam of this length [m].
+  /// Returns all pads on a beam of this length [m].
   [[nodiscard]] std::vector<Stretch> pads(double length) const;
 };
 
@@ -77,7 +78,7 @@ struct Piezo {
   double density = 0;                                     ///< [kg/m^3]
   double d31 = 0;                                         ///< [m/V], negative for the usual ceramics
   double e31 = std::numeric_limits<double>::quiet_NaN();  ///< [C/m^2], instead of d31
-  /// That of the layer between its electrodes; NaN: it is not known, and the charging of the layer is not counted.
+  /// Relative permittivity of the layer between its electrodes; the charging of the layer does not count where it is NaN.
   double relative_permittivity = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -95,9 +96,9 @@ static_assert(is_complete<conductors>());
 /// Casimir and van der Waals forces between beam and electrode plane, over the whole length.
 struct Dispersion {
   DispersionModel model = DispersionModel::automatic;
-  Conductor conductor = Conductor::ideal;  ///< casimir, automatic: of the Casimir law
-  double hamaker_constant = 0;             ///< A_h [J]; van_der_waals, automatic
-  double equilibrium_distance = 0;         ///< h0 [m], where attraction and repulsion balance; 0: no repulsion
+  Conductor conductor = Conductor::ideal;  ///< conductor of the Casimir law; for casimir, automatic
+  double hamaker_constant = 0;             ///< A_h [J]; for van_der_waals, automatic
+  double equilibrium_distance = 0;         ///< h0 [m], at which attraction and repulsion balance; 0: no repulsion
 };
 
 enum class SurfaceFaces { all, wide };
@@ -115,13 +116,13 @@ struct Surface {
   double elastic_modulus = 0;  ///< E_s [N/m], of either sign
   double residual_stress = 0;  ///< tau_0 [N/m], positive where the surface pulls
   SurfaceFaces faces = SurfaceFaces::all;
-  ResidualLoad cantilever_load = ResidualLoad::none;  ///< what tau_0 does to a cantilever
+  ResidualLoad cantilever_load = ResidualLoad::none;  ///< effect of tau_0 on a cantilever
 };
 
-/// The rule by which the connection of a switch counts as electrically closed. Nobody looks at it where nothing is given.
+/// The rule by which the connection of a switch counts as electrically closed. It has no effect where nothing is given.
 struct ElectricalClosing {
-  double force = std::numeric_limits<double>::quiet_NaN();       ///< its contact force is above this [N]; NaN: any force will do
-  double resistance = std::numeric_limits<double>::quiet_NaN();  ///< its resistance is below this [Ohm]; NaN: any will do
+  double force = std::numeric_limits<double>::quiet_NaN();       ///< least contact force [N]; any force where it is NaN
+  double resistance = std::numeric_limits<double>::quiet_NaN();  ///< largest resistance [Ohm]; any resistance where it is NaN
   double after = std::numeric_limits<double>::quiet_NaN();       ///< openings that are no longer than this do not count [s]
 
   [[nodiscard]] bool is_asked() const { return force >= 0 || resistance > 0 || after >= 0; }
@@ -141,7 +142,7 @@ struct Device {
   Gap gap = {};
   std::vector<Electrode> electrodes = {};
   std::optional<Gas> gas = {};
-  std::vector<Contact> contacts = {};  ///< the first one, of the near side, closes the switch; back stops come after the others
+  std::vector<Contact> contacts = {};  ///< the first one, on the near side, closes the switch; back stops come after the others
   Connection connection = Connection::all;
   ElectricalClosing electrical = {};
   SwitchedLoad load = {};
@@ -150,39 +151,41 @@ struct Device {
   std::optional<Surface> surface = {};
 
   [[nodiscard]] bool has_contact() const { return !contacts.empty(); }
-  /// True where the resistance of the connection is known: every contact that makes it conducts.
+  /// True when the resistance of the connection is known: every contact that makes it conducts.
   [[nodiscard]] bool conducts() const {
     return has_contact() &&
            std::ranges::all_of(contacts, [](const Contact& c) { return !c.connects || c.conduction.is_given(); });
   }
-  /// x_c, the centre of a contact's pad [m]: its force acts there, and figures of merit are taken at that of the first one. A pad
-  /// whose place is not said ends at the free end, or lies about the middle of a beam between two clamps. Without contact: the
-  /// free end, or the middle. A contact along the pad has the free end, which touches first.
+  /// Returns x_c, the centre of a contact's pad [m]: its force acts there, and figures of merit are taken at that of the first
+  /// contact. A pad without a given place ends at the free end, or lies about the middle of a beam between two clamps. Without
+  /// contact it is the free end, or the middle. A contact along the pad has the free end, which touches first.
   [[nodiscard]] double contact_position(std::size_t contact = 0) const;
-  /// How far the structure rests from the straight shape at x, away from the near electrode [m].
+  /// Returns the distance at which the structure rests from the straight shape at x, away from the near electrode [m].
   [[nodiscard]] double rest_offset(double x) const;
-  /// Rest distance of a contact's place to its plane [m]: that of the straight shape and what the rest shape adds.
+  /// Returns the rest distance of a contact's place to its plane [m]: that of the straight shape plus the offset of the rest
+  /// shape.
   [[nodiscard]] double contact_gap(std::size_t contact = 0) const;
-  /// The landing on the dielectric of its electrodes, which is one for all that have any; null where none has.
+  /// Returns the landing on the dielectric of its electrodes, the same for all that have one; null where none has.
   [[nodiscard]] const Landing* landing() const;
-  /// The number of the contact that is the face of a dielectric, all along its electrodes; none where no dielectric has a
-  /// landing.
+  /// Returns the number of the contact that is the face of a dielectric, all along its electrodes; none where no dielectric has
+  /// a landing.
   [[nodiscard]] std::optional<std::size_t> face_contact() const;
   [[nodiscard]] bool lands_along_face() const { return face_contact().has_value(); }
-  /// Whether it lands on the dielectric of its electrodes, nearer than a hundredth of the gap to it.
+  /// True when it lands on the dielectric of its electrodes, nearer to it than a hundredth of the gap.
   [[nodiscard]] bool lands_on_dielectric() const { return lands_along_face() || gap.contact > 0.99 * gap.electrode; }
-  /// Local gap between a closed switch and the face of its electrode, for the laws of films: at least a hundredth of the rest
-  /// gap, from where on these are continued [m].
+  /// Returns the local gap between a closed switch and the face of its electrode, for the laws of films [m]. It is at least a
+  /// hundredth of the rest gap, below which these laws are continued.
   [[nodiscard]] double closed_gap() const { return std::max(gap.electrode - gap.contact, gap.electrode / 100); }
-  /// What all near electrodes add to the gap of their fields at least, where each has a dielectric; else 0 [m].
+  /// Returns the least contribution of the near electrodes' dielectrics to the gap of their fields, where each has one; else 0
+  /// [m].
   [[nodiscard]] double dielectric_depth() const;
-  /// Whether there is a charge on the dielectric of an electrode.
+  /// True when there is a charge on the dielectric of an electrode.
   [[nodiscard]] bool is_charged() const;
-  /// Whether the contact acts along its pad, not at one place.
+  /// True when the contact acts along its pad, not at one place.
   [[nodiscard]] bool touches_along_pad() const {
     return has_contact() && contacts.front().distribution == ContactDistribution::pad;
   }
-  /// Where the pad of the first contact begins and ends [m]; of a device with a contact.
+  /// Returns begin and end of the pad of the first contact [m]; the device must have a contact.
   [[nodiscard]] std::pair<double, double> pad() const {
     const Contact& first = contacts.front();
     if (first.at) return {contact_position() - first.pad_length / 2, contact_position() + first.pad_length / 2};
@@ -191,44 +194,46 @@ struct Device {
   }
 };
 
-/// An electrode that has no room beside the others, and why.
+/// An electrode that has no room beside the others, and the reason.
 struct ElectrodeConflict {
   std::size_t electrode = 0;  ///< its number
   std::string why;
 };
-/// Electrodes on one side of a beam must not overlap, and those on one side of a plate must not have more area together than the
-/// plate: the force would count twice. Edges may touch, within rounding. Nothing when all of them fit.
+/// Returns a conflict of electrodes; nothing when all of them fit. Electrodes on one side of a beam must not overlap, and those
+/// on one side of a plate must not have more area together than the plate: the force would count twice. Edges may touch, within
+/// rounding.
 [[nodiscard]] std::optional<ElectrodeConflict> electrode_conflict(const Structure& structure,
                                                                   const std::vector<Electrode>& electrodes);
 
-/// A contact that cannot stand beside the others, and why.
+/// A contact that cannot stand beside the others, and the reason.
 struct ContactConflict {
   std::size_t contact = 0;  ///< its number
   std::string why;
 };
-/// The first contact is one on the near side, two on one side lie at two places, and a rigid one or one along its pad stands
-/// alone. Nothing when all is well.
+/// Returns a conflict of contacts, or nothing. The first contact must be one on the near side, two on one side must lie at two
+/// places, and a rigid one or one along its pad must stand alone.
 [[nodiscard]] std::optional<ContactConflict> contact_conflict(const Device& device);
 
-/// Whether the beam lands on both electrodes in the same way, or on neither.
+/// Returns true when the beam lands on both electrodes in the same way, or on neither.
 [[nodiscard]] bool have_equal_landings(const Electrode& one, const Electrode& other);
 inline constexpr auto unequal_landings = "where a dielectric has a landing, every near electrode has the same one";
 
 /// Name of the contact that is the face of a dielectric, where the device has other contacts beside it.
 inline constexpr std::string_view face_name = "dielectric";
 
-/// Gives a device whose dielectric has a landing the contact that this is, with its plane and its place: where a beam that bends
-/// under its electrodes touches first. It comes last, and makes no connection, where the device has a contact on the near side;
-/// else it comes first, and makes it. Called again, it follows a landing that has changed. Nothing changes without a landing.
+/// Adds the face of the dielectric as a contact to a device whose dielectric has a landing. Its plane and place are where a
+/// beam that bends under its electrodes touches first. It comes last, and makes no connection, where the device has a contact
+/// on the near side; else it comes first, and makes it. A repeated call follows a landing that has changed. Without a landing
+/// nothing changes.
 void set_face_contact(Device& device);
 
-/// Why a device whose contact lies at its electrode cannot land there; empty when it can.
+/// Returns the reason why a device whose contact lies at its electrode cannot land there; empty when it can.
 [[nodiscard]] std::string why_no_landing(const Device& device);
 
-/// Why this contact cannot act along the pad of this structure; empty when it can.
+/// Returns the reason why this contact cannot act along the pad of this structure; empty when it can.
 [[nodiscard]] std::string why_not_along_pad(const Structure& structure, const Contact& contact);
 
-/// Throws InvalidInput naming the quantity, its value and the rule when a number is outside what the model can mean.
+/// Throws InvalidInput naming the quantity, its value and the rule when a number is outside the range of the model.
 void validate(const Device& device);
 
 }  // namespace softland

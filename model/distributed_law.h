@@ -1,7 +1,7 @@
 // A force law that acts along the beam, erased to one indirect call per law and right-hand side. A law is a small value that
-// gives load(gap, velocity) over the scalar type (double for runs, Dual for exact derivatives). A conservative law is scaled by a
-// drive (`driven`: V^2 of an electrode, the factor of a force), or acts by itself, and also gives its potential(gap), of which
-// the load is the slope; the others dissipate.
+// gives load(gap, velocity) over the scalar type (double for runs, Dual for exact derivatives). A conservative law is scaled by
+// a drive (`driven`: V^2 of an electrode, the factor of a force), or acts by itself; it also gives its potential(gap), whose
+// slope is the load. The other laws dissipate.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,15 +27,16 @@ struct GapField {
 class DistributedLaw {
  public:
   virtual ~DistributedLaw() = default;
-  /// load += drive * law [N/m] at the law's points; laws that are not driven ignore `drive`. `load` is as long as the field.
+  /// Adds load += drive * law [N/m] at the law's points; laws that are not driven ignore `drive`. `load` is as long as the
+  /// field.
   virtual void add_load(const GapField& field, double drive, double* load) const = 0;
-  /// Derivatives of the load with respect to deflection and velocity, added at the law's points. Both are as long as the field.
+  /// Adds derivatives of the load with respect to deflection and velocity at the law's points. Both are as long as the field.
   virtual void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const = 0;
-  /// Second derivatives of the load: by deflection twice, by deflection and velocity, by velocity twice, added at the law's
-  /// points; nothing at points below the floor, where the load goes on by its tangent.
+  /// Adds second derivatives of the load at the law's points: by deflection twice, by deflection and velocity, by velocity
+  /// twice. Adds nothing at points below the floor, where the load continues by its tangent.
   virtual void add_curvatures(const GapField& field, double drive, double* by_deflections, double* by_both,
                               double* by_velocities) const = 0;
-  /// Integral of the potential per length over the law's points, at unit drive [J]; 0 for laws that dissipate.
+  /// Returns the integral of the potential per length over the law's points, at unit drive [J]; 0 for laws that dissipate.
   [[nodiscard]] virtual double potential(const GapField& field, const Eigen::ArrayXd& weights) const = 0;
 };
 
@@ -57,7 +58,7 @@ class DistributedLawOf final : public DistributedLaw {
     const double factor = Law::driven ? drive : 1;
     const Law law = law_;  // a local copy lets the compiler keep the parameters in registers
     if (field.smallest_gap >= floor_) {
-      // Whole lanes, so that the compiler makes them vectors: what is left over at an end would take as long, point by point.
+      // Whole lanes let the compiler use vectors: the points left over at an end would take as long, one by one.
       const double* share = share_.data();
       for (Eigen::Index p = begin_ / lanes * lanes; p < share_.size(); p += lanes) {
         double sum[lanes];
@@ -107,7 +108,7 @@ class DistributedLawOf final : public DistributedLaw {
     for (Eigen::Index p = begin_; p < end_; ++p) {
       const double gap = field.gap[p], velocity = field.velocity[p];
       if (gap < floor_) continue;
-      // The outer direction of each number, then the inner one.
+      // Seed the outer direction of each number, then the inner one.
       const auto mixed = [&](double gap_outer, double gap_inner) {
         return law_
             .load(DualOf<Dual>(Dual(gap, gap_inner), Dual(gap_outer)),
@@ -137,7 +138,7 @@ class DistributedLawOf final : public DistributedLaw {
   }
 
  private:
-  /// The slopes of the load by the gap and by the velocity.
+  /// Returns the slopes of the load by the gap and by the velocity.
   [[gnu::always_inline]] static std::array<double, 2> slopes(const Law& law, double gap, double velocity) {
     using Both = Gradient<2>;
     const auto along = law.load(Both(gap, Directions<2>::unit(0)), Both(velocity, Directions<2>::unit(1))).slope.along;
@@ -151,7 +152,7 @@ class DistributedLawOf final : public DistributedLaw {
         by_deflection[p] -= by_gap, by_velocity[p] += by_rate;
         continue;
       }
-      // Outer direction the gap, inner the velocity: the slope of the tangent depends on the velocity too.
+      // The outer direction is the gap, the inner the velocity: the slope of the tangent depends on the velocity too.
       const double gap = std::max(field.gap[p], floor_);
       const auto at = law_.load(DualOf<Dual>(gap, 1), DualOf<Dual>(Dual(field.velocity[p], 1)));
       by_deflection[p] -= factor * at.slope.value;

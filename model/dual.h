@@ -1,6 +1,6 @@
-// Forward-mode dual numbers: evaluating a law with them gives the law's exact derivatives. A plain one has one direction. A dual
-// of duals has two: its value.slope and slope.value are the first derivatives, its slope.slope is the mixed second one. One whose
-// slope is Directions<N> has N at once, for the price of one value.
+// Forward-mode dual numbers: evaluating a law with them gives the law's exact derivatives. A plain one has one direction. A
+// dual of duals has two: its value.slope and slope.value are the first derivatives, its slope.slope is the mixed second one. A
+// dual whose slope is Directions<N> has N at once, for one evaluation of the value.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ template <std::size_t N, class T = double>
 struct Directions {
   std::array<T, N> along = {};
 
-  /// The unit vector of direction k.
+  /// Returns the unit vector of direction k.
   static constexpr Directions unit(std::size_t k) {
     Directions d;
     d.along[k] = T(1);
@@ -56,7 +56,7 @@ struct DualOf {
   T value = 0;
   Slope slope = {};
 
-  constexpr DualOf(T v = 0, Slope s = {}) : value(v), slope(s) {}  // NOLINT: plain numbers take part in formulas
+  constexpr DualOf(T v = 0, Slope s = {}) : value(v), slope(s) {}  // NOLINT: formulas mix it with plain numbers
 
   friend constexpr DualOf operator+(DualOf a, DualOf b) { return {a.value + b.value, a.slope + b.slope}; }
   friend constexpr DualOf operator-(DualOf a, DualOf b) { return {a.value - b.value, a.slope - b.slope}; }
@@ -89,7 +89,7 @@ struct DualOf {
     using std::cos, std::sin;
     return {cos(a.value), -sin(a.value) * a.slope};
   }
-  /// For positive a.
+  /// Returns a power of positive a.
   friend DualOf power(DualOf a, double exponent) {
     const T raised = power(a.value, exponent);
     return {raised, T(exponent) * raised / a.value * a.slope};
@@ -111,7 +111,7 @@ struct DualOf {
 };
 
 using Dual = DualOf<double>;
-/// With N directions.
+/// A dual number with N directions.
 template <std::size_t N>
 using Gradient = DualOf<double, Directions<N>>;
 

@@ -2,8 +2,9 @@
 //
 //   f(h, v) = -law(H - h, -v)       H = d0 + d_far
 //
-// h local gap on the near side [m], v velocity towards the near side [m/s], d0 and d_far rest gaps of both sides [m]. Below
-// `floor` the law is continued by its tangent: the switch ends a run that gets there. Laws of the velocity are linear in it.
+// h is the local gap on the near side [m], v the velocity towards the near side [m/s], d0 and d_far the rest gaps of both sides
+// [m]. Below `floor` the law is continued by its tangent: the switch ends a run that gets there. Laws of the velocity are
+// linear in it.
 #pragma once
 
 #include "model/dual.h"
@@ -15,11 +16,11 @@ struct FarSide {
   Law law = {};
   P both_gaps = 0;  ///< H [m]
   P floor = 0;      ///< [m]
-  /// The law's tangent there, for v = 1 m/s.
+  /// The law's tangent at the floor, for v = 1 m/s.
   DualOf<P> at_floor = law.load(DualOf<P>(floor, 1), DualOf<P>(1));
   static constexpr bool driven = Law::driven;
 
-  /// [N/m], per unit of the drive for a driven law
+  /// Returns the load [N/m], per unit of the drive for a driven law.
   template <class S>
   S load(S gap, S velocity) const {
     const S far = S(both_gaps) - gap;
@@ -31,7 +32,7 @@ struct FarSide {
         },
         [&]() -> S { return -law.load(far, -velocity); });
   }
-  /// [J/m] per unit of the drive; below the floor the parabola that belongs to the tangent.
+  /// Returns the potential [J/m] per unit of the drive; below the floor the parabola that belongs to the tangent.
   [[nodiscard]] double potential(double gap) const requires(Law::driven) {
     const double far = both_gaps - gap, below = far - floor;
     if (below >= 0) return law.potential(far);

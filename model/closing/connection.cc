@@ -27,7 +27,7 @@ void ConnectionCourse::Followed::touch(const Touch& touch) {
   if (connects_) connection_.touches_.take(touch);
 }
 
-// Knots are given as they are. Between them the place is that of the quintic, and the force goes on a line.
+// Returns a given knot as it is. Between knots the place is that of the quintic, and the force is linear.
 TrajectoryPoint ConnectionCourse::Followed::at(double time) const {
   const TrajectoryPoint* from = &*last;
   for (const TrajectoryPoint& to : fresh) {
@@ -60,7 +60,7 @@ std::size_t ConnectionCourse::decides(double time, std::size_t present) const {
 void ConnectionCourse::hand_over() {
   const Followed& any = followed_[deciding_];
   if (any.fresh.empty()) return;
-  // A jump of all contacts, or the beginning.
+  // Handle a jump of all contacts, or the beginning.
   while (!any.fresh.empty() && (!any.last || any.fresh.front().time == any.last->time)) {
     for (Followed& c : followed_) {
       if (!c.connects()) continue;
@@ -156,7 +156,7 @@ std::optional<Touch> ConnectionTouches::finish() {
 
 ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts) {
   if (contacts.size() == 1) return contacts.front();
-  // The later, or the less, of two; NaN where one of them is.
+  // Return the later, or the smaller, of two; NaN where one of them is NaN.
   const auto later = [](double a, double b) { return std::isnan(a) || a > b ? a : b; };
   const auto less = [](double a, double b) { return std::isnan(a) || a < b ? a : b; };
   std::optional<ForceOutcome> all;

@@ -2,9 +2,10 @@
 //
 // The connection is closed while all of the contacts that make it are, or while any of them is (Device::connection). Its
 // separation is the largest of theirs, or the smallest; its place counts from the plane of the first contact, at the separation
-// of the connection. Between two knots of any contact the one that is furthest (or nearest) at both ends decides, and where that
-// changes there is a knot at which both are equally far. Its force is the least force of a contact that makes it, or the largest.
-// A touch of the connection holds the largest force and impact speed, and the energies, of the touches of its contacts.
+// of the connection. Between two knots of any contact the contact that is furthest (or nearest) at both ends decides; where
+// that changes there is a knot at which both are equally far. The force of the connection is the least force of a contact that
+// makes it, or the largest. A touch of the connection holds the largest force and impact velocity, and the energies, of the
+// touches of its contacts.
 #pragma once
 
 #include <cstddef>
@@ -18,19 +19,19 @@
 
 namespace softland {
 
-/// The touches of a connection, which hold what those of its contacts have.
+/// The touches of a connection, which combine those of its contacts.
 class ConnectionTouches {
  public:
   /// Takes a touch of a contact that makes the connection.
   void take(const Touch& touch);
-  /// The connection closes [s], at this speed [m/s]: returns the touch before, if there was one.
+  /// Closes the connection [s], at this speed [m/s]: returns the touch before, if there was one.
   [[nodiscard]] std::optional<Touch> close(double time, double speed);
-  /// It opens [s].
+  /// Opens the connection [s].
   void open(double time) { touch_->end = time; }
   /// Returns the last touch, once all touches of contacts have been taken.
   [[nodiscard]] std::optional<Touch> finish();
 
-  /// First touch of any contact that makes the connection [s], and the speed there [m/s]; NaN before.
+  /// Return the first touch of any contact that makes the connection [s], and the speed there [m/s]; NaN before.
   [[nodiscard]] double first_touch() const { return first_touch_; }
   [[nodiscard]] double impact_velocity() const { return impact_velocity_; }
 
@@ -40,7 +41,7 @@ class ConnectionTouches {
   double first_touch_ = std::numeric_limits<double>::quiet_NaN(), impact_velocity_ = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// When the contact force is steady from then on [s], and the least after the first touch [N]: as in Trajectory.
+/// The time from which the contact force is steady [s], and the least force after the first touch [N]: as in Trajectory.
 struct ForceOutcome {
   double steady_force_time = std::numeric_limits<double>::quiet_NaN();
   double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
@@ -55,14 +56,14 @@ class ConnectionCourse {
   ConnectionCourse(const ConnectionCourse&) = delete;
   ConnectionCourse& operator=(const ConnectionCourse&) = delete;
 
-  /// Who receives the course of a contact.
+  /// Returns the observer that receives the course of a contact.
   [[nodiscard]] ClosingObserver& contact(std::size_t c) { return followed_[c]; }
   /// Hands over the connection as far as all contacts are known.
   void hand_over();
   /// Hands over the last touch, once all contacts have handed over theirs.
   void finish();
 
-  /// First touch of any contact that makes the connection [s], and the speed there [m/s]; NaN before.
+  /// Return the first touch of any contact that makes the connection [s], and the speed there [m/s]; NaN before.
   [[nodiscard]] double first_touch() const { return touches_.first_touch(); }
   [[nodiscard]] double impact_velocity() const { return touches_.impact_velocity(); }
 
@@ -79,7 +80,7 @@ class ConnectionCourse {
     [[nodiscard]] double separation(double time) const { return gap_ - at(time).position; }
     [[nodiscard]] double gap() const { return gap_; }
 
-    std::optional<TrajectoryPoint> last;  ///< up to which the connection has been followed
+    std::optional<TrajectoryPoint> last;  ///< last knot up to which the connection has been followed
     std::vector<TrajectoryPoint> fresh;
 
    private:
@@ -89,7 +90,7 @@ class ConnectionCourse {
     bool connects_;
   };
 
-  /// The contact that decides at a time, `present` among equals.
+  /// Returns the contact that decides at a time, `present` among equals.
   [[nodiscard]] std::size_t decides(double time, std::size_t present) const;
   void follow_to(double time);
   void tell(double time);

@@ -1,4 +1,4 @@
-// Where the contact point of a closing stands with respect to the contact law, and where that part of the law ends.
+// Phase of a closing's contact point in the contact law, and the end of that phase.
 //
 //   flight     above the plane of first touch, and above the reach of a law that acts beyond it
 //   near       above the plane, within the reach of the law                    (adhesive_repulsive.h)
@@ -9,7 +9,7 @@
 //
 // A phase is entered at an edge of another one or, from loading to unloading, at the deepest point. A law that is not smooth at
 // some interferences has an edge there from loading to loading. The integrator is restarted at every edge, so that it only ever
-// sees smooth right-hand sides.
+// integrates smooth right-hand sides.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct Edge {
   double level = 0;  ///< [m]
   double side = 0;   ///< 1: the phase lies beyond the level, towards the contact; -1: before it
   Phase next = Phase::flight;
-  std::size_t zone = 0;  ///< of the next phase: between which kinks of the law, counted from the plane
+  std::size_t zone = 0;  ///< zone of the next phase: its kinks of the law, counted from the plane
 };
 
 class ContactPhase {
@@ -38,24 +38,25 @@ class ContactPhase {
   explicit ContactPhase(const Switch& model, std::size_t contact = 0);
 
   [[nodiscard]] Phase phase() const { return phase_; }
-  /// Whether the contact point is at or below the plane of first touch.
+  /// True when the contact point is at or below the plane of first touch.
   [[nodiscard]] bool in_contact() const { return phase_ != Phase::flight && phase_ != Phase::near; }
-  /// State of the contact law that belongs to the phase.
+  /// Returns the state of the contact law that belongs to the phase.
   [[nodiscard]] const ContactState& law() const { return law_; }
   [[nodiscard]] std::span<const Edge> edges() const { return {edges_.data(), edge_count_}; }
-  /// The phase on the other side of the plane of first touch.
+  /// Returns the phase on the other side of the plane of first touch.
   [[nodiscard]] Phase above() const { return reach_ > 0 ? Phase::near : Phase::flight; }
-  /// Whether the phase ends where the contact point turns back: loading of a law with memory.
+  /// True when the phase ends where the contact point turns back: loading of a law with memory.
   [[nodiscard]] bool ends_at_turn() const { return remembers_ && phase_ == Phase::loading; }
-  /// State of a law without memory at this position of the contact point [m], whatever the phase.
+  /// Returns the state of a law without memory at this position of the contact point [m], whatever the phase.
   [[nodiscard]] ContactState law_at(double position) const {
     return acts_along_pad_ || (has_contact_ && position > plane_ - reach_);
   }
-  /// Energy lost to dents so far, with the contact point at this position [J].
+  /// Returns the energy lost to dents so far, with the contact point at this position [J].
   [[nodiscard]] double lost(double position) const;
 
   void enter(Phase phase, std::size_t zone = 0);
-  /// At rest on the contact, with the contact point this much beyond the plane [m]: a law with memory has been loaded as far.
+  /// Begins at rest on the contact, with the contact point this much beyond the plane [m]: a law with memory has been loaded as
+  /// far.
   void begin_closed(double interference);
   /// Turns from loading to unloading at this interference [m].
   void turn(double deepest);
@@ -63,8 +64,8 @@ class ContactPhase {
  private:
   const Switch& model_;
   std::size_t contact_;
-  double plane_;  // of first touch [m]
-  double reach_;  // how far above the plane the law acts [m]
+  double plane_;  // plane of first touch [m]
+  double reach_;  // distance above the plane at which the law begins to act [m]
   bool has_contact_, acts_along_pad_, remembers_;
   std::vector<double> kinks_;  // interferences at which the law is not smooth [m]
   Phase phase_ = Phase::flight;
@@ -72,11 +73,11 @@ class ContactPhase {
   std::array<Edge, 2> edges_;
   std::size_t edge_count_ = 0;
   double deepest_ = 0;  // interference that the law remembers [m]
-  Dent dent_;           // what it has left
+  Dent dent_;           // dent that the law has left
   double healed_ = 0;   // energy lost to dents that are forgotten [J]
 };
 
-/// The phases of all contacts of a switch, at least of one: that of the contact point, which a switch without contact has too.
+/// The phases of all contacts of a switch, at least one: a switch without contact has that of its contact point.
 class ContactPhases {
  public:
   explicit ContactPhases(const Switch& model) {
@@ -90,14 +91,14 @@ class ContactPhases {
   [[nodiscard]] ContactPhase& operator[](std::size_t c) { return phases_[c]; }
   [[nodiscard]] const ContactPhase& operator[](std::size_t c) const { return phases_[c]; }
   [[nodiscard]] const ContactPhase& first() const { return phases_.front(); }
-  /// What the contacts do in their phases; valid until the next call.
+  /// Returns the states of the contacts in their phases; valid until the next call.
   [[nodiscard]] ContactStates states() {
     for (std::size_t c = 1; c < size(); ++c) further_[c - 1] = phases_[c].law();
     return {phases_.front().law(), further_};
   }
-  /// As if no contact acted.
+  /// Returns states in which no contact acts.
   [[nodiscard]] ContactStates apart() const { return {false, apart_}; }
-  /// Whether any of them is at or below its plane.
+  /// True when any contact is at or below its plane.
   [[nodiscard]] bool in_contact() const { return std::ranges::any_of(phases_, &ContactPhase::in_contact); }
 
  private:

@@ -16,9 +16,9 @@ class DriveCourse {
       : signals_(signals), pieces_(signals.size(), 0), values_(signals.size(), 0.0) {}
 
   [[nodiscard]] std::size_t size() const { return signals_.size(); }
-  /// Of all drives before t = 0.
+  /// Returns the values of all drives before t = 0.
   [[nodiscard]] std::vector<double> before() const { return values_before(signals_); }
-  /// Begin and end of every stretch within [0, duration], in order, one of them at `also` where that lies within [s].
+  /// Returns begin and end of every stretch within [0, duration], in order, one of them at `also` if that lies within [s].
   [[nodiscard]] std::vector<double> stretches(double duration, double also = std::numeric_limits<double>::infinity()) const {
     std::vector<double> stops{0, duration};
     if (also > 0 && also < duration) stops.push_back(also);
@@ -32,24 +32,24 @@ class DriveCourse {
     return stops;
   }
 
-  /// Goes on to the piece of drive k that begins at, or holds after, time t.
+  /// Enters the piece of drive k that begins at, or holds after, time t.
   void enter(std::size_t k, double t) { pieces_[k] = signals_[k].piece_at(t); }
   [[nodiscard]] const SignalPiece& piece(std::size_t k) const { return signals_[k].pieces()[pieces_[k]]; }
-  /// Of drive k by the formula of its present piece, also beyond its ends.
+  /// Returns the value of drive k by the formula of its present piece, also beyond its ends.
   [[nodiscard]] double value(std::size_t k, double t) const { return piece(k).voltage(t); }
-  /// Of all drives; valid until the next call.
+  /// Returns the values of all drives; valid until the next call.
   std::span<const double> values(double t) {
     for (std::size_t k = 0; k < size(); ++k) values_[k] = value(k, t);
     return values_;
   }
-  /// Whether every drive is on its last piece.
+  /// True when every drive is on its last piece.
   [[nodiscard]] bool at_hold() const {
     for (std::size_t k = 0; k < size(); ++k) {
       if (pieces_[k] + 1 < signals_[k].pieces().size()) return false;
     }
     return true;
   }
-  /// A step length that resolves every drive after t; infinity where none oscillates [s].
+  /// Returns a step length that resolves every drive after t; infinity where none oscillates [s].
   [[nodiscard]] double resolving_step(double t) const {
     double step = std::numeric_limits<double>::infinity();
     for (const Signal& signal : signals_) step = std::min(step, signal.resolving_step(t));

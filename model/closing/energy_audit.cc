@@ -6,7 +6,7 @@
 namespace softland {
 namespace {
 
-constexpr double worth_care = 1e-4;  // of the bending energy: from there on dissipation is added up with more points
+constexpr double worth_care = 1e-4;  // share of the bending energy above which dissipation is integrated with more points
 
 }  // namespace
 
@@ -90,8 +90,8 @@ void EnergyAudit::step(const Knot& here, const Knot& next, double dissipation_at
   }
 }
 
-// Mean power over a step at whose end it is `at_end`. The modes may turn by two radians in it, their power by four. A
-// compressible film has no motion that is exact for the modes.
+// Returns the mean power over a step at whose end it is `at_end`. The modes may turn by two radians in it, their power by four.
+// A compressible film has no motion that is exact for the modes.
 double EnergyAudit::mean_dissipation(double at_end, StepMotion& motion, bool implicit) {
   const auto power = [&](const std::vector<double>& state) {
     return equations_.dissipation(state.data()) + contact_dissipation(state.data());
@@ -123,7 +123,7 @@ double EnergyAudit::above_rest(const Knot& here) {
          impacts_ + model_.film_energy(q, equations_.workspace());
 }
 
-// What is stored is the potential and, where a source holds a charge at its voltage, V Q.
+// Stored are the potential and, where a source holds a charge at its voltage, V Q.
 void EnergyAudit::settle(const Knot& here) {
   const double* q = here.state.data();
   const std::span<const double> values = drives_.values(here.time);
@@ -140,7 +140,7 @@ void EnergyAudit::settle(const Knot& here) {
   }
   balance_.stored += stored_in_contacts(q);
   balance_.dissipated += lost_in_contacts(q);
-  if (!(std::abs(balance_.residual()) <= error_)) error_ = std::abs(balance_.residual());  // keeps what is not a number
+  if (!(std::abs(balance_.residual()) <= error_)) error_ = std::abs(balance_.residual());  // keeps NaN
   careful_ = careful_ || error_ > worth_care * model_.bending_energy();
 }
 

@@ -1,13 +1,15 @@
-// The energy balance of a closing: what the sources put in, what is stored, what is dissipated. An integrator that loses the
-// contact between two steps, or a tolerance too loose for a stiff contact, shows as a residual.
+// The energy balance of a closing: work of the sources, stored energy and dissipation. An integrator that loses the contact
+// between two steps, or a tolerance too loose for a stiff contact, shows as a residual.
 //
 //   work of the sources = integral of V dQ = [V Q] - integral of Q dV     dissipated = integral of the power taken out
 //
-// Q = C (V - V0) is the charge of an electrode, V0 that of a charge on its dielectric; its field stores C (V - V0)^2/2 + V0 Q.
+// Q = C (V - V0) is the charge of an electrode, V0 the voltage of a charge on its dielectric; its field stores C (V - V0)^2/2 +
+// V0 Q.
 //
-// The bracket over each stretch between breakpoints, the integral of Q dV by Simpson's rule where a voltage changes. Changing a
-// force factor moves no charge: its work is that integral alone. Dissipation by Simpson's rule over each step, or, once the
-// residual exceeds 1e-4 of the bending energy, by that of Lobatto with four points over a motion that is exact for the modes.
+// The bracket is taken over each stretch between breakpoints, the integral of Q dV by Simpson's rule where a voltage changes.
+// Changing a force factor moves no charge: its work is that integral alone. Dissipation is integrated by Simpson's rule over
+// each step. Once the residual exceeds 1e-4 of the bending energy, Lobatto's rule with four points integrates it over a motion
+// that is exact for the modes.
 #pragma once
 
 #include "model/closing/contact_phase.h"
@@ -20,26 +22,26 @@ namespace softland {
 
 class EnergyAudit {
  public:
-  /// Keeps references. The switch is at rest at `start`, under what its drives have been before t = 0 or on its contact; there
-  /// they are charged at once.
+  /// Keeps references. The switch is at rest at `start`, under its drives' values before t = 0 or on its contact; there they
+  /// are charged at once.
   EnergyAudit(const Switch& model, DriveCourse& drives, ContactPhases& phases, ClosingEquations& equations, const Knot& start);
 
-  /// All drives go on to the pieces that hold after `here`; a jump charges its electrode at fixed deflection, the limit of ever
+  /// Moves all drives to the pieces that hold after `here`; a jump charges its electrode at fixed deflection, the limit of ever
   /// steeper edges.
   void enter_stretch(const Knot& here, bool first);
-  /// A step between two knots.
+  /// Takes a step between two knots.
   void step(const Knot& here, const Knot& next, double dissipation_at_end, StepMotion& motion, bool implicit);
-  /// The drives change while nothing moves.
+  /// Takes a time in which the drives change while nothing moves.
   void rest(const Knot& here, double until);
-  /// An impact on a rigid contact that has left the switch in a state of this dissipation [W].
+  /// Takes an impact on a rigid contact that has left the switch in a state of this dissipation [W].
   void impact(double lost, double dissipation);
 
   /// Settles the balance at a knot.
   void settle(const Knot& here);
   [[nodiscard]] const EnergyBalance& balance() const { return balance_; }
-  /// Largest residual of all settled balances [J]; NaN once one was.
+  /// Returns the largest residual of all settled balances [J]; NaN once one was NaN.
   [[nodiscard]] double error() const { return error_; }
-  /// Energy of the moving switch and what impacts on a rigid contact have taken [J].
+  /// Returns the energy of the moving switch plus what impacts on a rigid contact have dissipated [J].
   [[nodiscard]] double above_rest(const Knot& here);
 
  private:
@@ -48,9 +50,9 @@ class EnergyAudit {
     return model_.charge(k, value, q, equations_.workspace());
   }
   [[nodiscard]] double contact_dissipation(const double* state) const;
-  /// Stored in the contacts that act [J].
+  /// Returns the energy stored in the contacts that act [J].
   [[nodiscard]] double stored_in_contacts(const double* q) const;
-  /// Lost to dents so far [J].
+  /// Returns the energy lost to dents so far [J].
   [[nodiscard]] double lost_in_contacts(const double* q) const;
   void add_charges(const Knot& here, double sign);
   [[nodiscard]] double mean_dissipation(double at_end, StepMotion& motion, bool implicit);
@@ -60,12 +62,12 @@ class EnergyAudit {
   ContactPhases& phases_;
   ClosingEquations& equations_;
   std::size_t modes_;
-  double rest_energy_;      // stored at the start [J]
-  double source_work_ = 0;  // without the charges that stand on the drives now [J]
+  double rest_energy_;      // energy stored at the start [J]
+  double source_work_ = 0;  // work without the charges that are on the drives now [J]
   double dissipated_ = 0;   // [J]
-  double dissipation_ = 0;  // at the last knot [W]
-  double impacts_ = 0;      // [J]
-  bool careful_ = false;    // with dissipated_
+  double dissipation_ = 0;  // dissipation at the last knot [W]
+  double impacts_ = 0;      // energy lost in impacts [J]
+  bool careful_ = false;    // true when dissipated_ is integrated with more points
   double error_ = 0;
   EnergyBalance balance_;
 };

@@ -11,23 +11,23 @@ namespace softland {
 
 class ClosingEquations {
  public:
-  /// Keeps references. `phase_decides`: the state of a contact law is that of its phase, else that of the position, whatever
-  /// the phase.
+  /// Keeps references. `phase_decides`: the state of a contact law is that of its phase; otherwise that of the position,
+  /// whatever the phase.
   ClosingEquations(const Switch& model, DriveCourse& drives, ContactPhases& phases, bool phase_decides);
   ClosingEquations(const ClosingEquations&) = delete;
   ClosingEquations& operator=(const ClosingEquations&) = delete;
 
   [[nodiscard]] const OdeSystem& system() const { return system_; }
-  /// All rates but q' of a state at time t, with the contact law in the state of the phase.
+  /// Computes all rates but q' of a state at time t, with the contact law in the state of the phase.
   void rates(double t, const double* state, double* result) { rates(t, state, phases_.states(), result); }
   void rates(Knot& knot) { rates(knot.time, knot.state.data(), knot.rates.data()); }
-  /// In the field of the last evaluation, which must have been at this state but for a shift by rounding.
+  /// Returns figures in the field of the last evaluation, which must have been at this state up to a shift by rounding.
   [[nodiscard]] FieldFigures field(const double* state);
-  /// By gas, film and modal damping in any state [W]; overwrites the field.
+  /// Returns the dissipation by gas, film and modal damping in any state [W]; overwrites the field.
   [[nodiscard]] double dissipation(const double* state) {
     return model_.dissipated_power(state, state + modes_, work_, film_of(state));
   }
-  /// What the electrical and elastic energies of a state are computed with; they overwrite the field.
+  /// Returns the workspace in which electrical and elastic energies of a state are computed; they overwrite the field.
   [[nodiscard]] Switch::Workspace& workspace() { return work_; }
   [[nodiscard]] long evaluations() const { return evaluations_; }
 

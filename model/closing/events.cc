@@ -3,8 +3,8 @@
 namespace softland {
 namespace {
 
-// Time in [from, to] at which the contact point first crosses an edge outwards. Between its turns the motion is monotone, so that
-// no crossing hides between two others.
+// Returns the time in [from, to] at which the contact point first crosses an edge outwards. The motion is monotone between its
+// turns, so that no crossing hides between two others.
 std::optional<double> crossing(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const Edge& edge) {
   const double side = edge.side;
   const Quintic::Bounds reached = tip.bounds();
@@ -39,7 +39,7 @@ std::optional<Event> first_event(const TipMotion& tip, const TrajectoryPoint& fr
     const double time = from.velocity > 0 ? tip.turn() : from.time;
     if (!(first && first->time < time)) first = Event{.time = time, .edge = std::nullopt};
   }
-  // At 0 nothing has moved yet.
+  // Nothing has moved yet at time 0.
   return first && first->time > 0 ? first : std::nullopt;
 }
 

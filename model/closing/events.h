@@ -1,4 +1,4 @@
-// What happens to the contact point within a step at which the equations change.
+// Events of the contact point within a step at which the equations change.
 #pragma once
 
 #include <optional>
@@ -12,10 +12,10 @@ namespace softland {
 struct Event {
   double time = 0;  ///< [s]
   std::optional<Edge> edge;
-  std::size_t contact = 0;  ///< to which it happens
+  std::size_t contact = 0;  ///< number of the contact
 };
 
-/// The first event in (from, to] of a piece of a step.
+/// Returns the first event in (from, to] of a piece of a step.
 [[nodiscard]] std::optional<Event> first_event(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to,
                                                const ContactPhase& phase);
 

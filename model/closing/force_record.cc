@@ -26,10 +26,10 @@ bool rises_with_depth(const Switch& model, std::size_t contact) {
 ForceRecord::ForceRecord(const Switch& model, double threshold, std::size_t contact)
     : model_(model), contact_(contact), threshold_(threshold), rises_with_depth_(rises_with_depth(model, contact)) {}
 
-// An extremum in between shows where the force leaves both ends to the same side.
+// Slopes at both ends towards the same side reveal an extremum of the force in between.
 template <class Force>
 void ForceRecord::follow_way(const Force& force, double begin, double from, double end, double to) {
-  constexpr double beside = 1e-6;  // of the time
+  constexpr double beside = 1e-6;  // share of the time
   constexpr int bits = 30;
   if (rises_with_depth_) return follow(force, begin, from, end, to);
   const double after = force(begin + beside * (end - begin)) - from, before = force(end - beside * (end - begin)) - to;
@@ -59,7 +59,7 @@ void ForceRecord::follow(const Force& force, double begin, double from, double e
   }
 }
 
-// Where a contact opens the force is 0 but for the rounding of its place.
+// Returns the least force, which is 0 up to the rounding of the place where a contact opens.
 double ForceRecord::least() const {
   constexpr double rounding = 1e-12;
   const double least = has_fallen_ ? least_ : last_;

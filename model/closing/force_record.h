@@ -1,9 +1,10 @@
-// The contact force of a closing after the first touch: from when on it stays above a threshold, and how low it falls again.
+// The contact force of a closing after the first touch: the time from which it stays above a threshold, and its least value
+// afterwards.
 //
-// Between knots the force is the contact law's along the motion of the contact point; along a pad, and of a plate at rest on a
-// rigid contact, it is a straight line. Out of contact it is that of a law that acts beyond the plane, else 0. Its extremes are
-// looked for at knots and where the contact point turns back, which is where a law has them that presses harder the deeper it
-// is; under others, which pull or are damped, between these too.
+// Between knots the force is that of the contact law along the motion of the contact point. It is linear along a pad, and for a
+// plate at rest on a rigid contact. Out of contact it is that of a law that acts beyond the plane, else 0. Extremes are located
+// at knots and where the contact point turns back, which suffices for laws that press harder with depth. For others, which pull
+// or are damped, they are located between these too.
 #pragma once
 
 #include <limits>
@@ -16,26 +17,26 @@ namespace softland {
 
 class ForceRecord {
  public:
-  /// Of one of the contacts. Keeps a reference. `threshold` [N]; NaN: there is none.
+  /// Records one of the contacts. Keeps a reference. `threshold` [N]; NaN for none.
   ForceRecord(const Switch& model, double threshold, std::size_t contact = 0);
 
   /// Takes a piece of a step after the first touch, under a contact law in this state.
   void take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law);
-  /// Takes a time after the first touch over which the force goes from one value to the other in a straight line.
+  /// Takes a time after the first touch over which the force changes linearly from one value to the other.
   void take_line(const TrajectoryPoint& from, const TrajectoryPoint& to);
 
-  /// What comes is after a maximum: the contact has opened, or an impact on a rigid one is over.
+  /// Marks that a maximum has passed: the contact has opened, or an impact on a rigid one is over.
   void pass_maximum() { has_fallen_ = true; }
 
-  /// Trajectory::steady_force_time [s]
+  /// Returns Trajectory::steady_force_time [s].
   [[nodiscard]] double steady_from() const { return steady_from_; }
-  /// Trajectory::least_force_after_touch [N]
+  /// Returns Trajectory::least_force_after_touch [N].
   [[nodiscard]] double least() const;
 
  private:
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-  /// A time over which the contact point goes one way.
+  /// Follows a time over which the contact point moves in one direction.
   template <class Force>
   void follow_way(const Force& force, double begin, double from, double end, double to);
   template <class Force>

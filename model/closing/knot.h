@@ -1,4 +1,4 @@
-// A state of the switch during a closing, with what the right-hand side found there.
+// A state of the switch during a closing, with the results of the right-hand side there.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +9,15 @@ namespace softland {
 struct Knot {
   double time = 0;            ///< [s]
   std::vector<double> state;  ///< q, v, then the film where it is compressible
-  std::vector<double> rates;  ///< of all but q: q'', then those of the film
+  std::vector<double> rates;  ///< rates of all but q: q'', then those of the film
 };
 
-/// What the closing asks of the gap field at a knot. It is taken from the workspace as soon as the knot is known, since the next
-/// use of the workspace overwrites the field.
+/// The figures of the gap field at a knot that the closing needs. They are taken from the workspace as soon as the knot is
+/// known, since the next use of the workspace overwrites the field.
 struct FieldFigures {
   double smallest_gap = 0;   ///< [m]
   bool at_far_side = false;  ///< see Switch::at_far_side()
-  double dissipation = 0;    ///< by gas, film and modal damping [W]; 0 where nothing is damped
+  double dissipation = 0;    ///< dissipation by gas, film and modal damping [W]; 0 without damping
 };
 
 }  // namespace softland

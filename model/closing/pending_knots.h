@@ -19,11 +19,11 @@ class Course {
         observer_(observer) {}
 
   void push(const TrajectoryPoint& point) { waiting_.push_back(point); }
-  /// Of those handed over and those that wait.
+  /// Returns the last of all knots, handed over or waiting.
   [[nodiscard]] const TrajectoryPoint& last() const { return waiting_.empty() ? handed_over_ : waiting_.back(); }
-  /// The last of those that wait, to be corrected.
+  /// Returns the last waiting knot, to be corrected.
   [[nodiscard]] TrajectoryPoint& last_waiting() { return waiting_.back(); }
-  /// Takes back what waits from this time on.
+  /// Removes the waiting knots from this time on.
   void take_back(double from, double step_begin) {
     while (!waiting_.empty() && waiting_.back().time >= from && waiting_.back().time > step_begin) waiting_.pop_back();
   }
@@ -35,12 +35,12 @@ class Course {
     if (!waiting_.empty()) handed_over_ = waiting_.back();
     waiting_.clear();
   }
-  /// Of the gas film at the contact point so far; 0 where the gas law has no limit for it.
+  /// Returns the largest squeeze number of the gas film at the contact point so far; 0 where the gas law has no limit for it.
   [[nodiscard]] double largest_squeeze() const { return largest_squeeze_; }
 
  private:
   const Device& device_;
-  double rest_gap_;  // to the electrode, at the contact point [m]
+  double rest_gap_;  // rest gap to the electrode, at the contact point [m]
   ClosingObserver& observer_;
   std::vector<TrajectoryPoint> waiting_;
   TrajectoryPoint handed_over_;

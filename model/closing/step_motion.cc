@@ -59,7 +59,8 @@ const std::vector<double>& StepMotion::halfway() {
     between_[modes_ + i] = 15.0 / 8 * (p1 - p0) / h - 7.0 / 16 * (v0 + v1) + h / 32 * (a1 - a0);
   }
   for (std::size_t i = 0; i < film_; ++i) {
-    // A film that follows the motion at once has rates that are its error times its stiffness: they may not bend it far.
+    // The rates of a film that follows the motion at once are its error times its stiffness: limit their effect on the
+    // interpolant.
     const double p0 = from[2 * modes_ + i], p1 = to[2 * modes_ + i];
     const double far = std::abs(p1 - p0) + std::max(std::abs(p0), std::abs(p1)) / 20;
     between_[2 * modes_ + i] =

@@ -1,8 +1,9 @@
-// Motion of the switch within one step of the integrator: of the contact point, in pieces short enough for one quintic each, and
-// of all coordinates at single instants.
+// Motion of the switch within one step of the integrator: of the contact point, in pieces short enough for one quintic each,
+// and of all coordinates at single instants.
 //
-// Explicit methods take steps of up to two radians of the fastest mode: within them the modes move freely and a quintic makes up
-// for what the force changes (integrators/modal_motion.h). Longer steps are an implicit method's: one Hermite polynomial.
+// Explicit methods take steps of up to two radians of the fastest mode: within them the modes move freely and a quintic adds
+// what the force changes (integrators/modal_motion.h). Longer steps come from an implicit method: one Hermite polynomial covers
+// them.
 #pragma once
 
 #include <vector>
@@ -17,27 +18,28 @@ namespace softland {
 
 class StepMotion {
  public:
-  /// `tolerance`: of the integrator; the quintic of a piece errs by as much of the fastest mode's amplitude, at most by 1e-5.
-  /// `contact`: whose place is the contact point.
+  /// `tolerance` is that of the integrator: the quintic of a piece has an error of the same share of the fastest mode's
+  /// amplitude, at most 1e-5. `contact` is the contact whose place is the contact point.
   StepMotion(const Switch& model, double tolerance, std::size_t contact = 0);
 
   /// Considers the step between two knots; `end` is the contact point at its end. Keeps references to the knots.
-  /// `accurate_rates`: whether accelerations at the knots may be used, which may be an implicit method's errors times the
-  /// stiffness.
+  /// `accurate_rates`: true when accelerations at the knots may be used; those of an implicit method may be its errors times
+  /// the stiffness.
   void set(const Knot& begin, const Knot& end_knot, const TrajectoryPoint& end, bool accurate_rates);
 
   [[nodiscard]] bool moves_by_modes() const { return moves_by_modes_; }
   [[nodiscard]] int pieces() const { return pieces_; }
   [[nodiscard]] double begin_time() const { return begin_->time; }
   [[nodiscard]] double length() const { return end_->time - begin_->time; }
-  /// The contact point after k pieces, 1 <= k < pieces().
+  /// Returns the contact point after k pieces, 1 <= k < pieces().
   [[nodiscard]] const ModalMotion::Sample& knot(int k) { return motion().knot(k); }
-  /// The contact point at a time in the step [s]. Only where moves_by_modes().
+  /// Returns the contact point at a time in the step [s]. Call it only where moves_by_modes().
   [[nodiscard]] ModalMotion::Sample at(double time) { return motion().at(time - begin_->time); }
 
-  /// q, v and film halfway through the step by Hermite interpolation; valid until the next call of this or state_at().
+  /// Returns q, v and film halfway through the step by Hermite interpolation; valid until the next call of this or state_at().
   const std::vector<double>& halfway();
-  /// q and v after a share of the step as the modes move. Only where moves_by_modes(), and without a compressible film.
+  /// Returns q and v after a share of the step as the modes move. Call it only where moves_by_modes(), and without a
+  /// compressible film.
   const std::vector<double>& state_at(double share);
 
  private:
@@ -45,8 +47,8 @@ class StepMotion {
 
   std::size_t modes_, film_;
   double fastest_;             // angular frequency of the last mode [rad/s]
-  double knot_phase_;          // of the fastest mode in a piece, at the most
-  std::vector<double> omega_;  // in whole lanes [rad/s]
+  double knot_phase_;          // largest phase of the fastest mode in a piece
+  std::vector<double> omega_;  // angular frequencies in whole lanes [rad/s]
   ModalMotion motion_;
   bool motion_known_ = false;
   const Knot* begin_ = nullptr;
@@ -68,7 +70,7 @@ class TipMotion : public Quintic {
   [[nodiscard]] double acceleration(double t) const {
     return step_.moves_by_modes() ? step_.at(t).acceleration : Quintic::acceleration(t);
   }
-  /// Where the velocity changes sign in the piece [s].
+  /// Returns the time at which the velocity changes sign in the piece [s].
   [[nodiscard]] double turn() const {
     return bracketed_zero([&](double t) { return velocity(t); }, begin(), end());
   }

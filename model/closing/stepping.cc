@@ -13,19 +13,20 @@
 namespace softland {
 namespace {
 
-// An explicit method held back by stability in one look after the other gives way to an implicit one. A thick film in a gap that
-// is all but closed makes every step one of these. In other closings they come and go, a dozen in a row at the most; but a damped
-// contact that rattles may show ninety in a row, so that some such runs go over without need.
+// An explicit method gives way to an implicit one when stability holds it back in one check after the other. A thick film in a
+// gap that is nearly closed makes every step such a step. In other closings they come and go, a dozen in a row at the most. A
+// damped contact that rattles may show ninety in a row, so that some such runs change over without need.
 constexpr double held_back = 2;  // Stepper::stiffness()
 constexpr long steps_to_look = 100;
 // How an implicit method takes over.
 struct TakeOver {
-  int looks = 50;           // in a row, after which it does
-  double tolerance = 0.01;  // share: where the explicit method took a hundred times the steps, its errors were far below its own
+  int looks = 50;  // number of such checks in a row after which it takes over
+  double tolerance =
+      0.01;  // share of the tolerance: an explicit method with a hundred times the steps had errors far below its own
 };
 
-// A film that is squeezed out along the face of a dielectric stays as stiff as it has become. There the kinks of the face, at one
-// point after the other, keep the steps short, not the tolerance.
+// A film that is squeezed out along the face of a dielectric stays as stiff as it has become. There the kinks of the face, at
+// one point after the other, keep the steps short, not the tolerance.
 TakeOver take_over(const Device& device) {
   return device.lands_along_face() && device.gas ? TakeOver{.looks = 2, .tolerance = 1} : TakeOver{};
 }
@@ -178,7 +179,7 @@ void Stepping::consider_step() {
   }
 }
 
-// Peaks and energies over the step from here_ to next_, in whose field these figures were found.
+// Records peaks and energies over the step from here_ to next_, in whose field these figures were found.
 void Stepping::account(const FieldFigures& field, EnergyAudit& audit) {
   if (here_.time == next_.time) return;
   for (FollowedContact& c : parts_.contacts) {
@@ -195,7 +196,8 @@ void Stepping::account(const FieldFigures& field, EnergyAudit& audit) {
   audit.step(here_, next_, field.dissipation, parts_.first().motion, implicit());
 }
 
-// The knot after k pieces of the step. The force along a pad, which more than the contact point decides, is drawn on a line.
+// Returns the knot after k pieces of the step. The force along a pad depends on more than the contact point; it is taken as
+// linear.
 TrajectoryPoint Stepping::knot(FollowedContact& contact, int k) {
   StepMotion& motion = contact.motion;
   if (k == motion.pieces()) return contact.end;
@@ -218,13 +220,14 @@ double Stepping::force_on_line(const FollowedContact& contact, double time) {
   return std::lerp(from.contact_force, to.contact_force, (time - from.time) / (to.time - from.time));
 }
 
-// Follows the contacts through the step from here_ to next_, up to the first event of any at which to start anew. False: failed.
+// Follows the contacts through the step from here_ to next_, up to the first event that needs a restart. Returns false where it
+// failed.
 bool Stepping::follow(std::optional<Event>& event) {
   const double until = parts_.contacts.size() > 1 ? first_event_time() : next_.time;
   return std::ranges::all_of(parts_.contacts, [&](FollowedContact& c) { return follow(c, until, event); });
 }
 
-// Of several contacts, what is recorded of each ends where the first event of any of them is.
+// Returns the time of the first event of several contacts; the record of each contact ends there.
 double Stepping::first_event_time() {
   double first = next_.time;
   for (FollowedContact& c : parts_.contacts) {
@@ -241,7 +244,7 @@ double Stepping::first_event_time() {
   return first;
 }
 
-// One contact: knots where the interpolant needs them, up to its first event, or to where another has one.
+// Follows one contact: knots where the interpolant needs them, up to its first event, or to that of another contact.
 bool Stepping::follow(FollowedContact& contact, double until, std::optional<Event>& event) {
   StepMotion& motion = contact.motion;
   for (int k = 1; k <= motion.pieces(); ++k) {
@@ -251,11 +254,11 @@ bool Stepping::follow(FollowedContact& contact, double until, std::optional<Even
     if (found && found->time <= until) {
       if (parts_.options.restart_at_contact || !parts_.model.has_contact()) {
         found->contact = contact.number;
-        if (!event) event = found;  // of two at the same time the other one comes next
+        if (!event) event = found;  // the other of two events at the same time comes next
         return true;
       }
       if (!go_through(contact, *found, tip)) return false;
-      if (found->time < to.time) --k;  // what is left of the piece
+      if (found->time < to.time) --k;  // the rest of the piece
     } else if (to.time > until) {
       return true;
     } else if (k < motion.pieces()) {
@@ -266,7 +269,7 @@ bool Stepping::follow(FollowedContact& contact, double until, std::optional<Even
   return true;
 }
 
-// An event at which the integrator is not restarted. False: there are too many.
+// Passes an event at which the integrator is not restarted. Returns false after too many.
 bool Stepping::go_through(FollowedContact& contact, const Event& event, const TipMotion& tip) {
   const TrajectoryPoint from = contact.course.last();
   TrajectoryPoint at{.time = event.time,
@@ -278,14 +281,14 @@ bool Stepping::go_through(FollowedContact& contact, const Event& event, const Ti
   contact.course.push(at);
   contact.touches.note(event, at);
   contact.phase.enter(event.edge->next, event.edge->zone);
-  contact.end = parts_.point(contact, next_);  // in the new phase
+  contact.end = parts_.point(contact, next_);  // end of the step in the new phase
   return contact.touches.count() <= parts_.options.max_steps ||
          fail(fmt::format("more than {} steps needed", parts_.options.max_steps));
 }
 
-// Repeats the last step so that it ends at the event: interpolated velocities would cost an order of accuracy at every touch. The
-// interpolant's place is off by more than a stiff contact yields, which would begin or end with an error of energy: Taylor's
-// series makes up for it, or where it is off by much Newton's method.
+// Repeats the last step so that it ends at the event: interpolated velocities would cost an order of accuracy at every touch.
+// The interpolant's error of place exceeds what a stiff contact yields, and would begin or end the touch with an error of
+// energy. Taylor's series corrects it, or Newton's method where the error is large.
 bool Stepping::step_again(const Event& event) {
   constexpr int most_corrections = 8;
   const Switch& model = parts_.model;
@@ -314,7 +317,7 @@ bool Stepping::step_again(const Event& event) {
     time -= off / model.contact_deflection(next_.state.data() + n_, event.contact);
   }
   if (!(time > here_.time)) next_ = here_;
-  parts_.equations.rates(next_);  // so that the field belongs to next_ again
+  parts_.equations.rates(next_);  // makes the field belong to next_ again
   return true;
 }
 

@@ -26,8 +26,8 @@ namespace softland {
 [[nodiscard]] inline bool begins_closed(const ClosingOptions& options) {
   return !options.begins_closed.empty() || options.start == StartState::closed;
 }
-/// The equilibrium in which a run starts, under what the drives have been before t = 0: an open one unless the options say
-/// otherwise. Empty where that does not exist.
+/// Returns the equilibrium in which a run starts, under the drives' values before t = 0: an open one unless the options request
+/// another. Empty where it does not exist.
 [[nodiscard]] std::optional<Eigen::VectorXd> start_of(const Switch& model, std::span<const Signal> signals,
                                                       const ClosingOptions& options);
 
@@ -44,29 +44,29 @@ struct FollowedContact {
         motion(model, options.tolerance, contact) {}
 
   std::size_t number;
-  double plane;  ///< of first touch [m]
+  double plane;  ///< plane of first touch [m]
   ContactPhase& phase;
   TouchRecord touches;
   ForceRecord force;
   Course course;
-  StepMotion motion;    ///< of the step that is considered
-  TrajectoryPoint end;  ///< of that step
+  StepMotion motion;    ///< motion in the step that is considered
+  TrajectoryPoint end;  ///< contact point at the end of that step
 };
 
-/// What a closing is made of; the parts keep references to each other.
+/// The parts of a closing; they keep references to each other.
 struct ClosingParts {
   const Switch& model;
   const ClosingOptions& options;
-  std::optional<Eigen::VectorXd> rest;  ///< where the run starts; none where there is no such equilibrium
+  std::optional<Eigen::VectorXd> rest;  ///< equilibrium in which the run starts; none where it does not exist
   DriveCourse drives;
   ContactPhases phases;
   ClosingEquations equations;
   RestingPlate plate;
-  std::optional<ConnectionCourse> connection;  ///< of several contacts
-  std::vector<FollowedContact> contacts;       ///< at least one: see ContactPhases
-  std::optional<ElectricalRecord> electrical;  ///< if the device or the observer asks for it
+  std::optional<ConnectionCourse> connection;  ///< connection of several contacts
+  std::vector<FollowedContact> contacts;       ///< contacts, at least one: see ContactPhases
+  std::optional<ElectricalRecord> electrical;  ///< electrical record, if the device or the observer asks for it
   ClosingObserver& observer;
-  bool closing_is_over = false;  ///< ClosingOptions::opens_at is past
+  bool closing_is_over = false;  ///< true once ClosingOptions::opens_at is past
 
   ClosingParts(const Switch& switch_model, std::span<const Signal> signals, const ClosingOptions& closing_options,
                ClosingObserver& closing_observer)
@@ -98,53 +98,53 @@ struct ClosingParts {
   [[nodiscard]] FollowedContact& first() { return contacts.front(); }
   /// Returns whether the electrical state is followed: after the closing is over only for an observer who asks.
   [[nodiscard]] bool follows_state() const { return electrical && (!closing_is_over || observer.follows_state()); }
-  /// Takes what follows for an opening [s].
+  /// Treats the rest of the run as an opening [s].
   void end_closing(double time) {
     if (electrical && !closing_is_over) electrical->finish(time);
     closing_is_over = true;
   }
   /// Records the peaks and the contact force of a piece of a step.
   void record(FollowedContact& contact, const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
-  /// The place of a contact at a knot.
+  /// Returns the place of a contact at a knot.
   [[nodiscard]] TrajectoryPoint point(const FollowedContact& contact, const Knot& knot) const;
-  /// Every contact's course goes on to a knot.
+  /// Continues every contact's course to a knot.
   void push(const Knot& knot) {
     for (FollowedContact& c : contacts) c.course.push(point(c, knot));
   }
-  /// Hands over what nothing changes any more.
+  /// Hands over the knots that nothing changes any more.
   void hand_over() {
     for (FollowedContact& c : contacts) c.course.hand_over();
     if (connection) connection->hand_over();
   }
-  /// Begin of the first touch of a contact of the near side [s]; NaN before.
+  /// Returns the begin of the first touch of a contact of the near side [s]; NaN before.
   [[nodiscard]] double first_touch() const;
   [[nodiscard]] bool has_touched() const { return !std::isnan(first_touch()); }
 };
 
 class Stepping {
  public:
-  /// At rest, or on the contact. Keeps a reference.
+  /// Starts at rest, or on the contact. Keeps a reference.
   explicit Stepping(ClosingParts& parts);
 
   [[nodiscard]] Knot& here() { return here_; }
   [[nodiscard]] const Work& work() const { return work_; }
   /// Counts an evaluation of the drives over a resting plate as a step.
   void count_step() { ++work_.steps; }
-  /// Why the last call failed.
+  /// Returns the reason why the last call failed.
   [[nodiscard]] const std::string& message() const { return message_; }
 
-  /// The integrator starts anew from here(), in its present phase. False: failed.
+  /// Restarts the integrator from here(), in its present phase. Returns false where it failed.
   bool restart();
-  /// Whether the work is within its bound; now and then also whether it is done with the right method, and if not goes over to
-  /// the other. False: failed.
+  /// Checks that the work is within its bound. From time to time it also checks that the method is the right one, and changes
+  /// to the other if not. Returns false where it failed.
   bool check_work();
 
   struct Step {
-    FieldFigures field;  ///< at its end
+    FieldFigures field;  ///< figures at the end of the step
     std::optional<Event> event;
   };
-  /// From here() to the end of a step, no further than `stop` and the next event at which to start anew. Peaks and energies of
-  /// the step are recorded, its knots wait in the course. None: failed.
+  /// Integrates from here() to the end of a step, no further than `stop` and the next event that needs a restart. Peaks and
+  /// energies of the step are recorded, its knots wait in the course. Returns none where it failed.
   std::optional<Step> advance(double stop, EnergyAudit& audit);
 
  private:
@@ -164,14 +164,14 @@ class Stepping {
   void account(const FieldFigures& field, EnergyAudit& audit);
 
   ClosingParts& parts_;
-  std::size_t n_;   // modes
+  std::size_t n_;   // number of modes
   double fastest_;  // angular frequency of the last mode [rad/s]
   Tolerances tolerances_;
-  Knot here_, next_;  // of the step that is considered
+  Knot here_, next_;  // knots of the step that is considered
   Work work_;
   std::unique_ptr<Stepper> stepper_;
-  double last_step_ = 0;  // that no stop cut short [s]
-  long next_look_ = 0;    // at the work, in steps
+  double last_step_ = 0;  // last step that no stop cut short [s]
+  long next_look_ = 0;    // step number of the next check of the work
   int stiff_looks_ = 0;
   std::string message_;
 };

@@ -1,4 +1,4 @@
-// The touches of one contact of a closing as they come: when each begins and ends, and its peaks.
+// The touches of one contact of a closing: begin, end and peaks of each.
 #pragma once
 
 #include <cstddef>
@@ -17,20 +17,20 @@ class TouchRecord {
   TouchRecord(const Switch& model, std::size_t contact, const ContactPhase& phase, ClosingObserver& observer);
 
   [[nodiscard]] long count() const { return count_; }
-  [[nodiscard]] double first_begin() const { return first_begin_; }      ///< [s]; NaN before the first touch
+  [[nodiscard]] double first_begin() const { return first_begin_; }      ///< begin of the first touch [s]; NaN before it
   [[nodiscard]] double deepest_penetration() const { return deepest_; }  ///< [m]
-  /// The touch under way, or the last one.
+  /// Returns the touch under way, or the last one.
   [[nodiscard]] Touch& last() { return touch_; }
 
-  /// The switch begins in contact, at rest.
+  /// Begins with the switch in contact, at rest.
   void begin_closed() { begin(0, 0); }
-  /// Enters an event that the contact point has reached, before its next phase begins; true when a touch begins.
+  /// Notes an event that the contact point has reached, before its next phase begins; returns true when a touch begins.
   bool note(const Event& event, const TrajectoryPoint& at);
   void end(double time) { touch_.end = time; }
-  /// Takes the peaks of a piece of a step; nothing outside of contact.
+  /// Takes the peaks of a piece of a step; does nothing outside of contact.
   void take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
-  /// Takes the peaks of a whole step of a damped contact, whose largest force comes before the deepest point, or of one along a
-  /// pad, where it comes anywhere about it. Nothing for other contacts.
+  /// Takes the peaks of a whole step of a damped contact, whose largest force comes before the deepest point, or of a contact
+  /// along a pad, where it comes anywhere about it. Does nothing for other contacts.
   void take(const Knot& begin, const Knot& end, StepMotion& step);
   /// Hands over the touch that holds at the end of the run.
   void finish();
@@ -42,7 +42,7 @@ class TouchRecord {
   std::size_t contact_;
   const ContactPhase& phase_;
   ClosingObserver& observer_;
-  double plane_, pressure_scale_;  // [m], see summit_pressure_scale()
+  double plane_, pressure_scale_;  // plane of first touch [m]; see summit_pressure_scale()
   Touch touch_;
   long count_ = 0;
   double first_begin_, deepest_ = 0;

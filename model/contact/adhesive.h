@@ -3,13 +3,13 @@
 //   P = P_u(d) - 2 pi R W N(d),    N = eta An min(d, Hm) / Hm
 //   U = U_u(d) - pi R W eta An [d^2 - max(0, d - Hm)^2] / Hm
 //
-// P force on the beam, away from the contact [N]: negative at small d, where adhesion wins; P_u, U_u force [N] and energy [J] of
-// the law asperity-uniform; N summits in touch; R their radius [m]; W work of adhesion [J/m^2]; eta summits per area [1/m^2]; An
-// = width x pad length [m^2]; Hm [m]; d interference [m]. Lossless. Attraction between summits that do not touch is left out, so
-// nothing acts before first touch and the force starts from zero; for d < 0 continued as an odd function. W = 0 is
-// asperity-uniform. Validity: Tabor number (R W^2 / (E*^2 z0^3))^(1/3) below about 0.1 with z0 some 0.2 to 0.4 nm; beyond about 5
-// adhesion makes a neck (JKR) and breaking dissipates, which this law does not. Source: Derjaguin, Muller & Toporov 1975; the sum
-// over heights as in Greenwood & Williamson 1966.
+// P is the force on the beam, away from the contact [N]: negative at small d, where adhesion dominates. P_u, U_u are force [N]
+// and energy [J] of the law asperity-uniform; N summits in touch; R their radius [m]; W work of adhesion [J/m^2]; eta summits
+// per area [1/m^2]; An = width x pad length [m^2]; Hm [m]; d interference [m]. The law is lossless. Attraction between summits
+// that do not touch is neglected, so nothing acts before first touch and the force starts from zero; for d < 0 it is continued
+// as an odd function. W = 0 is asperity-uniform. Validity: Tabor number (R W^2 / (E*^2 z0^3))^(1/3) below about 0.1 with z0
+// some 0.2 to 0.4 nm. Beyond about 5 adhesion forms a neck (JKR) and breaking dissipates; this law does not describe that.
+// Source: Derjaguin, Muller & Toporov 1975; the sum over heights as in Greenwood & Williamson 1966.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 
 namespace softland {
 
-/// Over the scalar of its parameters; that of the state is one they convert to.
+/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
 template <class P>
 struct AdhesiveAsperityContactOf {
   UniformAsperityContactOf<P> repulsion = {};

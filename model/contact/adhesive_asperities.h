@@ -29,15 +29,15 @@ struct AdhesiveAsperities {
   [[nodiscard]] static constexpr AdhesiveAsperities example() {
     return {.summits = Summits::example(), .height = 100e-9, .adhesion_energy = 0.05};
   }
-  /// (R W^2 / (E*^2 z0^3))^(1/3) with z0 = 0.3 nm, the distance at which surfaces stand in equilibrium. Source: D. Tabor, J.
-  /// Colloid Interface Sci. 58 (1977) 2; limits: K. L. Johnson & J. A. Greenwood, ibid. 192 (1997) 326.
+  /// Returns the Tabor number (R W^2 / (E*^2 z0^3))^(1/3) with z0 = 0.3 nm, the equilibrium distance of the surfaces. Source:
+  /// D. Tabor, J. Colloid Interface Sci. 58 (1977) 2; limits: K. L. Johnson & J. A. Greenwood, ibid. 192 (1997) 326.
   [[nodiscard]] double tabor_number() const {
     constexpr double z0 = 0.3e-9;
     const double modulus = summits.effective_modulus;
     return std::cbrt(summits.radius * adhesion_energy * adhesion_energy / (modulus * modulus * z0 * z0 * z0));
   }
   static constexpr double largest_tabor_number = 1;
-  /// All summits touch [m].
+  /// Returns the interference at which all summits touch [m].
   [[nodiscard]] double largest_interference() const { return height; }
   [[nodiscard]] AdhesiveAsperityContactOf<double> law(const ContactPad& pad) const;
 };

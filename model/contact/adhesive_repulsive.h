@@ -1,22 +1,22 @@
-// Contact of rough surfaces as a pressure between them that reaches beyond touch: attraction from afar, a soft wall, and, once
-// asperities meet, adhesion and a stiff wall.
+// Contact of rough surfaces as a pressure between them that reaches beyond touch. It has an attraction from afar, a soft wall,
+// and, once asperities meet, adhesion and a stiff wall.
 //
 //   p(x) = l(x) - l(xr) - l'(xr) (x - xr) + c1 [max(0, dc - x) / 1 nm]^1.5 - c3 max(0, dc + ta - x) / 1 nm
 //   l(x) = c2 exp(-x / tR) - A / (6 pi (x^3 + ds^3))                        for x < xr, p = 0 beyond
 //   P = An p(x0 - d),   U = An integral of p from x0 - d to xr
 //
-// p pressure, positive when it pushes the surfaces apart [Pa]; x distance between their mean planes [m]; P force on the beam,
-// away from the contact [N]; U stored energy, 0 beyond reach [J]; An = width x pad length [m^2]; d interference [m]. c1, c2, c3
-// pressures of asperities, soft wall and adhesion [Pa]; dc distance at which asperities meet [m]; ta how much further adhesion
-// reaches [m]; tR range of the soft wall [m]; A Hamaker constant [J]; ds distance that keeps the attraction finite [m]; xr reach
-// [m]. The plane of first touch, d = 0, is the outermost distance x0 at which p vanishes: above it the law only attracts.
+// p is the pressure, positive when it pushes the surfaces apart [Pa]; x distance between their mean planes [m]; P force on the
+// beam, away from the contact [N]; U stored energy, 0 beyond reach [J]; An = width x pad length [m^2]; d interference [m]; c1,
+// c2, c3 pressures of asperities, soft wall and adhesion [Pa]; dc distance at which asperities meet [m]; ta further reach of
+// adhesion [m]; tR range of the soft wall [m]; A Hamaker constant [J]; ds distance that keeps the attraction finite [m]; xr
+// reach [m]. The plane of first touch, d = 0, is the outermost distance x0 at which p vanishes: above it the law only attracts.
 //
-// The published law has no reach; the straight line that is subtracted makes force and slope end continuously at xr (with the
-// default, 1 um, it is 1.2 % of the attraction at 150 nm). Lossless: jumping into contact and off it takes energy through
-// the motion that follows. Force continuous; its slope jumps at x = dc + ta, its second derivative at dc: the integrator restarts
-// at both, where they lie beyond touch. Validity: x > 0, and the pair of surfaces it was fitted to; the defaults are nickel on a
-// dielectric. Source: the contact model of MEMOSA, Purdue's PRISM centre (public code of its force models); attraction: Hamaker
-// 1937.
+// The published law has no reach. The straight line that is subtracted makes force and slope end continuously at xr (with the
+// default, 1 um, it is 1.2 % of the attraction at 150 nm). The law is lossless: jumping into contact and off it takes energy
+// through the motion that follows. The force is continuous; its slope jumps at x = dc + ta, its second derivative at dc: the
+// integrator restarts at both, where they lie beyond touch. Validity: x > 0, and the pair of surfaces it was fitted to; the
+// defaults are nickel on a dielectric. Source: the contact model of MEMOSA, Purdue's PRISM centre (public code of its force
+// models); attraction: Hamaker 1937.
 #pragma once
 
 #include <algorithm>
@@ -35,8 +35,8 @@ template <class P>
 class AdhesiveRepulsiveContactOf {
  public:
   AdhesiveRepulsiveContactOf() = default;
-  /// `area` An [m^2]; `touch` x0 [m], for other scalars than double to which it is then improved by a step of Newton's: so that
-  /// it has their derivatives.
+  /// `area` is An [m^2], `touch` x0 [m]. A step of Newton's method improves x0 for other scalars than double, so that it has
+  /// their derivatives.
   AdhesiveRepulsiveContactOf(const SurfacePressureOf<P>& law, const P& area, const P& touch)
       : law_(law), area_(area), end_(far(DualOf<P>(law.reach, 1))), touch_(touch) {
     if constexpr (!std::same_as<P, double>) {
@@ -47,7 +47,7 @@ class AdhesiveRepulsiveContactOf {
   AdhesiveRepulsiveContactOf(const SurfacePressureOf<P>& law, const P& area) requires std::same_as<P, double>
       : AdhesiveRepulsiveContactOf(law, area, find_touch(law)) {}
 
-  /// Pressure at distance x within reach [Pa]
+  /// Returns the pressure at distance x within reach [Pa].
   template <class S>
   S pressure(S x) const {
     using std::sqrt;
@@ -63,22 +63,22 @@ class AdhesiveRepulsiveContactOf {
     return select(
         x < onset, [&]() -> S { return p - S(law_.adhesion_pressure / unit) * (S(onset) - x); }, [&] { return p; });
   }
-  /// Within reach
+  /// Returns the force [N] within reach.
   template <class S>
   S force(S d) const {
     return S(area_) * pressure(S(touch_) - d);
   }
   [[nodiscard]] double energy(double d) const;
 
-  /// x0 [m]
+  /// Returns x0 [m].
   [[nodiscard]] const P& touch_distance() const { return touch_; }
-  /// How far above the plane of first touch the law acts [m]
+  /// Returns how far above the plane of first touch the law acts [m].
   [[nodiscard]] double reach() const { return law_.reach - touch_; }
-  /// Interferences beyond touch at which adhesion begins and asperities meet [m]: the integrator restarts there
+  /// Returns the interferences beyond touch at which adhesion begins and asperities meet [m]: the integrator restarts there.
   [[nodiscard]] std::vector<double> kinks() const;
 
  private:
-  static constexpr double unit = 1e-9;  // of length, in which the pressures are given [m]
+  static constexpr double unit = 1e-9;  // length to which the pressures refer [m]
 
   template <class S>
   S far(S x) const {
@@ -92,7 +92,7 @@ class AdhesiveRepulsiveContactOf {
 
   SurfacePressureOf<P> law_ = {};
   P area_ = 0;
-  DualOf<P> end_ = P(0);  // of far() at the reach [Pa], [Pa/m]
+  DualOf<P> end_ = P(0);  // far() at the reach [Pa], [Pa/m]
   P touch_ = 0;           // [m]
 };
 using AdhesiveRepulsiveContact = AdhesiveRepulsiveContactOf<double>;

@@ -11,7 +11,7 @@ namespace softland {
 template <class P>
 class AdhesiveRepulsiveContactOf;
 
-/// Pressure between the surfaces. Pressures of asperities and adhesion at a nanometre of approach.
+/// Pressure between the surfaces. Pressures of asperities and adhesion are those at a nanometre of approach.
 template <class P>
 struct SurfacePressureOf {
   P asperity_pressure = 1.2e3;     ///< c1 [Pa]
@@ -49,9 +49,9 @@ struct AdhesiveRepulsiveSurfaces {
     // clang-format on
   }
   [[nodiscard]] static constexpr AdhesiveRepulsiveSurfaces example() { return {}; }
-  /// The mean planes meet [m].
+  /// Returns the interference at which the mean planes meet [m].
   [[nodiscard]] double largest_interference() const;
-  /// The rule that these numbers break under a contact gap [m]; empty where they break none.
+  /// Returns the rule that these numbers break under a contact gap [m]; empty where they break none.
   [[nodiscard]] std::string why_invalid(double contact_gap) const;
   [[nodiscard]] AdhesiveRepulsiveContactOf<double> law(const ContactPad& pad) const;
 };

@@ -4,18 +4,19 @@
 //   U = C sigma {[F_2.5(h0 - d/sigma) - F_2.5(h0)] / 2.5 - F_1.5(h0) d/sigma}
 //   F_n(h) = integral from h to infinity of (s - h)^n exp(-s^2/2) / sqrt(2 pi) ds
 //
-// P force on the beam, away from the contact [N]; d interference [m]; sigma standard deviation of the summit heights [m]; radius
-// R [m]; eta summits per area [1/m^2]; An = width x pad length [m^2]; effective modulus E* [Pa]; U stored energy [J]. Lossless.
+// P is the force on the beam, away from the contact [N]; d interference [m]; sigma standard deviation of the summit heights
+// [m]; R radius [m]; eta summits per area [1/m^2]; An = width x pad length [m^2]; E* effective modulus [Pa]; U stored energy
+// [J]. The law is lossless.
 //
-// The unbounded tail: some summit is always in touch in this law. Contact is said to begin where the mean of the summits is four
-// standard deviations away (three summits in 100 000 are higher); the force there, 1e-5 of that at the mean, is subtracted, so
-// that the force starts from zero. For d < 0 the formula is its own smooth continuation, bounded by that force. Validity: elastic
-// asperities that do not touch each other, many of them in touch, separation above the mean of the summits: d < 4 sigma. Source:
-// Greenwood & Williamson 1966, eq. 15; the constant h0 is ours.
+// The tail is unbounded: some summit is always in touch in this law. Contact begins, by definition, where the mean of the
+// summits is four standard deviations away (three summits in 100 000 are higher). The force there, 1e-5 of that at the mean, is
+// subtracted, so that the force starts from zero. For d < 0 the formula is its own smooth continuation, bounded by that force.
+// Validity: elastic asperities that do not touch each other, many of them in touch, separation above the mean of the summits: d
+// < 4 sigma. Source: Greenwood & Williamson 1966, eq. 15; the constant h0 is our choice.
 //
-// F_1.5 is tabulated as Taylor series about nodes an eighth apart, made from the equation y'' + h y' - n y = 0 that F_n obeys:
-// marched down from h = 14, where the other solution dies out, and scaled by the closed form at 0. Relative error below 1e-11 on
-// [-8, 8] (checked against quadrature); beyond, the power series of |h| below and 0 above.
+// F_1.5 is tabulated as Taylor series about nodes an eighth apart, from the equation y'' + h y' - n y = 0 that F_n obeys. The
+// series is marched down from h = 14, where the other solution decays, and scaled by the closed form at 0. The relative error
+// is below 1e-11 on [-8, 8] (checked against quadrature); beyond, the power series of |h| holds below and 0 above.
 #pragma once
 
 #include <array>
@@ -28,12 +29,12 @@
 namespace softland {
 namespace internal {
 
-/// F_1.5 of the Gaussian, and what follows from it and its derivative.
+/// F_1.5 of the Gaussian, with the functions derived from it and its derivative.
 class GaussianTail {
  public:
   static const GaussianTail& instance();
 
-  /// F_1.5(h)
+  /// Returns F_1.5(h).
   template <class S>
   S operator()(S h) const {
     return one_by_one(h, [this](const auto& one) { return this->of_one(one); });
@@ -45,7 +46,7 @@ class GaussianTail {
     using std::sqrt;
     if (h > last) return S(0);
     if (h < first) {
-      // Moments of (s + |h|)^1.5 in powers of 1/h^2.
+      // Sum the moments of (s + |h|)^1.5 in powers of 1/h^2.
       const S m = -h, x = S(1) / (m * m);
       S sum(0);
       for (std::size_t k = moments.size(); k-- > 0;) sum = sum * x + S(moments[k]);
@@ -88,23 +89,23 @@ class GaussianTail {
 
 }  // namespace internal
 
-/// Over the scalar of its parameters; that of the state is one they convert to.
+/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
 template <class P>
 struct GaussianAsperityContactOf {
   P strength = 0;   ///< C [N]
   P deviation = 0;  ///< sigma [m]
 
-  static constexpr double first_touch = 4;  ///< h0: mean of the summits to the plane of first touch, in sigma
+  static constexpr double first_touch = 4;  ///< h0: distance from the mean of the summits to the plane of first touch, in sigma
 
-  /// F_1.5(h)
+  /// Returns F_1.5(h).
   template <class S>
   static S tail(S h) {
     return internal::GaussianTail::instance()(h);
   }
-  /// F_2.5(h) = 1.5 F_0.5(h) - h F_1.5(h), and F_1.5' = -1.5 F_0.5
+  /// Returns F_2.5(h) = 1.5 F_0.5(h) - h F_1.5(h), with F_1.5' = -1.5 F_0.5.
   static double next_tail(double h);
 
-  static constexpr bool grows_with_depth = true;  ///< so that the force is largest where the contact is deepest
+  static constexpr bool grows_with_depth = true;  ///< the force is largest where the contact is deepest
 
   template <class S>
   S force(S d) const {

@@ -3,11 +3,11 @@
 //   P = (8/15) eta An E* sqrt(R) [d^2.5 - max(0, d - Hm)^2.5] / Hm
 //   U = (16/105) eta An E* sqrt(R) [d^3.5 - max(0, d - Hm)^3.5] / Hm
 //
-// P force on the beam, away from the contact [N]; d interference [m]; radius R [m]; eta summits per area [1/m^2]; An = width x
-// pad length [m^2]; effective modulus E* [Pa]; U stored energy [J]. Lossless. Force zero at d = 0 with two continuous
-// derivatives; for d < 0 continued as an odd function: the right-hand side stays smooth past the event that ends contact.
-// Validity: elastic asperities that do not touch each other: d well below Hm and R. Source: Greenwood & Williamson 1966 with the
-// uniform heights of Wang et al. 2009 (closed form: integral of the Hertz law over heights).
+// P is the force on the beam, away from the contact [N]; d interference [m]; R radius [m]; eta summits per area [1/m^2]; An =
+// width x pad length [m^2]; E* effective modulus [Pa]; U stored energy [J]. The law is lossless. The force is zero at d = 0
+// with two continuous derivatives. For d < 0 it is continued as an odd function: the right-hand side stays smooth past the
+// event that ends contact. Validity: elastic asperities that do not touch each other: d well below Hm and R. Source: Greenwood
+// & Williamson 1966 with the uniform heights of Wang et al. 2009 (closed form: integral of the Hertz law over heights).
 #pragma once
 
 #include <cmath>
@@ -17,13 +17,13 @@
 
 namespace softland {
 
-/// Over the scalar of its parameters; that of the state is one they convert to.
+/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
 template <class P>
 struct UniformAsperityContactOf {
   P strength = 0;  ///< eta An E* sqrt(R) / Hm [N / m^2.5]
   P height = 0;    ///< Hm [m]
 
-  static constexpr bool grows_with_depth = true;  ///< so that the force is largest where the contact is deepest
+  static constexpr bool grows_with_depth = true;  ///< the force is largest where the contact is deepest
 
   template <class S>
   S force(S d) const {
@@ -45,11 +45,11 @@ struct UniformAsperityContactOf {
     const auto power = [](double x) { return x > 0 ? x * x * x * std::sqrt(x) : 0; };
     return strength * 16 / 105 * (power(m) - power(m - height));
   }
-  /// Interference that carries a force >= 0 [m]
+  /// Returns the interference that carries a force >= 0 [m].
   [[nodiscard]] double interference(double load) const {
     double d = std::pow(load / (strength * 8 / 15), 0.4);
     if (d <= height) return d;
-    // Newton on a convex function, from the left: one step overshoots, the rest come down.
+    // Newton's method for a convex function, from the left: one step overshoots, and the others descend.
     for (int i = 0; i < 50; ++i) {
       const Dual at = force(Dual(d, 1));
       const double step = (at.value - load) / at.slope;
@@ -60,7 +60,7 @@ struct UniformAsperityContactOf {
   }
 };
 
-/// Of these summits, with heights up to `height` [m].
+/// Returns the law of these summits, with heights up to `height` [m].
 [[nodiscard]] inline UniformAsperityContact uniform_contact(const Summits& summits, double height, const ContactPad& pad) {
   return {.strength = summits.hertz(pad) / height, .height = height};
 }

@@ -1,5 +1,5 @@
-// A contact of a device: the parameters of one of its laws, and the pad it acts on. A law is a header and a row here; where its
-// force takes much code, that stands in a header of its own, which contact_law.h includes.
+// A contact of a device: the parameters of one of its laws, and its pad. A law is a header and a row here; a long force
+// function stands in a header of its own, which contact_law.h includes.
 #pragma once
 
 #include <limits>
@@ -27,13 +27,13 @@ namespace softland {
 using ContactModel = std::variant<LinearSpring, UniformAsperities, GaussianAsperities, AdhesiveAsperities, HystereticSpring,
                                   PlasticAsperities, RigidStop, AdhesiveRepulsiveSurfaces, OwnContact>;
 
-/// Where the contact acts: at the pad's centre, or wherever along the pad it is beyond the plane.
+/// How the contact acts: at the pad's centre, or wherever along the pad it is beyond the plane.
 enum class ContactDistribution { centre, pad };
 inline constexpr auto contact_distributions =
     std::to_array<Named<ContactDistribution>>({{ContactDistribution::centre, "centre"}, {ContactDistribution::pad, "pad"}});
 static_assert(is_complete<contact_distributions>());
 
-/// When the connection of several contacts is closed: while all of those that make it are, or any of them.
+/// Rule for the connection of several contacts: closed while all of those that make it are, or any of them.
 enum class Connection { all, any };
 inline constexpr auto connections = std::to_array<Named<Connection>>({{Connection::all, "all"}, {Connection::any, "any"}});
 static_assert(is_complete<connections>());
@@ -41,9 +41,10 @@ static_assert(is_complete<connections>());
 /// The electrical side of a closed contact: see model/contact/resistance.h. A contact without resistivity has no resistance.
 struct Conduction {
   double resistivity = std::numeric_limits<double>::quiet_NaN();  ///< rho of both metals [Ohm m]
-  double hardness = std::numeric_limits<double>::quiet_NaN();     ///< H of the softer metal; that of a law which has one [Pa]
-  double film_resistance = 0;                                     ///< Rf, in series with each contact [Ohm]
-  double mean_free_path = 0;                                      ///< l of the electrons [m]
+  double hardness =
+      std::numeric_limits<double>::quiet_NaN();  ///< H of the softer metal; the hardness of a law which has one [Pa]
+  double film_resistance = 0;                    ///< Rf in series with each contact [Ohm]
+  double mean_free_path = 0;                     ///< l of the electrons [m]
 
   [[nodiscard]] bool is_given() const { return resistivity > 0; }
 };
@@ -52,19 +53,19 @@ struct Contact {
   ContactModel model = UniformAsperities{};
   ContactDistribution distribution = ContactDistribution::centre;
   double pad_length = 0;                                        ///< lt [m]: see Device::contact_position()
-  double pad_width = std::numeric_limits<double>::quiet_NaN();  ///< [m]; NaN: that of the moving part
-  std::string name = {};                                        ///< empty: it is the only one
-  std::optional<Place> at = {};                                 ///< the centre of its pad; none: see Device::contact_position()
-  /// Rest distance of its place to its plane [m]; that of the first contact stands in Device::gap.
+  double pad_width = std::numeric_limits<double>::quiet_NaN();  ///< [m]; NaN: the width of the moving part
+  std::string name = {};                                        ///< name; empty for the only contact
+  std::optional<Place> at = {};                                 ///< centre of its pad; none: see Device::contact_position()
+  /// Rest distance of its place to its plane [m]; Device::gap has that of the first contact.
   double gap = std::numeric_limits<double>::quiet_NaN();
   Side side = Side::near;   ///< far: a back stop
-  bool along_face = false;  ///< the face of a dielectric, wherever the beam is beyond the plane; its law is per area
-  double count = 1;         ///< how many such contacts stand side by side across the beam
-  bool connects = true;     ///< whether it is one of those that make the connection
+  bool along_face = false;  ///< true for the face of a dielectric, wherever the beam is beyond the plane; its law is per area
+  double count = 1;         ///< number of such contacts side by side across the beam
+  bool connects = true;     ///< true when it is one of those that make the connection
   Conduction conduction = {};
 };
 
-/// Whether the law acts per area of the pad, so that a plate needs a width and a length of the pad.
+/// True when the law acts per area of the pad, so that a plate needs a width and a length of the pad.
 [[nodiscard]] inline bool acts_per_area(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {
@@ -72,7 +73,7 @@ struct Contact {
       },
       model);
 }
-/// Whether the contact may hold without any voltage.
+/// True when the contact may hold without any voltage.
 [[nodiscard]] inline bool may_stick(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {
@@ -81,7 +82,7 @@ struct Contact {
       },
       model);
 }
-/// Why the law cannot act along the pad; empty when it can.
+/// Returns the reason why the law cannot act along the pad; empty when it can.
 [[nodiscard]] inline std::string_view why_not_along_pad(const ContactModel& model) {
   return std::visit(
       [](const auto& law) -> std::string_view {
@@ -90,8 +91,8 @@ struct Contact {
       },
       model);
 }
-/// Interference up to which the law is physics: all of its asperities touch, or the plane has come down by four standard
-/// deviations of Gaussian ones [m]. Infinite for a spring.
+/// Returns the interference up to which the law is physical: all of its asperities touch, or the plane has come down by four
+/// standard deviations of Gaussian ones [m]. It is infinite for a spring.
 [[nodiscard]] inline double largest_interference(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {

@@ -1,6 +1,5 @@
-// The contact laws a switch can have: the force that pushes the contact point away, as a function of the interference
-// d = y(x_c) - dt [m] and, for some, of its rate or its past. Each is a value with its own file; a switch composes one when it is
-// built.
+// The contact laws of a switch: the force that pushes the contact point away, as a function of the interference d = y(x_c) - dt
+// [m] and, for some, of its rate or its past. Each is a value with its own file; a switch composes one when it is built.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +22,7 @@
 namespace softland {
 
 namespace internal {
-/// A variant with further alternatives, those that it has already left out.
+/// Extends a variant by further alternatives, without those that it has already.
 template <class Variant, class... More>
 struct WithKernels;
 template <class... Kernels>
@@ -46,18 +45,18 @@ struct KernelsOf<std::variant<Models...>>
     : WithKernels<std::variant<>, decltype(std::declval<const Models&>().law(std::declval<const ContactPad&>()))...> {};
 }  // namespace internal
 
-/// The force of every law of ContactModel: what its parameters' law(pad) gives, one or one of several.
+/// The force of every law of ContactModel: the result of its parameters' law(pad), one or one of several.
 struct ContactLaw : internal::KernelsOf<ContactModel>::Type {
   using variant::variant;
 };
 
-/// The pads of a contact, whose moving part has this width [m].
+/// Returns the pads of a contact, whose moving part has this width [m].
 [[nodiscard]] inline ContactPad pad_of(const Contact& contact, double width) {
   const double one = contact.pad_width > 0 ? contact.pad_width : width;
   return {.width = one * contact.count, .length = contact.pad_length, .count = contact.count};
 }
 
-/// The law of a valid device's contact, whose moving part has this width [m]: the force of all its pads together.
+/// Returns the law of a valid device's contact, whose moving part has this width [m]: the force of all its pads together.
 [[nodiscard]] inline ContactLaw contact_law(const Contact& contact, double width) {
   const auto as_law = [](auto kernel) -> ContactLaw {
     if constexpr (requires { kernel.valueless_by_exception(); }) {
@@ -70,7 +69,7 @@ struct ContactLaw : internal::KernelsOf<ContactModel>::Type {
   return std::visit([&](const auto& model) { return as_law(model.law(pad)); }, contact.model);
 }
 
-/// std::visit for the hot path: with more than eleven laws that one calls through a table, which the compiler cannot see through.
+/// std::visit for the hot path: with more than eleven laws std::visit calls through a table, which the compiler cannot inline.
 template <std::size_t I = 0, class F>
 decltype(auto) visit_inline(F&& f, const ContactLaw& law) {
   if constexpr (I + 1 < std::variant_size_v<ContactLaw::variant>) {
@@ -84,8 +83,8 @@ concept HasMemory = requires(const Law& law) {
   law.shift(0.0);
 };
 
-/// Force [N] of a law at interference d in a state in which it acts; `rate()` gives d' [m/s] and is asked for only where the law
-/// depends on it.
+/// Returns the force [N] of a law at interference d in a state in which it acts. `rate()` returns d' [m/s] and is called only
+/// where the law depends on it.
 template <class Law, class S, class Rate>
 S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
   if constexpr (HasMemory<Law>) {
@@ -97,19 +96,19 @@ S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
   }
 }
 
-/// At rest, on first loading [N]
+/// Returns the force at rest, on first loading [N].
 [[nodiscard]] inline double contact_force(const ContactLaw& law, double interference) {
   return std::visit([&](const auto& l) { return l.force(interference); }, law);
 }
-/// In a state in which the law acts [N]
+/// Returns the force in a state in which the law acts [N].
 [[nodiscard]] inline double contact_force(const ContactLaw& law, double interference, const ContactState& state, double rate) {
   return std::visit([&](const auto& l) { return force_of(l, interference, state, [&] { return rate; }); }, law);
 }
-/// Potential of the static force on first loading [J]; for laws without memory that is what they store.
+/// Returns the potential of the static force on first loading [J]; laws without memory store it.
 [[nodiscard]] inline double contact_energy(const ContactLaw& law, double interference) {
   return std::visit([&](const auto& l) { return l.energy(interference); }, law);
 }
-/// Stored in a state in which the law acts [J]
+/// Returns the energy stored in a state in which the law acts [J].
 [[nodiscard]] inline double stored_energy(const ContactLaw& law, double interference, const ContactState& state) {
   return std::visit(
       [&](const auto& l) {
@@ -121,11 +120,11 @@ S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
       },
       law);
 }
-/// What a law with memory keeps of the deepest interference; nothing for the others.
+/// The memory of a law of its deepest interference; zero for laws without memory.
 struct Dent {
   double shift = 0;    ///< residual interference [m]
-  double lost = 0;     ///< energy that making it has taken [J]
-  bool heals = false;  ///< forgotten when contact ends
+  double lost = 0;     ///< energy lost in making the dent [J]
+  bool heals = false;  ///< true when the dent is forgotten when contact ends
 };
 [[nodiscard]] inline Dent dent(const ContactLaw& law, double deepest) {
   return std::visit(
@@ -141,7 +140,7 @@ struct Dent {
 [[nodiscard]] inline bool has_memory(const ContactLaw& law) {
   return std::visit([](const auto& l) { return HasMemory<std::decay_t<decltype(l)>>; }, law);
 }
-/// Taken out by a law that depends on the rate [W]; 0 for the others.
+/// Returns the power dissipated by a law that depends on the rate [W]; 0 for the others.
 [[nodiscard]] inline double contact_dissipation(const ContactLaw& law, double interference, double rate) {
   return std::visit(
       [&](const auto& l) {
@@ -153,7 +152,7 @@ struct Dent {
       },
       law);
 }
-/// How far above the plane of first touch a law acts [m]; 0 for most.
+/// Returns how far above the plane of first touch a law acts [m]; 0 for most.
 [[nodiscard]] inline double contact_reach(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {
@@ -162,7 +161,7 @@ struct Dent {
       },
       law);
 }
-/// Interferences beyond touch at which a law is continuous, but not smooth, in order [m]; none for most.
+/// Returns the interferences beyond touch at which a law is continuous, but not smooth, in order [m]; none for most.
 [[nodiscard]] inline std::vector<double> contact_kinks(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {
@@ -171,7 +170,7 @@ struct Dent {
       },
       law);
 }
-/// Whether the law is one of a user's own, which knows no exact derivatives.
+/// True for a user's own law, which has no exact derivatives.
 [[nodiscard]] inline bool is_own(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {

@@ -3,22 +3,24 @@
 //   wall, linear       p = k max(0, d)        U = a k d^2 / 2        d = b - h
 //   asperity-uniform   p and U of model/contact/asperity_uniform.h with An = 1 m^2, and with An / m = a; b = Hm
 //
-// p pressure of the face on the beam [Pa], d depth [m], h local gap between beam and face, b height above the face from which the
-// pressure acts, k stiffness per area [Pa/m], U energy per length [J/m], a local width [m]. Lossless. Source: textbook, a bed of
-// springs (Winkler), and that of the asperities. These stand on the face, with heights up to Hm above it: the beam touches the
-// highest one at h = Hm.
+// p is the pressure of the face on the beam [Pa], d depth [m], h local gap between beam and face, b height above the face from
+// which the pressure acts, k stiffness per area [Pa/m], U energy per length [J/m], a local width [m]. The law is lossless.
+// Source: textbook, a bed of springs (Winkler), and that of the asperities. These stand on the face, with heights up to Hm
+// above it: the beam touches the highest one at h = Hm.
 //
-// A wall has no growing field below its face. Its k is that at which the field of the voltage 2 V1 sinks the beam in by a
-// fiftieth of H = t / eps_r + roughness, the smallest gap of the field: own choice. V1^2 = 8 K g^3 / (27 eps0 A) closes parallel
-// plates. K stiffness of the beam at the contact point [N/m], g rest gap of the field, A area of the faces [m^2].
+// The field below the face of a wall does not grow. The k of a wall is that at which the field of the voltage 2 V1 presses the
+// beam in by a fiftieth of H = t / eps_r + roughness, the smallest gap of the field: own choice. V1^2 = 8 K g^3 / (27 eps0 A)
+// closes parallel plates. K is the stiffness of the beam at the contact point [N/m], g the rest gap of the field, A the area of
+// the faces [m^2].
 //
-// A linear bed lets the field grow on below the face. One that is softer than 27 eps0 V^2 / (8 (H + b)^3) lets it pull the beam
-// through, like parallel plates whose springs are at rest where the pressure begins. Asperities hold these off up to a voltage V:
+// The field keeps growing below the face of a linear bed. A beam on a bed softer than 27 eps0 V^2 / (8 (H + b)^3) collapses
+// onto the electrode, like parallel plates whose springs are at rest where the pressure begins. Asperities hold such plates off
+// up to a voltage V:
 //
 //   eps0 V^2 / 2 = max over d of p(d) (H + b - d)^2
 //
 // That product has one maximum: p / p' is two thirds of the mean depth of the summits in touch, weighted with its root, which
-// grows with d, and H + b - d falls. Own derivation.
+// grows with d, while H + b - d falls. Own derivation.
 #pragma once
 
 #include <algorithm>
@@ -31,23 +33,23 @@
 
 namespace softland {
 
-/// Stiffness per area of the face of a wall [Pa/m]: K [N/m], g [m], A [m^2], H [m].
+/// Returns the stiffness per area of the face of a wall [Pa/m]: K [N/m], g [m], A [m^2], H [m].
 [[nodiscard]] constexpr double wall_stiffness(double stiffness, double gap, double area, double depth) {
   constexpr double voltages = 2, sinks = 1.0 / 50;
   const double eps0_square = 8.0 / 27 * stiffness * gap * gap * gap / area * voltages * voltages;  // eps0 V^2
   return eps0_square / (2 * sinks * depth * depth * depth);
 }
 
-/// Least stiffness per area that holds a beam off a face under a field [Pa/m]: V [V], H + b [m].
+/// Returns the least stiffness per area that holds a beam off a face under a field [Pa/m]: V [V], H + b [m].
 [[nodiscard]] constexpr double least_face_stiffness(double voltage, double depth) {
   return 27.0 / 8 * vacuum_permittivity * voltage * voltage / (depth * depth * depth);
 }
 
-/// Voltage up to which the face holds plates off, whose springs are at rest where the pressure begins [V]: `pressure` is a law of
-/// elastic contact per area, `depth` is H + b [m].
+/// Returns the voltage up to which the face holds plates off, whose springs are at rest where the pressure begins [V].
+/// `pressure` is a law of elastic contact per area, `depth` is H + b [m].
 template <class Law>
 [[nodiscard]] double most_face_voltage(const Law& pressure, double depth) {
-  double low = 0, high = depth;  // they enclose the depth at which p (H + b - d)^2 is largest
+  double low = 0, high = depth;  // bounds of the depth at which p (H + b - d)^2 is largest
   for (int i = 0; i < 60; ++i) {
     const double middle = (low + high) / 2;
     const Dual at = pressure.force(Dual(middle, 1));
@@ -58,10 +60,10 @@ template <class Law>
 
 /// The pressure of a face with asperities on a beam of one width.
 struct RoughFacePressure {
-  UniformAsperityContact asperities;  ///< per length
+  UniformAsperityContact asperities;  ///< asperities per length
   static constexpr bool driven = false;
 
-  /// [N/m], away from the electrode
+  /// Returns the load [N/m], away from the electrode.
   template <class S>
   [[gnu::always_inline]] S load(S gap, S /*velocity*/) const {
     const S depth = S(asperities.height) - gap;
@@ -73,11 +75,11 @@ struct RoughFacePressure {
 
 /// The pressure of a wall or a linear bed on a beam of one width.
 struct FacePressure {
-  double stiffness = 0;  ///< per length, a k [N/m^2]
+  double stiffness = 0;  ///< stiffness per length, a k [N/m^2]
   double from = 0;       ///< b [m]
   static constexpr bool driven = false;
 
-  /// [N/m], away from the electrode
+  /// Returns the load [N/m], away from the electrode.
   template <class S>
   [[gnu::always_inline]] S load(S gap, S /*velocity*/) const {
     const S depth = S(from) - gap;

@@ -2,12 +2,12 @@
 //
 //   P = max(0, P0(d) (1 + 1.5 c d'))        dissipated power (P - P0) d' >= 0
 //
-// P force on the beam, away from the contact [N]; P0 force of the law without damping [N]; d interference [m] and d' its rate
-// [m/s]; c damping [s/m]; the stored energy is that of P0. Unlike a dashpot the force starts from zero and never pulls. A mass
-// that hits at v_i leaves with the restitution e given by G(v_i) = G(-e v_i), G(v) = v/g - ln(1 + g v)/g^2, g = 1.5 c, whatever
-// P0: e -> 1 - c v_i for c v_i -> 0. A single mass never reaches the cap; other modes may pull the contact point out faster than
-// 1/(1.5 c), then the force has a corner there, which the step control has to find. Validity: c v_i well below 1, where c is a
-// property of the pair. Source: Hunt & Crossley 1975, eqs. 8 to 11.
+// P is the force on the beam, away from the contact [N]; P0 force of the law without damping [N]; d interference [m] and d' its
+// rate [m/s]; c damping [s/m]; the stored energy is that of P0. Unlike a dashpot the force starts from zero and never pulls. A
+// mass that hits at v_i leaves with the restitution e given by G(v_i) = G(-e v_i), G(v) = v/g - ln(1 + g v)/g^2, g = 1.5 c,
+// whatever P0: e -> 1 - c v_i for c v_i -> 0. A single mass never reaches the cap. Other modes may pull the contact point out
+// faster than 1/(1.5 c); the force then has a corner, which the step control has to find. Validity: c v_i well below 1, where c
+// is a property of the pair. Source: Hunt & Crossley 1975, eqs. 8 to 11.
 #pragma once
 
 #include <array>
@@ -29,9 +29,9 @@ struct HuntCrossley {
     return select(
         factor > 0, [&]() -> S { return elastic.force(d) * factor; }, [] { return S(0); });
   }
-  /// [W]
+  /// Returns the dissipated power [W].
   [[nodiscard]] double dissipation(double d, double rate) const { return (force(d, rate) - elastic.force(d)) * rate; }
-  /// The static law.
+  /// Returns the force of the static law.
   template <class S>
   S force(S d) const {
     return elastic.force(d);
@@ -39,7 +39,7 @@ struct HuntCrossley {
   [[nodiscard]] double energy(double d) const { return elastic.energy(d); }
 };
 
-/// The law with damping, where there is some.
+/// Returns the law with damping, if any.
 template <class Elastic>
 [[nodiscard]] std::variant<Elastic, HuntCrossley<Elastic>> damped(const Elastic& elastic, double damping) {
   if (damping > 0) return HuntCrossley<Elastic>{.elastic = elastic, .damping = damping};
@@ -47,7 +47,7 @@ template <class Elastic>
 }
 
 // clang-format off
-/// The member `damping` of a law's parameters: 0 where there is none.
+/// Returns the field of a law's member `damping`; 0 means no damping.
 template <class Law>
 [[nodiscard]] consteval auto damping_fields() {
   return std::to_array<Field<Law>>({

@@ -11,7 +11,7 @@ namespace softland {
 
 struct HystereticSpring {
   static constexpr std::string_view name = "hysteretic", not_along_pad = many_dents;
-  double stiffness = 0;            ///< of loading [N/m]
+  double stiffness = 0;            ///< stiffness of loading [N/m]
   double unloading_stiffness = 0;  ///< [N/m]
 
   static consteval auto fields() {

@@ -6,12 +6,12 @@
 //   6 < u <= 110     1.40 u^1.263             1.337 u^1.263         0.955        1.337 = 6^(1.425 - 1.263)
 //   u > 110          (3/K) u                  4.602 u               0.885        4.602 = 1.337 * 110^0.263
 //
-// w interference; w1 and P1 those of first yield (plastic_asperity.h); K = 0.454 + 0.41 nu = 0.577, of Poisson's ratio 0.3. As
-// published the load jumps up by 3 % at w1, by 1.7 % at 6 w1 and by 8 % at 110 w1, where the fully plastic load 2 pi R w H takes
-// over; an integrator of motion would take or give energy there. So every fit is scaled to begin where the one below it ends:
-// Hertz stays exact, and the fully plastic load is 0.885 of 2 pi R w H. Kinks remain at the three limits. Validity: the fits are
-// those of a frictionless elastic, perfectly plastic hemisphere on a rigid flat. Source: Kogut & Etsion 2002, J. Appl. Mech. 69,
-// 657; K: Chang, Etsion & Bogy 1987; the scaling is ours.
+// w is the interference; w1 and P1 are those of first yield (plastic_asperity.h); K = 0.454 + 0.41 nu = 0.577, for Poisson's
+// ratio 0.3. As published the load jumps up by 3 % at w1, by 1.7 % at 6 w1 and by 8 % at 110 w1, where the fully plastic load 2
+// pi R w H takes over; an integrator of motion would take or give energy there. So every fit is scaled to begin where the one
+// below it ends: Hertz stays exact, and the fully plastic load is 0.885 of 2 pi R w H. Kinks remain at the three limits.
+// Validity: the fits are those of a frictionless elastic, perfectly plastic hemisphere on a rigid flat. Source: Kogut & Etsion
+// 2002, J. Appl. Mech. 69, 657; K: Chang, Etsion & Bogy 1987; the scaling is ours.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ class KogutEtsionAsperity {
  public:
   static constexpr double pressure_factor = 0.577;  ///< K: largest pressure at first yield over hardness
 
-  /// Integral of the load from 0.
+  /// Returns the integral of the load from 0.
   template <class S>
   static S first_integral(S u) {
     using std::sqrt;
@@ -41,7 +41,7 @@ class KogutEtsionAsperity {
     return select(
         u > 1, [&] { return select(u > fits[2].begin, by(2), yielding); }, elastic);
   }
-  /// Integral of that.
+  /// Returns the integral of first_integral().
   static double second_integral(double u) {
     if (!(u > 1)) return u * u * u * std::sqrt(u) / 8.75;
     const Fit& fit = at(u);
@@ -49,7 +49,7 @@ class KogutEtsionAsperity {
   }
 
  private:
-  // From `begin` on the load is factor u^exponent; `first` and `second` are the constants of its antiderivatives.
+  // A fit, from `begin` on: the load is factor u^exponent; `first` and `second` are the constants of its antiderivatives.
   struct Fit {
     double begin, exponent, factor, first, second;
   };
@@ -63,7 +63,7 @@ class KogutEtsionAsperity {
       const double u = fit.begin;
       const auto load = [u](const Fit& f) { return f.factor * std::pow(u, f.exponent); };
       fit.factor = load(below) / std::pow(u, fit.exponent);
-      // What the integrals of the two laws at u, without the constants, differ by; the loads there are the same.
+      // The constants make the integrals of both laws equal at u; the loads there are equal.
       fit.first = below.first + u * load(fit) * (1 / (below.exponent + 1) - 1 / (fit.exponent + 1));
       const auto second = [&](const Fit& f) { return f.first * u + u * u * load(f) / ((f.exponent + 1) * (f.exponent + 2)); };
       fit.second = below.second + second(below) - second(fit);

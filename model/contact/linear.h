@@ -2,8 +2,9 @@
 //
 //   P = k d        U = k d^2 / 2
 //
-// P force on the beam, away from the contact [N]; d interference [m]; k stiffness [N/m]; U stored energy [J]. Lossless. Validity:
-// any d; for d < 0 the law is its own smooth continuation past the event that ends contact. Source: McCarthy et al. 2002.
+// P is the force on the beam, away from the contact [N]; d interference [m]; k stiffness [N/m]; U stored energy [J]. The law is
+// lossless. Validity: any d; for d < 0 the law is its own smooth continuation past the event that ends contact. Source:
+// McCarthy et al. 2002.
 #pragma once
 
 #include <array>
@@ -16,28 +17,28 @@
 
 namespace softland {
 
-/// Over the scalar of its parameters; that of the state is one they convert to.
+/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
 template <class P>
 struct LinearContactOf {
   P stiffness = 0;  ///< [N/m]
 
-  static constexpr bool grows_with_depth = true;  ///< so that the force is largest where the contact is deepest
+  static constexpr bool grows_with_depth = true;  ///< the force is largest where the contact is deepest
 
   template <class S>
   S force(S d) const {
     return S(stiffness) * d;
   }
-  /// Interference that carries a force [m]
+  /// Returns the interference that carries a force [m].
   [[nodiscard]] double interference(double force) const { return force / stiffness; }
   [[nodiscard]] double energy(double d) const { return stiffness * d * d / 2; }
 };
 using LinearContact = LinearContactOf<double>;
 
-/// In a scene.
+/// The law in a scene.
 struct LinearSpring {
   static constexpr std::string_view name = "linear";
   double stiffness = 0;  ///< [N/m]
-  double damping = 0;    ///< of Hunt and Crossley [s/m]
+  double damping = 0;    ///< damping of Hunt and Crossley [s/m]
 
   static consteval auto fields() {
     using Law = LinearSpring;

@@ -5,17 +5,18 @@
 //   unloading      P = Pe(d - s),  s = d_m - d_e,  Pe(d_e) = L(d_m)       between s and the deepest interference d_m
 //   dent           P = 0                             d < s
 //
-// P force on the beam, away from the contact [N]; d interference [m]; L and Pe loading and elastic law, L <= Pe; s residual
-// interference [m]. Stored energy: Ue(d_e) while loading, Ue(d - s) after; energy lost: work of loading less Ue(d_e), at d_m. P
-// and both energies are continuous. Reloading follows the unloading curve up to d_m. Each piece is continued smoothly past its
-// end; the integrator restarts there. Statics (pull-in, release, closed equilibrium) are those of first loading.
+// P is the force on the beam, away from the contact [N]; d interference [m]; L and Pe loading and elastic law, L <= Pe; s
+// residual interference [m]. Stored energy is Ue(d_e) while loading, Ue(d - s) after; the energy lost is the work of loading
+// less Ue(d_e), at d_m. P and both energies are continuous. Reloading follows the unloading curve up to d_m. Each piece is
+// continued smoothly past its end; the integrator restarts there. Statics (pull-in, release, closed equilibrium) are those of
+// first loading.
 //
 //   hysteretic        L = k_l d, Pe = k_u d: a mass rebounds with e^2 = k_l / k_u. The dent heals when contact ends: every touch
 //                     loses the same share. Source: Tung et al. 2014 (loading and unloading stiffness).
-//   elastic-plastic   L of plastic_asperity.h, Pe the law asperity-uniform. The dent stays for the rest of the run, so that later
-//   and
-//                     lighter impacts are elastic. Source of elastic unloading: Johnson 1985, sec. 6.4; the shift of the whole
-//                     curve is ours. It leaves the summits as sharp as they were; flattened ones are stiffer and lose more.
+//   elastic-plastic   L of plastic_asperity.h, Pe the law asperity-uniform. The dent stays for the rest of the run, so that
+//                     later and lighter impacts are elastic. Source of elastic unloading: Johnson 1985, sec. 6.4; the shift of
+//                     the whole curve is ours. It leaves the summits as sharp as they were; flattened ones are stiffer and
+//                     lose more.
 #pragma once
 
 #include <type_traits>
@@ -36,10 +37,10 @@ struct ContactWithMemory {
   Loading loading = {};
   Elastic elastic = {};
 
-  static constexpr bool heals = Heals;              ///< whether the dent is forgotten when contact ends
-  static constexpr bool grows_with_depth = !Heals;  ///< from touch to touch too: a dent that stays is only made deeper
+  static constexpr bool heals = Heals;              ///< true when the dent is forgotten when contact ends
+  static constexpr bool grows_with_depth = !Heals;  ///< also from touch to touch: a dent that stays is only made deeper
 
-  /// First loading and its work.
+  /// Returns the force of first loading; energy() returns its work.
   template <class S>
   S force(S d) const {
     return loading.force(d);
@@ -54,9 +55,9 @@ struct ContactWithMemory {
   [[nodiscard]] double stored(double d, const ContactState& state) const {
     return elastic.energy(state.unloading ? d - state.shift : elastic.interference(loading.force(d)));
   }
-  /// Residual interference after the deepest one [m]
+  /// Returns the residual interference after the deepest one [m].
   [[nodiscard]] double shift(double deepest) const { return deepest - elastic.interference(loading.force(deepest)); }
-  /// Energy that loading to the deepest interference has taken [J]
+  /// Returns the energy lost in loading to the deepest interference [J].
   [[nodiscard]] double lost(double deepest) const {
     return loading.energy(deepest) - elastic.energy(elastic.interference(loading.force(deepest)));
   }

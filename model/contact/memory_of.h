@@ -1,4 +1,4 @@
-// The names of contacts with a memory, for those who only name them: see model/contact/memory.h.
+// Declares the names of contacts with memory, for code that only names them: see model/contact/memory.h.
 #pragma once
 
 #include <string_view>
@@ -19,7 +19,7 @@ template <class Asperity>
 using PlasticAsperityContact =
     ContactWithMemory<PlasticAsperityLoading<Asperity, double>, UniformAsperityContactOf<double>, false>;
 
-/// Why such a law does not act along the pad.
+/// Reason why such a law does not act along the pad.
 inline constexpr std::string_view many_dents = "every point of the pad would keep a dent of its own";
 
 }  // namespace softland

@@ -1,9 +1,9 @@
-// A contact law of your own: one that a program which links softland writes, beside those that scenes can name.
+// A user's own contact law, written by a program that links softland, beside those that scenes can name.
 //
 //   P = force(d, d')        U = energy(d), the integral of force(., 0) from 0 to d
 //
-// P force on the moving part, away from the contact [N]; d interference [m]: how far the contact point is beyond the plane of
-// first touch; d' its rate [m/s], positive into the contact; U stored energy [J].
+// P is the force on the moving part, away from the contact [N]; d interference [m]: how far the contact point is beyond the
+// plane of first touch; d' its rate [m/s], positive into the contact; U stored energy [J].
 //
 //   struct Cubic final : OwnContactLaw {
 //     std::string_view name() const override { return "cubic spring"; }
@@ -13,15 +13,15 @@
 //   file.add_contact({.model = OwnContact{std::make_shared<const Cubic>()}, .pad_length = 5e-6});          // which has no
 //   [contact]
 //
-// Rules, which those of softland keep as well: force(0, d') = 0; the force is continuous with two continuous derivatives for d >
-// 0 and is continued smoothly to d < 0, where an integrator looks on its way to the event that ends contact; it has no memory,
-// and nothing acts before first touch. A law that depends on the rate takes energy: (force(d, d') - force(d, 0)) d' >= 0. It is
-// called from several threads at once, and often: some hundred times in a touch. It must not throw.
+// Rules, which the laws of softland keep as well: force(0, d') = 0. For d > 0 the force is continuous with two continuous
+// derivatives. It is continued smoothly to d < 0, where an integrator evaluates it on its way to the event that ends contact.
+// It has no memory, and nothing acts before first touch. A law that depends on the rate takes energy: (force(d, d') - force(d,
+// 0)) d' >= 0. It is called from several threads at once, and often: some hundred times in a touch. It must not throw.
 //
-// Such a switch is simulated, searched for and judged on devices that differ (prepare(), optimize(), robustness()) like any
+// Such a switch is simulated, searched and evaluated under process variation (prepare(), optimize(), robustness()) like any
 // other, one closing at a time instead of several in lanes of vector instructions. Tangents for implicit steps and for statics
-// are differences of the force. Exact derivatives of a closing are refused (LinearizedClosing::refusal), and so is writing such a
-// switch into a scene file (SceneFile::text): no file could say the law.
+// are differences of the force. Exact derivatives of a closing are refused (LinearizedClosing::refusal), and so is writing such
+// a switch into a scene file (SceneFile::text), which cannot express the law.
 #pragma once
 
 #include <array>
@@ -40,23 +40,23 @@ namespace softland {
 class OwnContactLaw {
  public:
   virtual ~OwnContactLaw() = default;
-  /// For messages.
+  /// Returns the name in messages.
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// P [N] at an interference [m] and its rate [m/s].
+  /// Returns P [N] at an interference [m] and its rate [m/s].
   [[nodiscard]] virtual double force(double interference, double rate) const = 0;
-  /// Whether the force depends on the rate: only then it is asked for other rates than 0, and the energy audit counts what it
-  /// takes.
+  /// True when the force depends on the rate: only then it is evaluated at other rates than 0, and the energy audit counts its
+  /// dissipation.
   [[nodiscard]] virtual bool depends_on_rate() const { return false; }
-  /// Whether the force is negative somewhere, so that the contact may stay closed without any voltage.
+  /// True when the force is negative somewhere, so that the contact may stay closed without any voltage.
   [[nodiscard]] virtual bool pulls() const { return false; }
-  /// U [J] at an interference [m]; by default by Gauss points in the root of the interference, exact to rounding for sums of its
-  /// half-integer powers.
+  /// Returns U [J] at an interference [m]. The default integrates by Gauss points in the root of the interference, exact to
+  /// rounding for sums of its half-integer powers.
   [[nodiscard]] virtual double energy(double interference) const;
 };
 
 namespace internal {
 
-/// dP/dx of a force over one of its arguments, by differences a millionth of it apart.
+/// Returns dP/dx of a force over one of its arguments, by differences a millionth of it apart.
 template <class F>
 [[nodiscard]] double slope_by_differences(F&& force, double at, double least_step) {
   const double step = 1e-6 * std::abs(at) + least_step;
@@ -98,7 +98,7 @@ struct OwnContactForce {
 
 }  // namespace internal
 
-/// Such a law as the contact of a device.
+/// An own law as the contact of a device.
 struct OwnContact {
   static constexpr std::string_view name = "own", not_along_pad = "which acts at the centre of the pad";
   static constexpr bool is_of_scenes = false;
@@ -106,7 +106,7 @@ struct OwnContact {
 
   static consteval auto fields() { return std::array<Field<OwnContact>, 0>{}; }
   [[nodiscard]] bool sticks() const { return own->pulls(); }
-  /// The rule that it breaks; empty where it breaks none.
+  /// Returns the rule that it breaks; empty where it breaks none.
   [[nodiscard]] std::string why_invalid(double) const {
     return own ? std::string() : "contact: an own law is needed, and none is given";
   }

@@ -3,16 +3,16 @@
 //   d(xi) = d - theta xi,  0 <= xi <= lt        f_i = -(1 / lt) integral of P(d(xi)) [phi_i - xi phi_i'] dxi over d(xi) > 0
 //   U = (1 / lt) integral of U(d(xi)) dxi,      dissipated power likewise
 //
-// xi distance from the free end [m], lt pad length [m], d interference of the free end [m], theta = y'(L) its slope; phi_i and
-// phi_i' mode and slope at the free end; P force [N] and U energy [J] of the law for the whole pad at one interference. Every
-// mode leaves the free end without curvature and shear, so the pad is taken as straight: over the pad mode i, of wave number k,
-// departs from its tangent by (k lt)^4 / 24 of its deflection.
+// xi is the distance from the free end [m], lt pad length [m], d interference of the free end [m], theta = y'(L) its slope;
+// phi_i and phi_i' mode and slope at the free end; P force [N] and U energy [J] of the law for the whole pad at one
+// interference. Every mode leaves the free end without curvature and shear, so the pad is taken as straight: over the pad mode
+// i, of wave number k, departs from its tangent by (k lt)^4 / 24 of its deflection.
 //
-// Gauss points over the part in contact, whose edge moves with the beam, in the root of the distance from that edge: the
-// half-integer powers of the laws become polynomials, exact while the pad is in touch in part. Measured, relative to the force:
-// 2e-12 where all of it is, 3e-10 for Gaussian summits, 3e-5 where summits are crushed (d > Hm: the law has a corner there). Laws
-// without memory whose force starts from zero: others would keep a dent at every point. Validity: pad much shorter than the beam.
-// Source: textbook.
+// Gauss points cover the part in contact, whose edge moves with the beam, in the root of the distance from that edge. The
+// half-integer powers of the laws become polynomials, exact while the pad is partly in touch. Measured, relative to the force:
+// 2e-12 where all of it is, 3e-10 for Gaussian summits, 3e-5 where summits are crushed (d > Hm: the law has a corner there).
+// Limits: laws without memory whose force starts from zero; others would keep a dent at every point. Validity: pad much shorter
+// than the beam. Source: textbook.
 #pragma once
 
 #include <algorithm>
@@ -35,8 +35,8 @@ class PadQuadrature {
     }
   }
 
-  /// Calls f(xi, share, interference) for points in the part of the pad that is beyond the plane; the shares add up to that part
-  /// over the pad.
+  /// Calls f(xi, share, interference) for points in the part of the pad that is beyond the plane; the shares add up to that
+  /// part over the pad.
   template <class F>
   void over_contact(double end, double slope, F&& f) const {
     const double inner = end - slope * length_, deep = std::max(end, inner);
@@ -54,7 +54,7 @@ class PadQuadrature {
   static constexpr std::size_t count = 12;
   double length_;                       // [m]
   std::array<double, count> places_{};  // in (0, 1), from the shallow end of the part in contact to the deep one
-  std::array<double, count> shares_{};  // their sum is 1
+  std::array<double, count> shares_{};  // weights with sum 1
 };
 
 }  // namespace softland

@@ -24,7 +24,7 @@ struct PlasticAsperities {
   static constexpr bool per_area = true;
   Summits summits = {};
   double height = 0;    ///< Hm [m]
-  double hardness = 0;  ///< of the softer surface [Pa]
+  double hardness = 0;  ///< hardness of the softer surface [Pa]
   Plasticity plasticity = Plasticity::zmc;
 
   static consteval auto fields() {
@@ -43,7 +43,7 @@ struct PlasticAsperities {
   [[nodiscard]] static constexpr PlasticAsperities example() {
     return {.summits = Summits::example(), .height = 100e-9, .hardness = 1e9};
   }
-  /// All summits touch [m].
+  /// Returns the interference at which all summits touch [m].
   [[nodiscard]] double largest_interference() const { return height; }
   [[nodiscard]] std::variant<PlasticAsperityContact<ZmcAsperity>, PlasticAsperityContact<KogutEtsionAsperity>> law(
       const ContactPad& pad) const;

@@ -2,17 +2,17 @@
 //
 //   P = (eta An / Hm) integral from max(0, d - Hm) to d of p(w) dw;   W = integral of P, the work of loading
 //
-// P force on the beam, away from the contact [N]; d interference [m]; p load of one asperity at interference w [N]: zmc.h or
-// kogut_etsion.h, each in units of the load P1 and the interference w1 of first yield,
+// P is the force on the beam, away from the contact [N]; d interference [m]; p load of one asperity at interference w [N]:
+// zmc.h or kogut_etsion.h, each in units of the load P1 and the interference w1 of first yield,
 //
 //   w1 = (pi K H / (2 E*))^2 R,   P1 = (2/3) pi K H R w1
 //
-// below which it is Hertz's; R radius [m]; H hardness of the softer surface [Pa]; K the law's factor between largest pressure
-// and hardness at first yield; E* effective modulus [Pa]; eta summits per area [1/m^2]; An = width x pad length [m^2]; W [J]. The
-// integrals are in closed form. Below w1 it is the law asperity-uniform. One asperity's load is continuous with kinks, the sum
-// has a continuous slope. Odd in d. Validity: asperities that do not touch each other; quasi-static yield. What happens on
-// unloading is not this law's: see memory.h. Source: the laws of one asperity as named there; the sum over heights as in
-// Greenwood & Williamson 1966.
+// below which p is Hertz's load. R is the radius [m]; H hardness of the softer surface [Pa]; K the law's factor between largest
+// pressure and hardness at first yield; E* effective modulus [Pa]; eta summits per area [1/m^2]; An = width x pad length [m^2];
+// W [J]. The integrals are in closed form. Below w1 it is the law asperity-uniform. One asperity's load is continuous with
+// kinks; the sum has a continuous slope. The law is odd in d. Validity: asperities that do not touch each other; quasi-static
+// yield. Unloading is not part of this law: see memory.h. Source: the laws of one asperity as named there; the sum over heights
+// as in Greenwood & Williamson 1966.
 #pragma once
 
 #include <cmath>
@@ -33,7 +33,7 @@ class PlasticAsperityLoading {
     strength_ = summits / height * 2 / 3 * pi * Asperity::pressure_factor * hardness * radius * yield_ * yield_;
   }
 
-  /// w1 [m]
+  /// Returns w1 [m].
   [[nodiscard]] static P first_yield(const P& radius, const P& hardness, const P& modulus) {
     const P root = pi * Asperity::pressure_factor * hardness / (2 * modulus);
     return root * root * radius;
@@ -48,7 +48,7 @@ class PlasticAsperityLoading {
     return select(
         d < 0, [&]() -> S { return -(S(strength_) * sum); }, [&]() -> S { return S(strength_) * sum; });
   }
-  /// Work of loading from first touch to d [J]
+  /// Returns the work of loading from first touch to d [J].
   [[nodiscard]] double energy(double d) const {
     const double m = std::abs(d);
     const double beyond = m > height_ ? Asperity::second_integral((m - height_) / yield_) : 0;

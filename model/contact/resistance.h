@@ -4,23 +4,23 @@
 //   a  = max{ sqrt(F1 / (pi H)), [3 F1 R / (4 E*)]^(1/3) },   F1 = F / n
 //   R  = R1 / n + Rf / m
 //
-// R resistance of the contact, without that of the leads [Ohm]; rho resistivity of both metals, the mean of two [Ohm m]; l mean
-// free path of their electrons [m]; a radius of a spot [m]; F load on all spots [N], n of which share it evenly and conduct side
-// by side; H hardness of the softer metal [Pa]; Rf resistance of a film in series with each of the m contacts that stand side by
-// side (Contact::count) [Ohm]; R radius of the summits [m] and E* effective modulus [Pa] of a law that has summits. Such a spot
-// is elastic while its mean pressure is below the hardness, which the larger radius says; without hardness it is elastic at any
-// load. A law without summits has one plastic spot for each contact.
+// R is the resistance of the contact, without that of the leads [Ohm]; rho resistivity of both metals, the mean of two [Ohm m];
+// l mean free path of their electrons [m]; a radius of a spot [m]; F load on all spots [N], n of which share it evenly and
+// conduct side by side; H hardness of the softer metal [Pa]; Rf resistance of a film in series with each of the m contacts that
+// stand side by side (Contact::count) [Ohm]; R (in a) radius of the summits [m] and E* effective modulus [Pa] of a law that has
+// summits. Such a spot is elastic while its mean pressure is below the hardness; the larger radius decides this. Without
+// hardness it is elastic at any load. A law without summits has one plastic spot for each contact.
 //
-// Summits in touch at the interference d, of N in all: N min(d, Hm) / Hm of uniform heights, N Q(4 - d / sigma) of Gaussian ones,
-// at least one for each contact. A dented summit stays in touch until its force vanishes. The load is the contact force, of the
-// law "adhesive" with what adhesion adds to it, 2 pi R W for each summit in touch: a contact that is held by it conducts. A
-// contact without load is open: its conductance is 0.
+// Summits in touch at the interference d, of N in all: N min(d, Hm) / Hm for uniform heights, N Q(4 - d / sigma) for Gaussian
+// ones, at least one for each contact. A dented summit stays in touch until its force vanishes. The load is the contact force;
+// the law "adhesive" adds 2 pi R W for each summit in touch, so that a contact held by adhesion conducts. A contact without
+// load is open: its conductance is 0.
 //
 // Limits: for l << a Holm's constriction rho / (2a) between two half spaces, for l >> a Sharvin's ballistic one, which n spots
-// of one load share as a single spot. Spots do not interact: they stand further apart than their own size. No heating, no
-// softening, no tunnelling. Source: R. Holm, Electric Contacts (1967); B. Nikolic & P. B. Allen, Phys. Rev. B 60 (1999) 3963
-// (arXiv cond-mat/9811296), after Wexler: G is their approximation of his function, and R1 stays within 11 % of the plain sum of
-// both limits.
+// of one load share as a single spot. Spots do not interact: they stand further apart than their own size. Heating, softening
+// and tunnelling are neglected. Source: R. Holm, Electric Contacts (1967); B. Nikolic & P. B. Allen, Phys. Rev. B 60 (1999)
+// 3963 (arXiv cond-mat/9811296), after Wexler: G is their approximation of his function, and R1 stays within 11 % of the plain
+// sum of both limits.
 #pragma once
 
 #include <cstddef>
@@ -35,36 +35,37 @@ class ContactResistance {
   /// Takes a valid contact, whose moving part has this width [m].
   ContactResistance(const Contact& contact, double width);
 
-  /// Whether the contact has a resistivity; else nothing is known of its resistance, and nobody may ask.
+  /// True when the contact has a resistivity; otherwise its resistance is unknown and must not be requested.
   [[nodiscard]] bool is_known() const { return is_known_; }
-  /// Conductance [S] at an interference [m] under a contact force [N]; 0: open.
+  /// Returns the conductance [S] at an interference [m] under a contact force [N]; 0 when open.
   [[nodiscard]] double conductance(double interference, double force) const;
-  /// Resistance [Ohm]; NaN: open.
+  /// Returns the resistance [Ohm]; NaN when open.
   [[nodiscard]] double resistance(double interference, double force) const;
 
-  /// Resistance of a circular spot of radius a [m], R1 [Ohm]; infinite for a = 0.
+  /// Returns the resistance of a circular spot of radius a [m], R1 [Ohm]; infinite for a = 0.
   [[nodiscard]] static double of_spot(double radius, double resistivity, double mean_free_path);
 
  private:
   bool is_known_;
   Conduction metal_;
   double contacts_;     // m
-  double summits_ = 0;  // N; 0: the law has none
+  double summits_ = 0;  // N; 0 for a law without summits
   double height_ = 0;   // Hm, or the standard deviation of Gaussian heights [m]
   bool is_gaussian_ = false;
   double radius_ = 0;    // R [m]
   double modulus_ = 0;   // E* [Pa]
-  double adhesion_ = 0;  // what adhesion adds to the load of a summit in touch [N]
+  double adhesion_ = 0;  // load that adhesion adds to a summit in touch [N]
 };
 
-/// Returns that of one contact of a device, whose moving part is as wide there as its sections say.
+/// Returns the resistance of one contact of a device, whose moving part has the width of its sections there.
 [[nodiscard]] ContactResistance contact_resistance(const Device& device, std::size_t contact);
 
-/// Conductance [S] of the connection that contacts with these conductances make, in the order of the device: those that make it
-/// are in series where all of them are needed, else side by side. NaN where one of them is NaN, which is not known.
+/// Returns the conductance [S] of the connection that contacts with these conductances make, in the order of the device.
+/// Contacts that make it are in series where all of them are needed, else side by side. NaN where one of them is NaN, which
+/// means unknown.
 [[nodiscard]] double connection_conductance(const Device& device, std::span<const double> conductances);
 
-/// 1 / conductance; NaN for 0: an open contact has no resistance [Ohm].
+/// Returns 1 / conductance; NaN for 0: an open contact has no resistance [Ohm].
 [[nodiscard]] double resistance_of(double conductance);
 
 }  // namespace softland

@@ -2,15 +2,15 @@
 //
 //   v+ = -e v-        lost: (1 - e^2) m v-^2 / 2        rest: e v- < sqrt(2 a h_r), a > 0        N = m a at rest
 //
-// v- and v+ velocity towards the stop before and after the impact [m/s]; e restitution, 0 <= e < 1; m moving mass [kg]; a
-// acceleration that all other forces give the plate at the stop, towards it [m/s^2]; N force of the stop on the resting plate
-// [N].
+// v- and v+ are the velocities towards the stop before and after the impact [m/s]; e restitution, 0 <= e < 1; m moving mass
+// [kg]; a acceleration of the plate at the stop by all other forces, towards it [m/s^2]; N force of the stop on the resting
+// plate [N].
 //
 // Under a constant force the rebounds are a geometric series: infinitely many in the finite time (1 + e) / (1 - e) v / a. So a
 // rebound that would rise less than h_r = 1e-6 of the contact gap, u^2 / (2 a) under that force, is not simulated: the plate
-// loses what is left of its velocity and rests on the plane, held there by N, until N would have to pull. An impact has an
-// impulse (1 + e) m v- but no force. Validity: the impact lasts much shorter than anything else, and e is a property of the pair
-// of bodies: for a beam, whose other modes take up energy at every impact, it is not. Source: Newton's law of impact; e.g.
+// loses the rest of its velocity and rests on the plane, held there by N, until N would have to pull. An impact has an impulse
+// (1 + e) m v- but no force. Validity: the impact lasts much shorter than anything else, and e is a property of the pair of
+// bodies; for a beam, whose other modes take up energy at every impact, it is not. Source: Newton's law of impact; e.g.
 // Brogliato, Nonsmooth Mechanics, 2016, secs. 1.3 and 4.1.
 #pragma once
 
@@ -22,19 +22,20 @@
 
 namespace softland {
 
-/// Over the scalar of its parameters; that of the state is one they convert to.
+/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
 template <class P>
 struct RigidContactOf {
   P restitution = 0;  ///< e
 
   static constexpr double rest_height = 1e-6;  ///< h_r over the contact gap
 
-  /// Whether a plate that leaves the stop with `speed` [m/s] against the acceleration [m/s^2] stays there.
+  /// Returns true when a plate that leaves the stop with `speed` [m/s] against the acceleration [m/s^2] stays there.
   [[nodiscard]] static bool rests(double speed, double acceleration, double contact_gap) {
     return acceleration > 0 && speed * speed < 2 * acceleration * rest_height * contact_gap;
   }
 
-  /// It never yields, so no interference belongs to a force and nothing is stored: closing.cc and pull_in.cc hold the plate.
+  /// Returns 0: the stop never yields, so no interference belongs to a force and nothing is stored; closing.cc and pull_in.cc
+  /// hold the plate.
   template <class S>
   S force(S) const {
     return S(0);
@@ -43,7 +44,7 @@ struct RigidContactOf {
 };
 using RigidContact = RigidContactOf<double>;
 
-/// In a scene.
+/// The law in a scene.
 struct RigidStop {
   static constexpr std::string_view name = "rigid", not_along_pad = "whose impacts have no force";
   double restitution = 0;  ///< e

@@ -2,11 +2,11 @@
 //
 //   p / H = 4 E* / (3 pi H) sqrt(d / R)
 //
-// p mean pressure of an elastic spot [Pa]; H hardness [Pa]; E* effective modulus [Pa]; d interference of the contact, which that
-// summit has from first touch on [m]; R radius of the summits [m]. Source: Hertz 1882.
+// p is the mean pressure of an elastic spot [Pa]; H hardness [Pa]; E* effective modulus [Pa]; d interference of the contact,
+// which that summit has from first touch on [m]; R radius of the summits [m]. Source: Hertz 1882.
 //
 // Limits: a summit yields from p / H = 0.4 on (Chang, Etsion & Bogy 1987, with their K = 0.6), and its pressure is the hardness
-// from about 1 on: beyond 0.4 the number tells how far it is dented, in proportion to the square root of d.
+// from about 1 on. Above 0.4 the number indicates the depth of the dent, in proportion to the square root of d.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,8 @@
 
 namespace softland {
 
-/// Returns p / H over the square root of the interference [1/m^0.5]; NaN for a law without summits and where no hardness is known.
+/// Returns p / H over the square root of the interference [1/m^0.5]; NaN for a law without summits and without a known
+/// hardness.
 [[nodiscard]] inline double summit_pressure_scale(const Contact& contact) {
   return std::visit(
       [&]<class Law>(const Law& law) {

@@ -7,11 +7,11 @@
 
 namespace softland {
 
-/// What a contact law is made for.
+/// The size of the contact that a law is made for.
 struct ContactPad {
-  double width = 0;   ///< [m]; times the number of pads side by side
+  double width = 0;   ///< width [m]; times the number of pads side by side
   double length = 0;  ///< lt [m]
-  double count = 1;   ///< pads side by side
+  double count = 1;   ///< number of pads side by side
 };
 
 struct Summits {
@@ -21,17 +21,17 @@ struct Summits {
 
   [[nodiscard]] bool operator==(const Summits&) const = default;
 
-  /// How many are under the pad.
+  /// Returns the number of summits under the pad.
   [[nodiscard]] double count(const ContactPad& pad) const { return density * pad.width * pad.length; }
-  /// Force of all of them over d^1.5, by Hertz [N/m^1.5].
+  /// Returns the force of all of them over d^1.5, by Hertz [N/m^1.5].
   [[nodiscard]] double hertz(const ContactPad& pad) const { return count(pad) * effective_modulus * std::sqrt(radius); }
 
-  /// Gold on gold, for tests.
+  /// Returns gold on gold, for tests.
   [[nodiscard]] static constexpr Summits example() { return {.radius = 100e-9, .density = 1e11, .effective_modulus = 48e9}; }
 };
 
 // clang-format off
-/// The radius and density of the member `summits` of a law.
+/// Returns the fields of radius and density of a law's member `summits`.
 template <class Law>
 [[nodiscard]] consteval auto summit_fields() {
   return std::to_array<Field<Law>>({
@@ -39,14 +39,14 @@ template <class Law>
       {.key = "asperity_density", .unit = "1/m^2", .about = "summits per area", .in = reach<Law, &Law::summits, &Summits::density>, .required = true, .such_as = "1e11 1/m^2"},
   });
 }
-/// Its modulus, which follows the heights.
+/// Returns the field of its modulus, which follows the heights.
 template <class Law>
 [[nodiscard]] consteval auto modulus_fields() {
   return std::to_array<Field<Law>>({
       {.key = "effective_modulus", .unit = "Pa", .about = "E* of the pair of surfaces", .in = reach<Law, &Law::summits, &Summits::effective_modulus>, .required = true, .such_as = "48 GPa"},
   });
 }
-/// Heights of the summits that are uniform on [0, Hm].
+/// Returns the field of summit heights that are uniform on [0, Hm].
 template <class Law>
 [[nodiscard]] consteval auto height_fields() {
   return std::to_array<Field<Law>>({

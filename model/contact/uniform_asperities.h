@@ -18,7 +18,7 @@ struct UniformAsperities {
   static constexpr bool per_area = true;
   Summits summits = {};
   double height = 0;   ///< Hm [m]
-  double damping = 0;  ///< of Hunt and Crossley [s/m]
+  double damping = 0;  ///< damping of Hunt and Crossley [s/m]
 
   [[nodiscard]] bool operator==(const UniformAsperities&) const = default;
 
@@ -27,7 +27,7 @@ struct UniformAsperities {
     return joined(summit_fields<Law>(), height_fields<Law>(), modulus_fields<Law>(), damping_fields<Law>());
   }
   [[nodiscard]] static constexpr UniformAsperities example() { return {.summits = Summits::example(), .height = 100e-9}; }
-  /// All summits touch [m].
+  /// Returns the interference at which all summits touch [m].
   [[nodiscard]] double largest_interference() const { return height; }
   [[nodiscard]] std::variant<UniformAsperityContact, HuntCrossley<UniformAsperityContact>> law(const ContactPad& pad) const;
 };

@@ -5,10 +5,10 @@
 //   1 < u < 54     a(s) (1 + beta ln u) u,  a = 1 + 3 s^2 - 2 s^3,  s = (u - 1) / 53,  beta = (1 - k) / (k ln 54)
 //   u >= 54        2 u / k                                                  fully plastic
 //
-// w interference; w1 and P1 those of first yield (plastic_asperity.h); k = 0.4 mean pressure at first yield over hardness, so
-// that K = 1.5 k = 0.6. The middle part is contact area times mean pressure, A p, as published: A = pi R w a(s), p = H - H (1 -
-// k) (ln w2 - ln w) / (ln w2 - ln w1), w2 = 54 w1. Continuous, with kinks at both ends. Source: Zhao, Maietta & Chang 2000, eqs.
-// 11, 20 and 24.
+// w is the interference; w1 and P1 are those of first yield (plastic_asperity.h); k = 0.4 is the mean pressure at first yield
+// over hardness, so that K = 1.5 k = 0.6. The middle part is contact area times mean pressure, A p, as published: A = pi R w
+// a(s), p = H - H (1 - k) (ln w2 - ln w) / (ln w2 - ln w1), w2 = 54 w1. It is continuous, with kinks at both ends. Source:
+// Zhao, Maietta & Chang 2000, eqs. 11, 20 and 24.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ class ZmcAsperity {
  public:
   static constexpr double pressure_factor = 0.6;  ///< K: largest pressure at first yield over hardness
 
-  /// Integral of the load from 0.
+  /// Returns the integral of the load from 0.
   template <class S>
   static S first_integral(S u) {
     using std::sqrt;
@@ -33,7 +33,7 @@ class ZmcAsperity {
     return select(
         u > 1, [&] { return select(u > ratio, plastic, yielding); }, elastic);
   }
-  /// Integral of that.
+  /// Returns the integral of first_integral().
   static double second_integral(double u) {
     if (!(u > 1)) return u * u * u * std::sqrt(u) / 8.75;
     if (!(u > ratio)) return 1 / 8.75 + (u - 1) * (0.4 - middle<1>(1.0)) + middle<2>(u) - middle<2>(1.0);
@@ -45,7 +45,8 @@ class ZmcAsperity {
   static constexpr double k = 0.4;     // mean pressure at first yield over hardness
   static constexpr double ratio = 54;  // w2 / w1
 
-  // The load of the middle part is the sum of a_j u^j (1 + beta ln u), j = 1 ... 4. Its antiderivatives, first and second:
+  // The load of the middle part is the sum of a_j u^j (1 + beta ln u), j = 1 ... 4. Return its antiderivatives, first and
+  // second.
   template <int Times, class S>
   static S middle(S u) {
     using std::log;

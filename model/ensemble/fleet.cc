@@ -71,9 +71,9 @@ std::optional<fleet::LaneDispersion> lane_dispersion(const std::optional<Dispers
 /// A contact law in lanes: the elastic one, and its damping [s/m].
 struct ElasticContact {
   fleet::LaneContact law = fleet::LaneContact::linear;
-  double strength = 0, height = 0;  // linear: its stiffness [N/m]
+  double strength = 0, height = 0;  // stiffness in case of linear [N/m]
   double damping = 0;
-  double unloading = 0;  // stiffness of a contact with a memory; 0: has none [N/m]
+  double unloading = 0;  // unloading stiffness of a contact with a memory [N/m]; 0 without memory
 };
 std::optional<ElasticContact> lane_contact(const ContactLaw& law) {
   using Lane = fleet::LaneContact;
@@ -90,19 +90,19 @@ std::optional<ElasticContact> lane_contact(const ContactLaw& law) {
   return std::nullopt;
 }
 
-/// Whether lanes know every contact, of which there is one at least.
+/// True when lanes support every contact, of which there is one at least.
 bool knows_contacts(const Switch& model) {
   for (std::size_t c = 0; c < model.contacts(); ++c)
     if (model.has_spread_contact(c) || !lane_contact(model.contact(c))) return false;
   return model.has_contact();
 }
 
-/// Whether the laws are those of fleet::UsualLaws.
+/// True when the laws are those of fleet::UsualLaws.
 bool is_usual(const Switch& model) {
   const Device& device = model.device();
   const std::vector<Electrode>& all = device.electrodes;
   const auto alike = [&](const Electrode& e) { return e.side == Side::near && e.fringing == all.front().fringing; };
-  const bool is_plate = device.structure.is_rigid();  // whose electrodes lie over the same points
+  const bool is_plate = device.structure.is_rigid();  // a plate's electrodes lie over the same points
   const bool film = !device.gas || (std::holds_alternative<StripGas>(*device.gas) && std::isnan(far_gap(*device.gas)));
   const bool usual_field = model.modes() <= fleet::usual_modes && !device.dispersion && !model.stretching() && film &&
                            std::ranges::all_of(all, alike) && !(is_plate && all.size() > 1) &&
@@ -112,7 +112,7 @@ bool is_usual(const Switch& model) {
   return usual_field && !device.structure.is_built() && std::holds_alternative<UniformAsperityContact>(model.contact());
 }
 
-/// The pads, each with the electrode that it is of.
+/// Returns the pads, each with its electrode.
 std::vector<std::pair<Stretch, int>> pads_of(const Device& device) {
   std::vector<std::pair<Stretch, int>> pads;
   for (const Electrode& e : device.electrodes) {
@@ -121,7 +121,7 @@ std::vector<std::pair<Stretch, int>> pads_of(const Device& device) {
   return pads;
 }
 
-/// Points up to each end of an electrode or a stretch, by the electrode that they lie over.
+/// Returns the points up to each end of an electrode or a stretch, by the electrode that they lie over.
 std::vector<Segment> segments_between(const Switch& model, const LaneLayout& layout) {
   const std::vector<std::pair<Stretch, int>> pads = pads_of(model.device());
   const auto over = [&](double x) {
@@ -140,7 +140,7 @@ std::vector<Segment> segments_between(const Switch& model, const LaneLayout& lay
   return segments;
 }
 
-/// The faces of every pad that has points.
+/// Returns the faces of every pad that has points.
 std::vector<Segment> faces_of(const Switch& model) {
   const Eigen::ArrayXd& x = model.quadrature().positions();
   const auto first_at = [&](double place) { return to_int(std::lower_bound(x.begin(), x.end(), place) - x.begin()); };
@@ -216,14 +216,14 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
   return layout;
 }
 
-// Interference at which the contact has stored this little, far below the height of its asperities [m].
+// Returns the interference at which the contact has stored this little energy, far below the height of its asperities [m].
 double depth_of_energy(const ElasticContact& contact, double energy) {
   if (contact.law == fleet::LaneContact::linear) return std::sqrt(2 * energy / contact.strength);
   const UniformAsperityContact law{.strength = contact.strength, .height = contact.height};
   return law.height * std::pow(energy / law.energy(law.height), 2.0 / 7);
 }
 
-/// Numbers of what is on the far side.
+/// Sets the numbers of the far side.
 void set_far_side(LaneSwitch& s, const Device& device) {
   s.most_gap = std::numeric_limits<double>::infinity();
   const auto set = [&](double gap, double& both, double& floor) {
@@ -305,7 +305,7 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   return s;
 }
 
-/// The depth at which a contact carries the steady force, but for its damping [m].
+/// Returns the depth at which a contact carries the steady force, without its damping [m].
 double steady_depth(const FleetClosing& closing, std::size_t c) {
   if (!(closing.steady_force > 0)) return std::numeric_limits<double>::infinity();
   const ElasticContact contact = *lane_contact(closing.model->contact(c));
@@ -313,7 +313,8 @@ double steady_depth(const FleetClosing& closing, std::size_t c) {
   return UniformAsperityContact{.strength = contact.strength, .height = contact.height}.interference(closing.steady_force);
 }
 
-/// Passes on what a lane tells, with force and energy of the contact's law; of several contacts the touches of their connection.
+/// Passes on the events of a lane, with force and energy of the contact's law; for several contacts the touches of their
+/// connection.
 class Teller final : public fleet::LaneObserver {
  public:
   explicit Teller(const FleetClosing& closing) : model_(closing.model), observer_(closing.observer) {}
@@ -336,7 +337,7 @@ class Teller final : public fleet::LaneObserver {
   void opens(double time) override { touches_.open(time); }
   void rebound(double begin, double end, double height) override { observer_->rebound(begin, end, height); }
 
-  /// The end of a lane that was followed.
+  /// Returns the end of a lane that was followed.
   [[nodiscard]] FleetEnd end(const LaneClosing& lane) {
     tell(touches_.finish());
     std::array<ForceOutcome, fleet::most_contacts> forces;
@@ -363,14 +364,14 @@ class Teller final : public fleet::LaneObserver {
   ConnectionTouches touches_;
 };
 
-/// Tells whether a switch of several contacts rests on one of them as a run begins.
+/// Returns true when a switch of several contacts rests on one of them as a run begins.
 bool rests_on_contact(const Switch& model, const Eigen::VectorXd& rest) {
   for (std::size_t c = 1; c < model.contacts(); ++c)
     if (model.contact_deflection(rest.data(), c) > model.contact_gap(c)) return true;
   return false;
 }
 
-/// Whether the factor of a dispersion force changes, whose work is another's than that of a charge.
+/// Returns true when the factor of a dispersion force changes; its work is not that of a charge.
 bool drives_dispersion(const FleetClosing& c) {
   for (std::size_t k = 0; k < c.drives.size(); ++k) {
     if (c.model->drive_kind(k) == DriveKind::dispersion && !c.drives[k].is_zero()) return true;
@@ -378,7 +379,7 @@ bool drives_dispersion(const FleetClosing& c) {
   return false;
 }
 
-/// Energy in the fields of the electrodes [J]
+/// Returns the energy in the fields of the electrodes [J].
 double field_energy(const Switch& model, std::span<const double> volts, const double* q) {
   Switch::Workspace work = model.workspace();
   double energy = 0;
@@ -386,7 +387,8 @@ double field_energy(const Switch& model, std::span<const double> volts, const do
   return energy;
 }
 
-/// V dQ is what the field gains and what it does to the modes. A piezo's charge follows the modes alone.
+/// Returns the work V dQ of the drives: the energy gained by the field and the work on the modes. A piezo's charge follows the
+/// modes alone.
 double drive_energy(const FleetClosing& c, const LaneClosing& lane) {
   std::vector<double> at_end;
   for (std::size_t k = 0; k < c.drives.size(); ++k) at_end.push_back(lane.gain[k] * c.drives[k].voltage(lane.end));
@@ -473,8 +475,8 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
 
   fleet::LaneDrives drives;
   std::optional<LaneLayout> layout;
-  std::vector<std::size_t> places;     // of those that run
-  std::vector<Eigen::VectorXd> rests;  // from which they start
+  std::vector<std::size_t> places;     // places of the switches that run
+  std::vector<Eigen::VectorXd> rests;  // equilibria from which they start
   for (std::size_t i = 0; i < closings.size(); ++i) {
     if (!why_not_in_lanes(*closings[i].model).empty() || !drives.go_in_lanes(closings[i].drives)) continue;
     const std::optional<Eigen::VectorXd> rest = closings[i].model->open_equilibrium(values_before(closings[i].drives));

@@ -1,15 +1,15 @@
-// Closings of many switches at once, one to a lane of the machine's vector registers: the devices of an ensemble differ in their
-// numbers, hardly in what they do. Every lane has its own parameters, drives, time step and events, and is given the next switch
-// when it is done. The method is that of one closing (integrators/lawson.h, model/closing.h), so the figures are the same but for
-// what the tolerance leaves open.
+// Closings of many switches at once, one to a lane of the machine's vector registers: the devices of an ensemble differ in
+// their numbers, hardly in their operations. Every lane has its own parameters, drives, time step and events, and receives the
+// next switch when it is done. The method is that of one closing (integrators/lawson.h, model/closing.h), so the figures agree
+// within the tolerance.
 //
-// All lanes make one attempt at a step in every round: six right-hand sides for as many switches as there are lanes. A lane whose
-// step crosses the contact plane repeats it up to the crossing in the next round; one whose drives enter new pieces spends a
-// round at a step of no length, which gives it the accelerations it goes on with. So no lane waits for another, and what happens
-// in one does not depend on the company it keeps: outcomes are the same bits whatever the order and the number of lanes.
+// All lanes make one attempt at a step in every round: six right-hand sides for as many switches as there are lanes. A lane
+// whose step crosses the contact plane repeats it up to the crossing in the next round. A lane whose drives enter new pieces
+// spends a round on a step of no length, which gives it its new accelerations. So no lane waits for another, and no lane
+// depends on the others: outcomes are the same bits whatever the order and the number of lanes.
 //
-// Some laws are not written for lanes (why_not_in_lanes()), energies are not audited, and a lane that gets into trouble gives up:
-// all of these are for simulate_closing(), one at a time.
+// Limits: some laws are not written for lanes (why_not_in_lanes()), energies are not audited, and a lane with a problem gives
+// up. simulate_closing() serves all of these, one at a time.
 #pragma once
 
 #include <array>
@@ -31,25 +31,26 @@ enum class Vectors { none, avx2, avx512 };
 struct VectorsRow {
   Vectors value;
   std::string_view name;
-  int lanes;  ///< closings at once
+  int lanes;  ///< number of closings at once
 };
 inline constexpr auto vector_instructions =
     std::to_array<VectorsRow>({{Vectors::none, "none", 1}, {Vectors::avx2, "avx2", 4}, {Vectors::avx512, "avx512", 8}});
 static_assert(is_complete<vector_instructions>());
 
-/// Whether this processor, and this build, have them.
+/// True when this processor, and this build, have them.
 [[nodiscard]] bool has(Vectors vectors);
-/// The widest that this processor has, or the narrower ones that the environment variable SOFTLAND_VECTORS asks for. Throws
-/// InvalidInput where that names none, or some that this processor does not have.
+/// Returns the widest vectors that this processor has, or the narrower ones that the environment variable SOFTLAND_VECTORS
+/// requests. Throws InvalidInput where that names none, or some that this processor does not have.
 [[nodiscard]] Vectors vectors_in_use();
 
-/// Who receives the landing of one lane.
+/// Receives the landing of one lane.
 class LandingObserver {
  public:
-  /// A touch that is over, or at the end of the run the one that holds, whose end is NaN. Of several contacts it is one of the
-  /// connection that they make (model/closing/connection.h), and is told when the next one begins, or at the end.
+  /// Receives a touch that is over, or at the end of the run the one that holds, whose end is NaN. With several contacts it is
+  /// a touch of their connection (model/closing/connection.h), and arrives when the next one begins, or at the end.
   virtual void touch(const Touch& touch) = 0;
-  /// A separation after the first touch that is over, or under way at the end of the run: its end is NaN then [s], [s], [m].
+  /// Receives a separation after the first touch that is over, or under way at the end of the run: its end is NaN then [s],
+  /// [s], [m].
   virtual void rebound(double begin, double end, double height) = 0;
 
  protected:
@@ -63,7 +64,7 @@ class LandingObserver {
 struct FleetClosing {
   const Switch* model = nullptr;
   std::span<const Signal> drives;
-  std::span<const double> gains = {};  ///< of these drives; none: 1
+  std::span<const double> gains = {};  ///< gains of these drives; 1 if empty
   double duration = 0;                 ///< [s]
   double after_contact = std::numeric_limits<double>::infinity(), no_end_before = 0;
   double no_contact_before = std::numeric_limits<double>::infinity();
@@ -72,25 +73,25 @@ struct FleetClosing {
   LandingObserver* observer = nullptr;
 };
 
-/// What became of it. One that was not followed to its end has to be run by simulate_closing(); its observer has then been told a
-/// part of it.
+/// The outcome of a closing. One that was not followed to its end has to be run by simulate_closing(); its observer has then
+/// received a part of it.
 struct FleetEnd {
   bool followed = false;
   double time = 0;  ///< [s]
-  /// As in Trajectory [s], [N]
+  /// As in Trajectory [s], [N].
   double steady_force_time = std::numeric_limits<double>::quiet_NaN(),
          least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
   double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< EnergyBalance::source_work and Trajectory::layer_energy,
                                                                    ///< where it is measured [J]
-  /// Of several contacts, as in Trajectory [s], [m/s]
+  /// Values for several contacts, as in Trajectory [s], [m/s].
   double first_touch = std::numeric_limits<double>::quiet_NaN(), first_touch_velocity = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Why closings of this switch are not followed in lanes; empty where they are.
+/// Returns the reason why closings of this switch are not followed in lanes; empty where they are.
 [[nodiscard]] std::string why_not_in_lanes(const Switch& model);
 
-/// All of them, in order; `tolerance` as in ClosingOptions. `vectors`: none follows nothing. Switches whose quadrature points or
-/// drives are others than those of the first one are not followed.
+/// Follows all of them, in order; `tolerance` as in ClosingOptions. With Vectors::none nothing is followed. Switches whose
+/// quadrature points or drives differ from those of the first one are not followed.
 [[nodiscard]] std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, double tolerance, Vectors vectors);
 
 }  // namespace softland

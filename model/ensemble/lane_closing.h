@@ -1,4 +1,4 @@
-// What fleet.cc hands to the code that is compiled for each set of vector instructions: numbers only. That code must leave no
+// The data that fleet.cc passes to the code compiled for each set of vector instructions: numbers only. That code must leave no
 // function behind that the rest of the program could be linked to, since not every processor can run it.
 #pragma once
 
@@ -8,7 +8,7 @@ namespace softland::fleet {
 
 inline constexpr int most_modes = 8, most_points = 48, most_drives = 6, most_segments = most_points;
 inline constexpr int most_contacts = 4;
-inline constexpr int usual_modes = 4;  ///< of the laws of UsualLaws
+inline constexpr int usual_modes = 4;  ///< modes of the laws of UsualLaws
 
 enum class LaneFringing { none, linear, meijs_fokkema };
 enum class LaneFilm { none, strip, strip_slit, veijola, gallis_torczynski, near_contact, guo_alexeenko, linear };
@@ -18,14 +18,14 @@ enum class LaneContact { asperity_uniform, linear };
 /// Quadrature points from `begin` up to `end` that lie over the same electrode.
 struct Segment {
   int begin = 0, end = 0;
-  int electrode = -1;  ///< -1: over none
+  int electrode = -1;  ///< -1 without an electrode
   LaneFringing fringing = LaneFringing::none;
-  bool far = false;  ///< on the far side
-  int stretch = 0;   ///< under which its points lie; usual laws only
+  bool far = false;  ///< true on the far side
+  int stretch = 0;   ///< stretch that contains its points; usual laws only
   [[nodiscard]] bool operator==(const Segment&) const = default;
 };
 
-/// Points from one number to before another, under one width and thickness.
+/// Points from `begin` up to `end`, under one width and thickness.
 struct PointStretch {
   int begin = 0, end = 0;
   [[nodiscard]] bool operator==(const PointStretch&) const = default;
@@ -35,27 +35,28 @@ struct PointStretch {
 struct LaneContactKind {
   LaneContact law = LaneContact::asperity_uniform;
   bool damped = false;
-  bool remembers = false;  ///< it has one stiffness of loading and another of unloading
-  bool near = true;        ///< on the side of the electrode: else it is a back stop
-  bool connects = true;    ///< it is one of several that make the connection
+  bool remembers = false;  ///< true when loading and unloading have different stiffness
+  bool near = true;        ///< true on the side of the electrode; false for a back stop
+  bool connects = true;    ///< true when it is one of several that make the connection
   [[nodiscard]] bool operator==(const LaneContactKind&) const = default;
 };
 
-/// What the lanes of a run have in common.
+/// The properties that the lanes of a run have in common.
 struct LaneLayout {
-  bool usual = true;  ///< for UsualLaws: segments follow one another; else they are pads, which may lie over the same points
+  bool usual = true;  ///< true for UsualLaws: segments follow one another; else they are pads, which may lie over the same points
   int modes = 0, points = 0, segments = 0, electrodes = 0, drives = 0;
   bool piezo = false, stretching = false;
-  LaneFringing fringing = LaneFringing::none;  ///< of all electrodes; usual laws only
+  LaneFringing fringing = LaneFringing::none;  ///< fringing law of all electrodes; usual laws only
   LaneFilm film = LaneFilm::none;
   bool far_film = false;
   LaneDispersion dispersion = LaneDispersion::none;
   int contacts = 1;
   LaneContactKind contact[most_contacts];
-  bool needs_all = true;       ///< whether the connection is closed while all contacts that make it are; else while any is
-  bool measures_work = false;  ///< of the drives; not by UsualLaws
+  bool needs_all = true;       ///< true when the connection needs all contacts that make it; false when any closes it
+  bool measures_work = false;  ///< true when the work of the drives is measured; not by UsualLaws
   Segment segment[most_segments];
-  int stretches = 1;  ///< one unless the size changes along the structure; a width that changes all along has one per point
+  int stretches = 1;  ///< number of stretches: one unless the size changes along the structure; one per point for a width that
+                      ///< changes all along
   PointStretch stretch[most_points];
   [[nodiscard]] bool operator==(const LaneLayout&) const = default;
 };
@@ -64,9 +65,9 @@ struct LaneLayout {
 struct LaneContactNumbers {
   double plane = 0;                 // rest distance of its place to its plane [m]
   double shape[most_modes] = {};    // modes at its place, positive towards its plane [kg^(-1/2)]
-  double strength = 0, height = 0;  // of its law; linear: its stiffness [N/m]
+  double strength = 0, height = 0;  // parameters of its law; for linear the stiffness [N/m]
   double damping = 0;               // [s/m]
-  double unloading_stiffness = 0;   // of a law with a memory, whose other is `strength` [N/m]
+  double unloading_stiffness = 0;   // for a law with a memory, whose loading stiffness is `strength` [N/m]
   double negligible_depth = 0;      // [m]
 };
 
@@ -79,30 +80,30 @@ struct LaneSwitch {
   double shape[most_points][most_modes] = {}, weight[most_points] = {};  // [kg^(-1/2)], [m]
   double rest_gap[most_points] = {};                                     // [m]
   double flying[most_modes] = {}, touching[most_modes] = {};             // absolute tolerances of coordinates
-  double speed[most_modes] = {};                                         // and of velocities
+  double speed[most_modes] = {};                                         // absolute tolerances of velocities
   double width[most_points] = {}, thickness[most_points] = {};           // by stretch [m]
   double viscosity[most_points] = {};                                    // by stretch [Pa s]
   double mean_free_path = 0, slit_height = 0, slit_length = 0;           // [m]
-  double damping = 0;                                                    // of the film `linear` [N s/m^2]
-  double electrode_gaps[most_drives] = {}, film_gaps = 0;                // of both sides together, where there is a far one [m]
-  double electrode_floor[most_drives] = {}, film_floor = 0;              // of the far one [m]
+  double damping = 0;                                                    // damping of the film `linear` [N s/m^2]
+  double electrode_gaps[most_drives] = {}, film_gaps = 0;                // gaps of both sides together, with a far side [m]
+  double electrode_floor[most_drives] = {}, film_floor = 0;              // floor of the far gaps [m]
   double most_gap = 0;                                                   // [m]
   double hamaker_constant = 0, equilibrium_distance = 0, crossover = 0;  // [J], [m], [m]
-  double tension = 0;                                                    // of mid-plane stretching [N/m]
-  double slopes[most_modes][most_modes] = {};                            // and its matrix [1/(kg m)]
+  double tension = 0;                                                    // tension of mid-plane stretching [N/m]
+  double slopes[most_modes][most_modes] = {};                            // matrix of mid-plane stretching [1/(kg m)]
   LaneContactNumbers contact[most_contacts];
 };
 
-/// Where a lane tells what it sees.
+/// Receives the events of a lane.
 class LaneObserver {
  public:
-  /// A contact has touched [s], [s], [m/s], [m]; a damped one with this force at the most [N].
+  /// A contact has touched [s], [s], [m/s], [m]; for a damped one with its largest force [N].
   virtual void touch(int contact, double begin, double end, double speed, double depth, double force) = 0;
-  /// The connection of several contacts closes, at the speed of the contact that closes it [s], [m/s]
+  /// The connection of several contacts closes, at the speed of the contact that closes it [s], [m/s].
   virtual void closes(double time, double speed) = 0;
-  /// It opens [s].
+  /// The connection opens [s].
   virtual void opens(double time) = 0;
-  /// The contact, or the connection of several, has been open, and this far at the most [s], [s], [m].
+  /// The contact, or the connection of several, has been open, up to this height [s], [s], [m].
   virtual void rebound(double begin, double end, double height) = 0;
 
  protected:
@@ -121,24 +122,24 @@ struct LanePiece {
   double value = 0, slope = 0, square = 0, cube = 0;                            // [V], [V/s], [V/s^2], [V/s^3]
   double tail[most_tails] = {}, decay[most_tails] = {};                         // [V], [1/s]
   double amplitude = 0, amplitude_slope = 0, angular_frequency = 0, phase = 0;  // [V], [V/s], [rad/s], [rad]
-  double longest_step = 0;                                                      // that resolves it [s]
-  bool joins = false;                                                           // goes on smoothly: steps may go over its begin
+  double longest_step = 0;                                                      // longest step that resolves it [s]
+  bool joins = false;  // true when it continues smoothly: steps may pass its begin
 };
 
 struct LaneClosing {
   const LaneSwitch* numbers = nullptr;
   double start[most_modes] = {};              // modal coordinates at t = 0
-  double final[most_modes] = {};              // and at the end
-  double work = 0;                            // of the forces of the drives on the modes, where it is measured [J]
-  const LanePiece* pieces[most_drives] = {};  // by drive
+  double final[most_modes] = {};              // modal coordinates at the end
+  double work = 0;                            // work of the drives on the modes, where it is measured [J]
+  const LanePiece* pieces[most_drives] = {};  // pieces by drive
   int piece_count[most_drives] = {};
-  double gain[most_drives] = {};  // of what the pieces say
+  double gain[most_drives] = {};  // factors of the pieces
   double duration = 0, after_contact = 0, no_end_before = 0, no_contact_before = 0;
-  double steady_depth[most_contacts] = {};  // that carries the steady force; infinite: none was asked for [m]
+  double steady_depth[most_contacts] = {};  // depth that carries the steady force [m]; infinite without a steady force
   LaneObserver* observer = nullptr;
   bool followed = false;
   double end = 0;
-  /// Each contact has its own, which is NaN where it has not touched, or is not steady at the end [s], [m].
+  /// Each contact has its own values, which are NaN where it has not touched, or is not steady at the end [s], [m].
   double steady_from[most_contacts] = {}, least_depth[most_contacts] = {};
 };
 

@@ -23,7 +23,7 @@ class Run {
   }
   [[nodiscard]] double begin() const { return pieces_.front().begin; }
   [[nodiscard]] double end() const { return end_; }
-  /// [V]
+  /// Returns the voltage [V].
   [[nodiscard]] double voltage(double time) const {
     const LanePiece& p = pieces_[piece_at(time)];
     const double s = time - p.begin;
@@ -32,7 +32,7 @@ class Run {
       if (p.tail[i] != 0) sum += p.tail[i] * std::exp(-p.decay[i] * s);
     return sum;
   }
-  /// [V/s]
+  /// Returns the rate [V/s].
   [[nodiscard]] double rate(double time) const {
     const LanePiece& p = pieces_[piece_at(time)];
     const double s = time - p.begin;
@@ -40,10 +40,10 @@ class Run {
     for (int i = 0; i < LanePiece::most_tails; ++i) sum -= p.decay[i] * p.tail[i] * std::exp(-p.decay[i] * s);
     return sum;
   }
-  /// From the beginning [V s]
+  /// Returns the integral from the beginning [V s].
   [[nodiscard]] double integral(double time) const { return integral_to(time, piece_at(time)); }
 
-  /// What two pieces in succession take, half of the time at most: a sample, or two [s].
+  /// Returns the median duration of two consecutive pieces: one sample, or two [s].
   [[nodiscard]] double window() const {
     std::vector<double> lengths;
     for (std::size_t i = 0; i + 2 < pieces_.size(); ++i) lengths.push_back(pieces_[i + 2].begin - pieces_[i].begin);
@@ -70,14 +70,15 @@ class Run {
   std::span<const LanePiece> pieces_;
   double end_;
   std::vector<double> integrals_;
-  mutable std::size_t near_ = 0;  // the piece that was asked for last: times are asked for in succession
+  mutable std::size_t near_ = 0;  // the piece used last: times come in succession
 };
 
 struct Knot {
   double time = 0, value = 0, rate = 0;  // [s], [V], [V/s]
 };
 
-/// The mean over the window about a time, and how fast it changes; near an end of the run over what there is on both sides.
+/// Returns the mean over the window about a time, and its rate of change; near an end of the run the window shrinks on both
+/// sides.
 Knot mean_about(double time, const Run& run, double window) {
   const double before = time - run.begin(), after = run.end() - time;
   if (before <= 0) return {time, run.voltage(time), run.rate(time)};
@@ -89,7 +90,7 @@ Knot mean_about(double time, const Run& run, double window) {
   return {time, mean, (run.voltage(time + half) - run.voltage(time - half)) / (2 * half)};
 }
 
-/// The cubic through two knots.
+/// Returns the cubic through two knots.
 LanePiece between(const Knot& a, const Knot& b) {
   const double h = b.time - a.time, rise = (b.value - a.value) / h;
   return {.begin = a.time,
@@ -100,17 +101,17 @@ LanePiece between(const Knot& a, const Knot& b) {
           .longest_step = infinite};
 }
 
-/// What is missing in the integral of the cubic between two knots; `integral`: of the run between them [V s].
+/// Returns what the integral of the cubic between two knots lacks; `integral` is that of the run between them [V s].
 double missing(const Knot& a, const Knot& b, double integral) {
   const double h = b.time - a.time;
   return integral - h * ((a.value + b.value) / 2 + h * (a.rate - b.rate) / 12);
 }
 
-/// A mean cuts corners: gives back to the knots between the ends what that takes from the integral about them, all of it.
+/// Restores the integral: a mean cuts corners. The knots between the ends get back what they lose in the integral about them.
 void restore_integral(std::vector<Knot>& knots, const Run& run) {
   const std::size_t last = knots.size() - 1;
-  double until = run.integral(knots.front().time);  // the knot [V s]
-  std::vector<double> more(knots.size(), 0);        // [V]
+  double until = run.integral(knots.front().time);  // integral up to the knot [V s]
+  std::vector<double> more(knots.size(), 0);        // correction of each knot [V]
   const double step = (run.end() - run.begin()) / static_cast<double>(last);
   for (std::size_t k = 0; k < last; ++k) {
     const double next = run.integral(knots[k + 1].time), lost = missing(knots[k], knots[k + 1], next - until) / step;
@@ -148,7 +149,7 @@ bool goes_in_lanes(const Signal& drive) {
 
 namespace {
 
-/// Signal::resolving_step() of a piece that goes in lanes, which need not be looked for where it does not oscillate.
+/// Returns Signal::resolving_step() of a piece that goes in lanes; the search is skipped where the piece does not oscillate.
 double longest_step(const Signal& drive, const SignalPiece& piece) {
   if (piece.oscillates()) return drive.resolving_step(piece.begin);
   double step = infinite;
@@ -186,7 +187,7 @@ std::vector<LanePiece> pieces_of(const Signal& drive) {
 }
 
 SmoothedDrive smoothed(std::vector<LanePiece> exact) {
-  constexpr std::size_t fewest = 8;  // pieces of a run
+  constexpr std::size_t fewest = 8;  // least number of pieces of a run
   const auto is_short = [&](std::size_t i) {
     const LanePiece& p = exact[i];
     const double fastest = std::max(p.decay[0], p.decay[1]);

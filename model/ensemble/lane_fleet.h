@@ -1,13 +1,13 @@
 // The closings of fleet.h for lanes of a given width: included once for every set of vector instructions.
 //
-// The lanes are std::experimental::simd, and the laws of a closing are those that one closing has too, over lanes of parameters.
+// The lanes are std::experimental::simd, and the laws of a closing are those of a single closing, over lanes of parameters.
 // Everything here depends on the type of the lanes or lies in their class, so that its code has names of its own.
 //
-// What is inlined by order, or never, is so because the compiler fuses products and sums as their neighbours have it: the last
-// bits of a closing do not hang on how many callers a function has.
+// Forced inlining, or its prevention, has a reason: the compiler fuses products and sums depending on their neighbours. The
+// last bits of a closing must not depend on how many callers a function has.
 //
-// Width matters: with two registers to a lane GCC spills and is several times slower; so does a law that is not inlined, which
-// keeps the sums over points in memory.
+// Width matters: with two registers to a lane GCC spills and is several times slower. A law that is not inlined has the same
+// effect: it keeps the sums over points in memory.
 #pragma once
 
 #include <cmath>
@@ -23,13 +23,14 @@
 
 namespace softland::fleet {
 
-/// The switches have up to `room` contacts. Where that is one, the code for several is left out when this is compiled.
+/// The switches have up to `room` contacts. For one contact the code for several is left out at compile time.
 template <class V, class Laws, int room = 1>
 class Lanes {
   using M = typename V::mask_type;
   static constexpr std::size_t width = V::size();
   static constexpr int capacity = Laws::capacity;
-  static constexpr int pieces = 3;  // of a step of two radians of the fastest mode: as StepMotion at tolerances from 1e-5 on
+  static constexpr int pieces =
+      3;  // pieces of a step of two radians of the fastest mode: as StepMotion at tolerances from 1e-5 on
   static constexpr double most_rounds = 100'000;
   static constexpr double infinite = std::numeric_limits<double>::infinity();
   static constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
@@ -51,7 +52,7 @@ class Lanes {
   }
 
  private:
-  // The number of a contact; where there is but one, it is a constant.
+  // The number of a contact; a constant where there is only one.
   using Number = std::conditional_t<has_several, int, std::integral_constant<int, 0>>;
 
   // Calls f(c) for every contact.
@@ -64,41 +65,41 @@ class Lanes {
     }
   }
 
-  // A contact, as its lane knows it.
+  // The state of a contact in its lane.
   struct Followed {
     bool touched = false, touching = false;
-    double begin = 0, left = 0, speed = 0;  // of the touch: begin, end [s], speed [m/s]
-    double extreme = 0;                     // deepest or highest since the last event [m]
-    double hardest = 0;                     // force of a damped contact since then [N]
-    // A contact with a memory: see model/closing/contact_phase.h.
+    double begin = 0, left = 0, speed = 0;  // begin and end of the touch [s], impact velocity [m/s]
+    double extreme = 0;                     // deepest or highest place since the last event [m]
+    double hardest = 0;                     // largest force of a damped contact since then [N]
+    // The rest is for a contact with a memory: see model/closing/contact_phase.h.
     bool unloading = false, in_dent = false;
-    bool to_turn = false;                   // it aims at its deepest point
-    double level = 0;                       // where another event is that it aims at [m]
+    bool to_turn = false;                   // true while it steps to its deepest point
+    double level = 0;                       // level of another event that it steps to [m]
     double low = 0, high = 0, deepest = 0;  // edges of its phase, and the deepest place of this touch [m]
-    double steady = nothing;                // since when it has been at the steady depth [s]
-    double least = infinite;                // depth after the first maximum [m]
+    double steady = nothing;                // time from which it has been at the steady depth [s]
+    double least = infinite;                // least depth after the first maximum [m]
   };
   // The connection that several contacts make.
   struct Connected {
-    int touching = 0;  // of the contacts that make it
+    int touching = 0;  // number of touching contacts among those that make it
     bool closed = false, was_closed = false;
-    double left = 0, highest = 0;  // since when it has been open [s], and the largest separation since then [m]
+    double left = 0, highest = 0;  // time from which it has been open [s], and the largest separation since then [m]
   };
 
-  // What a lane is about.
+  // The state of a lane.
   struct Lane {
-    LaneClosing* closing = nullptr;  // null: idle
+    LaneClosing* closing = nullptr;  // null while idle
     const LanePiece* drive[most_drives] = {};
-    int count[most_drives] = {};    // of its pieces
-    int piece[most_drives] = {};    // that holds
-    bool runs[most_drives] = {};    // over pieces that join, without a stop
-    bool curves[most_drives] = {};  // more than a cubic
-    int corrections = 0;            // of a target on the plane
-    double stop = 0;                // the next breakpoint, or the end of the window [s]
-    double longest = 0;             // that resolves the drives [s]
+    int count[most_drives] = {};    // number of its pieces
+    int piece[most_drives] = {};    // index of the piece that holds
+    bool runs[most_drives] = {};    // true over pieces that join, without a stop
+    bool curves[most_drives] = {};  // true for more than a cubic
+    int corrections = 0;            // corrections of a target on the plane
+    double stop = 0;                // next breakpoint, or the end of the window [s]
+    double longest = 0;             // longest step that resolves the drives [s]
     double gain[most_drives] = {};  // factors of its drives
-    bool landed = false;            // a contact of the near side has touched
-    int at = 0;                     // the contact whose event it aims at
+    bool landed = false;            // true once a contact of the near side has touched
+    int at = 0;                     // contact whose event it steps to
     Followed contact[room];
     Connected connected;
   };
@@ -112,7 +113,7 @@ class Lanes {
     }
   }
 
-  // What is more than straight lines.
+  // Adds the parts of a drive beyond straight lines.
   void add_curves(int k, V time) {
     const V s = time - begin_[k];
     volts_[k] += s * s * (bend_[k] + s * twist_[k]);
@@ -132,7 +133,7 @@ class Lanes {
     }
   }
 
-  // The piece that holds at this time, near the one that did.
+  // Finds the piece that holds at this time, near the one that held before.
   static void find_piece(Lane& lane, int k, double t) {
     const LanePiece* const all = lane.drive[k];
     int& at = lane.piece[k];
@@ -144,7 +145,7 @@ class Lanes {
     if (piece.tail[1] != 0) sum += piece.tail[1] * std::exp(-piece.decay[1] * elapsed);
     return sum;
   }
-  // A drive of pieces that join, at any time among them.
+  // Returns a drive of pieces that join, at any time among them.
   [[nodiscard]] double running(int k, std::size_t l, double t) {
     find_piece(lane_[l], k, t);
     const LanePiece& piece = lane_[l].drive[k][lane_[l].piece[k]];
@@ -159,7 +160,7 @@ class Lanes {
     return power * volts_[layout_.drives - 1];
   }
 
-  // Modal accelerations; `least`: the smallest gap.
+  // Computes modal accelerations; `least` becomes the smallest gap.
   [[gnu::always_inline]] void rates(const V* __restrict q, const V* __restrict v, V* __restrict a, V& least) {
     V sum[capacity];
     for (int i = 0; i < modes; ++i) sum[i] = -(square_[i] * q[i]) - friction_[i] * v[i];
@@ -187,7 +188,7 @@ class Lanes {
     for (int i = 0; i < modes; ++i) a[i] = sum[i];
   }
 
-  // The force of a contact with a memory [N]; `loading`: its force where it is loaded.
+  // Returns the force of a contact with a memory [N]; `loading` is its force on the loading curve.
   [[nodiscard]] V remembered(Number c, V loading, V depth) const {
     where(unloading_[c], loading) = contact_[c].pull_back(depth - shift_[c]);
     where(in_dent_[c], loading) = V(0);
@@ -250,7 +251,7 @@ class Lanes {
     }
   }
 
-  // One attempt of every lane.
+  // Makes one attempt of every lane.
   void round() {
     const V wanted = min(h_, max_step_);
     const V h = min(wanted, limit_);
@@ -297,8 +298,8 @@ class Lanes {
   // --- a contact point within a step
   // -------------------------------------------------------------------------------------------
 
-  // Knots of a contact point between the ends of the step, as integrators/modal_motion.h; lanes whose point may pass the plane,
-  // or turns.
+  // Finds knots of a contact point between the ends of the step, as integrators/modal_motion.h; marks lanes whose point may
+  // cross the plane, or turns.
   [[gnu::always_inline]] void follow(Number at, V h) {
     constexpr double share = 1.0 / pieces;
     V* const knot_p = knot_p_[at];
@@ -347,7 +348,7 @@ class Lanes {
   struct Reach {
     V least, most;
   };
-  // Places that the curve of a piece stays between: its control points in Bernstein form; `g`: what the piece lasts.
+  // Returns bounds of the curve of a piece, from its control points in Bernstein form; `g` is the duration of the piece.
   [[nodiscard]] [[gnu::always_inline]] Reach reach(Number c, int k, V g) const {
     const V b0 = knot_p_[c][k], b5 = knot_p_[c][k + 1], s0 = g * knot_s_[c][k], s1 = g * knot_s_[c][k + 1];
     const V c0 = g * g * knot_c_[c][k], c1 = g * g * knot_c_[c][k + 1];
@@ -355,7 +356,7 @@ class Lanes {
     return {.least = min(min(min(b0, b1), min(b2, b3)), min(b4, b5)), .most = max(max(max(b0, b1), max(b2, b3)), max(b4, b5))};
   }
 
-  // Lanes whose point may leave the phase of a contact with a memory; loading ends where it turns.
+  // Returns the lanes whose point may leave the phase of a contact with a memory; loading ends where the point turns.
   [[nodiscard]] M leaves_phase(Number c, V h) const {
     constexpr double share = 1.0 / pieces;
     const V g = h * share;
@@ -374,7 +375,7 @@ class Lanes {
     [[nodiscard]] double speed(double s) const { return c[1] + s * (2 * c[2] + s * (3 * c[3] + s * (4 * c[4] + s * 5 * c[5]))); }
     [[nodiscard]] double bend(double s) const { return 2 * c[2] + s * (6 * c[3] + s * (12 * c[4] + s * 20 * c[5])); }
 
-    // Newton's method kept inside the bracket.
+    // Finds a zero by Newton's method kept inside the bracket.
     template <class F, class D>
     [[gnu::always_inline]] static double zero(F f, D slope, double low, double high) {
       const bool rising = f(high) > 0;
@@ -410,24 +411,24 @@ class Lanes {
              6 * d - 3 * (v0 + v1) - 0.5 * (a0 - a1)}};
   }
 
-  // Share of the step at which a lane leaves its side of the plane; above 1 where it does not.
+  // Returns the share of the step at which a lane leaves its side of the plane; above 1 where it does not.
   [[nodiscard]] double crossing(Number c, std::size_t l, double length) const {
     return crossing(c, l, length, lane_[l].contact[c].touching ? 1 : -1, plane_[c][l]);
   }
-  // The same of a level, inside of which is side * (position - level) > 0.
+  // Returns the same for a level; its inside is side * (position - level) > 0.
   [[nodiscard]] double crossing(Number c, std::size_t l, double length, double side, double level) const {
     bool inside = side * (position_[c][l] - level) > 0;
     for (int k = 0; k < pieces; ++k) {
       const double p1 = knot_p_[c][k + 1][l], v0 = knot_s_[c][k][l], v1 = knot_s_[c][k + 1][l];
       const bool ends_inside = side * (p1 - level) >= 0;
-      if (side * v0 < 0 && side * v1 > 0 && inside) {  // dips
+      if (side * v0 < 0 && side * v1 > 0 && inside) {  // the motion dips
         const Curve path = curve(c, k, l, length);
         const double turn = path.turn();
         if (side * (path.position(turn) - level) < 0) return (k + path.meets(level, 0, turn)) / pieces;
       } else if (!ends_inside) {
         const Curve path = curve(c, k, l, length);
         if (inside) return (k + path.meets(level, 0, 1)) / pieces;
-        if (side * v0 > 0 && side * v1 < 0) {  // begins on the plane, goes in and comes back
+        if (side * v0 > 0 && side * v1 < 0) {  // it begins on the plane, goes in and comes back
           const double turn = path.turn();
           if (side * (path.position(turn) - level) > 0) return (k + path.meets(level, turn, 1)) / pieces;
         }
@@ -438,7 +439,8 @@ class Lanes {
     return 2;
   }
 
-  // Share of the step at which a lane leaves its phase of a contact with a memory, and where to; above 1 where it does not.
+  // Returns the share of the step at which a lane leaves its phase of a contact with a memory, and where to; above 1 where it
+  // does not.
   [[nodiscard]] double phase_end(Number c, std::size_t l, double length) {
     Followed& one = lane_[l].contact[c];
     const double by_low = one.low > -infinite ? crossing(c, l, length, 1, one.low) : 2;
@@ -449,7 +451,7 @@ class Lanes {
     const double edge = by_low < by_high ? by_low : by_high;
     return edge < by_turn ? edge : by_turn;
   }
-  // Share of the step at which a lane turns back; above 1 where it does not.
+  // Returns the share of the step at which a lane turns back; above 1 where it does not.
   [[nodiscard]] double turning(Number c, std::size_t l, double length) const {
     for (int k = 0; k < pieces; ++k) {
       if (!(knot_s_[c][k + 1][l] < 0)) continue;
@@ -458,7 +460,7 @@ class Lanes {
     return 2;
   }
 
-  // The deepest, or highest, place of a lane in the step.
+  // Updates the deepest, or highest, place of a lane in the step.
   [[gnu::noinline]] void deepen(Number c, std::size_t l, double length) {
     Lane& lane = lane_[l];
     Followed& one = lane.contact[c];
@@ -481,7 +483,7 @@ class Lanes {
     }
   }
 
-  // The depth at which a contact that is loaded carries what this one carries at its depth.
+  // Returns the depth at which a loaded contact carries what this one carries at its depth.
   [[nodiscard]] double depth_of_force([[maybe_unused]] Number c, [[maybe_unused]] std::size_t l, double depth) const {
     if constexpr (Contact::has_memory) {
       const Followed& one = lane_[l].contact[c];
@@ -495,7 +497,7 @@ class Lanes {
     return depth;
   }
 
-  // Where a lane has come to the steady depth in the step that ends here, the last time.
+  // Finds where a lane has last come to the steady depth in the step that ends here.
   [[gnu::noinline]] void rise(Number c, std::size_t l, double length) {
     const double level = steady_[c][l];
     const auto reach = [&](int k, double share) {
@@ -521,7 +523,8 @@ class Lanes {
     if (separation > lane.connected.highest) lane.connected.highest = separation;
   }
 
-  // The highest place in the step of an open connection that any contact closes: of the one that is nearest to its plane.
+  // Updates the highest place in the step of an open connection that any contact closes: that of the contact nearest to its
+  // plane.
   void climb(std::size_t l, double length) {
     Lane& lane = lane_[l];
     for (int k = 0; k < pieces; ++k) {
@@ -534,7 +537,7 @@ class Lanes {
         Curve ahead = path;
         for (int i = 0; i < 6; ++i) ahead.c[i] -= other.c[i];
         at = ahead.meets(plane_[first][l] - plane_[last][l], 0, 1);
-        if (other.speed(at) < 0) {  // still goes up where it takes over
+        if (other.speed(at) < 0) {  // it still rises where it takes over
           rise_to(lane, plane_[last][l] - other.position(other.turn_between(at, 1)));
           continue;
         }
@@ -555,7 +558,7 @@ class Lanes {
     return best;
   }
 
-  // A contact that makes the connection touches, or leaves.
+  // Handles a contact that makes the connection and touches, or leaves.
   void connect(std::size_t l, bool touches, double speed) {
     Lane& lane = lane_[l];
     Connected& all = lane.connected;
@@ -575,7 +578,7 @@ class Lanes {
     apart_[l] = !closed && !layout_.needs_all;
   }
 
-  // Tells the rebound that is under way at the end of a run.
+  // Reports the rebound that is under way at the end of a run.
   void finish_connection(std::size_t l) {
     Lane& lane = lane_[l];
     if (!lane.connected.was_closed || lane.connected.closed) return;
@@ -591,7 +594,8 @@ class Lanes {
   // --- what follows from a step
   // --------------------------------------------------------------------------------------------------
 
-  // Binary logarithms and powers to the digits that a step size needs. Loops without branches: the compiler makes them vectors.
+  // Computes binary logarithms and powers to the digits that a step size needs. Loops without branches: the compiler vectorises
+  // them.
   [[gnu::always_inline]] void control(V error) {
     double squared[width];
     error.copy_to(squared, std::experimental::element_aligned);
@@ -619,7 +623,7 @@ class Lanes {
   [[gnu::always_inline]] void settle(V h, V end, V error) {
     control(error);
     rounds_ += V(1);
-    // Most lanes just go on; what is more than that is done lane by lane.
+    // Most lanes just continue; other lanes are handled one by one.
     const M plain = error <= V(1) && !special_ && !suspect_ && h < limit_ && end < until_ && smallest_ >= laws_.floor() &&
                     rounds_ < V(most_rounds);
     M rises[room];
@@ -670,7 +674,7 @@ class Lanes {
       if (taken[l] && !plain[l]) go_on(l, h[l]);
   }
 
-  // What the drives do to the modes in the step, as one unknown more of the pair has it.
+  // Integrates the work of the drives on the modes in the step, as one more unknown of the pair.
   void do_work(const M& taken, V h) {
     V mean = 0;
     for (int j = 0; j < 6; ++j) mean += Pair::tableau[6][j] * powers_[j];
@@ -678,7 +682,7 @@ class Lanes {
     where(taken, powers_[0]) = powers_[6];
   }
 
-  // The largest force of a damped contact in the step: at the top of the parabola through both ends and the middle, as
+  // Finds the largest force of a damped contact in the step: at the top of the parabola through both ends and the middle, as
   // model/closing/touch_record.h.
   void press(Number at, const M& taken, V h) {
     static_assert(pieces % 2 == 1);
@@ -700,7 +704,7 @@ class Lanes {
         lane_[l].contact[at].hardest = most_push[l];
   }
 
-  // Whether a lane takes its step; where not, what it tries next.
+  // Returns true when a lane takes its step; otherwise sets its next attempt.
   bool consider(std::size_t l, double h, double error) {
     Lane& lane = lane_[l];
     if (lane.closing == nullptr) return false;
@@ -734,7 +738,7 @@ class Lanes {
     return true;
   }
 
-  // Share of the step at which something changes, first of all at contact `at`; above 1 where nothing does.
+  // Returns the share of the step at the first event, at contact `at`; above 1 without an event.
   [[nodiscard]] double event(std::size_t l, double length) {
     if constexpr (!has_several) return event(Number(), l, length);
     double first = infinite;
@@ -749,12 +753,12 @@ class Lanes {
     }
     return crossing(c, l, length);
   }
-  // The contact whose event a lane aims at.
+  // Returns the contact whose event a lane steps to.
   [[nodiscard]] Number event_contact([[maybe_unused]] std::size_t l) const {
     if constexpr (has_several) return lane_[l].at;
     return Number();
   }
-  // Where that is [m].
+  // Returns the level of that event [m].
   [[nodiscard]] double event_level(std::size_t l) const {
     const Number c = event_contact(l);
     return remembers(c) ? lane_[l].contact[c].level : plane_[c][l];
@@ -764,7 +768,7 @@ class Lanes {
     return remembers(c) && lane_[l].contact[c].to_turn;
   }
 
-  // Whether a step that was to end on the plane does: moves its end there where that is near, else the target.
+  // Returns true when a step that should end on the plane does: moves its end there where that is near, else the target.
   [[gnu::always_inline]] bool arrives(std::size_t l, double h) {
     constexpr double short_of_a_radian = 1e-3;
     constexpr int most_corrections = 8;
@@ -780,7 +784,7 @@ class Lanes {
         const double v = trial_v_[i][l], a = trial_a_[i][l];
         trial_q_[i][l] = trial_q_[i][l] + later * (v + later / 2 * a);
         trial_v_[i][l] = v + later * a;
-        trial_a_[i][l] = a - later * square_[i][l] * v;  // what forces change in it is less
+        trial_a_[i][l] = a - later * square_[i][l] * v;  // the change of the forces in it is smaller
       }
       moved_[l] = later;
       if constexpr (has_several) move_others(at, l);
@@ -799,7 +803,7 @@ class Lanes {
     return false;
   }
 
-  // The other contacts of a lane move along where the end of its step has been moved.
+  // Moves the other contacts of a lane to the moved end of its step.
   void move_others(int at, std::size_t l) {
     for (int c = 0; c < layout_.contacts; ++c) {
       if (c == at) continue;
@@ -812,7 +816,7 @@ class Lanes {
     }
   }
 
-  // After a step that was taken and is more than that.
+  // Handles a step that ends with more than a plain continuation.
   void go_on(std::size_t l, double h) {
     Lane& lane = lane_[l];
     if (smallest_[l] < laws_.floor()[l]) {
@@ -839,7 +843,7 @@ class Lanes {
     }
   }
 
-  // An event begins or ends a phase of a touch, or crosses the plane.
+  // Handles an event, which begins or ends a phase of a touch, or crosses the plane.
   void pass(std::size_t l) {
     const Number at = event_contact(l);
     pass(at, l);
@@ -858,7 +862,7 @@ class Lanes {
       if (remembers(c)) enter_phase(c, l, false, false);
     }
   }
-  // Returns whether another contact has left its phase at the same time, which the step has not looked for.
+  // Returns true when another contact has left its phase at the same time, which the step has not searched for.
   bool is_beyond(int c, std::size_t l) {
     Followed& one = lane_[l].contact[c];
     const double low = remembers(c) ? one.low : one.touching ? plane_[c][l] : -infinite;
@@ -871,13 +875,13 @@ class Lanes {
     return true;
   }
 
-  // The event may lie between two phases of a touch; false: it lies at the plane.
+  // Handles an event between two phases of a touch; returns false for an event at the plane.
   bool pass_within_touch(Number c, std::size_t l) {
     Followed& one = lane_[l].contact[c];
     if (!one.touching) return false;
     if (one.to_turn) {
       const double speed = speed_[c][l], acceleration = acceleration_[c][l];
-      const double left = acceleration < 0 ? speed * speed / (2 * acceleration) : 0;  // that the velocity still carries it
+      const double left = acceleration < 0 ? speed * speed / (2 * acceleration) : 0;  // further way that the velocity carries it
       const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
       const double depth = position_[c][l] - plane_[c][l] - left;
       one.deepest = depth;
@@ -897,7 +901,7 @@ class Lanes {
     return true;
   }
 
-  // The edges of a phase, and the depth at which it carries the steady force.
+  // Sets the edges of a phase, and the depth at which it carries the steady force.
   void enter_phase(Number c, std::size_t l, bool unloading, bool in_dent) {
     Followed& one = lane_[l].contact[c];
     const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
@@ -916,7 +920,7 @@ class Lanes {
     steady_[c][l] = unloading || in_dent ? shifted + depth * (numbers.strength / numbers.unloading_stiffness) : plane + depth;
   }
 
-  // A contact point crosses its plane.
+  // Handles a contact point that crosses its plane.
   void pass_plane(Number c, std::size_t l) {
     Lane& lane = lane_[l];
     Followed& one = lane.contact[c];
@@ -961,7 +965,7 @@ class Lanes {
   }
 
   static void tell_rebound(const Lane& lane, double begin, double end, double height) {
-    constexpr double on_the_plane = 1e-12;  // of the contact gap, as ReboundFinder
+    constexpr double on_the_plane = 1e-12;  // share of the contact gap, as in ReboundFinder
     if (height > on_the_plane * lane.closing->numbers->contact[0].plane) lane.closing->observer->rebound(begin, end, height);
   }
 
@@ -979,7 +983,7 @@ class Lanes {
     limit_[l] = target - t_[l];
   }
 
-  // The drives go on to the pieces that hold from here on.
+  // Moves the drives to the pieces that hold from here on.
   void enter_stretch(std::size_t l) {
     Lane& lane = lane_[l];
     const double t = t_[l];
@@ -1087,10 +1091,10 @@ class Lanes {
     for_contacts([&](Number c) { take(s.contact[c], c, l); });
     apart_[l] = false;
     enter_stretch(l);
-    if (idle) lane.closing = nullptr;  // and stays special
+    if (idle) lane.closing = nullptr;  // and the lane stays special
   }
 
-  // The lane has not touched this contact.
+  // Resets a contact that the lane has not touched.
   void take(const LaneContactNumbers& numbers, Number c, std::size_t l) {
     contact_[c].take(layout_.contact[c], numbers, l);
     plane_[c][l] = numbers.plane;
@@ -1110,41 +1114,41 @@ class Lanes {
   [[gnu::always_inline]] static double clamped(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
 
   const LaneLayout layout_;
-  [[no_unique_address]] const typename Laws::Modes modes;  // a constant where the laws know it
+  [[no_unique_address]] const typename Laws::Modes modes;  // a constant where the laws fix it
   Laws laws_;
   Contact contact_[room];
-  int connecting_ = 0;  // contacts that make the connection
+  int connecting_ = 0;  // number of contacts that make the connection
   LaneClosing* closings_;
   std::size_t count_, next_ = 0;
   int busy_ = 0;
   Lane lane_[width];
 
-  // Of the switches.
+  // Numbers of the switches.
   V omega_[capacity], inverse_[capacity], square_[capacity], piezo_[capacity], friction_[capacity];
   V q_weight_[capacity], v_weight_[capacity], per_unknown_, fastest_, most_turn_;
   V at_contact_[room][capacity], plane_[room], steady_[room];
-  // Of the drives.
+  // State of the drives.
   V begin_[most_drives], value_[most_drives], slope_[most_drives], volts_[most_drives];
   V bend_[most_drives], twist_[most_drives];  // coefficients of s^2 and s^3
-  bool curves_[most_drives] = {};             // more than straight lines, in any lane, ever
-  // Of the motion.
+  bool curves_[most_drives] = {};             // true once any lane has had more than straight lines
+  // State of the motion.
   V q_[capacity], v_[capacity], a_[capacity], trial_q_[capacity], trial_v_[capacity], trial_a_[capacity];
   V slope_q_[7][capacity], slope_v_[7][capacity];
   V t_, h_, max_step_, limit_, target_, smallest_;
   V position_[room], speed_[room], acceleration_[room];
   V knot_p_[room][pieces + 1], knot_s_[room][pieces + 1], knot_c_[room][pieces + 1];
   M touching_[room]{}, touched_[room]{}, turns_[room]{}, suspect_{false};
-  M apart_{false};     // its connection, which any contact closes, has opened
-  M starting_{false};  // spends a round to find its accelerations
-  M to_event_{false};  // its target is a crossing of the plane
-  M special_{false};   // either of both, or idle
-  // A contact with a memory has phases.
+  M apart_{false};     // lanes whose connection, which any contact closes, has opened
+  M starting_{false};  // lanes that spend a round to find their accelerations
+  M to_event_{false};  // lanes whose target is a crossing of the plane
+  M special_{false};   // lanes with either of both, or idle
+  // Phases of a contact with a memory.
   M loading_[room]{}, unloading_[room]{}, in_dent_[room]{};
   V low_[room], high_[room], shift_[room];  // edges of the phase, and the depth of the dent [m]
-  V until_;                                 // ends with the first step beyond [s]
-  V last_step_;                             // that no stop cut short [s]
+  V until_;                                 // a lane ends with the first step beyond [s]
+  V last_step_;                             // last step that no stop cut short [s]
   V growth_, most_growth_, rounds_;
-  V power_, powers_[7], work_{0};  // of the drives on the modes [W], at the stages of a step [W], until now [J]
+  V power_, powers_[7], work_{0};  // power of the drives on the modes [W], at the stages of a step [W], and work until now [J]
   float log_error_[width] = {}, last_error_[width] = {};  // binary logarithms
   double moved_[width] = {};
 };

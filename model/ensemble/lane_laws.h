@@ -1,10 +1,10 @@
-// The laws of a closing over lanes: what they make of coordinates and velocities, in two ways.
+// The laws of a closing over lanes: forces from coordinates and velocities, in two variants.
 //
 // UsualLaws: up to four modes, electrodes on the near side that do not overlap, a strip film or none, an undamped contact of
-// asperities. Everything is chosen when this is compiled, each point is gone through once and stays in registers. With room for
-// several stretches they are the laws of a beam of sections with several contacts of any law.
-// AnyLaws: more modes, other laws and several contacts, chosen by the layout. Points are gone through law by law.
-// Each of them comes with the law of a contact.
+// asperities. Everything is chosen at compile time, each point is visited once and stays in registers. With room for several
+// stretches they are the laws of a beam of sections with several contacts of any law.
+// AnyLaws: more modes, other laws and several contacts, chosen by the layout. Points are visited law by law.
+// Each variant comes with the law of a contact.
 //
 // Everything here depends on the type of the lanes: see lane_fleet.h.
 #pragma once
@@ -35,13 +35,13 @@ class UsualContact {
  public:
   static constexpr bool has_damping = false, has_memory = false;
 
-  /// Lane `l` is of this contact from here on.
+  /// Assigns this contact to lane `l` from here on.
   void take(const LaneContactKind&, const LaneContactNumbers& numbers, std::size_t l) {
     strength_[l] = numbers.strength, height_[l] = numbers.height;
     law_ = {.strength = strength_, .height = height_};
   }
 
-  /// Its force [N]; `rate()` gives the speed into the contact [m/s].
+  /// Returns its force [N]; `rate()` gives the speed into the contact [m/s].
   template <class Rate>
   [[gnu::always_inline]] V push(V depth, Rate&&) const {
     return law_.force(depth);
@@ -55,7 +55,7 @@ class UsualContact {
 template <class V>
 class AnyContact {
  public:
-  static constexpr bool has_damping = true, has_memory = true;  // where its kind says so
+  static constexpr bool has_damping = true, has_memory = true;  // used where its kind has them
 
   void take(const LaneContactKind& kind, const LaneContactNumbers& numbers, std::size_t l) {
     kind_ = kind;
@@ -68,7 +68,7 @@ class AnyContact {
     if (kind_.law == LaneContact::linear) return push_of(LinearContactOf<V>{.stiffness = strength_}, depth, rate);
     return push_of(UniformAsperityContactOf<V>{.strength = strength_, .height = height_}, depth, rate);
   }
-  /// Force of a contact with a memory that is unloaded, this far from where it carries nothing [N]
+  /// Returns the force of a contact with a memory while unloading, at this distance from where it carries nothing [N].
   V pull_back(V depth) const { return LinearContactOf<V>{.stiffness = unloading_}.force(depth); }
 
  private:
@@ -86,7 +86,7 @@ template <class V, template <class> class FringingOf, bool has_film, int most_st
 class UsualLaws {
   using Force = ElectrostaticForce<FringingOf<V>>;
   using Film = StripSqueezeFilmOf<V>;
-  /// The field's law is written in powers of h^(-1/4), which a film beside it need not find again.
+  /// The field's law is written in powers of h^(-1/4), which a film beside it can reuse.
   static constexpr bool has_root = requires(const FringingOf<V>& law, V h) { law.factor_over_square(h); };
 
  public:
@@ -97,7 +97,7 @@ class UsualLaws {
 
   explicit UsualLaws(const LaneLayout& layout) : layout_(layout) {}
 
-  /// Lane `l` is of this switch from here on.
+  /// Assigns this switch to lane `l` from here on.
   void take(const LaneSwitch& s, std::size_t l) {
     for (int p = 0; p < layout_.points; ++p) {
       weight_[p][l] = s.weight[p], rest_gap_[p][l] = s.rest_gap[p];
@@ -117,7 +117,7 @@ class UsualLaws {
 
   [[nodiscard]] const V& floor() const { return floor_; }
 
-  /// Adds the modal forces of fields and film; `least`: the smallest gap.
+  /// Adds the modal forces of fields and film; `least` becomes the smallest gap.
   [[gnu::always_inline]] void add(const V* __restrict q, const V* __restrict v, const V* volts, V* sum, V& least) {
     V smallest = open_;
     const auto field = [&](int p, V& gap, V& velocity) __attribute__((always_inline)) {
@@ -168,7 +168,7 @@ class UsualLaws {
     least = smallest;
   }
 
-  /// What the electrodes do to the modes, where it is measured [W]
+  /// Returns the power of the electrodes on the modes, where it is measured [W].
   [[nodiscard]] V power() const { return 0; }
 
  private:
@@ -200,7 +200,7 @@ class AnyLaws {
     open_[l] = s.open, floor_[l] = s.floor, most_gap_[l] = s.most_gap;
     for (int k = 0; k < layout_.stretches; ++k) {
       width_[k][l] = s.width[k], thickness_[k][l] = s.thickness[k], viscosity_[k][l] = s.viscosity[k];
-      // Roots of the width are found once here, not at every call.
+      // Roots of the width are computed once here, not at every call.
       if (has_meijs_fokkema_) meijs_fokkema_[k] = {.width = width_[k], .thickness = thickness_[k]};
     }
     mean_free_path_[l] = s.mean_free_path;
@@ -235,7 +235,7 @@ class AnyLaws {
   [[nodiscard]] const V& power() const { return power_; }
 
  private:
-  // Calls f.operator()<n>() with the number of modes, so that what belongs to them stays in registers.
+  // Calls f.operator()<n>() with the number of modes, so that their data stays in registers.
   template <int n = 1, class F>
   [[gnu::always_inline]] void with_modes(F&& f) const {
     if constexpr (n < capacity) {
@@ -281,7 +281,7 @@ class AnyLaws {
     }
   }
 
-  // Calls f(begin, end, k) for every stretch k that has points in [begin, end), with those.
+  // Calls f(begin, end, k) for every stretch k that has points in [begin, end), with those points.
   template <class F>
   [[gnu::always_inline]] void on_stretches(int begin, int end, F&& f) const {
     for (int k = 0; k < layout_.stretches; ++k) {
@@ -291,7 +291,7 @@ class AnyLaws {
     }
   }
 
-  // A film on the far side takes the same of the velocity, which it sees from there, and pulls the other way.
+  // Adds a film; one on the far side takes the same from the velocity, which it sees from there, and pulls the other way.
   void add_film(const V* gap) {
     on_stretches(0, layout_.points, [&](int begin, int end, int k) { add_film(gap, begin, end, k); });
   }
@@ -381,7 +381,7 @@ class AnyLaws {
     for (int i = 0; i < n; ++i) sum[i] += part[i];
   }
 
-  // As model/stretching.h has it.
+  // Computes stretching as model/stretching.h does.
   void stretch(const V* q, V* sum) const {
     V pull[capacity], strain = 0;
     for (int i = 0; i < modes_; ++i) {

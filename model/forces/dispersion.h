@@ -1,17 +1,17 @@
-// Dispersion force between beam and electrode plane, per length, over the whole length; and the rule that picks between its two
-// limits.
+// Dispersion force between beam and electrode plane, per length, over the whole length; and the rule that chooses between its
+// two limits.
 //
 //   f(h) = F a p(h)     [N/m], positive towards the electrode      stored energy F a u(h) [J/m], p = u'(h)
 //
-// h local gap [m], a width [m], F force factor (1 = nominal; a drive can change it, e.g. a phase change of the plate), p one of
-// the laws per area: van_der_waals.h, casimir.h, gold_casimir.h, or the smaller of both limits:
+// h is the local gap [m], a the width [m], F the force factor (1 = nominal; a drive can change it, e.g. a phase change of the
+// plate), p one of the laws per area: van_der_waals.h, casimir.h, gold_casimir.h, or the smaller of both limits:
 //
 //   p(h) = min(A / (6 pi h^3), p_Casimir(h)) - repulsion of van_der_waals.h
 //
-// Van der Waals and Casimir force are limits of one force, so they are never added: below the crossover the van der Waals law is
-// the smaller one, above it the Casimir law. There is one crossover (pi^3 hbar c / (40 A) for ideal conductors, 61 nm at A =
+// Van der Waals and Casimir force are limits of one force, so they are never added: below the crossover the van der Waals law
+// is the smaller one, above it the Casimir law. There is one crossover (pi^3 hbar c / (40 A) for ideal conductors, 61 nm at A =
 // 4e-19 J) or, where the Casimir law of a real metal is smaller everywhere, none. The force is continuous there and its slope
-// jumps by a quarter; a run needs no restart for it: every quadrature point passes at its own time and carries a small part of
+// jumps by a quarter. A run needs no restart for it: every quadrature point crosses at its own time and carries a small part of
 // the load, and step size control absorbs the kink (the energy tests close the balance across it).
 #pragma once
 
@@ -27,7 +27,7 @@ template <class Casimir, class P = double>
 struct SmallerOfBoth {
   Casimir casimir;
   VanDerWaalsOf<P> van_der_waals;
-  P crossover = find_crossover();  ///< [m]; 0: none
+  P crossover = find_crossover();  ///< crossover gap [m]; 0 without a crossover
   double energy_step = find_energy_step();
 
   template <class S>
@@ -48,7 +48,7 @@ struct SmallerOfBoth {
     }
     return 0;
   }
-  // No force depends on how the crossover moves: it is continuous there.
+  // No force depends on how the crossover moves: the force is continuous there.
   [[nodiscard]] P find_crossover() const {
     if constexpr (requires { van_der_waals.hamaker_constant.value; }) {
       return P(crossover_of(van_der_waals.hamaker_constant.value));
@@ -56,7 +56,7 @@ struct SmallerOfBoth {
       return one_by_one(van_der_waals.hamaker_constant, [this](double hamaker) { return crossover_of(hamaker); });
     }
   }
-  // The ratio of Casimir to van der Waals law only falls with the gap: bisection of its logarithm.
+  // The ratio of Casimir to van der Waals law falls monotonically with the gap: bisect its logarithm.
   [[nodiscard]] double crossover_of(double hamaker) const {
     const VanDerWaals unretarded{.hamaker_constant = hamaker};
     const auto retarded = [&](double h) { return casimir.pressure(h) < unretarded.attraction(h); };
@@ -77,12 +77,12 @@ struct DispersionForce {
   P width = 0;  ///< a [m]
   static constexpr bool driven = true;
 
-  /// [N/m] at factor 1
+  /// Returns the load [N/m] at factor 1.
   template <class S>
   S load(S gap, S /*velocity*/) const {
     return S(width) * law.pressure(gap);
   }
-  /// [J/m] at factor 1
+  /// Returns the potential [J/m] at factor 1.
   [[nodiscard]] double potential(double gap) const { return width * law.energy(gap); }
 };
 

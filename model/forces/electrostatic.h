@@ -3,7 +3,7 @@
 //   f(h) = eps0 a phi(h) / (2 h^2)         [N / (m V^2)], positive towards the electrode
 //   c(h) with f = -c'(h) / 2               [F/m], the capacitance per length that belongs to this force
 //
-// h local gap [m], a width [m]; phi and c by the law of fringing (model/forces/fringing.h).
+// h is the local gap [m], a the width [m]; phi and c follow the law of fringing (model/forces/fringing.h).
 #pragma once
 
 #include "model/constants.h"
@@ -17,7 +17,7 @@ struct ElectrostaticForce {
   Law fringing;
   static constexpr bool driven = true;
 
-  /// [N / (m V^2)]
+  /// Returns the load [N / (m V^2)].
   template <class S>
   [[gnu::always_inline]] S load(S gap, S /*velocity*/) const {
     const S plane = S(0.5 * vacuum_permittivity * fringing.width);
@@ -27,16 +27,16 @@ struct ElectrostaticForce {
       return plane / (gap * gap) * fringing.factor(gap);
     }
   }
-  /// [F/m]
+  /// Returns the capacitance [F/m].
   template <class S>
   [[nodiscard]] S capacitance(S gap) const {
     return S(vacuum_permittivity) * fringing.capacitance_over_eps0(gap);
   }
-  /// [J / (m V^2)] at constant voltage
+  /// Returns the potential [J / (m V^2)] at constant voltage.
   [[nodiscard]] double potential(double gap) const { return -capacitance(gap) / 2; }
 };
 
-/// The same through a dielectric on the electrode: the field crosses h + depth, the local gap being that to its face.
+/// The same force through a dielectric on the electrode: the field crosses h + depth, the local gap being that to its face.
 template <class Law>
 struct ThroughDielectric {
   Law law;

@@ -1,4 +1,4 @@
-// Laws of the electric field that fringes at the sides of a beam: by which factor phi it raises the force per length of an
+// Laws of the electric field that fringes at the sides of a beam: the factor phi by which it raises the force per length of an
 // electrode (model/forces/electrostatic.h), and the capacitance per length c that belongs to that force.
 //
 // h local gap [m], a width [m], b thickness [m]. Fringing factors phi and c / eps0:
@@ -70,7 +70,7 @@ struct MeijsFokkemaFringingOf {
   S factor(S h) const {
     return h * h * factor_over_square(h);
   }
-  /// phi / h^2, in powers of w = h^(-1/4)
+  /// Returns phi / h^2, in powers of w = h^(-1/4).
   template <class S>
   [[nodiscard, gnu::always_inline]] S factor_over_square(S h) const {
     const S w = inverse_fourth_root(h), w2 = w * w, w4 = w2 * w2;
@@ -103,11 +103,11 @@ struct Bao2001FringingOf {
     return S(1) + h / S(pi * width) * (log(S(pi * width) / h) + log(S(1) + S(2) * b + S(2) * sqrt(b + b * b)));
   }
   [[nodiscard]] double capacitance_over_eps0(double h) const {
-    // Integral of (1 + B(s)) / s^2 times the width, from h to the gap where the logarithms vanish. With 1 + 2 x + 2 sqrt(x + x^2)
+    // Integrate (1 + B(s)) / s^2 times the width, from h to the gap where the logarithms vanish. With 1 + 2 x + 2 sqrt(x + x^2)
     // = exp(2 asinh sqrt x) the second logarithm leaves the integral of u coth u.
     const double u = std::asinh(std::sqrt(thickness / h)), l = std::log(pi * width / h);
     static const GaussRule rule = gauss_rule(30);
-    double integral = 0;  // of u coth u, from 0
+    double integral = 0;  // integral of u coth u, from 0
     for (std::size_t k = 0; k < rule.points.size(); ++k) {
       const double s = u / 2 * (1 + rule.points[k]);
       integral += u / 2 * rule.weights[k] * (s > 1e-8 ? s / std::tanh(s) : 1);
@@ -121,13 +121,13 @@ using FringingLaw = std::variant<NoFringing, Bao2001Fringing, MeijsFokkemaFringi
 
 enum class Fringing { none, bao_2001, meijs_fokkema, linear };
 
-/// A law of the fringing field: its name in a scene, what it needs to know of a plate, and its maker.
+/// A law of the fringing field: its name in a scene, the sizes that it needs from a plate, and its maker.
 struct FringingRow {
   Fringing value;
   std::string_view name;
   bool needs_width = true;
   bool needs_thickness = false;
-  FringingLaw (*make)(double width, double thickness);  ///< of the moving part [m]
+  FringingLaw (*make)(double width, double thickness);  ///< takes the size of the moving part [m]
 };
 
 inline constexpr auto fringing_laws = std::to_array<FringingRow>({

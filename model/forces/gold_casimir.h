@@ -4,15 +4,16 @@
 //   r_TE = (K - k) / (K + k),  r_TM = (eps K - k) / (eps K + k),  k^2 = K^2 + (eps - 1) u^2,  xi = u c / (2 h)
 //   eps(i xi) = 1 + w_p^2 / (xi (xi + gamma)),  hbar w_p = 9 eV,  hbar gamma = 35 meV
 //
-// at zero temperature, without interband terms (they raise the force by some ten per cent below 50 nm). Kept as a table from 1 nm
-// to 10 um, between its knots a cubic spline in h clamped to the integral's own slopes at the ends, so that force and stiffness
-// are smooth; within 2e-5 of the integral. Outside it goes on with the same value and slope (1 - eta within 1 % at 20 um):
+// at zero temperature, without interband terms (they raise the force by some ten per cent below 50 nm). It is stored as a table
+// from 1 nm to 10 um. A cubic spline in h between its knots, clamped to the integral's own slopes at the ends, makes force and
+// stiffness smooth; it is within 2e-5 of the integral. Outside it continues with the same value and slope (1 - eta within 1 %
+// at 20 um):
 //
 //   h < h_1: eta = n_0 x + n_1 x^2, x = h / h_1      p ~ h^-3, the van der Waals limit
 //   h > h_n: eta = 1 - f_0 x^(-1/2) - f_1 / x, x = h / h_n      the skin depth of a metal with losses grows like h^(1/2)
 //
-// Gold touches itself long before 1 nm matters. Sources: E. M. Lifshitz 1956, Sov. Phys. JETP 2, 73, eq. 2.9; Drude parameters of
-// gold: A. Lambrecht & S. Reynaud 2000, Eur. Phys. J. D 8, 309.
+// Gold touches itself long before 1 nm matters. Sources: E. M. Lifshitz 1956, Sov. Phys. JETP 2, 73, eq. 2.9; Drude parameters
+// of gold: A. Lambrecht & S. Reynaud 2000, Eur. Phys. J. D 8, 309.
 #pragma once
 
 #include <array>
@@ -31,13 +32,13 @@ class GoldFactor {
   struct Piece {
     double begin = 0;                   ///< lower knot [m]
     std::array<double, 4> powers = {};  ///< eta = sum of powers[n] (h / begin)^n
-    double energy = 0;                  ///< at begin [J/m^2]
+    double energy = 0;                  ///< energy at begin [J/m^2]
   };
 
-  /// Computed at first use.
+  /// Returns the table, computed at first use.
   [[nodiscard]] static const GoldFactor& table();
 
-  /// The piece of a gap: the last one that begins at or below it, the first one below the table.
+  /// Returns the piece of a gap: the last one that begins at or below it, the first one below the table.
   template <class S>
   [[nodiscard]] const Piece& piece(const S& h) const {
     std::size_t low = 0, high = pieces_.size();

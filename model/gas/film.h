@@ -1,4 +1,4 @@
-// What laws of a gas film share: the state of the gas, what a law is made of, its limits, and their fields in a scene.
+// The common part of the laws of a gas film: state of the gas, input of a law, its limits, and their fields in a scene.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace softland {
 
-/// See model/gas/air.h for what stands in where a number is not given.
+/// The state of the gas; see model/gas/air.h for the defaults of numbers that are not given.
 struct FilmState {
   double viscosity = not_given;       ///< mu [Pa s]
   double pressure = 101325;           ///< p, ambient [Pa]
@@ -17,26 +17,27 @@ struct FilmState {
   double mean_free_path = not_given;  ///< lambda [m]
 };
 
-/// What a law is made of.
+/// The input of a law.
 struct Film {
-  double width, thickness;  ///< of the moving part [m]
-  double viscosity;         ///< that of the gas, less what the open ends of a film let out [Pa s]
+  double width, thickness;  ///< size of the moving part [m]
+  double viscosity;         ///< viscosity of the gas, reduced by the flow through the open ends of a film [Pa s]
   double mean_free_path;    ///< [m]
   double unit_quality;      ///< damping per length that gives the first mode a quality factor of one [N s/m^2]
 };
 
-inline constexpr double incompressible = 10;  ///< squeeze number up to which a strip film is; the strip's cut-off is pi^2
+inline constexpr double incompressible =
+    10;  ///< largest squeeze number of an incompressible strip film; the strip's cut-off is pi^2
 
-/// Where a law holds.
+/// Range in which a law holds.
 struct FilmLimits {
   double least_knudsen = 0;
   double most_knudsen = std::numeric_limits<double>::infinity();
   double most_squeeze = std::numeric_limits<double>::infinity();  ///< 12 mu a^2 omega / (p h^2)
-  bool needs_thickness = false;                                   ///< of the moving part
+  bool needs_thickness = false;                                   ///< true when the law needs the thickness of the moving part
 };
 
 // clang-format off
-/// The member `film` of a law.
+/// Returns the fields of a law's member `film`.
 template <class Law>
 [[nodiscard]] consteval auto film_fields() {
   return std::to_array<Field<Law>>({
@@ -46,12 +47,12 @@ template <class Law>
       {.key = "mean_free_path", .unit = "m", .about = "absent: from viscosity, pressure and temperature", .in = reach<Law, &Law::film, &FilmState::mean_free_path>, .range = {.least = 0, .most = 1e9, .least_open = true}, .such_as = "65 nm"},
   });
 }
-/// Of one film whose ends let gas out.
+/// Returns the field of one film whose ends let gas out.
 template <class Law>
 [[nodiscard]] consteval auto end_fields() {
   return std::to_array<Field<Law>>({{.key = "film_length", .unit = "m", .about = "of one film whose ends are open; absent: much longer than wide", .in = reach<Law, &Law::film_length>, .such_as = "100 um"}});
 }
-/// Of a second film.
+/// Returns the field of a second film.
 template <class Law>
 [[nodiscard]] consteval auto far_fields() {
   return std::to_array<Field<Law>>({{.key = "far_gap", .unit = "m", .about = "rest thickness of a second film on the far side; absent: none", .in = reach<Law, &Law::far_gap>}});

@@ -3,17 +3,18 @@
 //   f = -mu (a / h)^3 [1 + 6 Z (h/a) + 12 E (h/a)^2] / (1 + 6 X Kn) v,   Kn = lambda / h    [N/m], positive towards the electrode
 //   X = (1 + 8.834 Kn) / (1 + 5.118 Kn),  Z = (0.634 + 1.572 Kn) / (1 + 0.537 Kn),  E = (0.445 + 11.20 Kn) / (1 + 5.510 Kn)
 //
-// mu viscosity [Pa s], a width [m], h local gap [m], lambda mean free path [m], v velocity towards the electrode [m/s]. X: slip
-// at the walls; Z and E: pressure and flow at the edges, fitted to direct simulation Monte Carlo with full accommodation.
-// Incompressible: squeeze numbers 12 mu a^2 omega / (p h^2) below about 10. Kn -> 0 and h/a -> 0: the strip film. Singular at
-// h = 0. Source: Gallis & Torczynski, J. Microelectromech. Syst. 13 (2004) 653, eqs. 16-18.
+// mu is the viscosity [Pa s], a the width [m], h the local gap [m], lambda the mean free path [m], v the velocity towards the
+// electrode [m/s]. X describes slip at the walls, Z and E pressure and flow at the edges, fitted to direct simulation Monte
+// Carlo with full accommodation. Incompressible: valid for squeeze numbers 12 mu a^2 omega / (p h^2) below about 10. The limit
+// Kn -> 0 and h/a -> 0 is the strip film. Singular at h = 0. Source: Gallis & Torczynski, J. Microelectromech. Syst. 13 (2004)
+// 653, eqs. 16-18.
 #pragma once
 
 #include "model/gas/film.h"
 
 namespace softland {
 
-/// Over the scalar of its parameters; that of the state is one they convert to.
+/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
 template <class P>
 struct GallisTorczynskiFilmOf {
   P viscosity = 0;       ///< [Pa s]
@@ -21,7 +22,7 @@ struct GallisTorczynskiFilmOf {
   P width = 0;           ///< [m]
   static constexpr bool driven = false;
 
-  /// [N/m]
+  /// Returns the load [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     const S kn = S(mean_free_path) / gap, x = gap / S(width);
@@ -33,7 +34,7 @@ struct GallisTorczynskiFilmOf {
 };
 using GallisTorczynskiFilm = GallisTorczynskiFilmOf<double>;
 
-/// In a scene.
+/// The law in a scene.
 struct GallisTorczynskiGas {
   static constexpr std::string_view name = "gallis-torczynski";
   static constexpr FilmLimits limits{.most_squeeze = incompressible};

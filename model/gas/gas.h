@@ -17,7 +17,7 @@ namespace softland {
 using Gas = std::variant<StripGas, StripSlitGas, VeijolaGas, GallisTorczynskiGas, NearContactGas, GuoAlexeenkoGas, ReynoldsGas,
                          LinearGas>;
 
-/// The state of the gas; null for a law that does not ask for it.
+/// Returns the state of the gas; null for a law that does not need it.
 [[nodiscard]] inline const FilmState* film_of(const Gas& gas) {
   return std::visit(
       [](const auto& law) -> const FilmState* {
@@ -26,7 +26,7 @@ using Gas = std::variant<StripGas, StripSlitGas, VeijolaGas, GallisTorczynskiGas
       },
       gas);
 }
-/// Rest thickness of a second film, on the far side [m]; not a number where there is none.
+/// Returns the rest thickness of a second film, on the far side [m]; NaN without one.
 [[nodiscard]] inline double far_gap(const Gas& gas) {
   return std::visit(
       [](const auto& law) {
@@ -35,7 +35,7 @@ using Gas = std::variant<StripGas, StripSlitGas, VeijolaGas, GallisTorczynskiGas
       },
       gas);
 }
-/// Of one film whose ends are open [m]; not a number where it is much longer than wide.
+/// Returns the length of one film whose ends are open [m]; NaN where it is much longer than wide.
 [[nodiscard]] inline double film_length(const Gas& gas) {
   return std::visit(
       [](const auto& law) {
@@ -44,7 +44,7 @@ using Gas = std::variant<StripGas, StripSlitGas, VeijolaGas, GallisTorczynskiGas
       },
       gas);
 }
-/// A film that can be compressed, with pressures as states of their own: see model/gas/reynolds_film.h.
+/// Returns true for a film that can be compressed, with pressures as states of their own: see model/gas/reynolds_film.h.
 [[nodiscard]] inline bool is_compressible(const Gas& gas) {
   return std::visit(
       [](const auto& law) {

@@ -36,7 +36,7 @@ double squeeze_number(const FilmState& gas, double width, double gap, double rat
 
 namespace {
 
-// The gap at which a film's law is taken: on the face of a dielectric it is continued from the least one on.
+// Returns the gap at which a film's law is taken: below the least gap on the face of a dielectric it is continued.
 double gap_of_film(const Device& device, double gap) {
   return device.lands_on_dielectric() ? std::max(gap, device.gap.electrode / 100) : gap;
 }

@@ -21,36 +21,36 @@ struct LawsOf<std::variant<Laws...>> {
   using Type = std::variant<decltype(std::declval<const Laws&>().law(std::declval<const Film&>()))...>;
 };
 }  // namespace internal
-/// The load of every law of Gas: what its parameters' law(film) gives.
+/// The load of every law of Gas: the result of its parameters' law(film).
 struct GasLaw : internal::LawsOf<Gas>::Type {
   using variant::variant;
 };
 
-/// Damping of a rectangular film over that of a strip of the same length, whose ends would be closed; `ratio` is width over
+/// Returns the damping of a rectangular film over that of a strip of the same length with closed ends; `ratio` is width over
 /// length.
 ///   1 - (192 / pi^5) ratio sum over odd n of tanh(n pi / (2 ratio)) / n^5
-/// 1 - 0.63 ratio for long films, 0.4217 for a square one. Poisson's equation of the incompressible film on a rectangle (Griffin,
-/// Richardson & Yamanami, J. Basic Eng. 88 (1966) 451; the series is that of torsion of a rectangular bar).
+/// It is 1 - 0.63 ratio for long films, 0.4217 for a square one. It solves Poisson's equation of the incompressible film on a
+/// rectangle (Griffin, Richardson & Yamanami, J. Basic Eng. 88 (1966) 451; the series is that of torsion of a rectangular bar).
 [[nodiscard]] double end_flow(double ratio);
 
-/// Of the compressible film its incompressible limit. Of a structure that is the same all along, or of one with this width and
-/// thickness [m].
+/// Returns the law for a structure of constant width and thickness, or for this width and thickness [m]. A compressible film
+/// gives its incompressible limit.
 [[nodiscard]] GasLaw gas_law(const Gas& gas, const Structure& structure, double unit_quality);
 [[nodiscard]] GasLaw gas_law(const Gas& gas, double width, double thickness, double unit_quality);
 
-/// c in f = -c v [N s/m^2] at this gap [m].
+/// Returns c in f = -c v [N s/m^2] at this gap [m].
 [[nodiscard]] inline double damping_per_length(const GasLaw& law, double gap) {
   return std::visit([&](const auto& l) { return -l.load(gap, 1.0); }, law);
 }
 
-/// 12 mu a^2 rate / (p h^2), with the rate [1/s] at which the gap h [m] changes.
+/// Returns 12 mu a^2 rate / (p h^2), with the rate [1/s] at which the gap h [m] changes.
 [[nodiscard]] double squeeze_number(const FilmState& gas, double width, double gap, double rate);
 
-/// At the contact point, with the rate |v| / h; 0 where the device's law has no limit for it.
+/// Returns the squeeze number at the contact point, with the rate |v| / h; 0 where the device's law has no limit for it.
 [[nodiscard]] double squeeze_number(const Device& device, double rest_gap, const TrajectoryPoint& point);
 
-/// One line per limit of the gas law that a closing left, with law, limit and value. Knudsen numbers are taken between the rest
-/// gap and the smallest gap anywhere [m].
+/// Returns one line per limit of the gas law that a closing exceeded, with law, limit and value. Knudsen numbers are taken
+/// between the rest gap and the smallest gap anywhere [m].
 [[nodiscard]] std::vector<std::string> gas_warnings(const Device& device, double smallest_gap, double largest_squeeze);
 
 }  // namespace softland

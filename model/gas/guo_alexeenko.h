@@ -3,10 +3,11 @@
 //   f = -A b (a/h)^c / (1 + B (a/h)^d (lambda/a)^e) v                                     [N/m], positive towards the electrode
 //   A = 10.39 kg/(m^2 s),  B = 1.374,  c = 3.100,  d = 1.825,  e = 0.966
 //
-// a width [m], b beam thickness [m], h local gap [m], lambda mean free path [m], v velocity towards the electrode [m/s]. A fit to
-// one family of devices (nickel beams about 4 um thick and 120 um wide, gaps of micrometres, air): the viscosity does not
-// enter and the thickness does. Against Gallis & Torczynski it is about twice as strong at 3.5 um and a tenth as strong at 0.1
-// um. Singular at h = 0. Source: Guo & Alexeenko, J. Micromech. Microeng. 19 (2009) 045026, as coded in Purdue PUQ 2.2.
+// a is the width [m], b the beam thickness [m], h the local gap [m], lambda the mean free path [m], v the velocity towards the
+// electrode [m/s]. It is a fit to one family of devices (nickel beams about 4 um thick and 120 um wide, gaps of micrometres,
+// air): the viscosity does not enter and the thickness does. Compared with Gallis & Torczynski it is about twice as strong at
+// 3.5 um and a tenth as strong at 0.1 um. Singular at h = 0. Source: Guo & Alexeenko, J. Micromech. Microeng. 19 (2009) 045026,
+// as coded in Purdue PUQ 2.2.
 #pragma once
 
 #include <cmath>
@@ -17,7 +18,7 @@
 
 namespace softland {
 
-/// Over the scalar of its parameters; that of the state is one they convert to.
+/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
 template <class P>
 struct GuoAlexeenkoFilmOf {
   P mean_free_path = 0;                                              ///< [m]
@@ -27,7 +28,7 @@ struct GuoAlexeenkoFilmOf {
   P rarefaction = P(1.374) * raised(mean_free_path / width, 0.966);  // B (lambda/a)^e
   static constexpr bool driven = false;
 
-  /// [N/m]
+  /// Returns the load [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     const S ratio = S(width) / gap;
@@ -35,7 +36,7 @@ struct GuoAlexeenkoFilmOf {
   }
 
  private:
-  /// By the library, to the last bit.
+  /// Calls the library for double, so that results agree to the last bit.
   static P raised(const P& x, double exponent) {
     if constexpr (std::same_as<P, double>) {
       return std::pow(x, exponent);
@@ -46,7 +47,7 @@ struct GuoAlexeenkoFilmOf {
 };
 using GuoAlexeenkoFilm = GuoAlexeenkoFilmOf<double>;
 
-/// In a scene.
+/// The law in a scene.
 struct GuoAlexeenkoGas {
   static constexpr std::string_view name = "guo-alexeenko";
   static constexpr FilmLimits limits{.needs_thickness = true};

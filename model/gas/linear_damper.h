@@ -1,11 +1,11 @@
-// Damping that does not depend on the gap: what a lumped model or a measured quality factor gives.
+// Damping that does not depend on the gap: that of a lumped model or of a measured quality factor.
 //
 //   f = -c v                                                                              [N/m], positive towards the electrode
 //   c = omega_1 / (Q integral of phi_1^2 dx)                                              where a quality factor is given
 //
-// c damping per length [N s/m^2], v velocity towards the electrode [m/s], omega_1, phi_1 first mode, Q its quality factor in
-// small free vibration; on a uniform beam c acts on every mode with the same rate c/m. Says nothing of the gap: far too weak near
-// contact where a film would act. Regular everywhere.
+// c is the damping per length [N s/m^2], v the velocity towards the electrode [m/s], omega_1, phi_1 the first mode, Q its
+// quality factor in small free vibration; on a uniform beam c acts on every mode with the same rate c/m. The law ignores the
+// gap: it is far too weak near contact, where a film would act. Regular everywhere.
 #pragma once
 
 #include <cmath>
@@ -14,13 +14,13 @@
 
 namespace softland {
 
-/// Over the scalar of its parameters; that of the state is one they convert to.
+/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
 template <class P>
 struct LinearDamperOf {
   P damping = 0;  ///< c [N s/m^2]
   static constexpr bool driven = false;
 
-  /// [N/m]
+  /// Returns the load [N/m].
   template <class S>
   S load(S /*gap*/, S velocity) const {
     return S(-damping) * velocity;
@@ -28,7 +28,7 @@ struct LinearDamperOf {
 };
 using LinearDamper = LinearDamperOf<double>;
 
-/// In a scene: either of the two is given.
+/// The law in a scene: either of the two is given.
 struct LinearGas {
   static constexpr std::string_view name = "linear";
   double damping = not_given, quality_factor = not_given;

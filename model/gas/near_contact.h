@@ -5,11 +5,12 @@
 //   g(x) = x^-3 (1 + 6 Z x + 12 E x^2) for x >= 0.015, below that its tangent at 0.015 (Z and E stay those of the local Kn)
 //   X = 5.5964,  Z = 48.62 Kn / (1 + 0.3405 Kn),  E = (1 + 210.79 Kn) / (67.59 Kn)
 //
-// mu viscosity [Pa s] (1.98e-5 in the source), a width [m], h local gap [m], lambda mean free path [m], v velocity towards the
-// electrode [m/s]. f has a continuous derivative at x = 0.015. Not for continuum flow: E diverges as Kn -> 0; 210.79 Kn below 1
-// is a warning. In contrast to the other films c FALLS towards contact where the tangent acts. Finite at h -> 0. Source:
-// coefficients as coded in the public force code of the Purdue PRISM centre (ComputeForce.py); the paper behind them is
-// presumably Parkos et al., J. Microelectromech. Syst. 22 (2013), which was not read.
+// mu is the viscosity [Pa s] (1.98e-5 in the source), a the width [m], h the local gap [m], lambda the mean free path [m], v
+// the velocity towards the electrode [m/s]. f has a continuous derivative at x = 0.015. The law does not hold for continuum
+// flow: E diverges as Kn -> 0; 210.79 Kn below 1 is a warning. In contrast to the other films c FALLS towards contact where the
+// tangent acts. Finite at h -> 0. Source: coefficients as coded in the public force code of the Purdue PRISM centre
+// (ComputeForce.py); the paper behind them is presumably Parkos et al., J. Microelectromech. Syst. 22 (2013), which was not
+// read.
 #pragma once
 
 #include "base/select.h"
@@ -17,7 +18,7 @@
 
 namespace softland {
 
-/// Over the scalar of its parameters; that of the state is one they convert to.
+/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
 template <class P>
 struct NearContactFilmOf {
   P viscosity = 0;       ///< [Pa s]
@@ -25,9 +26,9 @@ struct NearContactFilmOf {
   P width = 0;           ///< [m]
   static constexpr bool driven = false;
   static constexpr double near = 0.015;       ///< h/a below which g is continued by its tangent
-  static constexpr double rarefied = 210.79;  ///< E is that of rarefied gas for Kn well above one over this
+  static constexpr double rarefied = 210.79;  ///< E is that of rarefied gas for Kn well above 1 / rarefied
 
-  /// [N/m]
+  /// Returns the load [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     const S kn = S(mean_free_path) / gap;
@@ -37,7 +38,7 @@ struct NearContactFilmOf {
   }
 
  private:
-  /// g(x) with z = 6 Z and e = 12 E.
+  /// Returns g(x) with z = 6 Z and e = 12 E.
   template <class S>
   static S shape(S x, S z, S e) {
     constexpr double r = 1 / near;
@@ -53,7 +54,7 @@ struct NearContactFilmOf {
 };
 using NearContactFilm = NearContactFilmOf<double>;
 
-/// In a scene.
+/// The law in a scene.
 struct NearContactGas {
   static constexpr std::string_view name = "near-contact";
   static constexpr FilmLimits limits{.least_knudsen = 1 / NearContactFilm::rarefied, .most_squeeze = incompressible};

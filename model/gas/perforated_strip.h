@@ -3,15 +3,16 @@
 //   f = -R a [1 - tanh(x) / x] v,   x = a / (2 l),   l^2 = h^3 R / (12 mu)      [N/m], positive towards the electrode
 //   R = 8 mu (H + 3 pi r0 / 8) / (b^2 r0^2) + 12 mu rc^2 I / h^3,   b = r0 / rc,   I = -ln(b) / 2 - 3/8 + b^2 / 2 - b^4 / 8
 //
-// mu viscosity [Pa s], a width [m], h local gap [m], v velocity towards the electrode [m/s], H thickness of the strip [m], rc and
-// r0 radii of circles of the area of a cell and of a hole, pi rc^2 = pitch^2, pi r0^2 = size^2 [m]. R is the mean pressure over
-// v where gas leaves through the holes alone [Pa s/m]: first Poiseuille's flow in the hole, lengthened by Sampson's resistance 3
-// mu / r0^3 of its two ends together, then the film from the rim of a cell to its hole, whose mean is Reynolds' equation solved
-// on the ring. Along the width p'' - p / l^2 + 12 mu v / h^3 = 0, with p = 0 at both edges.
+// mu is the viscosity [Pa s], a the width [m], h the local gap [m], v the velocity towards the electrode [m/s], H the thickness
+// of the strip [m], rc and r0 radii of circles of the area of a cell and of a hole, pi rc^2 = pitch^2, pi r0^2 = size^2 [m]. R
+// is the mean pressure over v where gas leaves through the holes alone [Pa s/m]. Its first term is Poiseuille's flow in the
+// hole, lengthened by Sampson's resistance 3 mu / r0^3 of its two ends together. Its second term is the film from the rim of a
+// cell to its hole, whose mean is Reynolds' equation solved on the ring. Along the width p'' - p / l^2 + 12 mu v / h^3 = 0,
+// with p = 0 at both edges.
 //
-// Without holes, l -> infinity, it is the strip film mu (a / h)^3 v; under a strip much wider than l it is R a v. Derived, from
-// these textbook flows. Valid for pitches well below the width, gaps well below the pitch and above the mean free path, and
-// squeeze numbers below about 10. Singular at h = 0.
+// Without holes, l -> infinity, it is the strip film mu (a / h)^3 v; under a strip much wider than l it is R a v. Derived here
+// from these textbook flows. Valid for pitches well below the width, gaps well below the pitch and above the mean free path,
+// and squeeze numbers below about 10. Singular at h = 0.
 #pragma once
 
 #include <cmath>
@@ -24,7 +25,7 @@ namespace softland {
 
 struct PerforatedStripFilm {
   double viscosity = 0;  ///< [Pa s]
-  double width = 0;      ///< with the holes [m]
+  double width = 0;      ///< width with the holes [m]
   double through = 0;    ///< R of the holes [Pa s/m]
   double around = 0;     ///< h^3 times R of the film around a hole [Pa s m^2]
   static constexpr bool driven = false;
@@ -35,14 +36,14 @@ struct PerforatedStripFilm {
     around = 12 * mu * cell * cell * (-std::log(b) / 2 - 3.0 / 8 + b * b / 2 - std::pow(b, 4) / 8);
   }
 
-  /// [N/m]
+  /// Returns the load [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     using std::exp;
     using std::sqrt;
     const S cube = gap * gap * gap, resistance = S(through) + S(around) / cube;
     const S x = S(width / 2) / sqrt(cube * resistance / S(12 * viscosity));
-    constexpr double wide = 25;  // beyond it exp(-2 x) is below the rounding of load and slopes
+    constexpr double wide = 25;  // exp(-2 x) is below the rounding of load and slopes for larger x
     const S decayed = select(
         x < wide, [&] { return S(exp(S(-2) * x)); }, [] { return S(0); });
     return -resistance * S(width) * (S(1) - (S(1) - decayed) / ((S(1) + decayed) * x)) * velocity;

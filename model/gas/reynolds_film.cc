@@ -8,7 +8,7 @@
 namespace softland {
 namespace {
 
-constexpr int degree = 2 * internal::StripNodes::count;  // of the polynomials across the whole width
+constexpr int degree = 2 * internal::StripNodes::count;  // degree of the polynomials across the whole width
 
 double legendre(double x) {
   double before = 1, last = x;
@@ -20,7 +20,8 @@ double legendre(double x) {
   return last;
 }
 
-// Gauss-Lobatto points on [-1, 1] in rising order: the ends and the zeros of P'_degree, eigenvalues of a Jacobi matrix.
+// Returns the Gauss-Lobatto points on [-1, 1] in rising order: the ends and the zeros of P'_degree, eigenvalues of a Jacobi
+// matrix.
 Eigen::VectorXd lobatto_points() {
   constexpr int inner = degree - 1;
   Eigen::VectorXd off(inner - 1);
@@ -30,7 +31,7 @@ Eigen::VectorXd lobatto_points() {
   return points;
 }
 
-// Of an isothermal gas at p = pa (1 + P), over pa.
+// Returns the free energy of an isothermal gas at p = pa (1 + P), over pa.
 double free_energy(double p) { return (1 + p) * std::log1p(p) - p; }
 
 }  // namespace

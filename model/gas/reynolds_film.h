@@ -5,17 +5,17 @@
 //   U = h integral of [p ln(p/pa) - p + pa] dz                            [J/m], free energy of the gas above that at rest
 //   D = (h^3 + 6 lambda h^2)/(12 mu) integral of (dp/dz)^2 dz             [W/m]
 //
-// p pressure [Pa], pa ambient pressure [Pa], h local gap [m], z across the width a [m], mu viscosity [Pa s], lambda mean free
-// path at pa [m]. The pressure is a state of its own: every station along the beam keeps it at a few points over half the width,
-// where it is symmetric, as P = p/pa - 1. Slow motion (squeeze number 12 mu a^2 omega/(pa h^2) well below pi^2) gives the
-// incompressible film mu (a/h)^3/(1 + 6 lambda/h) (slip.h), fast motion the spring pa a/h.
+// p is the pressure [Pa], pa the ambient pressure [Pa], h the local gap [m], z across the width a [m], mu the viscosity [Pa s],
+// lambda the mean free path at pa [m]. The pressure is a state of its own: every station along the beam keeps it at a few
+// points over half the width, where it is symmetric, as P = p/pa - 1. Slow motion (squeeze number 12 mu a^2 omega/(pa h^2) well
+// below pi^2) gives the incompressible film mu (a/h)^3/(1 + 6 lambda/h) (slip.h), fast motion the spring pa a/h.
 //
-// Across the width: Gauss-Lobatto points of degree 8, weak form with the same points as quadrature, so that the gas is conserved,
-// the incompressible parabola is exact, and -sum of ln(p/pa) times the flow is the dissipation: U' + D = -f v with v the velocity
-// towards the electrode. Against the linear strip of Blech 1983 the force is within 1e-7 for squeeze numbers below 10, 1e-4 below
-// 100 and 2e-2 at 1000, where a boundary layer thinner than the points stand at the edge.
+// Across the width there are Gauss-Lobatto points of degree 8, in weak form with the same points as quadrature. So the gas is
+// conserved, the incompressible parabola is exact, and -sum of ln(p/pa) times the flow is the dissipation: U' + D = -f v with v
+// the velocity towards the electrode. Compared with the linear strip of Blech 1983 the force is within 1e-7 for squeeze numbers
+// below 10, 1e-4 below 100 and 2e-2 at 1000, where a boundary layer thinner than the point spacing forms at the edge.
 //
-// Valid for strips much longer than wide (flow along the beam, of order (a/L)^2, is left out), slip flow (lambda/h below about
+// Valid for strips much longer than wide (flow along the beam, of order (a/L)^2, is neglected), slip flow (lambda/h below about
 // 0.1), isothermal gas. Below the floor of the gap the coefficients keep their values there: the run has ended. Source: Hung &
 // Senturia 1999, J. MEMS 8(3), 280-289, eq. 2 (after Burgdorfer 1959 for the slip); Blech 1983, J. Lubr. Tech. 105, 615-620.
 #pragma once
@@ -32,10 +32,10 @@ namespace softland {
 
 namespace internal {
 
-/// Points across a strip, from the middle to the last one inside the edge, each standing for its mirror image as well.
+/// Points across a strip, from the middle to the last one inside the edge; each also represents its mirror image.
 struct StripNodes {
   static constexpr int count = 4;
-  Eigen::Matrix<double, count, 1> weights;       ///< over both halves, in units of a/2
+  Eigen::Matrix<double, count, 1> weights;       ///< weights over both halves, in units of a/2
   Eigen::Matrix<double, count, count> exchange;  ///< flow into every node by P + P^2/2 of each, for a unit diffusion
 };
 [[nodiscard]] StripNodes strip_nodes();
@@ -48,7 +48,7 @@ class ReynoldsStationOf {
  public:
   static constexpr int nodes = internal::StripNodes::count;
 
-  /// Ambient pressure [Pa], viscosity [Pa s], mean free path [m], width [m].
+  /// Takes ambient pressure [Pa], viscosity [Pa s], mean free path [m], width [m].
   ReynoldsStationOf(P pressure, P viscosity, P mean_free_path, P width)
       : nodes_(internal::strip_nodes()),
         ambient_(pressure),
@@ -58,19 +58,19 @@ class ReynoldsStationOf {
     for (int i = 0; i < nodes; ++i) load_by_film_[static_cast<std::size_t>(i)] = -ambient_ * half_width_ * P(nodes_.weights[i]);
   }
 
-  /// load += f [N/m]
+  /// Adds load += f [N/m].
   template <class S>
   void add_load(const S* film, S& load) const {
     for (std::size_t i = 0; i < nodes; ++i) load = load + S(load_by_film_[i]) * film[i];
   }
-  /// dP/dt [1/s]
+  /// Computes dP/dt [1/s].
   template <class S>
   void rates(const S& gap, const S& velocity, const S* film, S* result) const {
     const S squeezing = velocity / gap, mixing = diffusion(gap);
     flow(film, result);
     for (int i = 0; i < nodes; ++i) result[i] = (S(1) + film[i]) * squeezing + mixing * result[i];
   }
-  /// Flow into every node for a unit diffusion: the exchange times (P + P^2/2).
+  /// Computes the flow into every node for a unit diffusion: the exchange times (P + P^2/2).
   template <class S>
   void flow(const S* film, S* result) const {
     std::array<S, nodes> half_squares;
@@ -83,7 +83,7 @@ class ReynoldsStationOf {
       result[i] = sum;
     }
   }
-  /// pa (h^2 + 6 lambda h)/(12 mu (a/2)^2) [1/s]
+  /// Returns pa (h^2 + 6 lambda h)/(12 mu (a/2)^2) [1/s].
   template <class S>
   [[nodiscard]] S diffusion(const S& gap) const {
     return S(diffusion_) * gap * (gap + S(slip_));
@@ -91,9 +91,9 @@ class ReynoldsStationOf {
 
   [[nodiscard]] const P& ambient() const { return ambient_; }
   [[nodiscard]] const P& half_width() const { return half_width_; }
-  /// Of the nodes, over both halves, in units of a/2.
+  /// Returns the weights of the nodes, over both halves, in units of a/2.
   [[nodiscard]] const Eigen::Matrix<double, nodes, 1>& weights() const { return nodes_.weights; }
-  /// df/dP [N/m]
+  /// Returns df/dP [N/m].
   [[nodiscard]] const std::array<P, nodes>& load_by_film() const { return load_by_film_; }
 
  private:
@@ -105,32 +105,32 @@ class ReynoldsStationOf {
 class ReynoldsFilm {
  public:
   using Station = ReynoldsStationOf<double>;
-  static constexpr int nodes = Station::nodes;  ///< pressures per station
+  static constexpr int nodes = Station::nodes;  ///< number of pressures per station
 
   /// `stations` are the points of the beam, in order; gaps below `floor` [m] count as that.
   ReynoldsFilm(const FilmState& gas, double width, Eigen::Index stations, double floor);
 
-  /// Extra unknowns: P at the nodes of the first station, of the second, ...
+  /// Returns the number of extra unknowns: P at the nodes of the first station, of the second, ...
   [[nodiscard]] std::size_t states() const { return static_cast<std::size_t>(stations_) * nodes; }
-  /// load += f [N/m] at the stations
+  /// Adds load += f [N/m] at the stations.
   void add_load(const double* film, double* load) const;
-  /// dP/dt [1/s]
+  /// Computes dP/dt [1/s].
   void rates(const GapField& field, const double* film, double* result) const;
-  /// Of one station: the derivatives of its rates by gap [1/(m s)], by velocity [1/m] and by its P [1/s], row per rate.
+  /// The derivatives of the rates of one station by gap [1/(m s)], by velocity [1/m] and by its P [1/s], row per rate.
   struct Derivatives {
     Eigen::Matrix<double, nodes, 1> by_gap, by_velocity;
     Eigen::Matrix<double, nodes, nodes> by_film;
   };
   [[nodiscard]] Derivatives derivatives(double gap, double velocity, const double* film) const;
-  /// df/dP [N/m], the same at every station.
+  /// Returns df/dP [N/m], the same at every station.
   [[nodiscard]] Eigen::Matrix<double, nodes, 1> load_by_film() const {
     return Eigen::Map<const Eigen::Matrix<double, nodes, 1>>(station_.load_by_film().data());
   }
-  /// Integral of U over stations with these weights [J].
+  /// Returns the integral of U over stations with these weights [J].
   [[nodiscard]] double energy(const GapField& field, const Eigen::ArrayXd& weights, const double* film) const;
-  /// Integral of D [W].
+  /// Returns the integral of D [W].
   [[nodiscard]] double dissipated_power(const GapField& field, const Eigen::ArrayXd& weights, const double* film) const;
-  /// Ambient pressure [Pa]
+  /// Returns the ambient pressure [Pa].
   [[nodiscard]] double ambient() const { return station_.ambient(); }
 
  private:

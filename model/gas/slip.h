@@ -3,16 +3,16 @@
 //
 //   f = -mu (a / h)^3 v / (1 + 6 lambda / h)     [N/m], positive towards the electrode
 //
-// mu viscosity [Pa s], a width [m], h local gap [m], lambda mean free path [m], v velocity towards the electrode [m/s]. Valid for
-// lambda / h below about 0.1, squeeze numbers below about 10, strips much longer than wide. Singular at h = 0. Source: Burgdorfer
-// 1959, J. Basic Eng. 81, 94-99.
+// mu is the viscosity [Pa s], a the width [m], h the local gap [m], lambda the mean free path [m], v the velocity towards the
+// electrode [m/s]. Valid for lambda / h below about 0.1, squeeze numbers below about 10, strips much longer than wide. Singular
+// at h = 0. Source: Burgdorfer 1959, J. Basic Eng. 81, 94-99.
 #pragma once
 
 #include "model/gas/film.h"
 
 namespace softland {
 
-/// Over the scalar of its parameters; that of the state is one they convert to.
+/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
 template <class P>
 struct SlipFilmOf {
   P viscosity = 0;       ///< [Pa s]
@@ -20,7 +20,7 @@ struct SlipFilmOf {
   P width = 0;           ///< [m]
   static constexpr bool driven = false;
 
-  /// [N/m]
+  /// Returns the load [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     return S(-viscosity * width * width * width) * velocity / (gap * gap * (gap + S(6 * mean_free_path)));
@@ -28,7 +28,7 @@ struct SlipFilmOf {
 };
 using SlipFilm = SlipFilmOf<double>;
 
-/// The compressible film in a scene, of which this law is the limit: see reynolds_film.h.
+/// The compressible film in a scene; this law is its limit: see reynolds_film.h.
 struct ReynoldsGas {
   static constexpr std::string_view name = "reynolds";
   static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = 1000};
