@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -17,6 +18,7 @@
 #include "exchange/level_edges.h"
 #include "exchange/recording.h"
 #include "exchange/trace.h"
+#include "reports/recording_report.h"
 #include "tests/support/temporary_folder.h"
 
 namespace softland {
@@ -163,6 +165,16 @@ TEST(ContactStatesFile, IsReadByGtkWave_optimized) {
                 trace_of(parse_recording(dump, "x.vcd", keys), keys, "", true).values);
     }
   }
+}
+
+// Of a long file few rows are drawn, and a step of one variable among many changes of another is upright.
+TEST(ContactStatesFile, IsDrawnAsSteps) {
+  StateRecord record{.end = 1e-3, .channels = {{.spans = {}}, {.contact = "left", .spans = {{0.123456e-3}}}}};
+  for (int k = 1; k < 20'000; ++k) record.channels[0].spans.push_back({2e-8 * k, 2e-8 * k + 1e-8});
+  const std::string picture = recording_svg(parse_recording(contact_states_vcd(record), "x.vcd"));
+  const std::size_t begin = picture.rfind("<path d=\"M"), end = picture.find('"', begin + 10);
+  const std::string line = picture.substr(begin, end - begin);
+  EXPECT_LE(std::ranges::count(line, ' '), 9) << line;
 }
 
 // A switch that the state drives and a resistor with the resistance, each below 1 kOhm at 1 V.

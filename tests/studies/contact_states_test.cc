@@ -173,6 +173,10 @@ TEST(ContactStates, AreRefusedWithoutAContactAndToldWhereTheRunEnds) {
   const StateRecord open = states_of_scene(spring_plate({"waveform.main.level=0.5 Vdp"}));
   EXPECT_TRUE(open.channels.front().spans.empty());
   EXPECT_TRUE(said.empty());
+  const StateRecord collapsed = states_of_scene(spring_plate({"contact.stiffness=20 N/m"}));
+  EXPECT_EQ(collapsed.channels.front().spans.size(), 1u);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_THAT(said.front(), testing::HasSubstr("does not come to its end"));
 }
 
 }  // namespace
