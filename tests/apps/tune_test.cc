@@ -450,8 +450,8 @@ TEST_F(TuneVerb, TakesTheCaptureOfALogicAnalyser_optimized) {
         "$timescale 1 us $end $var wire 1 ! D0 $end $var wire 1 \" D1 $end $enddefinitions $end\n"
         "#0 0! 1\"\n#21 1!\n#25 0!\n#27 1!\n");
   write(here.path() / "stdin.txt", "file capture.vcd\nstop\n");
-  const Outcome o = here.run({"tune", "plate.toml", "--by-hand", "--effort", "0.2", "--jobs", "1", "--out", "out", "--quiet",
-                              "--contact", "column=D0"});
+  const Outcome o = here.run(
+      {"tune", "plate.toml", "--by-hand", "--effort", "0.2", "--jobs", "1", "--out", "out", "--quiet", "--contact", "column=D0"});
   EXPECT_EQ(o.status, 4) << o.err;
   EXPECT_EQ(tune_json()["closings"][0]["record"]["edges_s"], json::parse("[[21e-6, 1], [25e-6, 0], [27e-6, 1]]"));
 }
