@@ -16,7 +16,7 @@
 
 namespace softland {
 
-/// Of an open contact, in VCD and PWL [Ohm].
+/// Resistance that stands for an open contact in VCD and PWL [Ohm].
 inline constexpr double open_resistance = 1e12;
 
 /// Throws InvalidInput where the table has more than 5e7 numbers.

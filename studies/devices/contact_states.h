@@ -36,13 +36,13 @@ struct ClosedSpan {
 /// The connection of a switch, or one of its contacts, over a run from t = 0 on.
 struct StateChannel {
   std::optional<std::size_t> device = {};  ///< its number in the ensemble, from 0; none: the scene itself
-  std::string contact = {};                ///< of several contacts the name of one; empty: the connection
+  std::string contact = {};                ///< name of one of several contacts; empty: the connection
   bool has_resistance = false;
-  std::vector<ClosedSpan> spans = {};  ///< in order of time
+  std::vector<ClosedSpan> spans = {};  ///< spans in order of time
 };
 
 struct StateRecord {
-  double end = 0;  ///< of the window [s]
+  double end = 0;  ///< end of the window [s]
   std::vector<StateChannel> channels;
 };
 

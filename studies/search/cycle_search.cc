@@ -20,8 +20,8 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t searched_cycles = 4;  // of a candidate
-constexpr double line_tolerance = 1e-5;     // of the peak, by which the lines of a scene file may miss a curve
+constexpr std::size_t searched_cycles = 4;  // cycles in the run of a candidate
+constexpr double line_tolerance = 1e-5;     // error of the lines in a scene file, over the peak
 
 class PairSearch {
  public:
@@ -58,7 +58,7 @@ class PairSearch {
     return fits ? std::optional(std::move(waveforms)) : std::nullopt;
   }
 
-  /// Of the worst of so many cycles; infinite where they cannot be followed.
+  /// Returns the cost of the worst of so many cycles; infinite where they cannot be followed.
   [[nodiscard]] double cost(const CycleWaveforms& waveforms, std::size_t cycles = searched_cycles) const {
     const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(cycles), false, {.stop = watch_.stop});
     if (run.cycles.size() < cycles) return std::numeric_limits<double>::infinity();
