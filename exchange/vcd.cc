@@ -45,7 +45,7 @@ class Words {
   }
   [[nodiscard]] std::string_view word() const { return word_; }
   [[nodiscard]] std::size_t line() const { return line_; }
-  /// Whether the file ends in the word, or just after it.
+  /// Returns whether the file ends in the word, or just after it.
   [[nodiscard]] bool is_unended() const { return at_ == text_.size(); }
 
  private:
@@ -59,21 +59,21 @@ class Words {
 struct Scope {
   std::size_t around = 0;  ///< 0: the file
   std::string_view name = {};
-  std::size_t length = 0;  ///< of its whole path
+  std::size_t length = 0;  ///< the length of its whole path
 };
 
 struct Variable {
-  std::string name;  ///< with its range, "data[7:0]"
+  std::string name;  ///< has its range, "data[7:0]"
   std::size_t scope = 0, signal = 0;
   bool is_state = false;
 };
 
 struct Change {
-  std::uint64_t time = 0;  ///< in steps of the file
+  std::uint64_t time = 0;  ///< steps of the file
   double value = missing_number;
 };
 
-/// What the variables of one identifier do.
+/// The variables of one identifier share their changes.
 struct DumpedSignal {
   std::vector<Change> changes;
   std::size_t bits = 0;  ///< 0: a real number
@@ -296,7 +296,7 @@ void VcdReader::take_time() {
   const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), time);
   if (error != std::errc() || stop != digits.data() + digits.size()) fail_at_word("must be a time, a whole number below 2^64");
   if (!has_begun_) {
-    // What stands before the first time holds at it.
+    // Changes before the first time are those at it.
     for (DumpedSignal& signal : signals_)
       for (Change& change : signal.changes) change.time = time;
     moments_.assign(1, {.time = time, .line = static_cast<std::uint32_t>(words_.line())});
@@ -327,7 +327,7 @@ double VcdReader::vector_value(std::string_view digits, const DumpedSignal& sign
   return std::isfinite(value) ? value : missing_number;
 }
 
-// Of several changes at one time the last one counts.
+// The last one of several changes at one time counts.
 void VcdReader::change(std::string_view identifier, double value) {
   DumpedSignal& signal = signal_of(identifier);
   if (!signal.is_wanted) return;

@@ -29,7 +29,7 @@ std::string prefix(const StateChannel& one) {
   return (one.device ? device_name(*one.device) + "_" : std::string()) + contact_prefix(one);
 }
 
-// Interpolates linearly between points; before the first and after the last one the value stays.
+// Returns the value on straight lines between points, before and after which it stays.
 double on_line(const ResistanceLine& points, double time) {
   const auto to = std::ranges::upper_bound(points, time, {}, &std::pair<double, double>::first);
   if (to == points.begin()) return points.front().second;

@@ -44,7 +44,7 @@ class StatesObserver final : public ClosingObserver {
   [[nodiscard]] ClosingObserver* contact(std::size_t number) override { return conducts_ ? course_.contact(number) : nullptr; }
   void hand_over(Trajectory& run) { course_.hand_over(run); }
 
-  /// The spans of the connection come first, then those of each of several contacts.
+  /// The spans are those of the connection, and of each of several contacts.
   [[nodiscard]] std::vector<std::vector<ClosedSpan>>& spans() { return spans_; }
 
  private:
@@ -55,7 +55,7 @@ class StatesObserver final : public ClosingObserver {
 
 // Joins spans between which the contact is open for no longer than counts.
 void join(std::vector<ClosedSpan>& spans, double shortest_opening) {
-  constexpr double rounding = 1e-12;  // relative error of the time at which two steps meet
+  constexpr double rounding = 1e-12;  // a share of the time at which two steps meet
   std::vector<ClosedSpan> joined;
   for (ClosedSpan& span : spans) {
     if (!joined.empty() && span.begin - joined.back().end <= std::max(shortest_opening, rounding * span.begin))
@@ -68,7 +68,7 @@ void join(std::vector<ClosedSpan>& spans, double shortest_opening) {
 
 // Leaves out points that straight lines between the others meet.
 ResistanceLine on_lines(const ResistanceLine& points) {
-  constexpr double near = 1e-3;  // relative tolerance of the resistance
+  constexpr double near = 1e-3;  // a share of the resistance
   constexpr double any = std::numeric_limits<double>::infinity();
   ResistanceLine kept;
   double least = -any, most = any;  // slopes from the last point kept that meet those between
@@ -94,7 +94,7 @@ ResistanceLine on_lines(const ResistanceLine& points) {
 struct ResistanceSample {
   double time = 0, resistance = 0;  // [s], [Ohm]; NaN where it is not told
   bool ends = false;                // a span
-  bool is_on_line = false;          // the straight line to the next sample is accurate
+  bool is_on_line = false;          // says whether no point between this and the next one is needed
 };
 
 /// Resistances at times that increase [Ohm], NaN where they are not told.
@@ -103,7 +103,7 @@ using ResistanceCourse = std::function<std::vector<double>(const std::vector<dou
 // The resistance over the closed spans at the knots of the run, and between them as long as it is not on straight lines.
 std::vector<ResistanceSample> resistance_samples(const std::vector<ClosedSpan>& spans, const ResistanceCourse& course,
                                                  const std::vector<double>& knots, double end) {
-  constexpr double near = 1e-2, shortest = 2e-12;  // relative tolerance of the resistance, shortest step [s]
+  constexpr double near = 1e-2, shortest = 2e-12;  // a share of the resistance, [s]
   std::vector<ResistanceSample> samples;
   for (const ClosedSpan& span : spans) {
     const double last = std::min(span.end, end);
@@ -140,7 +140,7 @@ std::vector<ResistanceSample> resistance_samples(const std::vector<ClosedSpan>& 
   return samples;
 }
 
-// An edge of a span at which the resistance is not told takes that of the nearest time.
+// An edge of a span at which the resistance is not told has that of the nearest time at which it is.
 void add_resistance(std::vector<ClosedSpan>& spans, const ResistanceCourse& course, const std::vector<double>& knots,
                     double end) {
   auto span = spans.begin();

@@ -36,13 +36,13 @@ struct ClosedSpan {
 /// The connection of a switch, or one of its contacts, over a run from t = 0 on.
 struct StateChannel {
   std::optional<std::size_t> device = {};  ///< its number in the ensemble, from 0; none: the scene itself
-  std::string contact = {};                ///< name of one of several contacts; empty: the connection
+  std::string contact = {};                ///< the name of one of several contacts; empty: the connection
   bool has_resistance = false;
-  std::vector<ClosedSpan> spans = {};  ///< spans in order of time
+  std::vector<ClosedSpan> spans = {};  ///< increase in time
 };
 
 struct StateRecord {
-  double end = 0;  ///< end of the window [s]
+  double end = 0;  ///< the end of the window [s]
   std::vector<StateChannel> channels;
 };
 
@@ -53,8 +53,8 @@ using SayLine = std::function<void(const std::string&)>;
 /// switch without a contact, Interrupted where `watch` asks to stop.
 [[nodiscard]] StateRecord contact_states(const PreparedScene& prepared, const Watch& watch, const SayLine& say);
 
-/// The same for the first `devices` devices of the spread with this seed, driven by the waveforms of the nominal device with the
-/// errors of their own sources, at the tolerance of the scene. `jobs`: threads, on which nothing depends.
+/// The same for the first `devices` devices of the spread with this seed, at the tolerance of the scene. The waveforms of the
+/// nominal device drive them, with the errors of their own sources. `jobs`: threads, on which nothing depends.
 [[nodiscard]] StateRecord contact_states_of_devices(const PreparedScene& nominal, std::size_t devices, std::uint64_t seed,
                                                     int jobs, const Watch& watch, const SayLine& say);
 

@@ -19,7 +19,7 @@
 namespace softland {
 namespace {
 
-std::vector<std::string> said;  // by the run last made
+std::vector<std::string> said;  // the lines of the last run
 StateRecord states_of_scene(const SceneFile& file) {
   said.clear();
   return contact_states(prepare(file), {}, [](const std::string& line) { said.push_back(line); });
