@@ -11,7 +11,7 @@
 
 namespace softland {
 
-/// How the last point of a spline is held.
+/// The support of the last point of a spline.
 enum class SplineEnd { free, clamped };
 
 class ClampedSpline {

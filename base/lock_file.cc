@@ -78,7 +78,7 @@ LockFile::LockFile(const std::filesystem::path& file, const LockedPlace& place, 
   }
   const std::string text = owner(command);
   const bool written = ::ftruncate(descriptor_, 0) == 0 && ::pwrite(descriptor_, text.data(), text.size(), 0) >= 0;
-  static_cast<void>(written);  // on a full disk the lock holds without its text
+  static_cast<void>(written);  // the lock holds without its text on a full disk
 }
 
 LockFile::~LockFile() {

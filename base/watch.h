@@ -1,4 +1,4 @@
-// How a long computation is watched from outside: it can be asked to stop, and it reports its progress.
+// Lets the outside watch a long computation: it can be asked to stop, and it reports its progress.
 #pragma once
 
 #include <atomic>

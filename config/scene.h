@@ -115,8 +115,8 @@ struct Drive {
   std::optional<Waveform> waveform = {};    ///< waveform; 0 V without one
   std::optional<double> before = {};        ///< given value before t = 0 [V]; 0 V without one
   bool begins_closed = false;               ///< true when its before_state is closed: see Scene::begins_closed
-  std::optional<DriverLimits> limits = {};  ///< limits; none if unlimited; [0, default_limit()] for electrodes whose Vdp is known
-  DriverModel source = {};                  ///< source; ideal where the scene does not describe it; without load before prepare()
+  std::optional<DriverLimits> limits = {};  ///< none if unlimited; [0, default_limit()] for electrodes whose Vdp is known
+  DriverModel source = {};                  ///< ideal where the scene does not describe it; without load before prepare()
   std::optional<double> amplifier = {};     ///< volts at the switch, as all voltages here, per volt of the source
   SourceErrors errors = {};                 ///< gain, offset and delay of the source
 
@@ -202,8 +202,8 @@ struct Scene {
   std::string title;
   Device device;
   SimulateOptions simulate;
-  bool auto_modes =
-      false;  ///< true for modes = "auto": device has the default number until it is chosen (studies/closing/auto_modes.h)
+  /// True for modes = "auto": device has the default number until it is chosen (studies/closing/auto_modes.h).
+  bool auto_modes = false;
   MetricsOptions metrics;
   DeviceSpread spread;
   Calibration calibration;

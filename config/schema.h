@@ -43,7 +43,7 @@ struct Bound {
 struct Key {
   std::string_view name;
   KeyType type = KeyType::quantity;
-  /// For quantity, quantities: the dimensions a value may have; empty if another key decides. The first one names the key's SI
+  /// Dimensions of a quantity or quantities; empty if another key decides. The first one names the key's SI
   /// unit.
   std::vector<Dimension> dimensions = {};
   Range range = {};         ///< see range_of()
@@ -52,8 +52,8 @@ struct Key {
   bool may_be_one = false;  ///< quantities: true when a single one may stand instead of a list
   bool is_nested = false;   ///< quantities: true when it may be a list of such lists, read one after the other
   std::vector<std::string_view> choices = {};
-  std::vector<std::string_view> words =
-      {};                          ///< integer, quantity, an element of quantities: words that may stand instead of a number
+  /// Words that may stand instead of an integer, a quantity, or an element of quantities.
+  std::vector<std::string_view> words = {};
   std::string_view fallback = {};  ///< default as TOML; empty for none
   bool required = false;
   std::vector<std::string_view> only_for = {};    ///< choices of the section's selector this key belongs to; empty for all

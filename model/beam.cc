@@ -303,8 +303,8 @@ NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_
   // A strong tension bends the beam only close to its clamps, over lengths of L / sqrt(N L^2 / EI).
   const double layers = std::sqrt(std::max(0.0, beam_.axial_force)) / 5;
   const int count = std::max({shortest_count, beam_.modes, static_cast<int>(std::min(layers, 40.0))});
-  double lowest =
-      std::numeric_limits<double>::infinity();  // smallest fourth power of a wave number, over the square of the frequency
+  // Smallest fourth power of a wave number, over the square of the frequency.
+  double lowest = std::numeric_limits<double>::infinity();
   for (const Beam::Section& s : beam_.sections) lowest = std::min(lowest, s.mass / s.rigidity);
   for (const Beam::Section& s : beam_.sections) {
     // Waves are shorter where the beam is thin; below half their length, elements are shorter too.
@@ -586,8 +586,7 @@ double curl(const Device& device, double gradient, double x) {
   double offset = 0;
   for (const BeamSection& section : s.is_built() ? built_sections(device, gradient) : beam_sections(device)) {
     if (section.begin >= x) break;
-    const double near = x - section.begin,
-                 far = std::max(0.0, x - section.end);  // arms of the rotation, from its begin and its end
+    const double near = x - section.begin, far = std::max(0.0, x - section.end);  // arms from its begin and its end
     offset += (s.is_built() ? section.curvature : moment / section.rigidity) * (near * near - far * far) / 2;
   }
   return offset;

@@ -13,7 +13,7 @@
 // twice from the clamped end; nodes stand at every change of section. These functions are orthonormal in the bending energy, so
 // the stiffness is the unit matrix whatever the lengths of the elements, and a handful of long elements reaches 1e-9. A far
 // clamp leaves the combinations with no value and no slope there. An axial force makes them orthonormal in the elastic energy
-// anew: the rest of the computation has a unit stiffness again. In compression that fails at the buckling load, where the
+// anew: the rest of the computation has a unit stiffness again. This fails at the buckling load in compression, where the
 // straight beam stops being stable. Springs and linear stretches add their energies to that unit matrix, and springs at x = 0
 // the two motions of a rigid beam to the functions.
 //

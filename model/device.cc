@@ -215,8 +215,8 @@ void check_contact(const Device& d, std::size_t i) {
   require(!rigid || !d.gas || !is_compressible(*d.gas), [&] {
     return path + ".model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests";
   });
-  const bool no_pad =
-      c.along_face || (s.is_rigid() && !acts_per_area(c.model) && c.pad_length == 0);  // only its area would count
+  // A pad is not needed where only its area would count.
+  const bool no_pad = c.along_face || (s.is_rigid() && !acts_per_area(c.model) && c.pad_length == 0);
   require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {
     return fmt::format("{}.pad_length = {}: must be positive and below structure.length = {}", path,
                        engineering(c.pad_length, "m"), engineering(s.length, "m"));

@@ -27,8 +27,8 @@ struct Gap {
   double contact = 0;    ///< dt, rest distance of the first contact to its plane, or of the contact point without contact [m]
 };
 
-/// How a beam lands on a dielectric: the pressure of its face on the beam, see model/contact/face.h. The face is a wall where
-/// neither a stiffness nor asperities are given.
+/// The landing of a beam on a dielectric: the pressure of its face on the beam, see model/contact/face.h. The face is a wall
+/// where neither a stiffness nor asperities are given.
 struct Landing {
   double stiffness = std::numeric_limits<double>::quiet_NaN();  ///< stiffness of a bed per area [Pa/m]
   double from = 0;                                   ///< height above the face at which the pressure of a bed begins [m]
@@ -45,8 +45,8 @@ struct Dielectric {
   double permittivity = 1;  ///< relative
   double roughness = 0;     ///< air gap that is left where its summits touch [m]
   double charge = 0;        ///< charge per area on its face [C/m^2], of either sign
-  std::optional<Landing> landing =
-      {};  ///< landing; without one, anything that reaches the face has failed, or is a plate that stands on a contact
+  /// Landing; without one, anything that reaches the face has failed, or is a plate that stands on a contact.
+  std::optional<Landing> landing = {};
 
   /// Returns its contribution to the gap of the field, t / eps_r + roughness [m].
   [[nodiscard]] double depth() const { return thickness / permittivity + roughness; }
@@ -57,13 +57,13 @@ struct Dielectric {
 /// One voltage, on one pad or several.
 struct Electrode {
   std::string name = {};
-  Place begin;  ///< on a plate only the length counts: the electrode's area over the plate's width
+  Place begin;  ///< only the length counts on a plate: the electrode's area over the plate's width
   Place end;
   std::vector<Span> further = {};  ///< pads beside that first one
   Fringing fringing = Fringing::meijs_fokkema;
   Side side = Side::near;
-  double gap = 0;                             ///< for far, both: rest distance of the face on the far side to the moving part [m]
-  std::optional<Dielectric> dielectric = {};  ///< dielectric; on the near side alone
+  double gap = 0;                             ///< rest distance of the face on the far side, for far and both [m]
+  std::optional<Dielectric> dielectric = {};  ///< dielectric, on the near side only
 
   /// Returns all pads on a beam of this length [m].
   [[nodiscard]] std::vector<Stretch> pads(double length) const;

@@ -19,13 +19,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double longest_angle = 2.5;  // norm of A times the length of an arc
-constexpr int most_parts = 4096;       // of a step
-constexpr int parts_at_edge = 6;       // of a step that begins or ends where a contact does
+constexpr double longest_angle = 2.5;  // largest norm of A times the length of an arc
+constexpr int most_parts = 4096;       // largest number of parts of a step
+constexpr int parts_at_edge = 6;       // parts of a step that begins or ends where a contact does
 constexpr Index lane_size = lanes;
-constexpr Index most_unknowns = 2 * most_modes;  // unknowns, whole lanes
+constexpr Index most_unknowns = 2 * most_modes;  // unknowns, in whole lanes
 
-// Terms after which the exponential of a matrix of this norm is good to rounding; as many as the parabola of an input has.
+// Returns the number of terms after which the exponential of a matrix of this norm is good to rounding; at least as many as the
+// parabola of an input has.
 int terms_of_exponential(double norm) {
   constexpr int fewest = 3;
   constexpr double rounding = 1e-13;
@@ -40,7 +41,7 @@ int terms_of_exponential(double norm) {
   return std::max(fewest, static_cast<int>(found - largest_norm.begin()) + 1);
 }
 
-// Of a matrix whose rows are whole lanes: largest sum of magnitudes in a column.
+// Returns the largest sum of magnitudes in a column of a matrix whose rows are whole lanes.
 double column_norm(const double* x, Index size, Index stride) {
   Lane largest = Lane::Zero();
   for (Index c = 0; c < stride; c += lane_size) {
@@ -51,7 +52,8 @@ double column_norm(const double* x, Index size, Index stride) {
   return largest.maxCoeff();
 }
 
-// value += gain, of very many small gains: what rounding cuts off is kept for the next one (Kahan 1965). The sum is value - left.
+// Adds value += gain for very many small gains: the part that rounding cuts off is kept for the next one (Kahan 1965). The sum
+// is value - left.
 template <class Value, class Left, class Gain>
 void add_compensated(Value&& value, Left&& left, const Gain& gain) {
   for (Index i = 0; i < gain.rows(); ++i) {
@@ -63,7 +65,7 @@ void add_compensated(Value&& value, Left&& left, const Gain& gain) {
   }
 }
 
-// What a row w gains times exp(x), and w phi_j(x) = sum over k of w x^k / (k + j)!, j = 1, 2, 3.
+// Computes row w times exp(x), and w phi_j(x) = sum over k of w x^k / (k + j)!, j = 1, 2, 3.
 struct RowSeries {
   using Row = Eigen::Array<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, most_unknowns>;
   Row gain, phi1, phi2, phi3;
@@ -94,7 +96,7 @@ struct RowSeries {
   }
 };
 
-// What columns d gain along y' = x y + u1 + u2 s + u3 s^2 from s = 0 to 1. Rows are whole lanes; u is 0 in their upper half.
+// Advances columns d along y' = x y + u1 + u2 s + u3 s^2 from s = 0 to 1. Rows are whole lanes; u is 0 in their upper half.
 using Columns = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 struct ColumnSeries {
   Columns gain, term, next;
@@ -121,7 +123,8 @@ struct ColumnSeries {
   }
 };
 
-// Shares of a step at which its parts end. A contact's stiffness begins and ends like a root of the time from the edge.
+// Returns the shares of a step at which its parts end. A contact's stiffness begins and ends like a root of the time from the
+// edge.
 std::vector<double> shares_of_parts(int parts, bool after_edge, bool before_edge) {
   std::vector<double> ends;
   for (int k = 1; k <= parts; ++k) {
@@ -132,7 +135,7 @@ std::vector<double> shares_of_parts(int parts, bool after_edge, bool before_edge
   return ends;
 }
 
-// Where a step that is known at its ends is at a time in it.
+// Interpolates a step that is known at its ends at a time in it.
 template <class Modal>
 void move_to(double t, const RecordedMotion::Motion& from, const RecordedMotion::Motion& to, Modal& q, Modal& v,
              Modal& accelerations) {
@@ -195,7 +198,7 @@ void LinearizedClosing::note_passage(const PhaseChange& change) {
   if (!arcs_.empty() && change.kind == PhaseChange::Kind::turn) arcs_.back().turns = true;
 }
 
-// One set of pieces for each drive that goes on to another one.
+// Enters one set of pieces for each drive that goes on to another piece.
 void LinearizedClosing::enter_pieces(double t) {
   for (std::size_t k = 0; k < signals_.size(); ++k) {
     const std::vector<SignalPiece>& all = signals_[k].pieces();
@@ -262,7 +265,7 @@ void LinearizedClosing::linearize_step() {
   add_parts(step, contact.active && after_edge, contact.active && before_edge);
 }
 
-// The rest that the closing starts from moves so that the forces on it stay 0.
+// The rest position at the start moves so that the forces on it stay 0.
 void LinearizedClosing::begin_at_rest() {
   rest_ = MatrixXd::Zero(size_, moving_);
   const std::vector<double> before = values_before(signals_);
@@ -281,7 +284,7 @@ void LinearizedClosing::begin_at_rest() {
   }
 }
 
-// Of the drives at present.
+// Sets the present values of the drives.
 void LinearizedClosing::set_volts(double t) {
   for (std::size_t k = 0; k < volts_.size(); ++k) volts_[k] = signals_[k].pieces()[pieces_[on_][k]].voltage(t);
 }
@@ -318,7 +321,7 @@ void LinearizedClosing::set_node(Node& node, double t, const double* q, const do
   }
 }
 
-// With A = (0, fastest; K, D) at the nodes, h / 6 (A0 + 4 A1 + A2) - h^2 / 12 [A1, A2 - A0] block by block.
+// With A = (0, fastest; K, D) at the nodes, compute h / 6 (A0 + 4 A1 + A2) - h^2 / 12 [A1, A2 - A0] block by block.
 void LinearizedClosing::add_transition(double begin, double end, std::size_t arc) {
   using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_modes, most_modes>;
   const std::size_t at = numbers_.size();
@@ -348,7 +351,7 @@ LinearizedClosing::Transition LinearizedClosing::transition(std::size_t part) co
   return {.magnus = here, .begin = here + magnus, .middle = here + magnus + each, .end = here + magnus + 2 * each};
 }
 
-// Times at which the parts of a step from from_ on end, short enough.
+// Returns times at which sufficiently short parts of a step end.
 std::vector<double> LinearizedClosing::ends_of_parts(double t0, double t1, bool after_edge, bool before_edge) const {
   const double h = t1 - t0;
   const double norm =
@@ -390,7 +393,7 @@ void LinearizedClosing::add_parts(std::size_t step, bool after_edge, bool before
   }
 }
 
-// Where drives go on to other pieces, f jumps at times that the waveform decides.
+// Adds the jump of f at times that the waveform decides, where drives go on to other pieces.
 void LinearizedClosing::jump_at_pieces(const RecordedMotion::Motion& here, const ContactState& contact, std::size_t entered) {
   if (on_ == entered) return;
   Jump jump{.parts = parts_.size(), .matrix = {}, .moved = {}};
@@ -415,7 +418,7 @@ void LinearizedClosing::jump_at(const RecordedMotion::PhaseEvent& passage, const
   jumps_.back().parts = parts_.size();
 }
 
-// A plate that has come to rest stays on the contact plane.
+// Returns the jump of a plate that has come to rest and stays on the contact plane.
 LinearizedClosing::Jump LinearizedClosing::at_rest(const Arc& before) const {
   Jump jump{.matrix = MatrixXd::Zero(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   for (Index j = 0; j < moving_; ++j) {
@@ -425,7 +428,7 @@ LinearizedClosing::Jump LinearizedClosing::at_rest(const Arc& before) const {
   return jump;
 }
 
-// A contact with memory that unloads from here on keeps the dent of its deepest interference.
+// Returns the jump of a contact with memory that unloads from here on and keeps the dent of its deepest interference.
 LinearizedClosing::Jump LinearizedClosing::turned(const Arc& before) const {
   Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   const double deepest = model_.contact_deflection(before.q.data()) - model_.contact_gap(), step = 1e-5 * deepest;
@@ -441,7 +444,7 @@ LinearizedClosing::Jump LinearizedClosing::turned(const Arc& before) const {
   return jump;
 }
 
-// An edge of the contact's phases, or an impact.
+// Returns the jump at an edge of the contact's phases, or at an impact.
 LinearizedClosing::Jump LinearizedClosing::crossed(const RecordedMotion::PhaseEvent& passage, const Arc& before) {
   const PhaseChange& change = passage.change;
   Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
@@ -483,7 +486,7 @@ VectorXd LinearizedClosing::scaled(const FigureSlope::Weights& weights) const {
   return all;
 }
 
-// Of figures that are measured at the beginnings of pieces, or depend on the device at fixed q and v.
+// Adds the part of figures that are measured at the beginnings of pieces, or depend on the device at fixed q and v.
 void LinearizedClosing::add_moved(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes, MatrixXd& gradient) const {
   for (std::size_t f = 0; f < figures.size(); ++f) {
     for (const FigureSlope::Moved& m : figures[f].moved) {
@@ -513,7 +516,7 @@ MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, co
   const auto count = static_cast<Index>(figures.size());
   MatrixXd gradient = MatrixXd::Zero(count, static_cast<Index>(slopes.parameters()));
   MatrixXd weights = MatrixXd::Zero(count, size_ + 1), left = weights;
-  std::vector<std::pair<std::size_t, std::pair<Index, VectorXd>>> given;  // arc, figure, weights
+  std::vector<std::pair<std::size_t, std::pair<Index, VectorXd>>> given;  // arc; figure and weights
   for (std::size_t f = 0; f < figures.size(); ++f) {
     for (const FigureSlope::Weights& w : figures[f].weights) given.push_back({w.arc, {static_cast<Index>(f), scaled(w)}});
   }

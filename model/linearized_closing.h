@@ -1,22 +1,22 @@
-// The derivative of a closing with respect to what its drives are made of.
+// The derivative of a closing with respect to the parameters of its drives.
 //
 //   d' = A(t) d + sum over drives k of b_k(t) dV_k/dp        A = df/dy, b_k = df/dV_k along the closing y' = f(y, V)
 //
 // d = dy/dp at fixed time. Over a step, whose ends the closing's own integrator found, the transition matrix is the exponential
-// of Magnus' series to fourth order (Blanes, Casas, Oteo and Ros 2009, eq. 245), and what the drives add is integrated exactly
-// for inputs that are parabolas in it. At an event at which f changes, at a time that the motion decides or the waveform, d jumps
-// by (f before - f after) dt/dp; at an impact the velocity's part is reflected too (saltation: Aizerman and Gantmacher 1958,
-// Hiskens and Pai 2000, eq. 26). A contact with memory adds its residual interference to the state.
+// of Magnus' series to fourth order (Blanes, Casas, Oteo and Ros 2009, eq. 245). The contribution of the drives is integrated
+// exactly for inputs that are parabolas in it. When f changes at an event, at a time that the motion or the waveform decides,
+// d jumps by (f before - f after) dt/dp. At an impact the velocity's part is reflected too (saltation: Aizerman and Gantmacher
+// 1958, Hiskens and Pai 2000, eq. 26). A contact with memory adds its residual interference to the state.
 //
-// What a closing does after the last moment that a figure depends on is not linearised.
+// The motion after the last moment that a figure depends on is not linearised.
 //
-// Forward, d is carried along for all parameters at once. Backward (adjoint), the weights that a figure gives to d are carried
-// from the end to the beginning: its cost hardly depends on the number of parameters. Both take the exponential times vectors, by
-// its Taylor series, and never the exponential itself.
+// The forward mode carries d along for all parameters at once. The backward (adjoint) mode carries the weights that a figure
+// gives to d from the end to the beginning: its cost hardly depends on the number of parameters. Both apply the exponential to
+// vectors, by its Taylor series, and never form the exponential itself.
 //
-// A parameter of the device adds F_p (model/switch_slopes.h) to what drives the equations, the derivative of the rest that the
-// closing starts from, and what it does to the times of events at fixed q: an edge is crossed where the interference, which
-// depends on the shape of the modes at the contact and on the contact gap, has a certain value.
+// A parameter of the device adds F_p (model/switch_slopes.h) to the inputs of the equations. It also adds the derivative of the
+// rest position at the start, and shifts the times of events at fixed q: an edge is crossed at a certain interference, which
+// depends on the shape of the modes at the contact and on the contact gap.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,101 +33,102 @@
 
 namespace softland {
 
-/// The derivative of a figure: weights of d at the end of an arc, before what follows it. What is measured at a time that moves
-/// with the beginning of a piece has a rate for it, and what depends on the device at fixed q and v its derivative by each of
-/// SwitchSlopes::moving().
+/// The derivative of a figure: weights of d at the end of an arc, before the next one. A figure measured at a time that moves
+/// with the beginning of a piece has a rate for it. A figure that depends on the device at fixed q and v has its derivative by
+/// each of SwitchSlopes::moving().
 struct FigureSlope {
   struct Weights {
-    std::size_t arc = 0;  ///< of LinearizedClosing::arcs()
+    std::size_t arc = 0;  ///< index in LinearizedClosing::arcs()
     Eigen::VectorXd by_q, by_v;
-    double by_shift = 0;  ///< of the dent of a contact with memory
+    double by_shift = 0;  ///< weight of the dent of a contact with memory
   };
   struct Moved {
     std::size_t drive = 0, piece = 0;
-    double rate = 0;  ///< of the figure [1/s]
+    double rate = 0;  ///< rate of the figure [1/s]
   };
   std::vector<Weights> weights = {};
   std::vector<Moved> moved = {};
-  Eigen::VectorXd by_device = {};  ///< empty: 0
+  Eigen::VectorXd by_device = {};  ///< empty means 0
 };
 
 class LinearizedClosing {
  public:
-  using Modal = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_modes, 1>;  ///< a number to each mode, without an allocation
+  using Modal = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_modes, 1>;  ///< one number per mode, without an allocation
 
-  /// A step of the tape, or the part of one until the contact point turns back in it, and the rest.
+  /// A step of the tape, or its part until the contact point turns back in it, or the rest.
   struct Arc {
     double begin = 0, end = 0;  ///< [s]
-    Modal q, v;                 ///< at its end
-    Modal accelerations;        ///< at its end
-    bool turns = false;         ///< the contact point turns back at its end
+    Modal q, v;                 ///< state at its end
+    Modal accelerations;        ///< accelerations at its end
+    bool turns = false;         ///< true when the contact point turns back at its end
     ContactState contact;
-    std::size_t step = 0;            ///< of the tape
+    std::size_t step = 0;            ///< step of the tape
     std::size_t pieces_entered = 0;  ///< see pieces()
   };
-  /// A passage of the tape after so many arcs.
+  /// A passage of the tape after this number of arcs.
   struct PhaseEvent {
     std::size_t arcs = 0;
     PhaseChange change;
   };
 
-  /// Of a closing that was run with restart_at_contact, under these signals. Keeps references to all but the number.
-  /// `refinement`: parts of a step, at the least. `by_device`: how the switch changes with the parameters; none: not at all. They
-  /// are as many as those of the signals.
+  /// Linearises a closing that was run with restart_at_contact, under these signals. Keeps references to all but the number.
+  /// `refinement` is the least number of parts of a step. `by_device` gives the derivatives of the switch by the parameters, as
+  /// many as those of the signals; null where they do not change the switch.
   LinearizedClosing(const Switch& model, std::span<const Signal> signals, const RecordedMotion& tape, int refinement = 1,
                     SwitchSlopes* by_device = nullptr);
 
-  /// Why there is no derivative, in words; empty where there is.
+  /// Returns the reason why there is no derivative, in words; empty where there is one.
   [[nodiscard]] static std::string refusal(const Switch& model);
 
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
-  /// Of the drives, all along an arc.
+  /// Returns the pieces of the drives, all along an arc.
   [[nodiscard]] const std::vector<std::size_t>& pieces(const Arc& arc) const { return pieces_[arc.pieces_entered]; }
   [[nodiscard]] const std::vector<PhaseEvent>& passages() const { return passages_; }
-  /// Null where the parameters do not change the switch.
+  /// Returns null where the parameters do not change the switch.
   [[nodiscard]] const SwitchSlopes* by_device() const { return by_device_; }
 
-  /// Derivatives of figures, a row each, with respect to the parameters: adjoint.
+  /// Returns derivatives of figures, one row each, with respect to the parameters, in adjoint mode.
   [[nodiscard]] Eigen::MatrixXd backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes);
-  /// The same numbers: forward.
+  /// Returns the same numbers in forward mode.
   [[nodiscard]] Eigen::MatrixXd forward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes);
 
  private:
   using Index = Eigen::Index;
 
-  // The derivatives of the accelerations at one state, in units in which q is times the fastest frequency.
+  // The derivatives of the accelerations at one state, in units in which q is multiplied by the fastest frequency.
   struct Node {
     Eigen::MatrixXd by_q, by_v;
-    Eigen::MatrixXd inputs;  // by the drives, by the dent of a contact with memory, by parameters of the device
+    Eigen::MatrixXd inputs;  // inputs: drives, dent of a contact with memory, parameters of the device
   };
   // A part of an arc, short enough for the series.
   struct Part {
     double begin = 0, end = 0;  // [s]
     std::size_t arc = 0;
     bool ends_arc = false;
-    int terms = 0;  // of the series of its exponential
+    int terms = 0;  // number of terms in the series of its exponential
   };
-  // Magnus' series of a part and what drives and dents add: places in numbers_.
+  // Magnus' series of a part and the inputs of drives and dents: places in numbers_.
   struct Transition {
     const double* magnus;  // rows of whole lanes
-    const double* begin;   // inputs at the begin,
-    const double* middle;  // in the middle
-    const double* end;     // and at the end of the part, modes x inputs each
+    const double* begin;   // inputs at the begin of the part, modes x inputs
+    const double* middle;  // inputs in the middle
+    const double* end;     // inputs at the end
   };
-  // d, and the shift's derivative below it, after an event: matrix * d + by_device + sum over moved pieces. No matrix: d stays.
+  // d, and the shift's derivative below it, after an event: matrix * d + by_device + sum over moved pieces. d stays without a
+  // matrix.
   struct Jump {
-    std::size_t parts = 0;                                              // before it
-    std::optional<Eigen::MatrixXd> matrix;                              // 2 modes + 1 square
+    std::size_t parts = 0;                                              // number of parts before it
+    std::optional<Eigen::MatrixXd> matrix;                              // square, of size 2 modes + 1
     std::vector<std::pair<FigureSlope::Moved, Eigen::VectorXd>> moved;  // d gains the vector times d(begin)/dp
-    Eigen::MatrixXd by_device = {};                                     // a column to each moving parameter, or none
+    Eigen::MatrixXd by_device = {};                                     // one column per moving parameter, or none
   };
 
-  // The course, without derivatives.
+  // Computes the course, without derivatives.
   void follow_tape();
   void enter_pieces(double t);
   void add_arcs(std::size_t step);
   void note_passage(const PhaseChange& change);
-  // The derivatives, as far as the figures ask for them.
+  // Computes the derivatives, as far as the figures need them.
   void linearize_for(const std::vector<FigureSlope>& figures);
   void linearize_step();
   void begin_at_rest();
@@ -143,7 +144,7 @@ class LinearizedClosing {
   [[nodiscard]] Jump at_rest(const Arc& before) const;
   [[nodiscard]] Jump crossed(const RecordedMotion::PhaseEvent& passage, const Arc& before);
   [[nodiscard]] Transition transition(std::size_t part) const;
-  // Of the gradient, of a parameter that changes the switch.
+  // Returns the column of the gradient for a parameter that changes the switch.
   [[nodiscard]] Index column(Index moving) const {
     return static_cast<Index>(by_device_->moving()[static_cast<std::size_t>(moving)]);
   }
@@ -155,28 +156,28 @@ class LinearizedClosing {
   const Switch& model_;
   std::span<const Signal> signals_;
   const RecordedMotion& tape_;
-  Index n_, size_;  // modes, unknowns: 2 modes
+  Index n_, size_;  // number of modes; number of unknowns, 2 modes
   Index stride_;    // size_ in whole lanes
   SwitchSlopes* by_device_;
-  Index dent_, moving_, inputs_;  // drives; parameters of the device; both and the dent
+  Index dent_, moving_, inputs_;  // numbers of drives (the index of the dent), of device parameters, and of all inputs
   double fastest_;                // [rad/s]
   Switch::Workspace work_;
   int refinement_;
-  std::vector<std::vector<std::size_t>> pieces_;  // that the drives were on, one set after the other
+  std::vector<std::vector<std::size_t>> pieces_;  // pieces of the drives, one set after the other
   std::vector<Arc> arcs_;
   std::vector<PhaseEvent> passages_;
 
-  std::size_t steps_ = 0;         // of the tape that are linearised,
-  std::size_t next_arc_ = 0;      // the arc that follows them,
-  std::size_t next_passage_ = 0;  // and the passage of the tape
-  std::size_t on_ = 0;            // of pieces_, at present
-  std::vector<double> volts_;     // of the drives, at present
+  std::size_t steps_ = 0;         // number of linearised steps of the tape
+  std::size_t next_arc_ = 0;      // arc that follows these steps
+  std::size_t next_passage_ = 0;  // passage of the tape that follows them
+  std::size_t on_ = 0;            // current set in pieces_
+  std::vector<double> volts_;     // current values of the drives
   std::vector<Part> parts_;
-  std::vector<double> numbers_;  // of the parts, Magnus' series and inputs
+  std::vector<double> numbers_;  // Magnus' series and inputs of the parts
   std::vector<Jump> jumps_;
-  Eigen::MatrixXd rest_;  // derivative of the motion's beginning, a column to each moving parameter
+  Eigen::MatrixXd rest_;  // derivative of the motion's beginning, one column per moving parameter
   Node from_, middle_, to_;
-  bool goes_on_ = false;  // from_ is where the next part begins
+  bool goes_on_ = false;  // true when the next part begins at from_
 };
 
 }  // namespace softland

@@ -1,5 +1,5 @@
 // The undamped modes of a structure: frequencies, mass-normalised shapes where its contact and its piezo layer act on it, and
-// what follows from coordinates alone.
+// quantities that follow from coordinates alone.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,39 +17,40 @@ struct SampledModes;
 
 class ModalBasis {
  public:
-  /// What normalised modes are taken times.
+  /// Factors of the normalised modes.
   struct Scales {
     double length = 0;     ///< [m]
     double shape = 0;      ///< [kg^(-1/2)]
     double frequency = 0;  ///< [rad/s]
   };
   ModalBasis() = default;
-  /// `piezo`: the piezo_shape() of a beam of parts; none: of a layer on a beam that is the same all along it.
+  /// `piezo` is the piezo_shape() of a beam of parts; none: the layer of a uniform beam.
   ModalBasis(Eigen::VectorXd angular_frequencies, const Scales& scales, const SampledModes& sampled, const Device& device,
              const std::optional<Eigen::VectorXd>& piezo = {});
 
   [[nodiscard]] int modes() const { return static_cast<int>(frequencies_.size()); }
   [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s]
-  [[nodiscard]] const Eigen::VectorXd& squares() const { return squares_; }                  ///< of these
+  [[nodiscard]] const Eigen::VectorXd& squares() const { return squares_; }                  ///< squares of these
   [[nodiscard]] const Eigen::VectorXd& contact_shape() const { return contact_shape_; }      ///< phi_i(x_c) [kg^(-1/2)]
-  /// The same at the places of further contacts.
+  /// Returns the same at the places of further contacts.
   [[nodiscard]] const std::vector<Eigen::VectorXd>& further_contact_shapes() const { return further_contact_shapes_; }
-  /// phi_i'(x_c) of a contact that acts along the pad [kg^(-1/2)/m]; 0 of every other.
+  /// Returns phi_i'(x_c) of a contact that acts along the pad [kg^(-1/2)/m]; 0 for every other.
   [[nodiscard]] const Eigen::VectorXd& pad_slope() const { return pad_slope_; }
-  /// Force on mode i per volt on the piezo [N kg^(-1/2) / V]; zero where there is no layer.
+  /// Returns the force on mode i per volt on the piezo [N kg^(-1/2) / V]; zero without a layer.
   [[nodiscard]] const Eigen::VectorXd& piezo_shape() const { return piezo_shape_; }
   [[nodiscard]] double in_contact_period() const { return in_contact_period_; }  ///< 2 pi over the first pinned frequency [s]
 
-  /// y(x_c) [m]; the velocity when given one.
+  /// Returns y(x_c) [m]; the velocity when given one.
   [[nodiscard]] double contact_deflection(const double* q) const {
     return deflection<double>({contact_shape_.data(), static_cast<std::size_t>(modes())}, q);
   }
-  /// y'(x_c) of a contact along the pad.
+  /// Returns y'(x_c) of a contact along the pad.
   [[nodiscard]] double pad_tilt(const double* q) const { return at(q).dot(pad_slope_); }
-  /// Static deflection of the contact point per volt on the piezo, of the beam by itself and small [m/V]; 0 where there is no
-  /// layer. Positive towards the electrodes.
+  /// Returns the static deflection of the contact point per volt on the piezo, of the beam by itself and small [m/V]; 0 without
+  /// a layer. It is positive towards the electrodes.
   [[nodiscard]] double piezo_deflection() const { return contact_shape_.cwiseQuotient(squares_).dot(piezo_shape_); }
-  /// Charge that the deflection puts on the piezo's electrodes, theta q [C]. The layer's own capacitance: piezo_layer.h.
+  /// Returns the charge that the deflection puts on the piezo's electrodes, theta q [C]. piezo_layer.h has the layer's own
+  /// capacitance.
   [[nodiscard]] double piezo_charge(const double* q) const { return at(q).dot(piezo_shape_); }
   [[nodiscard]] double kinetic_energy(const double* v) const { return at(v).squaredNorm() / 2; }              ///< [J]
   [[nodiscard]] double bending_energy(const double* q) const { return at(q).cwiseAbs2().dot(squares_) / 2; }  ///< [J]
@@ -57,8 +58,8 @@ class ModalBasis {
     return Eigen::Map<const Eigen::VectorXd>(q, modes());
   }
 
-  /// Modal forces of stiffness and modal damping, of a piezo at so many volts, and of a push at the contact point [N], on the
-  /// lane of the n = modes() that begins with mode i.
+  /// Returns the modal forces of stiffness and modal damping, of a piezo at this voltage, and of a push at the contact point
+  /// [N], on the lane that begins with mode i of the n = modes() modes.
   [[gnu::always_inline]] [[nodiscard]] Lane forces(std::size_t i, std::size_t n, const double* q, const double* v, double piezo,
                                                    double push) const {
     return piezo * lane(piezo_lanes_, i) - push * lane(contact_lanes_, i) - lane(stiffness_lanes_, i) * load_lane(q, i, n) -

@@ -1,10 +1,10 @@
-// Between modal coordinates and what happens at one place of the beam, over the scalar of the state and that of the mode shapes.
+// Converts between modal coordinates and one place of the beam, over the scalar of the state and that of the mode shapes.
 //
 //   y(x) = sum over modes of phi_i(x) q_i        Q_i += phi_i(x) F
 //
-// phi mass-normalised modes [kg^(-1/2)], q modal coordinates [m kg^(1/2)], y deflection [m], F force at x [N], or load per length
-// times a quadrature weight, Q modal force [N kg^(-1/2)]. The right-hand side of one device does both for many places at once, in
-// lanes of places (switch.cc): this is the same for duals and for lanes of devices.
+// phi are mass-normalised modes [kg^(-1/2)], q modal coordinates [m kg^(1/2)], y is the deflection [m], F the force at x [N],
+// or load per length times a quadrature weight, Q the modal force [N kg^(-1/2)]. The right-hand side of one device does both
+// for many places at once, in lanes of places (switch.cc); this code does the same for duals and for lanes of devices.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace softland {
 
-/// y of coordinates, or the velocity of rates.
+/// Returns y for coordinates, or the velocity for rates.
 template <class P, class S>
 [[nodiscard]] S deflection(std::span<const P> shape, const S* q) {
   S sum = S(0);
@@ -20,7 +20,7 @@ template <class P, class S>
   return sum;
 }
 
-/// Adds what a force does to every mode.
+/// Adds the contribution of a force to every mode.
 template <class P, class S>
 void add_modal_force(std::span<const P> shape, const S& force, S* modal) {
   for (std::size_t i = 0; i < shape.size(); ++i) modal[i] = modal[i] + S(shape[i]) * force;

@@ -1,4 +1,4 @@
-// The modes of a switch along its length, to be drawn.
+// The modes of a switch along its length, for drawings.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,12 +8,12 @@
 namespace softland {
 
 struct ModeShapes {
-  Eigen::VectorXd places;  ///< from the clamped end [m]
-  Eigen::MatrixXd shapes;  ///< phi_i there, a row per place [kg^(-1/2)]
+  Eigen::VectorXd places;  ///< places from the clamped end [m]
+  Eigen::MatrixXd shapes;  ///< phi_i there, one row per place [kg^(-1/2)]
 };
 
-/// Of a beam, and of a structure from a table of modes, at so many places from end to end; of a plate at the quadrature points of
-/// the switch. Throws InvalidInput for fewer than two.
+/// Returns the modes at this number of places from end to end for a beam or a structure from a table of modes; for a plate at
+/// the quadrature points of the switch. Throws InvalidInput for fewer than two.
 [[nodiscard]] ModeShapes mode_shapes(const Switch& model, int places);
 /// phi_i of any structure at these places from 0 to its length [m], a row per place [kg^(-1/2)].
 [[nodiscard]] Eigen::MatrixXd mode_shapes_at(const Switch& model, const Eigen::VectorXd& places);

@@ -1,4 +1,4 @@
-// Where something lies on a beam, and on which side of it.
+// A position on a beam, and its side of the beam.
 #pragma once
 
 #include "base/choice.h"
@@ -10,7 +10,7 @@ enum class Side { near, far, both };
 inline constexpr auto sides = std::to_array<Named<Side>>({{Side::near, "near"}, {Side::far, "far"}, {Side::both, "both"}});
 static_assert(is_complete<sides>());
 
-/// A place on the beam, from the clamped end: a distance [m], or a share of the beam's length, which it follows.
+/// A place on the beam, from the clamped end: a distance [m], or a share of the beam's length, which follows that length.
 struct Place {
   constexpr Place() = default;
   constexpr Place(double distance) : value(distance) {}  // a length is a place
@@ -19,7 +19,7 @@ struct Place {
     place.is_share = true;
     return place;
   }
-  /// [m]
+  /// Returns the distance [m].
   [[nodiscard]] constexpr double on(double length) const { return is_share ? value * length : value; }
   [[nodiscard]] bool operator==(const Place&) const = default;
 
@@ -27,13 +27,13 @@ struct Place {
   bool is_share = false;
 };
 
-/// From where to where something lies along the beam.
+/// An interval along the beam.
 struct Span {
   Place begin, end;
   [[nodiscard]] bool operator==(const Span&) const = default;
 };
 
-/// The same on a beam of some length [m].
+/// The same interval on a beam of some length [m].
 struct Stretch {
   double begin = 0, end = 0;
   [[nodiscard]] bool holds(double x) const { return x >= begin && x < end; }

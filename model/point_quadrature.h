@@ -1,8 +1,9 @@
-// Where the distributed laws of a switch act: points along its structure with their weights, the gap and its velocity there, and
-// loads there projected on the modes. A Galerkin projection, on Gauss panels that begin and end where something does.
+// The places where the distributed laws of a switch act: points along its structure with their weights, the gap and its
+// velocity there, and loads there projected on the modes. It is a Galerkin projection, on Gauss panels that begin and end where
+// a part of the switch does.
 //
-// The matrices are small: a block of points, or a lane of modes, at a time, with what it needs in registers, beats a general
-// product. What stands on the way of every closing is inlined: a call would end the vectors that go on behind it.
+// The matrices are small: processing a block of points, or a lane of modes, at a time, with its data in registers, beats a
+// general product. Code on the hot path of every closing is inlined: a call would end the vectors that continue behind it.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,25 +18,25 @@ namespace softland {
 class PointQuadrature {
  public:
   PointQuadrature() = default;
-  /// Positions and weights [m], shapes of the modes there (points x modes) [kg^(-1/2)], and the rest gaps there [m].
+  /// Takes positions and weights [m], shapes of the modes there (points x modes) [kg^(-1/2)], and the rest gaps there [m].
   PointQuadrature(Eigen::ArrayXd positions, Eigen::ArrayXd weights, const Eigen::MatrixXd& shapes,
                   const Eigen::ArrayXd& rest_gaps);
 
   [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
   [[nodiscard]] const Eigen::ArrayXd& positions() const { return positions_; }  ///< [m]
   [[nodiscard]] const Eigen::ArrayXd& weights() const { return weights_; }      ///< [m]
-  /// They are those of the points, and at the idle ones behind them the largest [m].
+  /// Returns the rest gaps at the points; the idle points behind them have the largest one [m].
   [[nodiscard]] const Eigen::ArrayXd& rest_gaps() const { return rest_gaps_; }
-  /// phi_i(x_p), a row per point and some of no motion behind them, which fill the last block [kg^(-1/2)].
+  /// Returns phi_i(x_p), one row per point, then rows of zero motion that fill the last block [kg^(-1/2)].
   [[nodiscard]] const Eigen::MatrixXd& shapes() const { return shapes_; }
   [[nodiscard]] const Eigen::MatrixXd& weighted_shapes() const { return weighted_shapes_; }  ///< w_p phi_i(x_p)
 
   void set_gap(const double* q, GapField& field) const {
-    // noalias: no temporary, so no allocation in the hot path.
+    // noalias() needs no temporary, so there is no allocation in the hot path.
     field.gap.matrix().noalias() = shapes_ * Eigen::Map<const Eigen::VectorXd>(q, shapes_.cols());
     field.gap = rest_gaps_ - field.gap;
   }
-  /// Gap, velocity and smallest gap.
+  /// Computes gap, velocity and smallest gap.
   [[gnu::always_inline]] void set_field(const double* q, const double* v, GapField& field) const {
     Eigen::Index first = 0, left = shapes_.cols();
     double& smallest = field.smallest_gap;
@@ -44,22 +45,22 @@ class PointQuadrature {
     if (left == 2) smallest = add_modes<2>(first, q, v, field);
     if (left == 1) smallest = add_modes<1>(first, q, v, field);
   }
-  /// Modal forces of a load on the lane of modes that begins there: the sums over points of w_p phi_i(x_p) f(x_p).
+  /// Returns modal forces of a load on the lane of modes that begins there: the sums over points of w_p phi_i(x_p) f(x_p).
   [[gnu::always_inline]] [[nodiscard]] Lane projected(const Eigen::ArrayXd& loads, std::size_t first) const {
     const auto points = static_cast<std::size_t>(shapes_.rows());
     const double* shapes = weighted_lanes_.data() + first * points;
     const double* load = loads.data();
-    constexpr std::size_t chains = 4;  // sums that do not wait for one another
+    constexpr std::size_t chains = 4;  // independent partial sums
     Lane sum[chains] = {Lane::Zero(), Lane::Zero(), Lane::Zero(), Lane::Zero()};
     for (std::size_t p = 0; p < points; p += chains) {
       for (std::size_t k = 0; k < chains; ++k) sum[k] += load[p + k] * Eigen::Map<const Lane>(shapes + (p + k) * lanes);
     }
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
   }
-  /// Derivatives of the modal forces by modal coordinates, of those of the load by the local ones. `load` is scratch.
+  /// Computes derivatives of the modal forces by modal coordinates from those of the load by the local ones. `load` is scratch.
   void project_slopes(const Eigen::ArrayXd& slopes, Eigen::ArrayXd& load, Eigen::Ref<Eigen::MatrixXd> by) const;
 
-  static constexpr Eigen::Index block = lanes;  ///< points that are handled at once
+  static constexpr Eigen::Index block = lanes;  ///< number of points that are handled at once
   using Block = Lane;
 
  private:
@@ -90,7 +91,7 @@ class PointQuadrature {
 
   Eigen::ArrayXd positions_, weights_;
   Eigen::MatrixXd shapes_, weighted_shapes_;
-  std::vector<double> weighted_lanes_;  // the latter, for each whole lane of modes point by point
+  std::vector<double> weighted_lanes_;  // weighted shapes for each whole lane of modes, point by point
   Eigen::ArrayXd rest_gaps_;
   double largest_rest_gap_ = 0;
 };

@@ -1,11 +1,11 @@
-// x^y for laws along the beam: for doubles written so that a loop over points becomes vector instructions. The library's pow is a
-// call per point that costs many times what the rest of a film law does.
+// x^y for laws along the beam; for doubles it is written so that a loop over points becomes vector instructions. The library's
+// pow is a call per point that costs many times the rest of a film law.
 //
 //   x = 2^e m, sqrt(1/2) <= m < sqrt(2);   log2 x = e + (2 / ln 2) (f + f^3/3 + ... + f^21/21),  f = (m - 1)/(m + 1)
 //   2^z = 2^n (1 + r + ... + r^13/13!),    n = round z,  r = (z - n) ln 2
 //
-// For positive normal x; relative error below 1e-14 for |y log2 x| < 50 (tested). The result must be a normal number. Textbook
-// series, cut where the next term is below the rounding.
+// Valid for positive normal x; relative error below 1e-14 for |y log2 x| < 50 (tested). The result must be a normal number.
+// Source: textbook series, cut where the next term is below the rounding.
 #pragma once
 
 #include <bit>
@@ -17,22 +17,22 @@
 
 namespace softland {
 
-// Inlined whatever the size of the caller: a call would keep its loop from becoming vector instructions.
+// It is inlined whatever the size of the caller: a call would keep its loop from becoming vector instructions.
 template <class S>
 requires std::same_as<S, double> || LaneOfNumbers<S>
 [[nodiscard, gnu::always_inline]] inline S power(const S& x, double y) {
   constexpr double ln2 = 0.69314718055994530942;
-  // Bits of 2^52 + 2^51: adding it puts a rounded number, negative or not, into the low bits.
+  // These are the bits of 2^52 + 2^51: adding it puts a rounded number, negative or not, into the low bits.
   static constexpr double shift = 6755399441055744.0;
   constexpr auto one = std::bit_cast<std::int64_t>(1.0), low_root = std::bit_cast<std::int64_t>(0.70710678118654752440);
   const S m = one_by_one(x, [](double number) {
-    const std::int64_t above =
-        std::bit_cast<std::int64_t>(number) - low_root;  // e in the exponent's place, then what m is above the root
+    // The exponent's place holds e, the rest the excess of m over the root.
+    const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
     return std::bit_cast<double>((above & 0xFFFFFFFFFFFFF) + low_root);
   });
   const S e = one_by_one(x, [](double number) {
     const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
-    // Shifted as an unsigned number, with a bias that is taken off again: vectors have no signed shift.
+    // It is shifted as an unsigned number, with a bias that is removed again: vectors have no signed shift.
     const auto biased = static_cast<std::uint64_t>(above + (std::int64_t{1024} << 52)) >> 52;
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(shift) + biased) - (shift + 1024);
   });
@@ -48,16 +48,17 @@ requires std::same_as<S, double> || LaneOfNumbers<S>
                           [](double number) { return std::bit_cast<double>((std::bit_cast<std::int64_t>(number) << 52) + one); });
 }
 
-/// h^(-1/4) of a positive normal number, or of every number of a lane, to rounding: without division or root, which take longest
-/// of all instructions.
+/// Returns h^(-1/4) of a positive normal number, or of every number of a lane, to rounding. It avoids division and root, the
+/// slowest instructions:
 ///
 ///   w <- w (1 - e)^(-1/4),   e = 1 - h w^4,   the power by its series in e
 ///
-/// from a guess good to 4 %, the exponent divided by -4: the fifth order leaves 2e-6, the second order then 1e-17.
+/// from a guess good to 4 %, the exponent divided by -4. The fifth order leaves an error of 2e-6, the second order then 1e-17.
 template <class S>
 requires std::same_as<S, double> || LaneOfNumbers<S>
 [[nodiscard, gnu::always_inline]] inline S inverse_fourth_root(const S& h) {
-  constexpr std::uint64_t offset = 0x4FEB000000000000;  // five quarters of the exponent of one, less what makes the guess best
+  // Five quarters of the exponent of one, less an amount that makes the guess best.
+  constexpr std::uint64_t offset = 0x4FEB000000000000;
   S w = one_by_one(h, [](double x) { return std::bit_cast<double>(offset - (std::bit_cast<std::uint64_t>(x) >> 2)); });
   S square = w * w, e = 1.0 - h * (square * square);
   w += (w * e) * (0.25 + e * (5.0 / 32 + e * (15.0 / 128 + e * (195.0 / 2048 + e * (663.0 / 8192)))));
@@ -65,14 +66,14 @@ requires std::same_as<S, double> || LaneOfNumbers<S>
   return w + (w * e) * (0.25 + e * (5.0 / 32));
 }
 
-/// For other scalars by roots.
+/// Computes it by roots for other scalars.
 template <class S>
 [[nodiscard]] S inverse_fourth_root(const S& h) {
   using std::sqrt;
   return S(1) / sqrt(sqrt(h));
 }
 
-/// For other scalars (complex numbers in tests) the library's.
+/// Calls the library's function for other scalars (complex numbers in tests).
 template <class S>
 [[nodiscard]] S power(const S& x, double y) {
   using std::pow;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// A static equilibrium with the contact point held at a given deflection. `unknown` is what keeps it there: the strength of the
+// A static equilibrium with the contact point held at a given deflection. `unknown` is what holds it there: the strength of the
 // drive (of an electrode [V^2], the factor of the dispersion force), or the reaction of the holder [N].
 struct Held {
   Eigen::VectorXd q;
@@ -33,15 +33,16 @@ class Statics {
         rest_(Eigen::VectorXd::Zero(model.modes())),
         squares_(model.basis().angular_frequencies().cwiseAbs2()) {}
 
-  // Shape under a force at the contact point, scaled to the deflection s there.
+  // Returns the shape under a force at the contact point, scaled to the deflection s there.
   [[nodiscard]] Eigen::VectorXd pushed(double s) const {
     const Eigen::VectorXd shape = model_.basis().contact_shape().cwiseQuotient(squares_);
     return shape * (s / model_.basis().contact_shape().dot(shape));
   }
 
-  // `drive` holds the contact point at s against the contact force P(s - dt), the other drives standing at `bias`.
+  // Finds the equilibrium in which `drive` holds the contact point at s against the contact force P(s - dt), with the other
+  // drives at `bias`.
   std::optional<Held> on_branch(std::size_t drive, std::span<const double> bias, double s, Held start) {
-    // The force at unit strength as a difference: taken near the strength sought, where it does not drown in the others.
+    // The force at unit strength is a difference: taken near the strength sought, where the other forces do not dominate it.
     const double scale = start.unknown > 0 ? start.unknown : 1;
     std::vector<double> some(bias.begin(), bias.end()), none = some;
     some[drive] = model_.value_of_strength(drive, scale);
@@ -62,8 +63,8 @@ class Statics {
                   });
   }
 
-  // A holder keeps the contact point at s under constant voltages; unknown is the force with which the beam presses on it, beyond
-  // what a contact along the pad carries.
+  // Finds the equilibrium in which a holder keeps the contact point at s under constant voltages. unknown is the force with
+  // which the beam presses on it, beyond what a contact along the pad carries.
   std::optional<Held> pinned(std::span<const double> volts, double s) {
     std::optional<Held> h = Held{.q = pushed(s)};
     std::vector<double> part(volts.begin(), volts.end());
@@ -78,7 +79,7 @@ class Statics {
     return h;
   }
 
-  // The same from a state near it.
+  // Finds the same from a state near it.
   std::optional<Held> pinned(std::span<const double> volts, double s, Held near) {
     return newton(s, std::move(near),
                   [&](const Held& at, Eigen::VectorXd& residual, Eigen::MatrixXd& by_q, Eigen::VectorXd& by_unknown) {
@@ -88,7 +89,7 @@ class Statics {
                   });
   }
 
-  // On the contact, from a state near it.
+  // Finds an equilibrium on the contact, from a state near it.
   std::optional<Eigen::VectorXd> closed(std::span<const double> volts, Eigen::VectorXd near) {
     Eigen::VectorXd force;
     Eigen::MatrixXd by_q;
@@ -109,7 +110,7 @@ class Statics {
  private:
   static constexpr int most_iterations = 60;
 
-  // Static modal forces and their derivative, without a contact that acts at the point that is held.
+  // Computes static modal forces and their derivative, without a contact that acts at the held point.
   void evaluate(const Eigen::VectorXd& q, std::span<const double> volts, Eigen::VectorXd& force, Eigen::MatrixXd& by_q) {
     evaluate(q, volts, model_.has_spread_contact(), force, by_q);
   }
@@ -134,7 +135,7 @@ class Statics {
     Eigen::VectorXd right(n + 1);
     for (int i = 0; i < most_iterations; ++i) {
       equations(h, residual, by_q, by_unknown);
-      // Rows in units of each mode's own stiffness: unscaled they span ten decades.
+      // Rows are in units of each mode's own stiffness: unscaled they span ten decades.
       bordered.topLeftCorner(n, n) = squares_.cwiseInverse().asDiagonal() * by_q;
       bordered.topRightCorner(n, 1) = by_unknown.cwiseQuotient(squares_);
       bordered.bottomLeftCorner(1, n) = shape.transpose() / largest;
@@ -153,7 +154,7 @@ class Statics {
   [[nodiscard]] bool has_converged(const Eigen::VectorXd& step) const {
     return step.cwiseProduct(model_.basis().contact_shape()).cwiseAbs().sum() < 1e-13 * model_.device().gap.electrode;
   }
-  // Of the state evaluated last: the laws do not hold below the floor, so that there is no equilibrium.
+  // True when the state evaluated last is above the floor; below it the laws do not hold, so that there is no equilibrium.
   [[nodiscard]] bool is_above_floor() const { return Switch::smallest_gap(work_) > model_.gap_floor(); }
 
   const Switch& model_;
@@ -161,7 +162,7 @@ class Statics {
   Eigen::VectorXd rest_, squares_;
 };
 
-// The drives of a switch at a bias, `drive` itself at 0.
+// Returns the drives of a switch at a bias, `drive` itself at 0.
 std::vector<double> standing(const Switch& model, std::size_t drive, Bias bias) {
   require(bias.empty() || bias.size() == model.drives(), "a bias needs a value for every drive of the switch");
   std::vector<double> values(bias.begin(), bias.end());
@@ -176,7 +177,8 @@ class EquilibriumBranch {
   EquilibriumBranch(const Switch& model, std::size_t drive, Bias bias)
       : statics_(model), drive_(drive), bias_(standing(model, drive, bias)), goes_in_steps_(model.device().lands_along_face()) {}
 
-  // Strength at deflection s; NaN where there is no equilibrium. Starts from the last one found, so ask in small steps.
+  // Returns the strength at deflection s; NaN without an equilibrium. It starts from the last one found, so call it in small
+  // steps.
   double operator()(double s) {
     if (start_.q.size() == 0) start_ = {.q = statics_.pushed(s)};
     if (!reaches(s) && !(goes_in_steps_ && walks(s))) return nan;
@@ -197,7 +199,7 @@ class EquilibriumBranch {
   // Near the face of a thin dielectric the field grows so fast that Newton's method needs short steps.
   bool walks(double s) {
     constexpr int most_steps = 100;
-    constexpr double shortest = 1e-6;  // over the way
+    constexpr double shortest = 1e-6;  // share of the way
     const double least = shortest * std::abs(s - here_);
     double step = (s - here_) / 2;
     for (int k = 0; k < most_steps && std::abs(step) > least; ++k) {
@@ -218,7 +220,7 @@ class EquilibriumBranch {
   std::vector<double> bias_;
   bool goes_in_steps_;
   Held start_;
-  double here_ = 0;  // deflection of the last one found [m]
+  double here_ = 0;  // deflection of the last equilibrium found [m]
 };
 
 constexpr int branch_steps = 64;
@@ -228,8 +230,8 @@ struct Steps {
   double before, last, next;
 };
 
-// Walks from `depth` deeper in growing steps until stop(f there, f one step on). Where f ends (NaN: the beam would reach the
-// electrode) the steps are halved; nothing when the walk gets there.
+// Walks from `depth` deeper in growing steps until stop(f there, f one step on). The steps are halved where f ends (NaN: the
+// beam would reach the electrode); the walk returns nothing when it gets there.
 template <class F, class Stop>
 std::optional<Steps> walk(F&& f, double depth, double step, Stop&& stop) {
   constexpr double growth = 1.2;
@@ -256,12 +258,12 @@ struct Minimum {
   double depth, value;
 };
 
-// The first local minimum of f over the depth beyond the contact plane, at the plane if f rises from there.
+// Returns the first local minimum of f over the depth beyond the contact plane, at the plane if f rises from there.
 template <class F>
 std::optional<Minimum> first_minimum(F&& f, double step) {
   const auto around = walk(f, 0, step, [](double value, double here) { return here > value; });
   if (!around) return std::nullopt;
-  // In units of the step: Brent's tolerance is partly absolute.
+  // Depths are in units of the step: Brent's tolerance is partly absolute.
   const auto [at, value] = boost::math::tools::brent_find_minima([&](double x) { return f(x * step); }, around->before / step,
                                                                  around->next / step, 30);
   const double known = f(around->last);
@@ -283,7 +285,8 @@ class StepTrial {
         work_(model.workspace()) {}
 
   [[nodiscard]] bool has_rest() const { return rest_.has_value(); }
-  // Whether a step reaches the contact plane. tell(part) is called now and then, with the part of the time that is over.
+  // Returns true when a step reaches the contact plane. It calls tell(part) from time to time with the elapsed share of the
+  // time.
   template <class Tell>
   bool reaches(double value, const std::atomic<bool>* stop, Tell&& tell) {
     std::vector<double> all = bias_;
@@ -299,7 +302,7 @@ class StepTrial {
                            .stop = stop};
     int step = 0;
     options.observer = [&](double time, const double* q, const double* v) {
-      if (++step % 8 != 0) return false;  // looking more often costs more than it saves
+      if (++step % 8 != 0) return false;  // a more frequent check costs more than it saves
       tell(time / options.duration);
       return model_.contact_deflection(q) < barrier.deflection && model_.basis().kinetic_energy(v) +
                                                                           model_.potential(q, all, model_.untouched(q), work_) +
@@ -314,9 +317,9 @@ class StepTrial {
     double deflection, potential;
   };
 
-  // Friction only takes energy: a run whose energy falls below the pass between rest and contact plane before it is over it never
-  // gets there. The pass is the unstable equilibrium, or the state held at the plane where that comes first. Where the contact
-  // point is on it no shape has less energy, so its deflection tells the two sides apart.
+  // Friction only takes energy. So a run that is not yet over the pass between rest and contact plane, and whose energy falls
+  // below it, never reaches the plane. The pass is the unstable equilibrium, or the state held at the plane where that comes
+  // first. No shape with the contact point on the pass has less energy, so the deflection there separates the two sides.
   Pass pass(double value, std::span<const double> all) {
     const double plane = model_.contact_gap(), strength = model_.strength(drive_, value);
     if (static_.kind == StaticKind::fold && branch_(plane) < strength) {
@@ -364,11 +367,11 @@ StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
     const double s = place(k), strength = branch(s);
     if (!std::isfinite(strength)) return {.status = Status::numerical_failure};
     if (strength <= best) {
-      // In units of the gap: Brent's tolerance is partly absolute. The top is flat, so that of the deflection is far more than
-      // the voltage needs.
+      // The deflection is in units of the gap: Brent's tolerance is partly absolute. The top is flat, so that the tolerance of
+      // the deflection is far tighter than the voltage needs.
       const auto [at, value] = boost::math::tools::brent_find_minima([&](double x) { return -branch(x * end); },
                                                                      std::max(1e-6, place(k - 2) / end), s / end, 30);
-      // One that pulls away from the contact has none: its branch falls from the beginning.
+      // A drive that pulls away from the contact has no pull-in: its branch falls from the beginning.
       if (!(-value > 0)) return {.status = Status::no_contact};
       return {.status = Status::done,
               .voltage = model.value_of_strength(drive, -value),
@@ -383,7 +386,7 @@ StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
 
 namespace {
 
-// The branch from the straight beam up to the contact plane, in small steps.
+// Follows the branch from the straight beam up to the contact plane, in small steps.
 void follow_to_plane(EquilibriumBranch& branch, double plane) {
   for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
 }
@@ -424,13 +427,13 @@ ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
       const double value = branch(plane + k * step);
       if (value < best) best = value, at = k * step;
     }
-    // In units of the step: Brent's tolerance is partly absolute.
+    // Depths are in units of the step: Brent's tolerance is partly absolute.
     const double low = std::max(0.0, at / step - 1);
     const auto [depth, value] =
         boost::math::tools::brent_find_minima([&](double x) { return branch(plane + x * step); }, low, at / step + 1, 30);
     return value < best ? released(value, plane + depth * step) : released(best, plane + at);
   }
-  // The contact is soft at first touch, so the branch may fall on beyond the plane before contact turns it up.
+  // The contact is soft at first touch, so the branch may continue to fall beyond the plane before contact turns it up.
   const auto lowest = first_minimum([&](double depth) { return branch(plane + depth); }, model.penetration_scale() / 16);
   return lowest ? released(lowest->value, plane + lowest->depth) : ReleasePoint{};
 }
@@ -439,7 +442,7 @@ double release_voltage(const Switch& model, std::size_t drive, Bias bias) { retu
 
 namespace {
 
-// Of the static forces, by the modes: symmetric but for rounding, for contact and fields have potentials.
+// Returns the stiffness of the static forces by the modes: symmetric up to rounding, since contact and fields have potentials.
 Eigen::MatrixXd stiffness_at(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts,
                              const ContactState& contact) {
   const Eigen::Index n = model.modes();
@@ -484,7 +487,7 @@ std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bi
   EquilibriumBranch branch(model, drive, bias);
   const double begin = model.contact_deflection(rest->data()), end = model.contact_gap();
   StablePath path{.deflections = {begin}, .values = {0.0}};
-  double direction = 0;  // in which the value moves
+  double direction = 0;  // direction in which the value moves
   for (int k = 1; k <= steps; ++k) {
     const double s = begin + (end - begin) * k / steps, strength = branch(s);
     if (!std::isfinite(strength) || (model.drive_kind(drive) == DriveKind::electrode && !(strength > 0))) return std::nullopt;
@@ -515,8 +518,8 @@ ClosedEquilibrium closed_at(const Switch& model, const Eigen::VectorXd& q, doubl
           .smallest_eigenvalue = smallest_closed_eigenvalue(model, q, volts)};
 }
 
-// Between which depths f first rises to zero from below: just before a beam is pulled through it does so between two steps, and
-// falls again.
+// Returns the depths between which f first rises to zero from below. Just before a beam collapses onto the electrode it does so
+// between two steps, and falls again.
 template <class F>
 std::optional<Steps> first_enough(F&& f, double depth, double step) {
   auto turn = walk(f, depth, step, [](double value, double here) { return here >= 0 || here < value; });
@@ -532,21 +535,21 @@ double static_push(const Switch& model, const Eigen::VectorXd& q) {
   return model.contact_push(q.data(), still.data(), true);
 }
 
-// Finds how a beam rests on the face of a dielectric: it may stand on its first spot, or lie with most of its length. Newton's
-// method goes down the potential from `q`: its step leads downhill along every direction. A step shortens no gap of the field by
-// more than a share, so that it does not leap over the ridge of a soft face.
+// Finds how a beam rests on the face of a dielectric: on its first spot, or with most of its length. Newton's method descends
+// the potential from `q`: its step leads downhill along every direction. A step shortens no gap of the field by more than a
+// share, so that it does not jump over the ridge of a soft face.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts, Eigen::VectorXd q) {
   constexpr int most_steps = 1000;
   constexpr double longest = 0.05, shortest = 1e-9;           // steps, in shares of the gaps of the field
-  constexpr double least_gap = 0.25;                          // over the depth of the dielectric
-  constexpr double rounding = 1e-12;                          // over the bending energy
-  constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;  // over the stiffness of a mode, and over the longest step
+  constexpr double least_gap = 0.25;                          // share of the depth of the dielectric
+  constexpr double rounding = 1e-12;                          // share of the bending energy
+  constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;  // shares of the stiffness of a mode, and of the longest step
   Statics statics(model);
   Switch::Workspace work = model.workspace();
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
   const Eigen::VectorXd compliance = model.basis().angular_frequencies().cwiseInverse();
   const double depth = model.device().dielectric_depth();
-  // A point contact pulls nothing where the beam is not down on it.
+  // A point contact exerts no force where the beam does not touch it.
   const auto contact_at = [&](const Eigen::VectorXd& at) -> ContactState {
     return model.has_spread_contact() || model.contact_deflection(at.data()) > model.contact_gap() - model.contact_reach();
   };
@@ -564,7 +567,7 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
                                       .cwiseQuotient(along.values.cwiseAbs().cwiseMax(least_stiffness));
     Eigen::VectorXd step = (along.vectors * parts).cwiseProduct(compliance);
     double reach = reach_of(step);
-    if (along.values[0] < 0 && reach < at_saddle * radius) {  // no force shows the way down there
+    if (along.values[0] < 0 && reach < at_saddle * radius) {  // no force indicates the way down there
       step = along.vectors.col(0).cwiseProduct(compliance);
       step *= radius / reach_of(step);
       reach = radius;
@@ -584,7 +587,7 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
     radius = std::min(2 * radius, longest);
   }
   if (!contact_at(q).active) return std::nullopt;
-  // Where the edge of what is in touch lies at a point of the quadrature, Newton's method may go to and fro about it.
+  // Newton's method may oscillate about a point of the quadrature at which the edge of the touching part lies.
   if (const auto found = statics.closed(volts, q)) q = *found;
   const double push = static_push(model, q);
   if (!(push > 0)) return std::nullopt;
@@ -592,8 +595,8 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
   return found.smallest_eigenvalue > 0 ? std::optional(found) : std::nullopt;
 }
 
-// The beam begins where a force holds it at the plane of its first contact and, where another contact closes the switch and the
-// beam leaves it from there, on the face.
+// The beam begins where a force holds it at the plane of its first contact. It begins on the face where another contact closes
+// the switch and the beam leaves it from there.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts) {
   const Eigen::VectorXd squares = model.basis().angular_frequencies().cwiseAbs2();
   const auto held_at = [&](std::size_t c) {
@@ -617,13 +620,13 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
     if (!held || !(held->unknown > 0)) return std::nullopt;
     return closed_at(model, held->q, held->unknown, volts);
   }
-  // What the contact carries at a depth, less the force with which the beam presses there.
+  // Returns the force of the contact at a depth, less the force with which the beam presses there.
   const auto excess = [&](double depth) {
     const auto held = statics.pinned(volts, plane + depth);
     if (!held) return nan;
     return (model.has_spread_contact() ? 0 : contact_force(model.contact(), depth)) - held->unknown;
   };
-  // Where the beam presses hardest it must overcome the contact; the equilibrium is where, deeper, the contact takes over.
+  // The beam must overcome the contact where it presses hardest; the equilibrium is where, deeper, the contact takes over.
   const auto hardest = first_minimum(excess, step);
   if (!hardest || !(hardest->value < 0)) return std::nullopt;
   const std::optional<Steps> over = first_enough(excess, hardest->depth, step);
@@ -636,7 +639,7 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
 
 namespace {
 
-// By Newton's method from an equilibrium of little different voltages, where that ends on a stable one.
+// Finds it by Newton's method from an equilibrium of slightly different voltages, where that ends on a stable one.
 std::optional<ClosedEquilibrium> closed_by_newton(const Switch& model, std::span<const double> volts,
                                                   const ClosedEquilibrium& near) {
   Statics statics(model);
@@ -662,11 +665,11 @@ std::optional<ClosedEquilibrium> closed_equilibrium_near(const Switch& model, st
 
 namespace {
 
-// The steps in which a pull-through voltage is looked for, and how far. These functions look for the voltage that
-// acts, V - V0 of an electrode whose dielectric is charged.
+// Step and range of the search for pull_through_voltage(). These functions search for the acting voltage, V - V0 for an
+// electrode whose dielectric is charged.
 constexpr double pull_through_factor = 1.05, pull_through_range = 10;
 
-// Looks for closed equilibria up or down from `start`, whatever there is at other voltages.
+// Searches for closed equilibria up or down from `start`, whatever exists at other voltages.
 double pull_through_by_walk(const Switch& model, std::size_t drive, std::vector<double> levels, double start, double precision) {
   const auto holds = [&](double v) {
     levels[drive] = model.neutral_voltage(drive) + v;
@@ -693,8 +696,8 @@ double pull_through_by_walk(const Switch& model, std::size_t drive, std::vector<
   return high;
 }
 
-// The end of a window that begins at the release voltage and is narrower than one step of the walk above: looked for in steps
-// that double from a hundred-thousandth on. NaN where nothing holds the switch so near its release.
+// Returns the end of a window that begins at the release voltage and is narrower than one step of the walk above. It searches
+// in steps that double from a hundred-thousandth on. Returns NaN where nothing holds the switch so near its release.
 double pull_through_of_narrow_window(const Switch& model, std::size_t drive, std::vector<double> levels, double release,
                                      double precision) {
   constexpr double first_step = 1e-5;
@@ -721,7 +724,7 @@ double pull_through_of_narrow_window(const Switch& model, std::size_t drive, std
   return high;
 }
 
-// Upwards by Newton's method from a closed equilibrium near that at `start`; none where that ends nowhere.
+// Searches upwards by Newton's method from a closed equilibrium near that at `start`; returns none where it does not converge.
 std::optional<double> pull_through_from(const Switch& model, std::size_t drive, std::vector<double> levels, double start,
                                         const ClosedEquilibrium& near, double precision) {
   std::optional<ClosedEquilibrium> last = near;
@@ -743,14 +746,14 @@ std::optional<double> pull_through_from(const Switch& model, std::size_t drive, 
     const double middle = low + (high - low) / 2;
     (follows(middle) ? low : high) = middle;
   }
-  // Newton's method may have failed where there is an equilibrium.
+  // Newton's method may have failed although an equilibrium exists.
   levels[drive] = model.neutral_voltage(drive) + high;
   return keeps_closed(model, closed_equilibrium(model, levels)) ? std::nullopt : std::optional(high);
 }
 
 double acting_pull_through(const Switch& model, std::size_t drive, std::span<const double> volts, double precision) {
   const double neutral = model.neutral_voltage(drive);
-  // Below its release voltage nothing holds the switch.
+  // Nothing holds the switch below its release voltage.
   const double release = release_voltage(model, drive, volts) - neutral, given = std::abs(volts[drive] - neutral);
   const double start = std::fmax(given, pull_through_factor * release);
   if (!(start > 0)) return nan;
@@ -760,7 +763,7 @@ double acting_pull_through(const Switch& model, std::size_t drive, std::span<con
   const auto found =
       keeps_closed(model, closed) ? pull_through_from(model, drive, levels, start, *closed, precision) : std::nullopt;
   if (found) return *found;
-  const bool is_above = start > given;  // the given level may yet hold the switch
+  const bool is_above = start > given;  // the given level may still hold the switch
   if (is_above && !keeps_closed(model, closed)) {
     const double narrow = pull_through_of_narrow_window(model, drive, levels, release, precision);
     if (std::isfinite(narrow)) return narrow;
@@ -770,7 +773,7 @@ double acting_pull_through(const Switch& model, std::size_t drive, std::span<con
   return pull_through_of_narrow_window(model, drive, std::move(levels), release, precision);
 }
 
-// A rigid face of which nothing is below.
+// Returns true for a rigid face, below which nothing moves.
 bool lands_on_wall(const Switch& model, std::size_t drive) {
   const Device& device = model.device();
   if (drive >= device.electrodes.size() || !device.electrodes[drive].dielectric || device.face_contact() != 0) return false;
@@ -802,7 +805,7 @@ bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias
 
 namespace {
 
-// Tells whether friction at rest keeps the first mode from swinging.
+// Returns true when friction at rest prevents oscillation of the first mode.
 bool is_overdamped(const Switch& model) {
   if (!model.rest()) return false;
   const Eigen::Index n = model.modes();
@@ -825,7 +828,7 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
   double trials = halvings, done = 0, shown = 0;
   const auto reaches = [&](double value) {
     return steps.reaches(value, watch.stop, [&](double part) {
-      // A bracket that is looked for further down takes more trials than were expected.
+      // A bracket that is searched further down takes more trials than expected.
       shown = std::max(shown, std::min(1.0, (done + part) / trials));
       watch.tell("dynamic pull-in voltage", shown);
     });
@@ -833,7 +836,7 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
 
   double low = 0.5 * static_result.voltage, high = static_result.voltage;
   if (is_overdamped(model)) {
-    // Where friction lets no step overshoot, one trial tells that the static voltage is the least.
+    // If friction lets no step overshoot, one trial shows that the static voltage is the least.
     trials = 1;
     if (!reaches(high * (1 - precision))) low = high;
     trials = 1 + halvings;

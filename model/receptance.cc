@@ -11,8 +11,8 @@
 namespace softland {
 namespace {
 
-// Integrals over [-1, 1] of products of an element's motions, and of their slopes: one, 1 + xi, and the functions, which are
-// sqrt(m + 1/2) times the integrals of P_m.
+// Integrals over [-1, 1] of products of an element's motions, and of their slopes. The motions are one, 1 + xi, and the
+// functions, which are sqrt(m + 1/2) times the integrals of P_m.
 struct ElementProducts {
   static constexpr int size = 2 + element_functions;
   using Row = Eigen::Matrix<double, 1, size>;
@@ -41,10 +41,10 @@ struct ElementProducts {
   }
 };
 
-// Functions that leave the right end where it is are even or odd, and an even one does not act on an odd one.
+// Functions that leave the right end at rest are even or odd, and an even one does not act on an odd one.
 constexpr bool act_on_each_other(int i, int j) { return i < 4 || j < 4 || (i - j) % 2 == 0; }
 
-// What moves the right end: 1, 2 and the factors of the first two functions in its deflection, and in its rotation times half.
+// Motions of the right end: 1, 2 and the factors of the first two functions in its deflection, and in half its rotation.
 const double first_at_end = std::sqrt(2.0), second_at_end = -std::sqrt(2.0 / 3), first_turn = std::sqrt(2.0);
 
 }  // namespace
@@ -154,7 +154,7 @@ void Receptance::load(double x) {
   }
 }
 
-// What the stiffness [deflection, both, slope] and the forces at the right end are to an element's motions.
+// Adds the effect of the stiffness [deflection, both, slope] and the forces at the right end on an element's motions.
 void Receptance::add_beyond(Stage& stage, const Kind& kind, const Lane* stiffness, const Lane* force) const {
   const double deflection[kept] = {1, 2, kind.reach * first_at_end, kind.reach * second_at_end};
   const double slope[kept] = {0, 1 / kind.half, kind.reach * first_turn / kind.half, 0};
@@ -166,7 +166,7 @@ void Receptance::add_beyond(Stage& stage, const Kind& kind, const Lane* stiffnes
   }
 }
 
-// A right end that is held follows from the left one: the first two functions are linear in its deflection and rotation.
+// Fixes the right end, which then follows from the left one: the first two functions are linear in its deflection and rotation.
 void Receptance::fix_end(Stage& stage, const Kind& kind) const {
   const double first = -1 / (kind.reach * first_turn), second = -1 / (kind.reach * second_at_end);
   auto& f = stage.form;
@@ -195,7 +195,7 @@ void Receptance::sweep_to_clamp(Answer& answer) {
       fix_end(stage, kind);
     } else {
       add_beyond(stage, kind, stiffness, force);
-      // Both functions at once: either alone may vanish while nothing beyond is near a pole.
+      // Eliminate both functions at once: either alone may vanish while nothing beyond is near a pole.
       auto& f = stage.form;
       const Lane determinant = f[2][2] * f[3][3] - f[3][2].square(), over = determinant.inverse();
       stage.inverse[0] = f[3][3] * over;

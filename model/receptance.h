@@ -1,13 +1,13 @@
-// Receptance of a beam: its deflection at a place under a harmonic force of one there, without damping.
+// Receptance of a beam: its deflection at a place under a harmonic unit force there, without damping.
 //
 //   a(lambda) = sum over modes of phi_i(x)^2 / (lambda_i - lambda),   lambda = omega^2
 //
-// Its poles are the natural frequencies, its zeros those of the beam held at x as well. All is in the units and the functions of
-// NormalisedModes (model/beam.h). The quadratic form of elastic less kinetic energy is eliminated element by element from the far
-// end to the clamp at x = 0, as in a linear-quadratic control problem: what lies beyond a node is a stiffness of two by two
-// there, and short elements cost no digits. The time is proportional to the number of elements, and the negative pivots are as
-// many as the natural frequencies below (Sylvester's law of inertia; Wittrick & Williams, Q. J. Mech. Appl. Math. 24 (1971) 263).
-// Where the motion is nearly a mode, a over its derivative is the step to the Rayleigh quotient.
+// Its poles are the natural frequencies, its zeros those of the beam that is also held at x. All is in the units and the
+// functions of NormalisedModes (model/beam.h). The quadratic form of elastic less kinetic energy is eliminated element by
+// element from the far end to the clamp at x = 0, as in a linear-quadratic control problem: the part beyond a node acts as a
+// stiffness of two by two there, and short elements cost no digits. The time is proportional to the number of elements. There
+// are as many negative pivots as natural frequencies below (Sylvester's law of inertia; Wittrick & Williams, Q. J. Mech. Appl.
+// Math. 24 (1971) 263). Where the motion is nearly a mode, a over its derivative is the step to the Rayleigh quotient.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,54 +23,54 @@ namespace softland {
 inline constexpr int element_functions = 8;
 using ElementRow = Eigen::Matrix<double, 1, element_functions>;
 
-/// The functions of one element, at rest left of it, at xi in [-1, 1]: first (derivative 1) or second (0) integrals of P_m from
-/// -1. For m >= 2 both vanish at the right end.
+/// Returns the functions of one element, at rest left of it, at xi in [-1, 1]: first (derivative 1) or second (0) integrals of
+/// P_m from -1. For m >= 2 both vanish at the right end.
 [[nodiscard]] ElementRow element_integrals(double xi, int derivative);
 
 struct BeamElement {
-  double begin = 0, end = 0;  // in units of the beam's length, as all that follows
+  double begin = 0, end = 0;  // in units of the beam's length, as all lengths here
   double rigidity = 0, mass = 0;
-  double taper = 0;  // at its end both are this share larger than in its middle, linear in between
+  double taper = 0;  // relative growth of both from the middle to the end, linear in between
 
   [[nodiscard]] double half() const { return (end - begin) / 2; }
 };
 
-/// Integrals over the beam of the products of slopes of motions, a column of factors of the functions each. `first_slopes` are
-/// theirs at x = 0; none: they are 0.
+/// Returns integrals over the beam of the products of slopes of motions, each a column of factors of the functions.
+/// `first_slopes` are their slopes at x = 0; 0 if absent.
 [[nodiscard]] Eigen::MatrixXd slope_products(const std::vector<BeamElement>& elements, const Eigen::MatrixXd& motions,
                                              const std::optional<Eigen::RowVectorXd>& first_slopes = {});
 
-/// Of up to four lambda at once, for elements without taper.
+/// Computes the receptance for up to four lambda at once, for elements without taper.
 class Receptance {
  public:
-  /// Axial force positive in tension.
+  /// The axial force is positive in tension.
   Receptance(const std::vector<BeamElement>& elements, double axial_force, bool far_clamp);
 
   struct Answer {
     Lane deflection;   ///< a
-    Lane inertia;      ///< its derivative by lambda, which is the integral of mu y^2
-    Lane below;        ///< how many natural frequencies lie below
-    Lane least_pivot;  ///< the smallest but for the last, which vanishes at a pole: a small one magnifies the rounding
+    Lane inertia;      ///< its derivative by lambda, the integral of mu y^2
+    Lane below;        ///< number of natural frequencies below
+    Lane least_pivot;  ///< smallest pivot except the last, which vanishes at a pole: a small one magnifies the rounding
   };
-  /// The answer at x in (0, 1].
+  /// Returns the answer at x in (0, 1].
   [[nodiscard]] Answer at(const Lane& lambda, double x);
-  /// The motion of the last answer in a lane: factors of the functions, which are orthonormal in the bending energy.
+  /// Returns the motion of the last answer in a lane: factors of the functions, which are orthonormal in the bending energy.
   [[nodiscard]] Eigen::VectorXd motion(Eigen::Index lane) const;
 
  private:
   static constexpr int size = 2 + element_functions;  // deflection and rotation at an element's left end, then its functions
-  static constexpr int kept = 4;                      // of these, those that move the right end
-  // Elements that are alike, with their quadratic form: a lower triangle, what lies below the kept rows eliminated.
+  static constexpr int kept = 4;                      // number of these that move the right end
+  // A kind of equal elements, with their quadratic form: a lower triangle; the part below the kept rows is eliminated.
   struct Kind {
     double half = 0, rigidity = 0, mass = 0;
     double reach = 0;  // deflection of a function of unit energy, over the universal function
     Lane form[size][size];
-    Lane inverse[size];          // of the pivots
-    Lane negative, least_pivot;  // of the pivots
+    Lane inverse[size];          // inverse pivots
+    Lane negative, least_pivot;  // number of negative pivots, smallest pivot
 
     [[nodiscard]] bool holds(const BeamElement& e) const;
   };
-  // The kept rows of an element with all that is beyond it, and its load.
+  // The kept rows of an element with everything beyond it, and its load.
   struct Stage {
     std::size_t kind = 0;
     Lane form[kept][kept];
@@ -89,10 +89,10 @@ class Receptance {
   bool far_clamp_;
   std::vector<Kind> kinds_;
   std::vector<Stage> stages_;
-  std::vector<double> nodes_;  // where the elements end
-  std::size_t loaded_ = 0;     // the element at x
-  double probe_[size] = {};    // its motions' deflection at x
-  Lane load_[size];            // the same, condensed as its form is
+  std::vector<double> nodes_;  // ends of the elements
+  std::size_t loaded_ = 0;     // index of the element at x
+  double probe_[size] = {};    // deflection of its motions at x
+  Lane load_[size];            // the load, condensed as its form is
 };
 
 }  // namespace softland

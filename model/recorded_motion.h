@@ -1,4 +1,4 @@
-// The motion of all modes in a closing as it was found: smooth arcs, and what happens between them.
+// The motion of all modes in a closing as it was found: smooth arcs, and the events between them.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ class RecordedMotion final : public ClosingObserver {
     double time = 0;  ///< [s]
     const double *q, *v, *accelerations;
   };
-  /// Before the arc of this number.
+  /// An event before the arc of this number.
   struct PhaseEvent {
     std::size_t arc = 0;
     double time = 0;  ///< [s]

@@ -1,5 +1,5 @@
-// Normalised modes at the places where a switch looks at them: at the points of its quadrature, at its contact and at the ends of
-// its piezo layer. Switches of the same lengths share one, whatever their stiffness and mass.
+// Normalised modes at the places that a switch uses: at the points of its quadrature, at its contact and at the ends of its
+// piezo layer. Switches of the same lengths share one, whatever their stiffness and mass.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,11 +22,11 @@ namespace softland {
 
 struct SampledModes {
   struct Places {
-    std::vector<double> corners;                         // of the panels [m]
+    std::vector<double> corners;                         // ends of the panels [m]
     double contact = 0, piezo_begin = 0, piezo_end = 0;  // [m]
-    std::vector<double> further_contacts;                // after the first one [m]
+    std::vector<double> further_contacts;                // places of the contacts after the first one [m]
     double points_per_length = 0;
-    int fewest_points = 0;  // of a panel
+    int fewest_points = 0;  // least number of points of a panel
 
     [[nodiscard]] static Places of(const Device& d, double points_per_length, int fewest_points) {
       std::set<double> corners{0, d.structure.length};
@@ -56,14 +56,14 @@ struct SampledModes {
     [[nodiscard]] bool operator==(const Places&) const = default;
   };
   Places places;
-  std::vector<GaussRule> rules;                  // of the panels
-  std::shared_ptr<const NormalisedModes> modes;  // null of what is no beam
-  TabulatedModes::Shapes table = {};             // empty of what is no table
+  std::vector<GaussRule> rules;                  // rules of the panels
+  std::shared_ptr<const NormalisedModes> modes;  // null for other structures than beams
+  TabulatedModes::Shapes table = {};             // empty for other structures than tables
   Eigen::ArrayXd positions, weights;             // [m]
   Eigen::MatrixXd shapes;                        // points x modes
   Eigen::VectorXd contact_shape, contact_slope, piezo_begin_slope, piezo_end_slope;
   std::vector<Eigen::VectorXd> further_contact_shapes;
-  double pinned_inverse_square = 0;  // of the beam held at its contact
+  double pinned_inverse_square = 0;  // value for the beam held at its contact
 
   template <class Modes>
   SampledModes(const Modes& normalised, double length, Places at, const SampledModes* near) : places(std::move(at)) {

@@ -17,7 +17,7 @@ constexpr double no_slope = std::numeric_limits<double>::quiet_NaN();
 
 // The static accelerations near an equilibrium, as rows in units of each mode's own stiffness.
 struct Tangent {
-  MatrixXd by_q, by_strength;  // as they are; of the drives at unit strength
+  MatrixXd by_q, by_strength;  // unscaled; by_strength: drives at unit strength
   VectorXd scale;              // 1 / omega^2
 
   Tangent(const Switch& model, const VectorXd& q, std::span<const double> volts, const ContactState& contact)
@@ -34,7 +34,7 @@ struct Tangent {
     model.drive_forces(work, by_strength);
   }
 
-  // The x with F_q x = right.
+  // Returns the x with F_q x = right.
   [[nodiscard]] VectorXd solved(const VectorXd& right) const {
     return solve_linear(scale.asDiagonal() * by_q, scale.cwiseProduct(right));
   }
@@ -48,7 +48,7 @@ VectorXd change_of_accelerations(SwitchSlopes& by, std::size_t j, const VectorXd
   return change;
 }
 
-// Of the voltage at which a drive holds this equilibrium at a constant interference.
+// Returns the slopes of the voltage at which a drive holds this equilibrium at a constant interference.
 std::vector<double> held_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive, double deflection, Bias bias) {
   std::vector<double> slopes(by.moving().size(), no_slope);
   const std::optional<HeldEquilibrium> held = held_by_drive(model, drive, deflection, bias);
@@ -101,12 +101,12 @@ MatrixXd symmetric_tangent(const Switch& model, const VectorXd& q, std::span<con
   return -(by_q + by_q.transpose()) / 2;
 }
 
-// Tells whether all drives are at 0, where no charge on a dielectric pulls.
+// Returns true when all drives are at 0 and no charge on a dielectric pulls.
 bool are_zero(const Switch& model, std::span<const double> values) {
   return !model.device().is_charged() && std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
 }
 
-// By the strength of a drive, of an equilibrium under constant voltages.
+// Returns the motion of an equilibrium under constant voltages by the strength of a drive.
 VectorXd motion_by_voltage(const Switch& model, const Tangent& tangent, std::size_t drive, double value) {
   const double by_value = model.strength_slope(drive, value);
   const VectorXd force = model.drive_kind(drive) == DriveKind::piezo
@@ -115,9 +115,9 @@ VectorXd motion_by_voltage(const Switch& model, const Tangent& tangent, std::siz
   return -tangent.solved(by_value * force);
 }
 
-// A step of q that is small and still far above rounding.
+// Returns a step of q that is small and still far above rounding.
 double small_step(const Switch& model, const VectorXd& direction) {
-  constexpr double share = 1e-5;  // of the gap
+  constexpr double share = 1e-5;  // share of the gap
   const double moved = std::abs(model.contact_deflection(direction.data()));
   return moved > 0 ? share * model.contact_gap() / moved : 1;
 }

@@ -1,4 +1,4 @@
-// How what is measured of a switch at rest changes with parameters of its device, by implicit differentiation.
+// Derivatives of figures of a switch at rest by parameters of its device, by implicit differentiation.
 //
 //   F(q, V; p) = 0                      an equilibrium, F static modal accelerations
 //   q_p = -F_q^-1 F_p                   at constant voltages, away from a fold
@@ -6,10 +6,10 @@
 //   [d_q   0  ] [l_p] = - [d_p]
 //
 // The pull-in voltage is the largest of the open branch, or that at the contact plane; the release voltage is the least of the
-// closed branch. V as a function of the interference has no slope at such an extremum, and at the plane the interference is 0: in
-// each case V_p at a constant interference is the derivative of the voltage (envelope theorem). F_p and what a figure has by
-// itself come from the switches on either side of a parameter (SwitchSlopes). A slope is NaN where there is no such equilibrium.
-// One number for each of SwitchSlopes::moving().
+// closed branch. V as a function of the interference has no slope at such an extremum, and at the plane the interference is 0.
+// In each case V_p at a constant interference is the derivative of the voltage (envelope theorem). F_p and a figure's own
+// dependence come from the switches on either side of a parameter (SwitchSlopes). A slope is NaN where no such equilibrium
+// exists. There is one number for each of SwitchSlopes::moving().
 #pragma once
 
 #include <cstddef>
@@ -21,30 +21,31 @@
 
 namespace softland {
 
-/// Of static_pull_in() [V per unit of the parameter]; `pull_in` is what that has found.
+/// Returns the slopes of static_pull_in() [V per unit of the parameter]; `pull_in` is its result.
 [[nodiscard]] std::vector<double> static_pull_in_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive,
                                                         const StaticPullIn& pull_in, Bias bias = {});
-/// Of release_point() [V per unit of the parameter]. A release voltage of 0 has none.
+/// Returns the slopes of release_point() [V per unit of the parameter]. A release voltage of 0 has none.
 [[nodiscard]] std::vector<double> release_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive,
                                                  const ReleasePoint& release, Bias bias = {});
 
-/// Angular frequency of a mode, counted from 0, of small undamped vibrations about the open switch at rest under these values of
-/// all drives; NaN where it does not rest open [rad/s]. Where all values are 0 that of the free switch,
+/// Returns the angular frequency of a mode, counted from 0, of small undamped vibrations about the open switch at rest under
+/// these values of all drives; NaN where it does not rest open [rad/s]. If all values are 0 it is that of the free switch,
 /// Switch::angular_frequencies().
 [[nodiscard]] double resonance(const Switch& model, std::size_t mode, std::span<const double> values);
-/// Of resonance() [rad/s per unit of the parameter].
+/// Returns the slopes of resonance() [rad/s per unit of the parameter].
 [[nodiscard]] std::vector<double> resonance_slopes(const Switch& model, SwitchSlopes& by, std::size_t mode,
                                                    std::span<const double> values);
 
-/// Capacitance of an electrode of the open switch at rest under these values of all drives [F]; NaN where it does not rest open.
+/// Returns the capacitance of an electrode of the open switch at rest under these values of all drives [F]; NaN where it does
+/// not rest open.
 [[nodiscard]] double open_capacitance(const Switch& model, std::size_t drive, std::span<const double> values);
-/// Of open_capacitance() [F per unit of the parameter].
+/// Returns the slopes of open_capacitance() [F per unit of the parameter].
 [[nodiscard]] std::vector<double> open_capacitance_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive,
                                                           std::span<const double> values);
-/// The derivative of open_capacitance() by the voltage of drive `moved` [F/V].
+/// Returns the derivative of open_capacitance() by the voltage of drive `moved` [F/V].
 [[nodiscard]] double open_capacitance_by_voltage(const Switch& model, std::size_t drive, std::size_t moved,
                                                  std::span<const double> values);
-/// The derivative of resonance() by the voltage of drive `moved` [rad/s/V].
+/// Returns the derivative of resonance() by the voltage of drive `moved` [rad/s/V].
 [[nodiscard]] double resonance_by_voltage(const Switch& model, std::size_t mode, std::size_t moved,
                                           std::span<const double> values);
 

@@ -1,4 +1,4 @@
-// How a numerical computation ended. Numerical trouble is a status, never an exception.
+// The outcome of a numerical computation. Numerical trouble is a status, never an exception.
 #pragma once
 
 #include <string_view>
@@ -8,7 +8,7 @@ namespace softland {
 enum class Status {
   not_run,
   done,
-  open,                      ///< it stays open, as its drives ask it to: no closing was due
+  open,                      ///< it stays open, as its drives command: no closing was due
   no_contact,                ///< the contact point never reached the contact gap in the window
   not_settled,               ///< a rebound was under way, or contact had only just begun, at the end of the window
   collapsed_at_rest,         ///< no stable static equilibrium to start from

@@ -1,14 +1,14 @@
-// Stretching of a beam between two clamps: what bends must grow longer, and is held.
+// Stretching of a beam between two clamps: a bending beam must grow longer, but its ends are held.
 //
 //   U = EA/(8 L) (int y'^2 dx)^2         stored energy [J]
 //   Q_i = -EA/(2 L) (q'G q) (G q)_i      modal force [N kg^(-1/2)],   G_ij = int phi_i' phi_j' dx,   y = sum phi_i q_i
 //
-// E Young's modulus [Pa], A cross-section [m^2], L length [m], y deflection [m], G [1/(kg m)]. The beam's middle line is longer
-// than its chord by int y'^2/2 dx; axial motion is quasi-static, so that the tension EA/(2 L) int y'^2 dx is the same all along.
-// A hardening cubic stiffness: what holds the middle one thickness down is 1.7 times what bending alone asks for. E is Young's
-// modulus as given, also with plate_strain: in tension the sides of a beam are free to contract. Valid for slopes well below 1
-// and rigid anchors. Source: Woinowsky-Krieger 1950, J. Appl. Mech. 17, 35-36; Nayfeh & Mook, Nonlinear Oscillations, 1979,
-// sec. 7.1.
+// E is Young's modulus [Pa], A the cross-section [m^2], L the length [m], y the deflection [m], G [1/(kg m)]. The beam's middle
+// line is longer than its chord by int y'^2/2 dx; axial motion is quasi-static, so that the tension EA/(2 L) int y'^2 dx is the
+// same all along. It is a hardening cubic stiffness: the force that holds the middle one thickness down is 1.7 times that of
+// bending alone. E is Young's modulus as given, also with plate_strain: in tension the sides of a beam are free to contract.
+// Valid for slopes well below 1 and rigid anchors. Source: Woinowsky-Krieger 1950, J. Appl. Mech. 17, 35-36; Nayfeh & Mook,
+// Nonlinear Oscillations, 1979, sec. 7.1.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,20 +18,20 @@
 
 namespace softland {
 
-/// Over the scalar P of its parameters; the scalar S of the state can be made of P.
+/// Templated over the scalar P of its parameters; the scalar S of the state can be made of P.
 template <class P>
 struct MidPlaneStretchingOf {
   std::size_t modes = 0;
   std::vector<P> slopes = {};  ///< G [1/(kg m)], column by column
   P stiffness = P(0);          ///< EA/(2 L) [N/m]
 
-  /// result += Q
+  /// Adds result += Q.
   template <class S>
   void add_force(const S* q, S* result) const {
     const S strain = strain_of(q);
     for (std::size_t i = 0; i < modes; ++i) result[i] = result[i] - S(stiffness) * strain * pull(i, q);
   }
-  /// by_q += dQ/dq
+  /// Adds by_q += dQ/dq.
   void add_derivative(const double* q, Eigen::Ref<Eigen::MatrixXd> by_q) const requires std::same_as<P, double> {
     const auto n = static_cast<Eigen::Index>(modes);
     const Eigen::Map<const Eigen::MatrixXd> g(slopes.data(), n, n);
@@ -39,7 +39,7 @@ struct MidPlaneStretchingOf {
     const Eigen::VectorXd pulls = g * at;
     by_q -= stiffness * (at.dot(pulls) * g + 2 * pulls * pulls.transpose());
   }
-  /// by_q_q += second derivatives of the sum of multiplier_i Q_i
+  /// Adds by_q_q += second derivatives of the sum of multiplier_i Q_i.
   void add_curvature(const double* q, const double* multipliers,
                      Eigen::Ref<Eigen::MatrixXd> by_q_q) const requires std::same_as<P, double> {
     const auto n = static_cast<Eigen::Index>(modes);
@@ -56,7 +56,7 @@ struct MidPlaneStretchingOf {
  private:
   using Coordinates = Eigen::Map<const Eigen::VectorXd>;
 
-  // (G q)_i; of plain numbers several at once.
+  // Returns (G q)_i; for plain numbers several at once.
   template <class S>
   [[nodiscard]] S pull(std::size_t i, const S* q) const {
     const P* column = slopes.data() + i * modes;
@@ -69,7 +69,7 @@ struct MidPlaneStretchingOf {
       return sum;
     }
   }
-  // q'G q
+  // Returns q'G q.
   template <class S>
   [[nodiscard]] S strain_of(const S* q) const {
     S sum = S(0);

@@ -1,20 +1,20 @@
-// Surfaces of a thin beam as skins of their own: elasticity and residual stress (Gurtin & Murdoch).
+// Surfaces of a thin beam as skins with their own elasticity and residual stress (Gurtin & Murdoch).
 //
 //   EI = E a b^3 / 12 + E_s (a b^2 / 2 + b^3 / 6)      [N m^2]; the last term is that of the two side faces
 //   N_s = 2 tau_0 a                                      [N]
 //
-// E_s surface modulus [N/m], of either sign (atoms at a surface have fewer neighbours); tau_0 residual stress of the surfaces
-// [N/m], positive where they pull; a width, b thickness [m]. With `wide` faces the side faces are left out, as in most papers:
-// they count as b / (3 a) of the others. N_s is what upper and lower face pull with. Between two clamps it is a tension of the
-// beam.
+// E_s is the surface modulus [N/m], of either sign (atoms at a surface have fewer neighbours); tau_0 the residual stress of the
+// surfaces [N/m], positive where they pull; a the width, b the thickness [m]. With `wide` faces the side faces are neglected,
+// as in most papers: they count as b / (3 a) of the others. N_s is the pull of upper and lower face. Between two clamps it is a
+// tension of the beam.
 //
 // In a cantilever the end is free: the faces' pull N_s is balanced by an equal compression of the bulk between them, and the
-// bending moments of the two cancel, so a residual stress changes nothing in small deflections (Gurtin, Markenscoff & Thurston
+// bending moments of the two cancel. So a residual stress changes nothing in small deflections (Gurtin, Markenscoff & Thurston
 // 1976; Lachut & Sader 2007). A part of the literature nevertheless keeps one of the two as a load 2 tau_0 a y'' on the
-// deflection and finds the cantilever softer for tau_0 > 0, up to buckling without any voltage (He & Lilley 2008; Mikhasev & Radi
-// 2025). `ResidualLoad::compression` is that reading in the form that has an energy: the beam under the axial force -N_s, with
-// EI y''' = -N_s y' at the free end. It buckles at L = (pi / 2) sqrt(EI / N_s) and is refused from there on. The same load with
-// EI y''' = 0 at the end, also found in papers, is a follower force: it has no energy, and is not offered.
+// deflection and finds the cantilever softer for tau_0 > 0, up to buckling without any voltage (He & Lilley 2008; Mikhasev &
+// Radi 2025). `ResidualLoad::compression` is that model in the form that has an energy: the beam under the axial force -N_s,
+// with EI y''' = -N_s y' at the free end. It buckles at L = (pi / 2) sqrt(EI / N_s) and is refused from there on. The same load
+// with EI y''' = 0 at the end, also found in papers, is a follower force: it has no energy, and is not offered.
 //
 // Valid while the rigidity stays positive. Sources: M. E. Gurtin & A. I. Murdoch 1975, Arch. Ration. Mech. Anal. 57, 291;
 // rigidity: G.-F. Wang & X.-Q. Feng 2007, Appl. Phys. Lett. 90, 231904; J. He & C. M. Lilley 2008, Nano Lett. 8, 1798; no effect
@@ -28,16 +28,16 @@
 
 namespace softland {
 
-/// What the faces add to the bending rigidity [N m^2].
+/// Returns the contribution of the faces to the bending rigidity [N m^2].
 [[nodiscard]] inline double surface_rigidity(const Surface& surface, const Structure& s) {
   const double flanks = surface.faces == SurfaceFaces::all ? s.thickness / 3 : 0;
   return surface.elastic_modulus * s.thickness * s.thickness / 2 * (s.width + flanks);
 }
 
-/// Why the device cannot have its `surface`; empty when it can.
+/// Returns the reason why the device cannot have its `surface`; empty when it can.
 [[nodiscard]] std::string why_no_surface(const Device& device);
 
-/// N_s, what the residual stress of upper and lower face pulls with [N].
+/// Returns N_s, the pull of the residual stress of upper and lower face [N].
 [[nodiscard]] inline double surface_pull(const Surface& surface, const Structure& s) {
   return 2 * surface.residual_stress * s.width;
 }

@@ -3,20 +3,20 @@
 //   q_i'' = -omega_i^2 q_i - 2 zeta omega_i q_i' + V_piezo theta_i + sum over points p of w_p phi_i(x_p) f(x_p) - phi_i(x_c) P(d)
 //           + Q_i(q)
 //
-// q modal coordinates [m kg^(1/2)], phi mass-normalised modes [kg^(-1/2)], f load per length of all distributed laws [N/m], w
-// quadrature weights [m], theta_i = M_p [phi_i'(Lp2) - phi_i'(Lp1)] with M_p the piezo moment per volt, P contact force [N], d
-// interference [m], Q force of stretching (model/stretching.h). Deflection y(x) = sum phi_i(x) q_i, positive towards the
-// electrode. Galerkin projection on Gauss panels that start and end where an electrode, the piezo layer or a pad that acts along
-// its length does. Only the laws that the device has are composed: an absent effect costs nothing. A rigid plate is a strip that
-// stays flat: one mode, one quadrature point per panel.
+// q are modal coordinates [m kg^(1/2)], phi mass-normalised modes [kg^(-1/2)], f is the load per length of all distributed laws
+// [N/m], w are quadrature weights [m], theta_i = M_p [phi_i'(Lp2) - phi_i'(Lp1)] with M_p the piezo moment per volt, P is the
+// contact force [N], d the interference [m], Q the force of stretching (model/stretching.h). The deflection is y(x) = sum
+// phi_i(x) q_i, positive towards the electrode. It is a Galerkin projection on Gauss panels that start and end where an
+// electrode, the piezo layer or a pad that acts along its length does. Only the laws that the device has are composed: an
+// absent effect costs nothing. A rigid plate is a strip that stays flat: one mode, one quadrature point per panel.
 //
-// A charge per area sigma lies on the face of an electrode's dielectric. With E in the air and E_d in the dielectric, Gauss' law
-// says eps0 E = eps_r eps0 E_d + sigma, and V = E (h + h_r) + E_d t, so that
+// A charge per area sigma lies on the face of an electrode's dielectric. With E in the air and E_d in the dielectric, Gauss'
+// law gives eps0 E = eps_r eps0 E_d + sigma, and V = E (h + h_r) + E_d t, so that
 //
 //   E = (V - V0) / (h + t / eps_r + h_r),   V0 = -sigma t / (eps_r eps0)
 //
-// The electrode pulls as if it stood at V - V0. The fringing field is taken to scale with it. C (V - V0) is the charge on the
-// electrode but for a constant, which no source feels.
+// The electrode pulls as if it were at V - V0. The fringing field is taken to scale with it. C (V - V0) is the charge on the
+// electrode up to a constant, which no source feels.
 #pragma once
 
 #include <Eigen/Core>
@@ -45,16 +45,16 @@ class ReynoldsFilm;   // model/gas/reynolds_film.h
 
 struct SwitchOptions {
   double points_per_length = 24;  ///< quadrature points over a beam's length
-  int points_per_panel = 3;       ///< at least: what is more accurate needs more of both
-  /// Of a beam, instead of those that its structure has, up to most_static_modes: beyond most_modes for statics only.
+  int points_per_panel = 3;       ///< least number of points of a panel: more accuracy needs more of both
+  /// Modes of a beam, instead of those of its structure, up to most_static_modes: more than most_modes for statics only.
   std::optional<int> modes = {};
 };
 
-/// What all contacts of a switch do: each in a state of its own, or the first one in this state and each of the others, on first
+/// The states of all contacts of a switch: one state for each, or the first one in this state and each of the others, on first
 /// loading, wherever it is within its reach.
 struct ContactStates {
   ContactStates(const ContactState& first_one) : first(first_one) {}  // NOLINT: most switches have one contact
-  ContactStates(std::same_as<bool> auto acts) : first(acts) {}        // NOLINT: for most laws that is all there is
+  ContactStates(std::same_as<bool> auto acts) : first(acts) {}        // NOLINT: most laws need nothing else
   ContactStates(const ContactState& first_one, std::span<const ContactState> others) : first(first_one), further(others) {}
 
   ContactState first;
@@ -65,70 +65,71 @@ enum class DriveKind { electrode, dispersion, piezo };
 
 class Switch {
  public:
-  /// Throws InvalidInput for a device that validate() refuses. Takes normalised modes and quadrature from the switch `like` where
-  /// they are the same, and begins with its modes where they are not: the same switch but for rounding, built faster.
+  /// Throws InvalidInput for a device that validate() refuses. Takes normalised modes and quadrature from the switch `like`
+  /// where they are the same, and starts from its modes where they are not: the same switch up to rounding, built faster.
   explicit Switch(const Device& device, const SwitchOptions& options = {}, const Switch* like = nullptr);
 
   [[nodiscard]] const Device& device() const { return device_; }
-  /// Of the structure by itself.
+  /// Returns the modes of the structure by itself.
   [[nodiscard]] const ModalBasis& basis() const { return basis_; }
-  /// Where the distributed laws act.
+  /// Returns the points at which the distributed laws act.
   [[nodiscard]] const PointQuadrature& quadrature() const { return quadrature_; }
   [[nodiscard]] int modes() const { return basis_.modes(); }
-  /// Number of drives: the electrodes in order, then the dispersion force, then the piezo, if there are any. The values of
-  /// electrodes and piezo are voltages [V]; that of the dispersion force is its factor less one.
+  /// Returns the number of drives: the electrodes in order, then the dispersion force, then the piezo, as far as they exist.
+  /// The values of electrodes and piezo are voltages [V]; that of the dispersion force is its factor less one.
   [[nodiscard]] std::size_t drives() const { return driven_laws_.size() + (device_.piezo ? 1 : 0); }
   [[nodiscard]] DriveKind drive_kind(std::size_t drive) const {
     if (drive < electrodes_) return DriveKind::electrode;
     return drive < driven_laws_.size() ? DriveKind::dispersion : DriveKind::piezo;
   }
-  /// V0, the voltage at which an electrode does not pull: not 0 where its dielectric is charged. 0 for the other drives [V].
+  /// Returns V0, the voltage at which an electrode does not pull: not 0 where its dielectric is charged. 0 for the other drives
+  /// [V].
   [[nodiscard]] double neutral_voltage(std::size_t drive) const { return drive < electrodes_ ? neutral_voltages_[drive] : 0; }
-  /// The factor of a drive's law at this value: (V - V0)^2, or the force factor.
+  /// Returns the factor of a drive's law at this value: (V - V0)^2, or the force factor.
   [[nodiscard]] double strength(std::size_t drive, double value) const {
     if (drive >= electrodes_) return 1 + value;
     const double acting = value - neutral_voltages_[drive];
     return acting * acting;
   }
-  /// Its derivative with respect to the value: 2 (V - V0), or 1.
+  /// Returns its derivative with respect to the value: 2 (V - V0), or 1.
   [[nodiscard]] double strength_slope(std::size_t drive, double value) const {
     return drive < electrodes_ ? 2 * (value - neutral_voltages_[drive]) : 1;
   }
-  /// The inverse of strength(), of an electrode the value that is not below V0.
+  /// Returns the inverse of strength(); for an electrode the value that is not below V0.
   [[nodiscard]] double value_of_strength(std::size_t drive, double strength) const {
     return drive < electrodes_ ? neutral_voltages_[drive] + std::sqrt(strength) : strength - 1;
   }
   [[nodiscard]] bool has_piezo() const { return device_.piezo.has_value(); }
   [[nodiscard]] bool has_contact() const { return contact_ != nullptr; }
-  /// Number of contacts. What is asked without the number of one is about the first, which closes the switch.
+  /// Returns the number of contacts. Functions without the number of a contact concern the first one, which closes the switch.
   [[nodiscard]] std::size_t contacts() const { return contact_ ? 1 + further_.size() : 0; }
   [[nodiscard]] const ContactLaw& contact(std::size_t c = 0) const { return c == 0 ? *contact_ : *further_[c - 1].law; }
-  /// How far above the plane of first touch the contact acts [m]; 0 for most laws, and without contact.
+  /// Returns how far above the plane of first touch the contact acts [m]; 0 for most laws, and without contact.
   [[nodiscard]] double contact_reach(std::size_t c = 0) const;
-  /// Whether the contact acts along the pad or the face of a dielectric. It is active then at all times, and acts wherever these
-  /// are beyond the plane.
+  /// True when the contact acts along the pad or the face of a dielectric. It is active then at all times, and acts wherever
+  /// these are beyond the plane.
   [[nodiscard]] bool has_spread_contact(std::size_t c = 0) const { return c == face_at_ || (c == 0 && pad_ != nullptr); }
-  /// State of a contact that has not been touched yet: it acts only within its reach.
+  /// Returns the state of a contact that has not been touched yet: it acts only within its reach.
   [[nodiscard]] ContactState untouched(const double* q) const {
     const double reach = contact_reach();
     return has_spread_contact() || (reach > 0 && contact_deflection(q) > contact_gap_ - reach);
   }
-  /// Null unless the contact is rigid.
+  /// Returns null unless the contact is rigid.
   [[nodiscard]] const RigidContact* rigid_contact() const;
-  /// Null without gas.
+  /// Returns null without gas.
   [[nodiscard]] const GasLaw* gas() const { return gas_.get(); }
   [[nodiscard]] const std::optional<MidPlaneStretching>& stretching() const { return stretching_; }
-  /// Rest distance of the contact point to the contact plane [m].
+  /// Returns the rest distance of the contact point to the contact plane [m].
   [[nodiscard]] double contact_gap(std::size_t c = 0) const { return c == 0 ? contact_gap_ : further_[c - 1].gap; }
-  /// Gap below which every law is continued by its tangent and a run counts as having touched the electrode: a hundredth of d0,
-  /// and of a switch that lands on a dielectric half of what that adds to the field's gap, below its face; a wall holds at any
-  /// depth [m]. The laws of a film are continued from a hundredth of d0 on there, too.
+  /// Returns the gap below which every law is continued by its tangent and a run counts as having touched the electrode [m]: a
+  /// hundredth of d0. For a switch that lands on a dielectric it is below the face, by half of the dielectric's part in the
+  /// field's gap; a wall holds at any depth. There the laws of a film are still continued from a hundredth of d0 on.
   [[nodiscard]] double gap_floor() const {
     if (const Landing* landing = device_.landing(); landing != nullptr && landing->is_wall()) return -device_.gap.electrode;
     return device_.lands_on_dielectric() ? -device_.dielectric_depth() / 2 : device_.gap.electrode / 100;
   }
-  /// Interference at which the contact law carries the force that bends the beam by the contact gap [m]: the scale of
-  /// penetration.
+  /// Returns the interference at which the contact law carries the force that bends the beam by the contact gap [m]: the scale
+  /// of penetration.
   [[nodiscard]] double penetration_scale() const { return penetration_scale_; }
 
   /// Scratch memory of one run: a Switch is shared between threads, a Workspace is not.
@@ -138,30 +139,31 @@ class Switch {
   };
   [[nodiscard]] Workspace workspace() const;
 
-  /// States that follow q and v where the gas film is compressible: its pressures (model/gas/reynolds_film.h). 0 at rest.
+  /// Returns the number of states that follow q and v where the gas film is compressible: its pressures
+  /// (model/gas/reynolds_film.h). They are 0 at rest.
   [[nodiscard]] std::size_t film_states() const;
-  /// What a uniform film pressure of the size that bends the beam by the contact gap is, over the ambient one: the scale of the
-  /// film's states.
+  /// Returns the scale of the film's states: the uniform film pressure that bends the beam by the contact gap, over the ambient
+  /// one.
   [[nodiscard]] double film_scale() const;
 
-  /// Modal accelerations [m kg^(1/2) / s^2] for coordinates q, velocities v and drive voltages [V]; arrays of modes() doubles.
-  /// `film` are the states of a compressible film; without them it is at rest.
+  /// Computes modal accelerations [m kg^(1/2) / s^2] for coordinates q, velocities v and drive voltages [V]; arrays of modes()
+  /// doubles. `film` are the states of a compressible film; without them it is at rest.
   void accelerations(const double* q, const double* v, std::span<const double> volts, const ContactStates& contacts,
                      Workspace& work, double* result, const double* film = nullptr) const;
-  /// Everything but q' of a state (q, v, film): accelerations, then the rates of the film.
+  /// Computes everything but q' of a state (q, v, film): accelerations, then the rates of the film.
   void rates(const double* state, std::span<const double> volts, const ContactStates& contacts, Workspace& work,
              double* result) const;
-  /// Modal forces of the drives at unit strength (of the piezo: per volt) in the field last computed with `work`, whose load they
-  /// overwrite: modes x drives.
+  /// Computes modal forces of the drives at unit strength (for the piezo: per volt) in the field last computed with `work`,
+  /// whose load they overwrite: modes x drives.
   void drive_forces(Workspace& work, Eigen::Ref<Eigen::MatrixXd> by_strength) const;
-  /// Their derivatives with respect to q and v: modes x modes each.
+  /// Computes the derivatives of the accelerations with respect to q and v: modes x modes each.
   void jacobian(const double* q, const double* v, std::span<const double> volts, const ContactStates& contacts, Workspace& work,
                 Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const;
   /// Adds the film's part to the derivatives of (v, rates) by the state (q, v, film) whose field `work` holds.
   void add_film_derivatives(const double* state, const Workspace& work, Eigen::Ref<Eigen::MatrixXd> derivatives) const;
 
-  /// The motion before the first touch, whose accelerations are linear in the strengths of the drives (strength() of an
-  /// electrode, the factor of the dispersion force, V of the piezo): no contact, and no compressible film, acts.
+  /// The motion before the first touch: no contact, and no compressible film, acts. Its accelerations are linear in the
+  /// strengths of the drives (strength() of an electrode, the factor of the dispersion force, V of the piezo).
   struct FreeMotion {
     Eigen::VectorXd accelerations;  ///< [m kg^(1/2) / s^2]
     Eigen::MatrixXd by_q, by_v;     ///< modes x modes
@@ -169,75 +171,78 @@ class Switch {
   };
   [[nodiscard]] FreeMotion free_motion(const double* q, const double* v, std::span<const double> strengths,
                                        Workspace& work) const;
-  /// Second derivatives of the sum over modes of multiplier_i q_i'' in that motion, by (q, v, strengths): symmetric, 2 modes +
-  /// drives rows. Exact but at points nearer to an electrode than gap_floor(), which count as if the load had none.
+  /// Returns second derivatives of the sum over modes of multiplier_i q_i'' in that motion, by (q, v, strengths): symmetric, 2
+  /// modes + drives rows. They are exact except at points nearer to an electrode than gap_floor(), which count as if the load
+  /// had none.
   [[nodiscard]] Eigen::MatrixXd free_motion_curvature(const double* q, const double* v, std::span<const double> strengths,
                                                       const double* multipliers, Workspace& work) const;
 
-  /// y(x_c) [m]; also the velocity when given v. Positive towards the plane of the contact that is asked about.
+  /// Returns y(x_c) [m]; also the velocity when given v. It is positive towards the plane of this contact.
   [[nodiscard]] double contact_deflection(const double* q, std::size_t c = 0) const {
     return c == 0 ? basis_.contact_deflection(q) : basis_.at(q).dot(further_[c - 1].shape);
   }
-  /// phi_i(x_c) [kg^(-1/2)], positive towards the plane of the contact.
+  /// Returns phi_i(x_c) [kg^(-1/2)], positive towards the plane of the contact.
   [[nodiscard]] const Eigen::VectorXd& contact_shape(std::size_t c = 0) const {
     return c == 0 ? basis_.contact_shape() : further_[c - 1].shape;
   }
-  /// Smallest local gap in the last field computed with `work` [m].
+  /// Returns the smallest local gap in the last field computed with `work` [m].
   [[nodiscard]] static double smallest_gap(const Workspace& work) { return work.field.smallest_gap; }
-  /// Whether the beam comes within a hundredth of the rest gap of an electrode or a film's wall on its far side in that field.
+  /// True when the beam comes within a hundredth of the rest gap of an electrode or a film's wall on its far side in that
+  /// field.
   [[nodiscard]] bool at_far_side(const Workspace& work) const {
     return std::isfinite(most_gap_) && work.field.gap.head(quadrature_.points()).maxCoeff() > most_gap_;
   }
 
-  /// The stable static equilibrium under drives of 0, modal coordinates [m kg^(1/2)]; none when the beam collapses by itself, by
-  /// the dispersion force or the charge on a dielectric, or rests on the contact plane.
+  /// Returns the stable static equilibrium under drives of 0, modal coordinates [m kg^(1/2)]. Returns none when the beam
+  /// collapses by itself, by the dispersion force or the charge on a dielectric, or rests on the contact plane.
   [[nodiscard]] const std::optional<Eigen::VectorXd>& rest() const { return rest_; }
-  /// The same under these values of all drives, reached from the straight beam as they grow: what a run starts from.
+  /// Returns the equilibrium under these values of all drives, reached from the straight beam as they grow; a run starts from
+  /// it.
   [[nodiscard]] std::optional<Eigen::VectorXd> open_equilibrium(std::span<const double> values) const;
-  /// Charge on drive k per its own volt (capacitance) [F]; 0 unless it is an electrode.
+  /// Returns the charge on drive k per its own volt (capacitance) [F]; 0 unless it is an electrode.
   [[nodiscard]] double capacitance(std::size_t drive, const double* q, Workspace& work) const;
-  /// Potential of a drive's law at unit strength [J]; 0 for the piezo.
+  /// Returns the potential of a drive's law at unit strength [J]; 0 for the piezo.
   [[nodiscard]] double law_potential(std::size_t drive, const double* q, Workspace& work) const;
-  /// Minus the derivative of potential() with respect to the drive's value: the charge of an electrode beyond that at V0, or of
-  /// the piezo [C], minus the dispersion law's potential [J].
+  /// Returns minus the derivative of potential() with respect to the drive's value: the charge of an electrode beyond that at
+  /// V0, or of the piezo [C]; minus the dispersion law's potential [J].
   [[nodiscard]] double charge(std::size_t drive, double value, const double* q, Workspace& work) const;
-  [[nodiscard]] double elastic_energy(const double* q) const;  ///< of the beam, without piezo coupling and contact [J]
-  /// Whether anything takes energy out all the time: gas, modal damping, or a contact law that depends on the rate.
+  [[nodiscard]] double elastic_energy(const double* q) const;  ///< energy of the beam, without piezo coupling and contact [J]
+  /// True when some part takes energy out all the time: gas, modal damping, or a contact law that depends on the rate.
   [[nodiscard]] bool damped() const {
     return !passive_laws_.empty() || film_ || device_.structure.damping_ratio > 0 || has_damped_contact();
   }
   [[nodiscard]] bool has_damped_contact() const;
-  /// Power taken out by gas and modal damping [W]; a compressible film is at rest without its states.
+  /// Returns the power dissipated by gas and modal damping [W]; a compressible film is at rest without its states.
   [[nodiscard]] double dissipated_power(const double* q, const double* v, Workspace& work, const double* film = nullptr) const;
-  /// The same in the field last computed with `work`, whose velocities are `v`.
+  /// Returns the same in the field last computed with `work`, whose velocities are `v`.
   [[nodiscard]] double dissipated_power(const double* v, Workspace& work, const double* film = nullptr) const;
-  /// Stored in the film in a state (q, v, film) [J]; 0 where there is none.
+  /// Returns the energy stored in the film in a state (q, v, film) [J]; 0 without a film.
   [[nodiscard]] double film_energy(const double* state, Workspace& work) const;
-  /// What a contact does in a state in which it is active: its force on the beam [N], what it stores [J], the power it takes out
-  /// [W].
+  /// Return the force of a contact on the beam [N], its stored energy [J] and its dissipated power [W], in a state in which it
+  /// is active.
   [[nodiscard]] double contact_push(const double* q, const double* v, const ContactState& contact, std::size_t c = 0) const;
   [[nodiscard]] double contact_stored(const double* q, const ContactState& contact, std::size_t c = 0) const;
   [[nodiscard]] double contact_dissipation(const double* q, const double* v, std::size_t c = 0) const;
-  /// Energy that bends the beam by the contact gap at the contact point [J]: the scale of a closing's energies.
+  /// Returns the energy that bends the beam by the contact gap at the contact point [J]: the scale of a closing's energies.
   [[nodiscard]] double bending_energy() const { return bending_energy_; }
-  /// Energy of the closed system under constant voltages: elastic + contact + dispersion - 1/2 C (V - V0)^2 - V theta
-  /// q [J]. Its gradient is minus the static force.
+  /// Returns the energy of the closed system under constant voltages: elastic + contact + dispersion - 1/2 C (V - V0)^2 - V
+  /// theta q [J]. Its gradient is minus the static force.
   [[nodiscard]] double potential(const double* q, std::span<const double> volts, const ContactStates& contacts,
                                  Workspace& work) const;
 
  private:
-  /// Takes basis and quadrature from what moves, a beam or a plate.
+  /// Takes basis and quadrature from the moving structure, a beam or a plate.
   template <class Modes>
   void set_modes(const Modes& structure, double points_per_length, int fewest_points, const Switch* like);
   /// Calls f(xi, share, interference) for every point at which an active contact acts, xi from x_c towards the clamp [m].
   template <class F>
   void for_contact_points(const double* q, F&& f) const;
-  /// Of the pad at xi [m/s].
+  /// Returns the rate of the pad at xi [m/s].
   [[nodiscard]] double contact_rate(const double* v, double xi) const;
   /// A contact after the first one.
   struct FurtherContact {
     std::shared_ptr<const ContactLaw> law;
-    Eigen::VectorXd shape;  // positive towards its plane [kg^(-1/2)]
+    Eigen::VectorXd shape;  // shape, positive towards its plane [kg^(-1/2)]
     double gap = 0;         // [m]
   };
   /// Calls f(contact, state, interference) for every further contact that is active.
@@ -249,14 +254,15 @@ class Switch {
   }
   void add_pad_force(const double* q, const double* v, double* result) const;
   [[nodiscard]] double penetration_under(double force) const;
-  /// The pressure of the faces of the electrodes, whose contact this is.
+  /// Returns the pressure of the faces of the electrodes, whose contact this is.
   [[nodiscard]] std::shared_ptr<const DistributedLaw> face_pressure() const;
-  /// The field of a state at rest.
+  /// Returns the field of a state at rest.
   [[nodiscard]] GapField still_field(const double* q) const;
   void set_free_field(const double* q, const double* v, Workspace& work) const;
-  /// A share of what drives of these values do: the strength of an electrode or the dispersion force, V of the piezo.
+  /// Returns the values that produce a share of the forces of these values: of the strength of an electrode or the dispersion
+  /// force, V of the piezo.
   [[nodiscard]] std::vector<double> share_of(double share, std::span<const double> values) const;
-  /// Finds it from the straight beam, in shares of the load where it must.
+  /// Finds the equilibrium from the straight beam, in shares of the load where it must.
   [[nodiscard]] std::optional<Eigen::VectorXd> loaded_equilibrium(std::span<const double> values) const;
   [[nodiscard]] std::optional<Eigen::VectorXd> equilibrium_from(Eigen::VectorXd q, std::span<const double> values) const;
 
@@ -270,15 +276,16 @@ class Switch {
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // these dissipate
   std::shared_ptr<const ContactLaw> contact_;
   std::vector<FurtherContact> further_;
-  std::shared_ptr<const PadQuadrature> pad_;                       // acts in a contact along the pad
-  std::shared_ptr<const DistributedLaw> face_;                     // of a contact along the face of a dielectric; null for others
+  std::shared_ptr<const PadQuadrature> pad_;    // set for a contact along the pad
+  std::shared_ptr<const DistributedLaw> face_;  // pressure of a contact along the face of a dielectric; null for others
   std::size_t face_at_ = std::numeric_limits<std::size_t>::max();  // number of that contact
   std::shared_ptr<const GasLaw> gas_;
   std::shared_ptr<const ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;
   std::optional<Eigen::VectorXd> rest_;
-  double most_gap_ = std::numeric_limits<double>::infinity();  // to the near electrode, where something is on the far side [m]
-  double contact_gap_ = 0;                                     // [m]
+  // Largest gap to the near electrode, for a switch with a far side [m].
+  double most_gap_ = std::numeric_limits<double>::infinity();
+  double contact_gap_ = 0;  // [m]
   double penetration_scale_ = 0;
   double bending_energy_ = 0;
 };

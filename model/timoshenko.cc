@@ -15,9 +15,10 @@ namespace {
 
 constexpr double shear_coefficient = 5.0 / 6;  // kappa of a rectangle
 constexpr double usual_poissons_ratio = 0.3;
-constexpr double most_slender = 1000;  // beyond this rounding shows, and the excess goes with the square of thickness / length
+constexpr double most_slender = 1000;  // rounding shows beyond it; the excess grows with (thickness / length)^2
 
-// Euler-Bernoulli's wave number beta of a mode, counted from 1: cos(beta) cosh(beta) = 1 between two clamps, -1 with a free end.
+// Returns Euler-Bernoulli's wave number beta of a mode, counted from 1: cos(beta) cosh(beta) = 1 between two clamps, -1 with a
+// free end.
 double wave_number(int mode, bool both_clamped) {
   const double sign = both_clamped ? -1 : 1;
   double beta = (mode + (both_clamped ? 0.5 : -0.5)) * pi;
@@ -28,7 +29,7 @@ double wave_number(int mode, bool both_clamped) {
   return beta;
 }
 
-// Values and derivatives on [0, 1] of Legendre polynomials times what vanishes at the clamps, a column each.
+// Values and derivatives on [0, 1] of Legendre polynomials times a factor that vanishes at the clamps, one column each.
 struct Basis {
   Eigen::MatrixXd values, slopes;
 };
@@ -39,7 +40,7 @@ Basis basis(const std::vector<double>& points, int functions, bool both_clamped)
   for (Eigen::Index p = 0; p < rows; ++p) {
     const double z = points[static_cast<std::size_t>(p)], x = (1 + z) / 2;  // z in [-1, 1]
     const double held = both_clamped ? x * (1 - x) : x, held_slope = both_clamped ? 1 - 2 * x : 1;
-    double last = 0, now = 1, last_slope = 0, slope = 0;  // of P_k by z
+    double last = 0, now = 1, last_slope = 0, slope = 0;  // derivatives of P_k by z
     for (int k = 0; k < functions; ++k) {
       b.values(p, k) = held * now;
       b.slopes(p, k) = held_slope * now + held * 2 * slope;
@@ -70,7 +71,7 @@ std::vector<double> frequency_excess(const Structure& s) {
     return left.transpose() * weights.asDiagonal() * right;
   };
   const Eigen::Index n = functions;
-  Eigen::MatrixXd stiffness(2 * n, 2 * n), mass = Eigen::MatrixXd::Zero(2 * n, 2 * n);  // in units of E I / L and its inertia
+  Eigen::MatrixXd stiffness(2 * n, 2 * n), mass = Eigen::MatrixXd::Zero(2 * n, 2 * n);  // units: E I / L and its inertia
   stiffness.topLeftCorner(n, n) = integral(b.slopes, b.slopes) / shear;
   stiffness.topRightCorner(n, n) = -integral(b.slopes, b.values) / shear;
   stiffness.bottomLeftCorner(n, n) = stiffness.topRightCorner(n, n).transpose();

@@ -1,15 +1,15 @@
 // The cost that a search minimises. It is normalised by the plain step to the same hold level, so that the step costs about 1.
 //
-// Bounce count and settling time jump at grazing rebounds and, past the first macro-bounce, are properties of a cloud of runs
-// rather than of one: no search is led by them. Every search first follows the smooth cost of `bounce`, which leads to closings
-// without a significant rebound. There the other figures are well-conditioned, and a search for one of them goes on by that
-// figure itself. Every cost is scored over a fixed time after first contact, so that landing late hides no bounce.
+// Bounce count and settling time jump at grazing rebounds. Past the first macro-bounce they are properties of an ensemble of
+// runs rather than of one: no search is led by them. Every search first follows the smooth cost of `bounce`, which leads to
+// closings without a significant rebound. There the other figures are well-conditioned, and a search for one of them goes on by
+// that figure itself. Every cost is scored over a fixed time after first contact, so that landing late hides no bounce.
 //
-//   H  highest rebound, over that of the step           V  largest touch speed, over that of the step
+//   H  highest rebound, over that of the step           V  largest impact velocity, over that of the step
 //   K  energy above the closed equilibrium once the switch has touched and the drives stand at their hold levels, over that of
 //      the step: a squared velocity that also sees the vibration of the beam behind the contact point
 //   S  time in separation after first touch, over the score window
-//   P  h / (h + 10 h_s), h the highest rebound, h_s the significant height: the last nanometres, which H no longer sees
+//   P  h / (h + 10 h_s), h the highest rebound, h_s the significant height: the last nanometres, which H no longer resolves
 //   T  first touch, over that of the step               L  T + 10 max(0, T - T_free): lateness
 //
 //   bounce, rebound, count     B = 0.2 H + 0.15 V^2 + 0.45 K + 0.1 S^2 + 0.05 P + 0.02 L
@@ -21,9 +21,9 @@
 //                              drive: energy that the drives give within the score; steady: time from which the contact
 //                              force is steady over first touch of the step, the end of the score where it is not steady
 //
-// A closing can be harder than the plain step and have no rebound. B and F grow by E: the largest excess of touch speed, peak
-// contact force and impact energy over those of the step, as a share of them. A condition that the plain step breaks lifts this
-// rule, and so does an own objective.
+// A closing can be harder than the plain step and have no rebound. B and F grow by E: the largest excess of impact velocity,
+// peak contact force and impact energy over those of the step, as a share of them. A condition that the plain step breaks lifts
+// this rule, and so does an own objective.
 //
 // A weighted sum of targets has the weighted mean of their F; the F of bounce, rebound and count is B. The F of a user's own
 // objective is its value (own_objective.h); the cost is F / (1 + F) for one that does not ask for a landing first.

@@ -19,12 +19,13 @@ namespace softland {
 /// The direction in which a figure is better.
 enum class Better { lower, neither };
 
-/// What a figure depends on; this decides how its error can be estimated.
+/// The dependence of a figure; this decides how its error can be estimated.
 enum class Conditioning {
   first_touch,   ///< the motion until first contact: two runs differ by the error
   high_rebound,  ///< one rebound: two runs differ by the error, unless they part before it
   every_touch,   ///< all touches: two runs differ by the error as long as they have the same touches
-  last_rebound,  ///< the end of a sequence of rebounds, chaotic past the first large one: only a cloud of runs tells the range
+  last_rebound,  ///< the end of a sequence of rebounds, chaotic past the first large one: only an ensemble of runs gives the
+                 ///< range
   open,          ///< the motion of a switch that stays open: two runs differ by the error
   rest,          ///< the equilibrium under the hold levels: the quadrature alone
   drives         ///< the drives alone: it has no error

@@ -68,8 +68,8 @@ struct Metrics {
   double electrical_settling = unset;  ///< ElectricalOutcome::closed_from [s]
   int electrical_bounces = 0;          ///< ElectricalOutcome::openings; meaningless where it never closes
   double pressure = unset;             ///< largest Touch::pressure of the run
-  double make_charge =
-      unset;  ///< charge passed until the command to open, or the end of the run [C]; see objectives/transferred_charge.h
+  /// Charge passed until the command to open, or the end of the run [C]; see objectives/transferred_charge.h.
+  double make_charge = unset;
   double break_charge = unset;  ///< charge passed from the command on [C]
   AskedFigures asked = {};      ///< MetricsOptions::asked
   // These are known when the drives command the switch to open: see OpeningOnCommand.
@@ -81,23 +81,23 @@ struct Metrics {
   double overshoot_open = unset;         ///< [m]
   double least_gap_open = unset;         ///< [m]
   double closed_time = unset;            ///< time in touch from the first touch to the last break [s]
-  double back_stop_velocity =
-      unset;  ///< largest impact velocity on a back stop after the command, 0 if none [m/s]; by simulate()
+  /// Largest impact velocity on a back stop after the command, 0 if none [m/s]; by simulate().
+  double back_stop_velocity = unset;
   // Set by simulate() where nothing touched: see set_open_figures().
   double static_deflection = unset;  ///< position of the contact point in the open equilibrium under the hold levels [m]
   double overshoot = unset;          ///< largest excursion beyond static_deflection, seen from where the run started [m]
-  double open_settling_time =
-      unset;  ///< time from which the contact point stays near static_deflection [s]; NaN where it does not
+  /// Time from which the contact point stays near static_deflection [s]; NaN where it does not.
+  double open_settling_time = unset;
   // Set by simulate(), which knows the drives.
-  double peak_voltage =
-      unset;  ///< largest |V| of the electrodes' drives in the window, of the piezo where there is no electrode [V]
+  /// Largest |V| of the electrodes' drives in the window, of the piezo where there is no electrode [V].
+  double peak_voltage = unset;
   double peak_slew = unset;                ///< largest |dV/dt| of any drive [V/s]; infinite for a jump
   double largest_impact_velocity = unset;  ///< largest impact velocity of all touches, not only of the first [m/s]
   // Costs use these; results do not show them.
   double closest = unset;    ///< smallest separation before the first touch [m]; known also for a run that never touches
   double separated = unset;  ///< time above the first-touch plane after it [s]
-  double last_rebound_end =
-      unset;                      ///< end of the last significant rebound, end of the run while one is under way; t_i if none [s]
+  /// End of the last significant rebound, end of the run while one is under way; t_i if none [s].
+  double last_rebound_end = unset;
   double landing_excess = unset;  ///< Trajectory::landing_excess, not below 0 [J]
   double end = unset;             ///< end of the run [s]
   bool reopened = false;          ///< true when the contact is open at the end of the run, by more than half of the contact gap
@@ -111,7 +111,7 @@ struct Metrics {
   }
 };
 
-/// Gathers the figures of a landing from its touches and rebounds, whoever found them.
+/// Gathers the figures of a landing from its touches and rebounds, by whatever means these were found.
 class LandingFigures {
  public:
   explicit LandingFigures(const MetricsOptions& options = {}) : options_(options) {}

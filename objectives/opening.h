@@ -16,11 +16,11 @@ struct OpeningBand {
   double drives_end = 0;     ///< time from which the drives stand at their open levels [s]
 };
 
-/// How the contact point comes to rest in a band.
+/// The settling of the contact point in a band.
 struct BandFigures {
-  double settled_from =
-      std::numeric_limits<double>::quiet_NaN();  ///< time from which it stays in the band [s]; NaN where it does not
-  double below = 0, above = 0;  ///< largest excursion from the open position, away from the contact and towards it [m]; 0 if none
+  /// Time from which it stays in the band [s]; NaN where it does not.
+  double settled_from = std::numeric_limits<double>::quiet_NaN();
+  double below = 0, above = 0;  ///< largest excursion from the open position, away from and towards the contact [m]; 0 if none
   double residual = std::numeric_limits<double>::quiet_NaN();  ///< OpeningFigures::residual_vibration
 };
 
@@ -45,26 +45,25 @@ class BandFollower {
 
 /// A command to open, while a run goes on.
 struct OpeningCommand {
-  double time = std::numeric_limits<double>::infinity();            ///< [s]
-  double open_position = std::numeric_limits<double>::quiet_NaN();  ///< rest position of the contact point under the levels that
-                                                                    ///< follow [m]; NaN where it has none
+  double time = std::numeric_limits<double>::infinity();  ///< [s]
+  /// Rest position of the contact point under the levels that follow [m]; NaN where it has none.
+  double open_position = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// How a closed switch opens on a command. Times count from the command; NaN throughout where it is closed at the end.
+/// The opening of a closed switch on a command. Times count from the command; NaN throughout where it is closed at the end.
 struct OpeningOnCommand {
   double command = std::numeric_limits<double>::quiet_NaN();       ///< time of the command from t = 0 [s]
   double opening_time = std::numeric_limits<double>::quiet_NaN();  ///< time to the last break of the contact [s]
-  double settling_time =
-      std::numeric_limits<double>::quiet_NaN();  ///< time from which the contact point stays at rest, within settled_band [s]
-  double overshoot =
-      std::numeric_limits<double>::quiet_NaN();  ///< largest excursion beyond the open position, away from the contact [m]
-  double least_gap = std::numeric_limits<double>::quiet_NaN();  ///< smallest separation on the way back [m]; the last separation
-                                                                ///< if it never comes back
-  double highest_bounce =
-      std::numeric_limits<double>::quiet_NaN();  ///< highest separation that ends in a touch [m]; 0 without a bounce
-  double separated = 0;                          ///< time in separations until the last break [s]
-  int bounces =
-      0;  ///< number of separations above the significant rebound that end in a touch; meaningless where the contact is closed
+  /// Time from which the contact point stays at rest, within settled_band [s].
+  double settling_time = std::numeric_limits<double>::quiet_NaN();
+  /// Largest excursion beyond the open position, away from the contact [m].
+  double overshoot = std::numeric_limits<double>::quiet_NaN();
+  double least_gap = std::numeric_limits<double>::quiet_NaN();  ///< smallest separation on the way back, or the last [m]
+  /// Highest separation that ends in a touch [m]; 0 without a bounce.
+  double highest_bounce = std::numeric_limits<double>::quiet_NaN();
+  double separated = 0;  ///< time in separations until the last break [s]
+  /// Number of separations above the significant rebound that end in a touch; meaningless where the contact is closed.
+  int bounces = 0;
 };
 
 /// The contact has come to rest where it stays within this share of the contact gap of its open position.
@@ -98,12 +97,12 @@ struct OpeningFigures {
   /// done: the contact opens, and stays in the band until the end of the window. not_settled: it is closed at the end, or
   /// outside the band. Otherwise the status of the run.
   Status status = Status::not_run;
-  double release_time =
-      unset;  ///< time at which the contact point leaves the contact for good [s]; NaN while it is closed at the end
+  /// Time at which the contact point leaves the contact for good [s]; NaN while it is closed at the end.
+  double release_time = unset;
   double settling_time = unset;  ///< time from which it stays in the band [s]; NaN where it does not
   double overshoot = unset;      ///< largest excursion beyond its open position, away from the contact [m]; 0 if none
-  double residual_vibration =
-      unset;        ///< largest distance from the open position once the drives stand [m]; NaN before that, or while closed
+  /// Largest distance from the open position once the drives stand [m]; NaN before that, or while closed.
+  double residual_vibration = unset;
   int touches = 0;  ///< number of touches of the contact after it has first left it
 };
 

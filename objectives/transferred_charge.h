@@ -23,8 +23,8 @@ namespace softland {
 
 struct TransferOptions {
   SwitchedLoad load = {};
-  double light_below =
-      std::numeric_limits<double>::quiet_NaN();   ///< F_s [N]; NaN where it is not known, and then the charge is not known either
+  /// F_s [N]; NaN where it is not known, and then the charge is not known either.
+  double light_below = std::numeric_limits<double>::quiet_NaN();
   std::optional<ContactResistance> contact = {};  ///< contact resistance; neglected where absent
 };
 

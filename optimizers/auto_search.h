@@ -4,8 +4,8 @@
 // a budget of 500 to 2500 evaluations. Each epoch has four steps:
 // 1. Points spread over the box are evaluated.
 // 2. Local searches start from the best of all known points that lie apart from each other and from where earlier searches
-//    went. The best starts cma-es, which follows bent valleys and gets over kinks and small jumps. The second best starts bobyqa,
-//    whose quadratic model is the fastest where the objective is smooth.
+//    went. The best starts cma-es, which follows bent valleys and gets over kinks and small jumps. The second best starts
+//    bobyqa, whose quadratic model is the fastest where the objective is smooth.
 // 3. The better half of the searches goes on, until one is left.
 // 4. The best point is polished; if that converges, the next epoch begins with the rest of the budget.
 // The constants were chosen by success rates over the landscapes of tests/optimizers (bench/optimizers prints them).

@@ -64,8 +64,8 @@ struct ParetoOptions {
 struct ParetoResult {
   Termination termination = Termination::not_run;
   long evaluations = 0;
-  std::vector<ParetoEvaluation>
-      front;  ///< best of all evaluated points that keep the constraints, in the order of the first objective
+  /// Best of all evaluated points that keep the constraints, in the order of the first objective.
+  std::vector<ParetoEvaluation> front;
   std::string first_exception;
 };
 

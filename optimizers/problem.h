@@ -79,8 +79,8 @@ struct OptimizerOptions {
   std::function<void(const Evaluation&)> on_improvement = {};
 };
 
-/// Why a search ended. interrupted, time_budget and evaluation_budget come with the best point so far; x is empty without one.
-/// no_feasible_point: the search went to its end and every evaluation was non-finite or threw.
+/// The reason why a search ended. interrupted, time_budget and evaluation_budget come with the best point so far; x is empty
+/// without one. no_feasible_point: the search went to its end and every evaluation was non-finite or threw.
 enum class Termination {
   not_run,
   converged,
@@ -95,8 +95,8 @@ enum class Termination {
 
 struct OptimizerResult {
   Termination termination = Termination::not_run;
-  std::string message = {};                                 ///< why it ended, with the message of the library where it has one
-  std::vector<double> x;                                    ///< the best point; empty if no point was feasible
+  std::string message = {};  ///< reason why it ended, with the message of the library where it has one
+  std::vector<double> x;     ///< the best point; empty if no point was feasible
   double value = std::numeric_limits<double>::quiet_NaN();  ///< objective at x
   long evaluations = 0;
   std::vector<Evaluation> improvements;  ///< best-so-far history in the job-independent order

@@ -168,8 +168,8 @@ Moments moments_within(const Lognormal& d, const Interval& x) {
   const Normal logarithm = logarithm_of(d);
   const double s = logarithm.standard_deviation;
   const double low = x.low > 0 ? std::max((std::log(x.low) - logarithm.mean) / s, -far_out) : -far_out;
-  const double high =
-      std::min((std::log(x.high) - logarithm.mean) / s, far_out + 2 * s);  // the second moment's density is about 2 s
+  // The density of the second moment is centred about 2 s.
+  const double high = std::min((std::log(x.high) - logarithm.mean) / s, far_out + 2 * s);
   return moments(
       normal_breaks(low, high), [&](double z) { return std::exp(logarithm.mean + s * z); }, standard_normal_density);
 }

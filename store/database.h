@@ -35,13 +35,13 @@ class StatementFailed : public DamagedStore {
   std::string reason_;
 };
 
-/// How a database is opened.
+/// The mode in which a database is opened.
 enum class Access {
-  write,      ///< an existing database, to change it
-  create,     ///< the same, created where it is missing
-  recover,    ///< to read, from a writable place: the unfinished work of a process that died is put in order
-  read_only,  ///< to read, from a place that is not writable
-  immutable   ///< to read, from a place that nobody writes to, without a log: nothing is locked
+  write,      ///< change an existing database
+  create,     ///< the same, and create a missing one
+  recover,    ///< read, from a writable place: the unfinished work of a process that died is put in order
+  read_only,  ///< read, from a place that is not writable
+  immutable   ///< read, from a place that nobody writes to, without a log: nothing is locked
 };
 
 /// Device and inode, which identify a file under any name; none where the file does not exist.

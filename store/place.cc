@@ -247,8 +247,8 @@ void UnnamedStore::give_name() const {
   }
   if (code != 0 && errno == EEXIST) throw taken();
   if (code != 0) throw failed("be given its name");
-  static_cast<void>(synced(fs::absolute(name_).parent_path(),
-                           O_RDONLY | O_DIRECTORY));  // not every file system supports this; the name is already given
+  // A failure is ignored: not every file system supports this, and the name is already given.
+  static_cast<void>(synced(fs::absolute(name_).parent_path(), O_RDONLY | O_DIRECTORY));
 }
 
 }  // namespace internal

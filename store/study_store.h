@@ -83,7 +83,7 @@ struct StoredOrigin {
 struct StoredRow {
   std::int64_t point = 0;
   ContentKey content = {};
-  std::string status;          ///< how the computation ended: "done", "no_contact", "numerical_failure"
+  std::string status;          ///< outcome of the computation: "done", "no_contact", "numerical_failure"
   std::string reason = {};     ///< reason in words, where it did not succeed
   std::vector<double> values;  ///< values, one per column [SI]; NaN where not known. The sign of a zero is not kept
   std::string extra = {};      ///< JSON of further data of the point, such as the waveform found there; may be empty

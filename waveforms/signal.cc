@@ -118,7 +118,7 @@ std::vector<double> extreme_times(const SignalPiece& piece, double end, Of what)
   std::vector<double> times{piece.begin};
   if (std::isfinite(end)) times.push_back(end);
   if (!piece.terms.empty()) {
-    // The terms of the last piece decay: a sine that goes on reaches its own extremes within a period.
+    // The terms of the last piece decay: an undamped sine reaches its own extremes within a period.
     const double over = internal::duration_of_terms(piece);
     const double last =
         std::isfinite(end) ? end : piece.begin + over + (piece.oscillates() ? 2 * std::numbers::pi / piece.angular_frequency : 0);

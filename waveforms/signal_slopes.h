@@ -40,7 +40,7 @@ class SignalSlopes {
 
     double origin = 0;                                     // time about which a polynomial piece is written: s = time - origin
     std::array<double, 4> cubic = {};                      // coefficients of the derivative of a polynomial piece
-    std::shared_ptr<const SignalPiece> piece = nullptr;    // derivative of a piece where only sizes of a sine or of terms change
+    std::shared_ptr<const SignalPiece> piece = nullptr;    // derivative of a piece in which only sizes of sines or terms change
     const SignalPiece *above = nullptr, *below = nullptr;  // pieces of a difference where more changes
     double per_step = 0;
   };

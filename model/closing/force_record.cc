@@ -35,7 +35,7 @@ void ForceRecord::follow_way(const Force& force, double begin, double from, doub
   const double after = force(begin + beside * (end - begin)) - from, before = force(end - beside * (end - begin)) - to;
   if (!(after * before > 0)) return follow(force, begin, from, end, to);
   const double sign = after < 0 ? 1 : -1;
-  const auto at = [&](double share) { return std::lerp(begin, end, share); };  // of order one, as the search expects
+  const auto at = [&](double share) { return std::lerp(begin, end, share); };  // time of order one, as the search expects
   const double turn =
       at(boost::math::tools::brent_find_minima([&](double share) { return sign * force(at(share)); }, 0.0, 1.0, bits).first);
   const double there = force(turn);

@@ -18,11 +18,11 @@ namespace {
 // damped contact that rattles may show ninety in a row, so that some such runs change over without need.
 constexpr double held_back = 2;  // Stepper::stiffness()
 constexpr long steps_to_look = 100;
-// How an implicit method takes over.
+// The conditions under which an implicit method takes over.
 struct TakeOver {
   int looks = 50;  // number of such checks in a row after which it takes over
-  double tolerance =
-      0.01;  // share of the tolerance: an explicit method with a hundred times the steps had errors far below its own
+  // Share of the tolerance: an explicit method with a hundred times the steps had errors far below its own.
+  double tolerance = 0.01;
 };
 
 // A film that is squeezed out along the face of a dielectric stays as stiff as it has become. There the kinks of the face, at

@@ -27,7 +27,7 @@ namespace softland {
 using ContactModel = std::variant<LinearSpring, UniformAsperities, GaussianAsperities, AdhesiveAsperities, HystereticSpring,
                                   PlasticAsperities, RigidStop, AdhesiveRepulsiveSurfaces, OwnContact>;
 
-/// How the contact acts: at the pad's centre, or wherever along the pad it is beyond the plane.
+/// The place where the contact acts: at the pad's centre, or wherever along the pad it is beyond the plane.
 enum class ContactDistribution { centre, pad };
 inline constexpr auto contact_distributions =
     std::to_array<Named<ContactDistribution>>({{ContactDistribution::centre, "centre"}, {ContactDistribution::pad, "pad"}});
@@ -41,10 +41,10 @@ static_assert(is_complete<connections>());
 /// The electrical side of a closed contact: see model/contact/resistance.h. A contact without resistivity has no resistance.
 struct Conduction {
   double resistivity = std::numeric_limits<double>::quiet_NaN();  ///< rho of both metals [Ohm m]
-  double hardness =
-      std::numeric_limits<double>::quiet_NaN();  ///< H of the softer metal; the hardness of a law which has one [Pa]
-  double film_resistance = 0;                    ///< Rf in series with each contact [Ohm]
-  double mean_free_path = 0;                     ///< l of the electrons [m]
+  /// H of the softer metal; the hardness of a law which has one [Pa].
+  double hardness = std::numeric_limits<double>::quiet_NaN();
+  double film_resistance = 0;  ///< Rf in series with each contact [Ohm]
+  double mean_free_path = 0;   ///< l of the electrons [m]
 
   [[nodiscard]] bool is_given() const { return resistivity > 0; }
 };

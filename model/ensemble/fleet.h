@@ -78,7 +78,7 @@ struct FleetClosing {
 struct FleetEnd {
   bool followed = false;
   double time = 0;  ///< [s]
-  /// As in Trajectory [s], [N].
+  /// Figures of the contact force as in Trajectory [s], [N].
   double steady_force_time = std::numeric_limits<double>::quiet_NaN(),
          least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
   double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< EnergyBalance::source_work and Trajectory::layer_energy,

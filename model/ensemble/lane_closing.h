@@ -43,7 +43,7 @@ struct LaneContactKind {
 
 /// The properties that the lanes of a run have in common.
 struct LaneLayout {
-  bool usual = true;  ///< true for UsualLaws: segments follow one another; else they are pads, which may lie over the same points
+  bool usual = true;  ///< true for UsualLaws: segments follow one another; else they are pads, which may overlap in points
   int modes = 0, points = 0, segments = 0, electrodes = 0, drives = 0;
   bool piezo = false, stretching = false;
   LaneFringing fringing = LaneFringing::none;  ///< fringing law of all electrodes; usual laws only
@@ -67,7 +67,7 @@ struct LaneContactNumbers {
   double shape[most_modes] = {};    // modes at its place, positive towards its plane [kg^(-1/2)]
   double strength = 0, height = 0;  // parameters of its law; for linear the stiffness [N/m]
   double damping = 0;               // [s/m]
-  double unloading_stiffness = 0;   // for a law with a memory, whose loading stiffness is `strength` [N/m]
+  double unloading_stiffness = 0;   // unloading stiffness of a law with a memory; `strength` is that of loading [N/m]
   double negligible_depth = 0;      // [m]
 };
 
@@ -81,8 +81,8 @@ struct LaneSwitch {
   double rest_gap[most_points] = {};                                     // [m]
   double flying[most_modes] = {}, touching[most_modes] = {};             // absolute tolerances of coordinates
   double speed[most_modes] = {};                                         // absolute tolerances of velocities
-  double width[most_points] = {}, thickness[most_points] = {};           // by stretch [m]
-  double viscosity[most_points] = {};                                    // by stretch [Pa s]
+  double width[most_points] = {}, thickness[most_points] = {};           // sizes of each stretch [m]
+  double viscosity[most_points] = {};                                    // viscosity over each stretch [Pa s]
   double mean_free_path = 0, slit_height = 0, slit_length = 0;           // [m]
   double damping = 0;                                                    // damping of the film `linear` [N s/m^2]
   double electrode_gaps[most_drives] = {}, film_gaps = 0;                // gaps of both sides together, with a far side [m]

@@ -29,8 +29,8 @@ class Lanes {
   using M = typename V::mask_type;
   static constexpr std::size_t width = V::size();
   static constexpr int capacity = Laws::capacity;
-  static constexpr int pieces =
-      3;  // pieces of a step of two radians of the fastest mode: as StepMotion at tolerances from 1e-5 on
+  // Pieces of a step of two radians of the fastest mode: as StepMotion at tolerances from 1e-5 on.
+  static constexpr int pieces = 3;
   static constexpr double most_rounds = 100'000;
   static constexpr double infinite = std::numeric_limits<double>::infinity();
   static constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
@@ -881,7 +881,7 @@ class Lanes {
     if (!one.touching) return false;
     if (one.to_turn) {
       const double speed = speed_[c][l], acceleration = acceleration_[c][l];
-      const double left = acceleration < 0 ? speed * speed / (2 * acceleration) : 0;  // further way that the velocity carries it
+      const double left = acceleration < 0 ? speed * speed / (2 * acceleration) : 0;  // further way by the velocity
       const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
       const double depth = position_[c][l] - plane_[c][l] - left;
       one.deepest = depth;

@@ -260,7 +260,7 @@ class AnyLaws {
       smallest = min(smallest, gap), largest = max(largest, gap);
       gap_[p] = max(gap, floor), velocity_[p] = velocity, load_[p] = 0;
     }
-    least = min(smallest, floor + (most_gap_ - largest));  // below the floor where the far side is near
+    least = min(smallest, floor + (most_gap_ - largest));  // is below the floor where the far side is near
   }
 
   void look_far(int begin, int end, const V& both, const V& floor) {

@@ -25,8 +25,8 @@ struct Film {
   double unit_quality;      ///< damping per length that gives the first mode a quality factor of one [N s/m^2]
 };
 
-inline constexpr double incompressible =
-    10;  ///< largest squeeze number of an incompressible strip film; the strip's cut-off is pi^2
+/// Largest squeeze number of an incompressible strip film; the strip's cut-off is pi^2.
+inline constexpr double incompressible = 10;
 
 /// Range in which a law holds.
 struct FilmLimits {

@@ -7,7 +7,7 @@
 //
 // mu is the viscosity [Pa s] (1.98e-5 in the source), a the width [m], h the local gap [m], lambda the mean free path [m], v
 // the velocity towards the electrode [m/s]. f has a continuous derivative at x = 0.015. The law does not hold for continuum
-// flow: E diverges as Kn -> 0; 210.79 Kn below 1 is a warning. In contrast to the other films c FALLS towards contact where the
+// flow: E diverges as Kn -> 0; 210.79 Kn below 1 is a warning. Unlike the other films, c FALLS towards contact where the
 // tangent acts. Finite at h -> 0. Source: coefficients as coded in the public force code of the Purdue PRISM centre
 // (ComputeForce.py); the paper behind them is presumably Parkos et al., J. Microelectromech. Syst. 22 (2013), which was not
 // read.

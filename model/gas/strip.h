@@ -1,18 +1,18 @@
-// Squeezed gas film under a long strip: incompressible, continuum, whole width, also where there is no electrode.
+// Squeezed gas film under a long strip: incompressible, continuum, over the whole width, also where there is no electrode.
 //
 //   f = -mu (a / h)^3 v     [N/m], positive towards the electrode
 //
-// mu viscosity [Pa s], a width [m], h local gap [m], v velocity towards the electrode [m/s]: the film always opposes the motion.
-// Valid for squeeze numbers 12 mu a^2 omega / (p h^2) below about 10, gaps well above the mean free path (65 nm in air), strips
-// much longer than wide. Singular at h = 0: the switch ends a run before any gap gets there. Source: Bognash 2019, eq. 2.8;
-// textbook limit of the Reynolds equation.
+// mu is the viscosity [Pa s], a the width [m], h the local gap [m], v the velocity towards the electrode [m/s]: the film always
+// opposes the motion. Valid for squeeze numbers 12 mu a^2 omega / (p h^2) below about 10, gaps well above the mean free path
+// (65 nm in air), strips much longer than wide. Singular at h = 0: the switch ends a run before any gap gets there. Source:
+// Bognash 2019, eq. 2.8; textbook limit of the Reynolds equation.
 #pragma once
 
 #include "model/gas/film.h"
 
 namespace softland {
 
-/// Over the scalar of its parameters; that of the state is one they convert to.
+/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
 template <class P>
 struct StripSqueezeFilmOf {
   P viscosity = 0;  ///< [Pa s]
@@ -20,12 +20,12 @@ struct StripSqueezeFilmOf {
   P mu_a3 = viscosity * width * width * width;
   static constexpr bool driven = false;
 
-  /// [N/m]
+  /// Returns the load [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     return S(-mu_a3) * velocity / (gap * gap * gap);
   }
-  /// The same of h^(-1/4) [m^(-1/4)], where that is known.
+  /// Returns the same from h^(-1/4) [m^(-1/4)], where that is known.
   template <class S>
   [[gnu::always_inline]] S load_by_root(S root, S velocity) const {
     const S square = root * root, inverse = square * square;
@@ -34,7 +34,7 @@ struct StripSqueezeFilmOf {
 };
 using StripSqueezeFilm = StripSqueezeFilmOf<double>;
 
-/// In a scene.
+/// The law in a scene.
 struct StripGas {
   static constexpr std::string_view name = "strip";
   static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = incompressible};

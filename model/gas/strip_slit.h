@@ -1,22 +1,23 @@
-// Squeezed gas film between two walls that stand on a substrate: one long edge is open, from the other the gas can only leave
-// through a slit under the moving wall. Fingers of gap-closing actuators etched from the device layer of a silicon-on-insulator
-// wafer move so.
+// Squeezed gas film between two walls that stand on a substrate: one long edge is open; at the other the gas can only leave
+// through a slit under the moving wall. The fingers of gap-closing actuators etched from the device layer of a
+// silicon-on-insulator wafer move in this way.
 //
 //   f = -mu (a / h)^3 v (4 + r) / (1 + r),   r = a s^3 / (l h^3)     [N/m], positive towards the electrode
 //
-// mu viscosity [Pa s], a width of the film (height of the wall) [m], h local gap [m], s height of the slit [m], l its length up
-// to where the pressure is ambient [m] (half the wall's width when a film on the other side of the wall is sucked as this one is
-// squeezed), v velocity towards the electrode [m/s]. r compares what slit and film let pass: a wide slit, r -> infinity, gives
-// the strip open at both edges, a closed one four times its damping, the strip of twice the width. Derived from Reynolds'
-// equation with p = 0 at the open edge and -dp/dx h^3 = p s^3 / l at the other; the same factor as Li, Rouf & Horsley,
-// Transducers 2013, for lateral oscillators. Continuum, incompressible, Poiseuille flow in the slit. Singular at h = 0.
+// mu is the viscosity [Pa s], a the width of the film (height of the wall) [m], h the local gap [m], s the height of the slit
+// [m], l its length up to where the pressure is ambient [m] (half the wall's width when a film on the other side of the wall is
+// sucked as this one is squeezed), v the velocity towards the electrode [m/s]. r compares the flows through slit and film: a
+// wide slit, r -> infinity, gives the strip open at both edges, a closed one four times its damping, the strip of twice the
+// width. Derived from Reynolds' equation with p = 0 at the open edge and -dp/dx h^3 = p s^3 / l at the other; the same factor
+// as Li, Rouf & Horsley, Transducers 2013, for lateral oscillators. Continuum, incompressible, Poiseuille flow in the slit.
+// Singular at h = 0.
 #pragma once
 
 #include "model/gas/film.h"
 
 namespace softland {
 
-/// Over the scalar of its parameters; that of the state is one they convert to.
+/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
 template <class P>
 struct StripOverSlitOf {
   P viscosity = 0;    ///< [Pa s]
@@ -27,7 +28,7 @@ struct StripOverSlitOf {
   P passing = width * slit_height * slit_height * slit_height / slit_length;  ///< r h^3 [m^3]
   static constexpr bool driven = false;
 
-  /// [N/m]
+  /// Returns the load [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     const S cube = gap * gap * gap;
@@ -36,7 +37,7 @@ struct StripOverSlitOf {
 };
 using StripOverSlit = StripOverSlitOf<double>;
 
-/// In a scene.
+/// The law in a scene.
 struct StripSlitGas {
   static constexpr std::string_view name = "strip-slit";
   static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = incompressible};

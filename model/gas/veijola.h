@@ -2,10 +2,11 @@
 //
 //   f = -mu_eff (a / h)^3 v,   mu_eff = mu / (1 + 9.638 Kn^1.159),   Kn = lambda / h     [N/m], positive towards the electrode
 //
-// mu viscosity [Pa s], a width [m], h local gap [m], lambda mean free path [m], v velocity towards the electrode [m/s]. The fit
-// is within 5 % of the linearised Boltzmann solution of Poiseuille flow for Kn up to 880. Incompressible: squeeze numbers 12 mu
-// a^2 omega / (p h^2) below about 10. Kn -> 0: the strip film. Singular at h = 0. Source: Veijola, Kuisma, Lahdenpera & Ryhanen,
-// Sensors and Actuators A 48 (1995) 239, for the flow conductance of Fukui & Kaneko 1988.
+// mu is the viscosity [Pa s], a the width [m], h the local gap [m], lambda the mean free path [m], v the velocity towards the
+// electrode [m/s]. The fit is within 5 % of the linearised Boltzmann solution of Poiseuille flow for Kn up to 880.
+// Incompressible: valid for squeeze numbers 12 mu a^2 omega / (p h^2) below about 10. The limit Kn -> 0 is the strip film.
+// Singular at h = 0. Source: Veijola, Kuisma, Lahdenpera & Ryhanen, Sensors and Actuators A 48 (1995) 239, for the flow
+// conductance of Fukui & Kaneko 1988.
 #pragma once
 
 #include "model/gas/film.h"
@@ -13,7 +14,7 @@
 
 namespace softland {
 
-/// Over the scalar of its parameters; that of the state is one they convert to.
+/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
 template <class P>
 struct VeijolaFilmOf {
   P viscosity = 0;       ///< [Pa s]
@@ -22,7 +23,7 @@ struct VeijolaFilmOf {
   P mu_a3 = viscosity * width * width * width;
   static constexpr bool driven = false;
 
-  /// [N/m]
+  /// Returns the load [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     return S(-mu_a3) * velocity / (gap * gap * gap * (S(1) + S(9.638) * power(S(mean_free_path) / gap, 1.159)));
@@ -30,7 +31,7 @@ struct VeijolaFilmOf {
 };
 using VeijolaFilm = VeijolaFilmOf<double>;
 
-/// In a scene.
+/// The law in a scene.
 struct VeijolaGas {
   static constexpr std::string_view name = "veijola";
   static constexpr FilmLimits limits{.most_knudsen = 880, .most_squeeze = incompressible};

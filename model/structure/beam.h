@@ -1,5 +1,5 @@
 // Beams of rectangular section (Euler-Bernoulli), clamped at x = 0: parameters of the kinds "cantilever" and "clamped-clamped".
-// Their modes: model/beam.h.
+// model/beam.h has their modes.
 #pragma once
 
 #include <algorithm>
@@ -14,19 +14,19 @@
 
 namespace softland {
 
-/// Both kinds of beams have this beside length, width and thickness.
+/// The numbers of both kinds of beams besides length, width and thickness.
 struct Beam {
   double youngs_modulus = 0;  ///< E [Pa], used as given unless plate_strain
   double density = 0;         ///< rho [kg/m^3]
-  bool plate_strain = false;  ///< use E / (1 - nu^2)
+  bool plate_strain = false;  ///< true to use E / (1 - nu^2)
   double poissons_ratio = not_given;
-  std::vector<SectionPart> sections = {};  ///< from x = 0 on; none: the beam is the same all along
-  std::vector<LayerPart> layers = {};      ///< on its faces
-  std::optional<Anchor> anchor = {};       ///< at x = 0; none: a clamp
-  std::optional<Anchor> far_anchor = {};   ///< at the far end; none: what the kind says
+  std::vector<SectionPart> sections = {};  ///< sections from x = 0 on; none for a uniform beam
+  std::vector<LayerPart> layers = {};      ///< layers on its faces
+  std::optional<Anchor> anchor = {};       ///< anchor at x = 0; a clamp without one
+  std::optional<Anchor> far_anchor = {};   ///< anchor at the far end; by default that of the kind
   std::optional<RestShape> rest_shape = {};
 
-  /// Whether it is made of more than one even piece.
+  /// True when it is made of more than one even piece.
   [[nodiscard]] bool is_built() const { return !sections.empty() || !layers.empty(); }
 
   static constexpr std::array usual_spread{UsualSpread{"thickness", "2 %"}, UsualSpread{"youngs_modulus", "3 %"}};
@@ -72,7 +72,7 @@ struct Beam {
 struct Cantilever : Beam {
   static constexpr std::string_view name = "cantilever";
 
-  double stress_gradient = 0;  ///< over the thickness: positive curls the free end away from the near electrode [Pa/m]
+  double stress_gradient = 0;  ///< gradient over the thickness: positive curls the free end away from the near electrode [Pa/m]
 
   template <class S>
   static consteval auto fields() {
@@ -94,7 +94,7 @@ struct Cantilever : Beam {
     return stress_gradient < 0 ? rest_offset(device, device.structure.length) : 0;
   }
 
-  /// No stress curls it.
+  /// True when no stress curls the beam.
   [[nodiscard]] bool is_straight() const {
     return stress_gradient == 0 &&
            std::none_of(layers.begin(), layers.end(), [](const LayerPart& layer) { return layer.stress != 0; });
@@ -114,9 +114,9 @@ struct Bridge : Beam {
       "between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off its middle "
       "line; a layer needs a cantilever";
 
-  double residual_stress = 0;  ///< before the beam bends, positive in tension [Pa]
-  bool biaxial = false;        ///< residual_stress is that of a film: the beam keeps residual_stress (1 - nu)
-  bool stretches = true;       ///< bending stretches the beam
+  double residual_stress = 0;  ///< stress before the beam bends, positive in tension [Pa]
+  bool biaxial = false;        ///< true when residual_stress is that of a film: the beam keeps residual_stress (1 - nu)
+  bool stretches = true;       ///< true when bending stretches the beam
 
   template <class S>
   static consteval auto fields() {
@@ -132,7 +132,7 @@ struct Bridge : Beam {
   [[nodiscard]] static S example() {
     return {.length = 400e-6, .width = 20e-6, .thickness = 2e-6, .kind = Bridge{{.youngs_modulus = 78e9, .density = 19300}, 2e6}};
   }
-  /// None where bending does not stretch it.
+  /// Returns none where bending does not stretch the beam.
   template <class Modes, class S>
   [[nodiscard]] auto stretching(const Modes& modes, const S& structure) const {
     return stretches && structure.has_far_clamp() ? std::optional(stretching_of(modes, structure)) : std::nullopt;

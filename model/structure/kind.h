@@ -4,28 +4,28 @@
 // - `fields()`, consteval of a template argument S, an array of Field (base/field.h) of the Structure S: its keys.
 //   A number must be above 0 unless its field has another `range`. The unit is any product of the symbols of config/units.cc.
 // - `example()`, of the same argument, a structure that a switch may have, for tests
-// - `static constexpr std::array usual_spread`, how its devices differ where a scene does not say
+// - `static constexpr std::array usual_spread`, the process variation of its devices where a scene gives none
 // - `auto modes(device, known) const`, its modes: an object with
 //     angular_frequencies() [rad/s]; length() [m]; scale(), the shapes over the normalised ones [kg^(-1/2)];
 //     normalised(), which points to an object with value(x), slope(x) and pinned_inverse_square(x, near), x over the length;
 //     frequency_scale() [rad/s]: held at x, the structure has the frequency frequency_scale() / sqrt(pinned_inverse_square(x))
-//   `known` are the normalised modes of a similar beam, or null: a beam begins with them.
+//   `known` are the normalised modes of a similar beam, or null: a beam starts from them.
 //
 // It may also have
 //
-// - `std::string why_invalid(device) const`, the rule that it breaks, with the quantity; empty: none
-// - `int most_modes() const`, where it has fewer than Structure::most_modes
-// - `double rest_offset(device, x) const`, how far it rests from the straight shape at x, away from the near electrode [m]
+// - `std::string why_invalid(device) const`, the rule that it breaks, with the quantity; empty if none
+// - `int most_modes() const`, if it has fewer than Structure::most_modes
+// - `double rest_offset(device, x) const`, its distance at rest from the straight shape at x, away from the near electrode [m]
 //   and with it `double lowest_rest_offset(device) const`, the least of these
 // - `auto stretching(modes, structure) const`, an optional stiffness of stretching
-// - `static constexpr bool is_rigid` or `has_far_clamp`, where it is true
-// - `static constexpr std::string_view why_no_layer` or `why_no_skins`: why [piezo] or [surface] cannot be
+// - `static constexpr bool is_rigid` or `has_far_clamp`, if it is true
+// - `static constexpr std::string_view why_no_layer` or `why_no_skins`: the reason why [piezo] or [surface] is impossible
 // - `static constexpr std::string_view whose` and `length_is` for messages: "on a plate", its length in words with {} for it
 //
-// Functions that take a device are templates of its type, since a device is made of structures; so they call beam_modes() of
+// Functions that take a device are templates of its type, since a device contains structures; so they call beam_modes() of
 // model/beam.h without including it, and a class that holds BeamModes is a template, too. `Structure`
-// (model/structure/structure.h) answers for the kind in force. A kind that derives from Beam also has its warning of slenderness,
-// its verdicts by the number of modes and up to 40 modes at rest; one that derives from Cantilever has its curl.
+// (model/structure/structure.h) answers for the kind in force. A kind that derives from Beam also has its warning of
+// slenderness, its verdicts by the number of modes and up to 40 modes at rest; one that derives from Cantilever has its curl.
 #pragma once
 
 #include <string_view>
@@ -35,13 +35,13 @@
 
 namespace softland {
 
-/// How much devices differ in a key of [structure], where a scene does not say.
+/// The usual process variation of a key of [structure], where a scene gives none.
 struct UsualSpread {
   std::string_view key, cov;
-  bool has_default = false;  ///< it varies where a scene does not write it, too
+  bool has_default = false;  ///< true when it also varies where a scene does not write it
 };
 
-/// The kind in force as the `Part` that it is, or derives from.
+/// Returns the kind in force as the `Part` that it is, or derives from.
 template <class Part, class S>
 [[nodiscard]] constexpr auto& part_of(S& structure) {
   return *structure.template find<Part>();

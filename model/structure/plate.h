@@ -1,12 +1,12 @@
-// A rigid plate on springs: one degree of freedom, the soft-landing literature's switch.
+// A rigid plate on springs: one degree of freedom, the usual switch of the literature on soft landing.
 //
 //   m x'' = -k x - 2 zeta sqrt(k m) x' + forces      phi = 1 / sqrt(m),   omega = sqrt(k / m)
 //
-// m moving mass [kg], k stiffness of all springs together [N/m], x deflection [m], zeta damping ratio; phi is the mass-normalised
-// mode [kg^(-1/2)], the same everywhere: the plate stays flat and parallel. It answers what BeamModes answers, so that laws
-// per length act on it as on a beam: a strip as wide as the plate whose length is area / width. Valid while springs are linear
-// and tilting and bending modes lie far above omega. Source: any textbook on electrostatic actuators, e.g. Senturia, Microsystem
-// Design, 2001, ch. 6.
+// m is the moving mass [kg], k the stiffness of all springs together [N/m], x the deflection [m], zeta the damping ratio; phi
+// is the mass-normalised mode [kg^(-1/2)], the same everywhere: the plate stays flat and parallel. It has the interface of
+// BeamModes, so that laws per length act on it as on a beam: a strip as wide as the plate whose length is area / width. Valid
+// while springs are linear and tilting and bending modes lie far above omega. Source: any textbook on electrostatic actuators,
+// e.g. Senturia, Microsystem Design, 2001, ch. 6.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,11 +26,12 @@ class RigidPlate {
   struct FlatMode {
     [[nodiscard]] Eigen::VectorXd value(double) const { return Eigen::VectorXd::Ones(1); }
     [[nodiscard]] Eigen::VectorXd slope(double) const { return Eigen::VectorXd::Zero(1); }
-    /// Held at its contact a rigid plate cannot move at all. Its own frequency stands in: a rebound takes no longer than that.
+    /// A rigid plate that is held at its contact cannot move at all. Its own frequency is used: a rebound takes no longer than
+    /// that.
     [[nodiscard]] double pinned_inverse_square(double, std::optional<double> = {}) const { return 1; }
   };
 
-  /// Length [m], moving mass [kg], stiffness [N/m].
+  /// Takes length [m], moving mass [kg], stiffness [N/m].
   RigidPlate(double length, double mass, double stiffness)
       : length_(length), scale_(1 / std::sqrt(mass)), frequency_scale_(std::sqrt(stiffness / mass)) {}
 
@@ -57,7 +58,7 @@ struct Plate {
   static constexpr std::array usual_spread{UsualSpread{"stiffness", "6.7 %"}};
 
   double mass = 0;       ///< moving mass [kg]
-  double stiffness = 0;  ///< of all springs together [N/m]
+  double stiffness = 0;  ///< stiffness of all springs together [N/m]
 
   template <class S>
   static consteval auto fields() {

@@ -1,5 +1,5 @@
-// The moving part: one of the kinds of structures, with what all of them have. A new kind is its header (model/structure/kind.h
-// says what is in it) and a row here.
+// The moving part: one of the kinds of structures, with their common properties. A new kind is its header
+// (model/structure/kind.h describes it) and a row here.
 #pragma once
 
 #include <concepts>
@@ -28,14 +28,14 @@ struct Structure {
   /// The most modes of a beam that moves.
   static constexpr int most_modes = 20;
 
-  double length = 0;             ///< L [m]; plate: its area over its width; of a table of modes: that of the table
+  double length = 0;             ///< L [m]; for a plate its area over its width; for a table of modes that of the table
   double width = 0;              ///< a [m]
   double thickness = not_given;  ///< b [m]
-  int modes = 4;                 ///< plate: has one, whatever is said here
+  int modes = 4;                 ///< number of modes; a plate has one, whatever the value here
   double damping_ratio = 0;      ///< zeta of every mode
   StructureKind kind = Cantilever{};
 
-  /// The kind in force where it is, or derives from, a `Part`; else null.
+  /// Returns the kind in force where it is, or derives from, a `Part`; else null.
   template <class Part>
   [[nodiscard]] constexpr Part* find() {
     return std::visit(
@@ -49,22 +49,23 @@ struct Structure {
   [[nodiscard]] constexpr const Part* find() const {
     return const_cast<Structure*>(this)->find<Part>();
   }
-  /// The key of the damping ratio, which every kind has.
+  /// Returns the field of the damping ratio, which every kind has.
   [[nodiscard]] static consteval Field<Structure> damping();
 
-  /// It moves as one: there is one mode, and no place along it differs from another.
+  /// True when it moves as a rigid body: there is one mode, and all places along it are equal.
   [[nodiscard]] bool is_rigid() const;
-  /// Its far end is held, by a clamp or by an anchor that gives way.
+  /// True when its far end is held, by a clamp or by a compliant anchor.
   [[nodiscard]] bool has_far_clamp() const;
-  /// How its ends are held: what a beam's anchors say, else what the kind does.
+  /// Return how its ends are held: by a beam's anchors, else by the kind.
   [[nodiscard]] Anchor near_hold() const;
   [[nodiscard]] Anchor far_hold() const;
-  /// Its size changes along it: a beam of sections, or with layers, or a table of modes with widths.
+  /// True when its size changes along it: a beam of sections, or with layers, or a table of modes with widths.
   [[nodiscard]] bool is_built() const;
-  /// Why it cannot have a piezo layer, or skins; empty where it can.
+  /// Return the reason why it cannot have a piezo layer, or skins; empty where it can.
   [[nodiscard]] std::string_view why_no_layer() const;
   [[nodiscard]] std::string_view why_no_skins() const;
-  /// Ends the message that a scene must give something of it: "on a plate". Empty where a scene always gives all.
+  /// Returns the end of the message that a scene must give one of its numbers: "on a plate". Empty where a scene always gives
+  /// all.
   [[nodiscard]] std::string_view whose() const;
 };
 
@@ -79,10 +80,10 @@ consteval Field<Structure> Structure::damping() {
           .beyond = "for more give [gas] model = \"linear\" and quality_factor = 1 / (2 damping_ratio)"};
 }
 
-/// The fields of a kind, made once.
+/// The fields of a kind, computed once.
 template <class Kind>
 inline constexpr auto structure_fields = Kind::template fields<Structure>();
-/// Those of the kind in force.
+/// Returns the fields of the kind in force.
 [[nodiscard]] inline std::span<const Field<Structure>> fields_in_force(const Structure& s) {
   return std::visit([]<class Kind>(const Kind&) -> std::span<const Field<Structure>> { return structure_fields<Kind>; }, s.kind);
 }
@@ -141,7 +142,7 @@ inline std::string_view Structure::whose() const {
       kind);
 }
 
-/// The most modes that a structure can have: of a plate 1, of a table those in it.
+/// Returns the most modes that a structure can have: 1 for a plate, those of the table for a table.
 [[nodiscard]] inline int most_modes_of(const Structure& structure) {
   return std::visit(
       []<class Kind>(const Kind& kind) {

@@ -1,15 +1,15 @@
-// Modes of a structure that another program computed, as a table along its axis, clamped at x = 0 and free or clamped
-// at its far end.
+// Modes of a structure that another program computed, as a table along its axis, clamped at x = 0 and free or clamped at its
+// far end.
 //
 //   q_i'' = -(f omega_i)^2 q_i + Q_i + ...      y(x) = sum over i of phi_i(x) q_i
 //
-// phi mass-normalised modes [kg^(-1/2)], of which a row per place is known, omega angular frequencies [rad/s], f a factor by
-// which a device is stiffer than the table says. Between the places a cubic that is clamped at x = 0 (base/clamped_spline.h):
-// value and slope are 0 there. Q is the force of stretching between two clamps (model/stretching.h): the slopes are those of the
-// cubics, and EA/L is the axial stiffness that a scene gives. It answers what BeamModes answers, so that laws per length act on
-// it as on a beam. Without an axial stiffness it is valid while deflections are small against the thickness, since the modes are
-// linear. Source: modal superposition, any textbook on
-// structural dynamics, e.g. Meirovitch, Fundamentals of Vibrations, 2001, ch. 7.
+// phi are mass-normalised modes [kg^(-1/2)], given by one row per place, omega angular frequencies [rad/s], f a factor by which
+// a device is stiffer than the table. Between the places a cubic that is clamped at x = 0 interpolates (base/clamped_spline.h):
+// value and slope are 0 there. Q is the force of stretching between two clamps (model/stretching.h): the slopes are those of
+// the cubics, and EA/L is the axial stiffness that a scene gives. The table has the interface of BeamModes, so that laws per
+// length act on it as on a beam. Without an axial stiffness it is valid while deflections are small against the thickness,
+// since the modes are linear. Source: modal superposition, any textbook on structural dynamics, e.g. Meirovitch, Fundamentals
+// of Vibrations, 2001, ch. 7.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,14 +27,14 @@
 
 namespace softland {
 
-/// What a file says: the same for all devices of a scene.
+/// The content of a file: the same for all devices of a scene.
 class ModalTable {
  public:
-  /// `positions` [m] rise from 0, `frequencies` [Hz] rise, a shape [kg^(-1/2)] per frequency and a value in it per position, 0 at
-  /// the first one. Throws InvalidInput with the rule unless that holds, with three positions at least.
-  /// `rest_offsets` [m], one per position or none of a straight structure, are those of its face, positive towards the near
-  /// electrode. `widths` [m], one per position or none of a structure as wide everywhere, run straight between positions. A far
-  /// end that is clamped stands still in every mode, and the first one leaves it without a slope.
+  /// `positions` [m] rise from 0, `frequencies` [Hz] rise, a shape [kg^(-1/2)] per frequency and a value in it per position, 0
+  /// at the first one. Throws InvalidInput with the rule unless that holds, with three positions at least. `rest_offsets` [m]
+  /// are those of its face, positive towards the near electrode: one per position, or none for a straight structure. `widths`
+  /// [m] are linear between positions: one per position, or none for a structure of constant width. A clamped far end stands
+  /// still in every mode, and the first mode leaves it without a slope.
   ModalTable(std::vector<double> positions, std::vector<double> frequencies, std::vector<std::vector<double>> shapes,
              std::vector<double> rest_offsets = {}, std::vector<double> widths = {}, SplineEnd far_end = SplineEnd::free);
 
@@ -49,14 +49,15 @@ class ModalTable {
   [[nodiscard]] double slope(int mode, double x) const { return splines_[static_cast<std::size_t>(mode)].slope(x); }
   [[nodiscard]] const std::vector<double>& rest_offsets() const { return rest_offsets_; }  ///< [m]
   [[nodiscard]] const std::vector<double>& widths() const { return widths_; }              ///< [m]
-  /// How far the face rests from where it is at the clamp, away from the near electrode [m]: a straight line between positions.
+  /// Returns the distance of the face at rest from its place at the clamp, away from the near electrode [m]: linear between
+  /// positions.
   [[nodiscard]] double rest_offset(double x) const;
-  /// The least of these [m].
+  /// Returns the least of these [m].
   [[nodiscard]] double lowest_rest_offset() const;
-  /// Whether the last place stands still in every mode: the far end is held as well.
+  /// True when the last place stands still in every mode: the far end is held as well.
   [[nodiscard]] bool is_held_at_both_ends() const;
   [[nodiscard]] bool has_far_clamp() const { return far_end_ == SplineEnd::clamped; }
-  /// Integrals of phi_i' phi_j' of the first modes, column by column [1/(kg m)].
+  /// Returns the integrals of phi_i' phi_j' of the first modes, column by column [1/(kg m)].
   [[nodiscard]] std::vector<double> slope_products(int modes) const;
   [[nodiscard]] bool operator==(const ModalTable& other) const {
     return positions_ == other.positions_ && frequencies_ == other.frequencies_ && shapes_ == other.shapes_ &&
@@ -80,9 +81,9 @@ class TabulatedModes {
 
     [[nodiscard]] Eigen::VectorXd value(double x) const;
     [[nodiscard]] Eigen::VectorXd slope(double x) const;
-    /// omega_1^2 over the square of the first angular frequency of the structure held at x as well, of all modes of the table:
-    /// the root of sum phi_i(x)^2 / (omega_i^2 - omega^2) between the first two. 1 of a single mode, which cannot move then: its
-    /// own frequency stands in, as a rebound takes no longer than that.
+    /// Returns omega_1^2 over the square of the first angular frequency of the structure that is also held at x, from all modes
+    /// of the table: the root of sum phi_i(x)^2 / (omega_i^2 - omega^2) between the first two. Returns 1 for a single mode,
+    /// which cannot move then: its own frequency is used, as a rebound takes no longer than that.
     [[nodiscard]] double pinned_inverse_square(double x, std::optional<double> near = {}) const;
     [[nodiscard]] bool operator==(const Shapes& other) const {
       return modes == other.modes && (table == other.table || (table && other.table && *table == *other.table));
@@ -113,10 +114,10 @@ struct ModalStructure {
   static constexpr std::array usual_spread{UsualSpread{"frequency_factor", "3.5 %", true}};
 
   std::shared_ptr<const ModalTable> table = {};
-  double frequency_factor = 1;         ///< of all natural frequencies, over those of the table
+  double frequency_factor = 1;         ///< factor of all natural frequencies, over those of the table
   double axial_stiffness = not_given;  ///< force per elongation between its clamps, E A / L of an even beam [N/m]
 
-  /// Keys that say where the table is, and how it is read, stand in config/modal_table.h.
+  /// config/modal_table.h has the keys for the place of the table, and for its reading.
   template <class S>
   static consteval auto fields() {
     constexpr std::string_view follows_no_size = "the modes of a file do not follow it; vary structure.frequency_factor";
@@ -139,7 +140,7 @@ struct ModalStructure {
             .modes = 2,
             .kind = ModalStructure{.table = example_table()}};
   }
-  /// Two modes of a beam as heavy as a gold cantilever.
+  /// Returns two modes of a beam as heavy as a gold cantilever.
   [[nodiscard]] static std::shared_ptr<const ModalTable> example_table();
 
   template <class Device, class Known>
@@ -158,7 +159,7 @@ struct ModalStructure {
   [[nodiscard]] double lowest_rest_offset(const Device&) const {
     return table->lowest_rest_offset();
   }
-  /// None where the scene does not give its axial stiffness.
+  /// Returns none where the scene does not give its axial stiffness.
   template <class S>
   [[nodiscard]] std::optional<MidPlaneStretching> stretching(const TabulatedModes& modes, const S&) const {
     if (std::isnan(axial_stiffness)) return std::nullopt;
