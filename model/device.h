@@ -1,4 +1,4 @@
-// The description of a switch, as plain numbers in SI units. The simulation ignores the effect of an absent part. Coordinates:
+// The description of a switch, as plain numbers in SI units. The effect of an absent part is not simulated. Coordinates:
 // x along the beam from the clamped end; deflection y and every force positive towards the electrode.
 #pragma once
 
@@ -121,8 +121,8 @@ struct Surface {
 
 /// The rule by which the connection of a switch counts as electrically closed. It has no effect where nothing is given.
 struct ElectricalClosing {
-  double force = std::numeric_limits<double>::quiet_NaN();       ///< least contact force [N]; any force where it is NaN
-  double resistance = std::numeric_limits<double>::quiet_NaN();  ///< largest resistance [Ohm]; any resistance where it is NaN
+  double force = std::numeric_limits<double>::quiet_NaN();       ///< bound that its contact force exceeds [N]; NaN: none
+  double resistance = std::numeric_limits<double>::quiet_NaN();  ///< bound that its resistance stays below [Ohm]; NaN: none
   double after = std::numeric_limits<double>::quiet_NaN();       ///< openings that are no longer than this do not count [s]
 
   [[nodiscard]] bool is_asked() const { return force >= 0 || resistance > 0 || after >= 0; }

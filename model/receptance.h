@@ -28,7 +28,7 @@ using ElementRow = Eigen::Matrix<double, 1, element_functions>;
 [[nodiscard]] ElementRow element_integrals(double xi, int derivative);
 
 struct BeamElement {
-  double begin = 0, end = 0;  // in units of the beam's length, as all lengths here
+  double begin = 0, end = 0;  // lengths are in units of the beam's
   double rigidity = 0, mass = 0;
   double taper = 0;  // relative growth of both from the middle to the end, linear in between
 

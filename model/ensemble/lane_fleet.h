@@ -71,7 +71,7 @@ class Lanes {
     double begin = 0, left = 0, speed = 0;  // begin and end of the touch [s], impact velocity [m/s]
     double extreme = 0;                     // deepest or highest place since the last event [m]
     double hardest = 0;                     // largest force of a damped contact since then [N]
-    // The rest is for a contact with a memory: see model/closing/contact_phase.h.
+    // Phase of a contact with a memory: see model/closing/contact_phase.h.
     bool unloading = false, in_dent = false;
     bool to_turn = false;                   // true while it steps to its deepest point
     double level = 0;                       // level of another event that it steps to [m]
