@@ -442,10 +442,12 @@ Document document_of(const CycleRecord& r) {
     document.sections.push_back({.id = "charts", .heading = "The cycles", .parts = {Drawing{cycle_charts}}});
   }
   ReportSection rates{.id = "rates", .heading = "Rates", .parts = {rates_table(r)}};
-  rates.parts.emplace_back(Paragraph{fmt::format(
-      "A rate is steady where {} cycles close and open, and land within 5 % as fast and as high as the first one. The largest is "
-      "that below which every rate was steady, in steps of 5 %, at a duty of {}\u00a0%.",
-      r.cycles, internal::plain_number(100 * r.duty, 3))});
+  rates.parts.emplace_back(
+      Paragraph{.text = fmt::format(
+                    "A rate is steady where {} cycles close and open, and land within 5 % as fast and as high as the first one. "
+                    "The largest is that below which every rate was steady, in steps of 5 %, at a duty of {}\u00a0%.",
+                    r.cycles, internal::plain_number(100 * r.duty, 3)),
+                .is_note = true});
   rates.parts.emplace_back(Drawing{[&r](const internal::Picture&) { return drawn_rates(r); }});
   const bool has_scan =
       std::ranges::any_of(r.drives, [](const auto& d) { return !d.steady_rates.empty() || !d.other_rates.empty(); });
