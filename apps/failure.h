@@ -1,4 +1,4 @@
-// Why a run did not succeed, as the exit status and in words.
+// A failure says why a run did not succeed, as the exit status and in words.
 #pragma once
 
 #include <exception>
@@ -11,8 +11,8 @@ struct Failure {
   std::string message;
 };
 
-/// What an exception that ends the program means to whoever called it: every kind has its exit status, and what is not expected
-/// is a fault of the program that asks to be reported.
+/// Returns the meaning of an exception that ends the program: every kind has its exit status. An unexpected one is a fault of
+/// the program that asks to be reported.
 [[nodiscard]] Failure failure_of(const std::exception_ptr& exception);
 
 }  // namespace softland::apps

@@ -1,4 +1,4 @@
-// The command line: what is asked, and nothing else.
+// The command line is parsed here, and nothing else.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ namespace {
 using namespace softland;
 using namespace softland::apps;
 
-// Quoted so that the line can be pasted into a shell.
+// Quotes the words so that the line can be pasted into a shell.
 std::string command_line(const std::vector<std::string>& words) {
   std::string line = "softland";
   for (const std::string& word : words) line += " " + shell_word(word);
@@ -34,7 +34,7 @@ std::string command_line(const std::vector<std::string>& words) {
 void describe(CLI::App& app) {
   app.name("softland");
   app.get_formatter()->label("SUBCOMMAND", "VERB");
-  app.get_formatter()->column_width(25);  // two blanks after the longest name of one line
+  app.get_formatter()->column_width(25);  // leaves two blanks after the longest name of one line
   app.require_subcommand(1);
   app.set_help_flag("-h,--help", "print this help");
   app.set_version_flag("--version", "softland " + std::string(version), "print the version");
@@ -50,8 +50,8 @@ void describe(CLI::App& app) {
       "written).");
 }
 
-// What the words of the command line ask for goes into the options of `app`; where they ask only for help or the version, that
-// is printed and there is no verb to run.
+// Parses the words of the command line into the options of `app`. Prints help or the version where they ask for nothing else;
+// then there is no verb to run.
 bool parse(CLI::App& app, std::vector<std::string> words, const std::vector<std::string>& names) {
   if (!words.empty() && !words.front().starts_with("-") && std::ranges::find(names, words.front()) == names.end())
     throw InvalidInput("there is no verb '" + words.front() + "' (see softland --help)");
@@ -75,7 +75,7 @@ bool parse(CLI::App& app, std::vector<std::string> words, const std::vector<std:
 
 int run(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
-  // Called by the name `optimize`, the program is that verb.
+  // The program runs the verb `optimize` when it is called by that name.
   if (std::filesystem::path(argv[0]).filename() == "optimize") words.insert(words.begin(), "optimize");
 
   Common common{.command = command_line(words), .stop = &stop_requested()};
@@ -102,7 +102,7 @@ int run(int argc, char** argv) {
   } catch (const OutputInterrupted&) {
     throw;
   } catch (const Interrupted&) {
-    // Nothing was found yet: that is what the JSON says.
+    // Nothing was found yet, and the JSON says so.
     if (!common.json.empty())
       print_json_or(common, {{"status", "interrupted"}, {"version", version}, {"command", common.command}}, "");
     throw;

@@ -1,5 +1,5 @@
-// How a verb says what it may be told: the options of its --help, in their order, and what it then does. What several verbs may
-// be told is worded here once.
+// A verb declares its options here, in the order of its --help, and then its action. Options that several verbs share are
+// worded here once.
 #pragma once
 
 #include <atomic>
@@ -15,38 +15,38 @@ class App;
 
 namespace softland::apps {
 
-/// What every verb may be told.
+/// The options that every verb has.
 struct Common {
-  std::string command;           ///< the command line, for provenance
+  std::string command;           ///< command line, for provenance
   std::string scene;             ///< path of the scene file
-  std::vector<std::string> set;  ///< --set key=value, in order
+  std::vector<std::string> set;  ///< values of --set key=value, in order
   std::string json;              ///< file for the JSON, "-" for standard output, empty for none
   std::string out;               ///< folder for everything, empty for none
   bool quiet = false;
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// A verb on the command line. The values that its options set must live as long as what it runs: keep them in a shared pointer
+/// A verb on the command line. The values that its options set must live as long as its action: keep them in a shared pointer
 /// that the function given to runs() holds.
 class Verb {
  public:
-  /// `options` is the verb's part of the command line; what every verb may be told goes into `common`.
+  /// `options` is the verb's part of the command line; `common` receives the options that every verb has.
   Verb(CLI::App& options, Common& common) : options_(options), common_(common) {}
 
   void positional(const char* name, std::string& value, const std::string& about, bool required = true);
-  /// Any number of words after the positional ones.
+  /// Adds any number of words after the positional ones.
   void more(const char* name, std::vector<std::string>& values, const std::string& about);
-  /// `word` stands for the value in --help. Empty text is never meant: it comes from an unset shell variable.
+  /// Adds an option; `word` stands for the value in --help. Empty text is refused: it comes from an unset shell variable.
   void option(const char* name, std::string& value, const char* word, const std::string& about);
-  /// An option whose empty text is looked at with the value.
+  /// Adds an option whose empty text is checked like any other value.
   void optional(const char* name, std::optional<std::string>& value, const char* word, const std::string& about);
-  /// An option with one value that may be given several times.
+  /// Adds an option with one value that may be given several times.
   void repeated(const char* name, std::vector<std::string>& values, const char* word, const std::string& about);
   void flag(const char* name, bool& value, const std::string& about);
-  /// Remarks and examples below the options.
+  /// Sets the remarks and examples below the options.
   void footer(const std::string& text);
 
-  /// The scene alone by its word in --help; `what` it may be.
+  /// Adds the scene alone, by its word in --help; `what` says what it may be.
   void with_scene(const char* word, const char* what, bool required = true);
   void with_set(const std::string& about);
   void with_quiet();
@@ -54,10 +54,10 @@ class Verb {
   void with_out(const std::string& about);
   void with_out_file(const std::string& about);
 
-  /// What the verb does; the number is the exit status (apps/exit_status.h). What keeps it from its end is an exception: see
+  /// Sets the action of the verb, which returns the exit status (apps/exit_status.h). An action that fails throws: see
   /// apps/failure.h.
   void runs(std::function<int(const Common&)> what) { run_ = std::move(what); }
-  /// Whether the command line, once it is read, asks for this verb.
+  /// Tells whether the command line asks for this verb; call it after parsing.
   [[nodiscard]] bool chosen() const;
   [[nodiscard]] int run() const { return run_(common_); }
 

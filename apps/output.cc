@@ -19,8 +19,8 @@ namespace softland::apps {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Besides what every output must keep off: standard output, which may be the same file, and what a run keeps in its folder while
-// it works.
+// Checks the places that --json alone must avoid: standard output, which may be the same file, and the files of a run in its
+// folder.
 void check_json_place(const std::string& file, const fs::path& folder) {
   if (!folder.empty()) {
     const fs::path inside =

@@ -1,4 +1,4 @@
-// Where the verbs put what they found: standard output, the file of --json, the folder of --out.
+// The verbs write their findings to standard output, the file of --json, and the folder of --out.
 #pragma once
 
 #include <filesystem>
@@ -13,20 +13,20 @@
 
 namespace softland::apps {
 
-/// Takes the places that --json and --out name, for the run's output alone: to be called when the scene has been read and before
-/// anything long is computed. The folder, where there is one, will hold `files`, of which the `kept` ones are those of an earlier
-/// run that this one goes on with. Throws InvalidInput where one cannot be written to, or would replace an input of this run or
-/// another of its outputs.
+/// Claims the places that --json and --out name, for the run's output alone. Call it after reading the scene and before any
+/// long computation. The folder, if given, will hold `files`; the `kept` ones are those of an earlier run that this one
+/// continues. Throws InvalidInput where one cannot be written to, or would replace an input of this run or another of its
+/// outputs.
 [[nodiscard]] std::optional<ResultFolder> claim_places(const Common& common, const std::vector<std::string>& files,
                                                        const std::vector<std::string>& kept = {});
 
-/// "In FOLDER: these files".
+/// Returns "In FOLDER: these files".
 [[nodiscard]] std::string left_in(const std::filesystem::path& folder, const std::vector<std::string>& files);
 
-/// Data as --json asks for, or else `text` on standard output.
+/// Prints data as --json asks for, or else `text` on standard output.
 void print_json_or(const Common& common, const nlohmann::json& data, const std::string& text);
 
-/// The exit status of a verb.
+/// Returns the exit status of a verb.
 [[nodiscard]] int exit_status_of(verbs::Ending ending);
 
 }  // namespace softland::apps

@@ -1,5 +1,5 @@
-// How far a verb is, on standard error: a bar that is rewritten in place on a terminal, elsewhere a line
-// after five seconds, and every ten from then on.
+// The progress of a verb appears on standard error: a bar that is rewritten in place on a terminal, elsewhere a line after five
+// seconds, and every ten from then on.
 #pragma once
 
 #include <chrono>
@@ -19,9 +19,9 @@ class Bar {
  public:
   explicit Bar(bool quiet);
 
-  /// The part that is done, 0 to 1, and words.
+  /// A state is the part that is done, 0 to 1, and words.
   using State = std::function<std::pair<double, std::string>(double elapsed)>;
-  /// Prints `state` if it is time to; it is asked only then.
+  /// Prints `state` if it is due; it is called only then.
   void show(const State& state);
   /// Leaves the last state of the bar on the screen.
   void close(const State& state);
@@ -29,14 +29,14 @@ class Bar {
  private:
   friend class WatchedWork;
   [[nodiscard]] bool due() const;
-  [[nodiscard]] double elapsed() const;  // [s]
+  [[nodiscard]] double elapsed() const;  // time since the start [s]
   void print(const State& state) const;
 
   bool terminal_, quiet_;
   std::chrono::steady_clock::time_point start_, shown_;
 };
 
-/// A computation that ends when the program is asked to stop and shows how far it is; the bar goes with it.
+/// A computation that ends when the program is asked to stop and shows its progress; the destructor removes the bar.
 class WatchedWork {
  public:
   WatchedWork(bool quiet, const std::atomic<bool>* stop);
@@ -47,7 +47,7 @@ class WatchedWork {
   [[nodiscard]] const Watch& watch() const { return watch_; }
 
  private:
-  std::mutex mutex_;  // of what follows: it may be told from several threads
+  std::mutex mutex_;  // guards the members below: several threads may report
   Bar bar_;
   bool shown_ = false;
   MonotoneProgress progress_;
@@ -55,10 +55,10 @@ class WatchedWork {
   Watch watch_;
 };
 
-/// How far a search is.
+/// The progress of a search.
 class SearchProgress {
  public:
-  /// `counted`: what the budget counts, "evaluations"; `of`: words before that.
+  /// `counted` names the unit of the budget, "evaluations"; `of` are words before that.
   SearchProgress(bool quiet, const OptimizeOptions& options, std::string counted, std::string of = {});
 
   void show(const OptimizeProgress& progress);

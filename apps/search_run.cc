@@ -34,7 +34,7 @@ AskedSearch asked(const Common& c, const verbs::OptimizeRequest& request) {
   return asked;
 }
 
-// "knots, dual-pulse or staircase:5"
+// Returns "knots, dual-pulse or staircase:5".
 std::string families_in_words(const std::string& families) {
   const std::vector<std::string> names = families_of(families);
   std::string words = names.front();
@@ -42,7 +42,7 @@ std::string families_in_words(const std::string& families) {
   return words;
 }
 
-// The drives of "knots.main.level_1_V" or "main.level_1_V", each once.
+// Returns the drives of "knots.main.level_1_V" or "main.level_1_V", each once.
 std::vector<std::string> shaped_in(const std::vector<std::string>& variables) {
   std::vector<std::string> drives;
   for (const std::string& name : variables) {
@@ -103,7 +103,7 @@ SearchRun::SearchRun(const Common& c, StoredSearch& search, const std::optional<
   }
 }
 
-// How long the search is going to take, and of how many closings.
+// Estimates the duration of the search, and its number of closings.
 std::string SearchRun::duration_words(int jobs, double max_seconds) const {
   if (!estimate_) return {};
   const SearchEstimate& e = *estimate_;
@@ -121,7 +121,7 @@ std::string SearchRun::duration_words(int jobs, double max_seconds) const {
   return text + ", fewer than usual, since its closings are slow";
 }
 
-// The first table, of which every better waveform becomes a row.
+// Prints the first table; every better waveform becomes a row of it.
 void SearchRun::tell(const Leading& leading) {
   const auto row = [&](const std::string& name, const std::vector<DeviceOutcome>& outcomes, const std::string& after) {
     const auto figure = [](double value, std::string_view unit) {

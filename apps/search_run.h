@@ -1,4 +1,4 @@
-// One search on the command line: it goes on with what its folder holds, and shows how far it is.
+// A search on the command line continues the one in its folder, and shows its progress.
 #pragma once
 
 #include <chrono>
@@ -13,23 +13,23 @@
 
 namespace softland::apps {
 
-/// What the command line asks for, as a search that goes on with one in the folder of --out where it says --resume and there is
-/// one, which is then `known`. Throws InvalidInput with option, value and rule, and where no search in the folder is the one that
-/// is asked for, with what differs.
+/// Returns the search of the command line. With --resume it continues one in the folder of --out, if there is one, which is
+/// then `known`. Throws InvalidInput with option, value and rule. Throws it also where no search in the folder is the requested
+/// one, with the difference.
 [[nodiscard]] StoredSearch asked_or_known(const Common& common, const verbs::OptimizeRequest& request,
                                           std::optional<KnownSearch>& known);
 
-/// The folder of --out.
+/// Returns the folder of --out.
 [[nodiscard]] SearchOutput output_of(const Common& common);
 
-/// A search that is kept in its folder, whose progress is shown.
+/// A search that is kept in its folder and shows its progress.
 class SearchRun {
  public:
   /// `places`: see SearchSession. Sets the callbacks of search.options, which must outlive it.
   SearchRun(const Common& common, StoredSearch& search, const std::optional<KnownSearch>& known, const SearchOutput& output,
             SearchPlaces* places = nullptr);
 
-  /// When the search has ended: says so, and lets the store go.
+  /// Call it when the search has ended: reports the end, and closes the store.
   void close();
   [[nodiscard]] SearchSession& session() { return session_; }
 
@@ -46,7 +46,7 @@ class SearchRun {
   SearchSession session_;
 };
 
-/// "gold.toml: searching a pulse waveform, actuator electrostatic, target bounce"
+/// Returns "gold.toml: searching a pulse waveform, actuator electrostatic, target bounce".
 [[nodiscard]] std::string search_words(const Common& common, const StoredSearch& search);
 
 }  // namespace softland::apps

@@ -1,4 +1,4 @@
-// What the verbs that work on stores of studies share.
+// The verbs that work on stores of studies share these functions.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@
 
 namespace softland::apps {
 
-/// Says where rows come from another program, or from one on another processor, whose last digits may differ.
+/// Warns where rows come from another program, or from one on another processor, whose last digits may differ.
 void tell_of_other_programs(const std::string& store);
 
-/// A count of rows or points with all its digits.
+/// Returns a count of rows or points with all its digits.
 [[nodiscard]] std::string whole(std::int64_t count);
 
-/// "2 min", "3.4 h"
+/// Returns "2 min" or "3.4 h".
 [[nodiscard]] std::string duration_words(double seconds);
 
 }  // namespace softland::apps

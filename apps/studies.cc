@@ -25,7 +25,7 @@ namespace {
 using verbs::Ending;
 using verbs::OptionRow;
 
-// Values that CLI11 sets, by the name of the option.
+// CLI11 sets these values, by the name of the option.
 struct Given {
   std::map<std::string, std::string> texts;
   std::map<std::string, std::optional<std::string>> optional;  // these may be empty
@@ -59,7 +59,7 @@ DriveWaveforms waveforms_of(const std::string& result, const PreparedScene& nomi
   return drives.waveforms();
 }
 
-// Writes the files, and says which there are and what to do with them.
+// Writes the files, lists them, and says what to do with them.
 std::string leave(ResultFolder& folder, const verbs::Outcome& outcome) {
   const bool interrupted = outcome.ending == Ending::interrupted;
   std::vector<std::string> listed;

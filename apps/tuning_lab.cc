@@ -38,7 +38,7 @@ class CommandLab final : public TuningLab {
       : name_("--device " + shortened(command)), patience_(patience), child_(command, longest_line) {}
 
   std::optional<ContactRecord> fire(const ToldShot& shot, const SentSignals&) override {
-    // Where nobody reads it any more there may yet be an answer.
+    // A closed pipe is not an error yet: the answer may be buffered.
     const ChildProcess::Told told = child_.tell(line_text(shot_json(shot)), patience_);
     if (told == ChildProcess::Told::late) throw late(fmt::format("did not take shot {}", shot.number));
     const LineReader::Line line = child_.next_line(patience_);
@@ -70,12 +70,12 @@ class CommandLab final : public TuningLab {
   ChildProcess child_;
 };
 
-// Nobody wants to go on.
+// The user wants to stop.
 struct Stopped {};
 
 class HandLab final : public TuningLab {
  public:
-  // Shots that an earlier tuning has left are none of this one.
+  // Remove shots that an earlier tuning has left, unless it continues.
   HandLab(HandLabRequest request, const PreparedScene& scene) : request_(std::move(request)), scene_(scene) {
     if (request_.goes_on) return;
     const std::vector<std::string> endings = sent_endings(scene_);
@@ -110,7 +110,7 @@ class HandLab final : public TuningLab {
   }
 
  private:
-  // "shot-12.csv", "shot-12-main.arb"
+  // Tells whether a name is one of "shot-12.csv", "shot-12-main.arb".
   [[nodiscard]] static bool is_shot(std::string_view name, const std::vector<std::string>& endings) {
     constexpr std::string_view before = "shot-";
     if (!name.starts_with(before)) return false;

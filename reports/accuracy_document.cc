@@ -72,7 +72,7 @@ void keep(Picture& drawn, Chart chart) {
   drawn.charts.push_back(std::move(chart));
 }
 
-// Error against time, of an integrator at every tolerance.
+// Returns error against time, of an integrator at every tolerance.
 Points work_precision(const AccuracyStudy& study, const std::vector<AccuracyRow>& rows, Integrator integrator) {
   Points points;
   for (const AccuracyRow& row : rows) {
@@ -95,7 +95,7 @@ Picture picture(const AccuracyStudy& study) {
     add_curve(drawn, work, std::string(to_string(all_integrators[i])), pens[i % pens.size()],
               work_precision(study, study.rows, all_integrators[i]));
     if (all_integrators[i] != own) continue;
-    for (Mark& mark : work.marks) {  // which tolerance is where, said once
+    for (Mark& mark : work.marks) {  // label each tolerance once only
       for (const AccuracyRow& row : study.rows) {
         const bool shown = row.integrator == own && row.points_per_length == own_points(study) && row.seconds == mark.x;
         if (shown && mark.role == pens[i % pens.size()]) mark.text = internal::scientific(row.tolerance);
@@ -104,7 +104,7 @@ Picture picture(const AccuracyStudy& study) {
   }
   keep(drawn, std::move(work));
 
-  // The integrator that simulate takes, and the one that loses its history with every restart.
+  // The curves compare the integrator that simulate takes with the one that loses its history at every restart.
   Chart contact = logarithmic_chart(
       "contact", "Restarted at make and break of contact, or not: largest relative error of " + figures, time, "s", 260);
   contact.caption = restart_text(study);
@@ -132,7 +132,7 @@ Picture picture(const AccuracyStudy& study) {
   return drawn;
 }
 
-// Errors and costs of settings; `first` says what a row is.
+// Makes a table of errors and costs of settings; `first` is the heading of the settings.
 ReportTable errors_table(const TableRow& first, const std::vector<const AccuracyRow*>& rows,
                          const std::function<TableRow(const AccuracyRow&)>& setting) {
   ReportTable table{.head = first, .rows = {}};
@@ -274,14 +274,14 @@ std::vector<KeyNumber> reference_keys(const AccuracyStudy& study) {
   return keys;
 }
 
-// The accuracy that the scene asks for.
+// Returns the accuracy that the scene asks for.
 double asked_accuracy(const Origin& origin) {
   const auto simulate = origin.scene.find("simulate");
   const bool is_written = simulate != origin.scene.end() && simulate->is_object() && simulate->contains("accuracy");
   return is_written && (*simulate)["accuracy"].is_number() ? (*simulate)["accuracy"].get<double>() : SimulateOptions{}.accuracy;
 }
 
-// What the accuracy takes that is nearest to the one the scene asks for.
+// Compares the accuracy of the scene with the nearest one of the study.
 std::pair<std::string, std::string> headline(const AccuracyRecord& record) {
   const AccuracyStudy& study = record.found;
   const std::string figures = symbols(study, true);

@@ -1,4 +1,4 @@
-// What `softland accuracy` found: JSON with SI units in the names, a document, and a work-precision diagram.
+// The findings of `softland accuracy`: JSON with SI units in the names, a document, and a work-precision diagram.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -17,10 +17,10 @@ struct AccuracyRecord {
 
 [[nodiscard]] nlohmann::json json_of(const AccuracyRecord& record);
 [[nodiscard]] AccuracyRecord read_accuracy(const nlohmann::json& from);
-/// Recommendations, diagrams, tables, clouds; of a study without rows why it has none.
+/// Returns recommendations, diagrams, tables and clouds; for a study without rows the reason why it has none.
 [[nodiscard]] Document document_of(const AccuracyRecord& record);
-/// Error against time, one curve per integrator; the same with and without a restart at the contact; and error against quadrature
-/// points, one curve per figure.
+/// Draws error against time, one curve per integrator; the same with and without a restart at the contact; and error against
+/// quadrature points, one curve per figure.
 [[nodiscard]] std::string svg_of(const AccuracyRecord& record);
 
 }  // namespace softland

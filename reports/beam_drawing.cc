@@ -37,14 +37,14 @@ std::string label(double x, double y, const std::string& text, const char* colou
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"12\" fill=\"{}\">{}</text>\n", x, y, colour, text);
 }
 
-constexpr double most_holes = 4000;  // that are drawn
+constexpr double most_holes = 4000;  // largest number of drawn holes
 
 class BeamSketch {
  public:
   BeamSketch(const Device& device, double width)
       : d_(device), s_(device.structure), sections_(local_sections(s_)), scale_(width / s_.length) {}
 
-  // Elements of the view from above, whose middle line lies at `middle`, and where they end.
+  // Returns the elements of the view from above, whose middle line lies at `middle`, and their lower end.
   std::pair<std::string, double> from_above(double top) const {
     double widest = 0;
     for (const LocalSection& one : sections_) widest = std::max({widest, one.width, one.end_width});
@@ -85,7 +85,7 @@ class BeamSketch {
     constexpr double most_height = 220;
     const double up = most_height / (highest + d_.gap.electrode), ground = top + 20 + most_height;  // [px/m]
     const auto y = [&](double above_electrode) { return ground - above_electrode * up; };
-    constexpr double least = 2;  // of a layer [px]
+    constexpr double least = 2;  // least height of a layer [px]
     double deepest = 0;
     std::string out = label(0, top,
                             fmt::format("from the side, heights enlarged {:.3g} times: {} above the electrode", up / scale_,
@@ -119,14 +119,14 @@ class BeamSketch {
     for (const Electrode& e : d_.electrodes) {
       for (const Stretch& pad : e.pads(s_.length)) {
         if (e.side == Side::far) continue;
-        const double metal = e.dielectric ? std::max(least, e.dielectric->thickness * up) : 0;  // below the face
+        const double metal = e.dielectric ? std::max(least, e.dielectric->thickness * up) : 0;  // depth below the face
         out += rectangle(x(pad.begin), ground + metal, x(pad.end), ground + metal + 8, filled(of_electrode));
         if (e.dielectric) out += rectangle(x(pad.begin), ground, x(pad.end), ground + metal, filled(of_dielectric));
         deepest = std::max(deepest, metal);
       }
     }
     for (std::size_t c = 0; c < d_.contacts.size(); ++c) {
-      if (d_.contacts[c].along_face) continue;  // the dielectric
+      if (d_.contacts[c].along_face) continue;  // the dielectric is its contact
       const double at = x(d_.contact_position(c)), half = 3;
       if (d_.contacts[c].side == Side::far)
         out += rectangle(at - half, y(stop_plane(c)) - 8, at + half, y(stop_plane(c)), filled(of_stop));
@@ -141,13 +141,13 @@ class BeamSketch {
   static constexpr int places = 100;
 
   [[nodiscard]] double x(double place) const { return place * scale_; }
-  /// The height of a back stop above the electrode [m].
+  /// Returns the height of a back stop above the electrode [m].
   [[nodiscard]] double stop_plane(std::size_t c) const { return height(d_.contact_position(c), true) + d_.contact_gap(c); }
-  /// Contacts, of which equal ones stand side by side across the beam; none of a face, which is that of an electrode.
+  /// Draws contacts; equal ones stand side by side across the beam. A face has no dots: it is that of an electrode.
   [[nodiscard]] std::string dots(std::size_t c, double across, double middle) const {
     const Contact& contact = d_.contacts[c];
     if (contact.along_face) return {};
-    constexpr double most = 12;  // that are drawn
+    constexpr double most = 12;  // largest number of drawn dots
     const int count = static_cast<int>(std::min(most, contact.count));
     const double at = d_.contact_position(c), apart = width_at(s_, at) * across / count;
     std::string out;
@@ -156,11 +156,11 @@ class BeamSketch {
                          filled(contact.side == Side::far ? of_stop : of_contact));
     return out;
   }
-  // Of the upper or lower face above the electrode, layers left aside [m].
+  // Returns the height of the upper or lower face above the electrode, without layers [m].
   [[nodiscard]] double height(double at, bool upper) const {
     return d_.gap.electrode + d_.rest_offset(at) + (upper ? section_at(s_, at).thickness : 0);
   }
-  // Corners around what lies between two heights over the lower face, from place to place.
+  // Adds the corners around the area between two heights over the lower face, from place to place.
   template <class ToPixel, class Heights>
   void band(double begin, double end, Corners& corners, ToPixel&& y, Heights&& heights) const {
     const double inside = 1e-9 * s_.length;

@@ -1,4 +1,4 @@
-// A picture of a beam as it is built, to scale along it.
+// A picture of a beam as built, to scale along its length.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace softland {
 
-/// A static SVG document: the beam at rest from above, across the beam to the same scale as along it where that fits, and from
-/// the side, heights enlarged, with its sections, layers, holes, electrodes and contacts. Only of a beam.
+/// Returns a static SVG document of the beam at rest. The view from above has the same scale across the beam as along it where
+/// that fits. The view from the side enlarges heights. Both show sections, layers, holes, electrodes and contacts. Beams only.
 [[nodiscard]] std::string beam_drawing(const std::string& title, const Device& device);
 
 }  // namespace softland

@@ -16,7 +16,7 @@ using DriveRecord = RobustnessRecord::Drive;
 using OtherWays = RobustnessRecord::OtherWays;
 using RangeRecord = OtherWays::Range;
 
-constexpr double predicted_well = 0.1;  // the largest part of the variance that may be missed
+constexpr double predicted_well = 0.1;  // largest share of the variance that may be missed
 
 const FigureStatistics& sampled(const DriveRecord& drive, std::string_view key) { return drive.figures[figure_of(key)]; }
 
@@ -24,10 +24,10 @@ std::string figure_text(double value, std::string_view key) {
   return std::isinf(value) ? "∞" : quantity(value, figure_of(key).unit);
 }
 
-// Other devices know better than those that taught.
+// Prefer q2 on unseen devices: devices of the training set are predicted too well.
 double missed(const FigureChaos& chaos) { return 1 - (std::isfinite(chaos.q2_unseen) ? chaos.q2_unseen : chaos.q2); }
 
-// Beyond all of the variance a prediction is worse than the mean, by however much.
+// A prediction that misses all of the variance or more is no better than the mean.
 std::string missed_share(double share) { return share >= 1 ? "all" : percent(std::max(0.0, share)); }
 std::string missed_text(double q2) { return std::isfinite(q2) ? missed_share(1 - q2) : "—"; }
 
@@ -67,7 +67,7 @@ std::string box_words(const OtherWays& ways, std::size_t devices) {
       ways.half_width, 100 * ways.share, ways.sampled_inside, devices, 100 * ways.share, ways.closings);
 }
 
-/// How far chaos can be trusted.
+/// Says how far chaos can be trusted.
 std::string chaos_words(const OtherWays& ways) {
   std::vector<std::string> good, bad, none;
   for (const FigureChaos& c : ways.chaos) {
@@ -99,7 +99,7 @@ std::string chaos_words(const OtherWays& ways) {
   return words;
 }
 
-// Its quantities as robustness_report.h shows them.
+// Makes a record of the device with the quantities of robustness_report.h.
 OtherWays::InBox in_box(const BoxDevice& device, const PreparedScene& nominal) {
   OtherWays::InBox record{.figure = device.figure,
                           .values = {},

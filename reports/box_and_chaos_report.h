@@ -1,5 +1,5 @@
-// The other ways to the figures of a spread (studies/devices/box_and_chaos.h), beside those of the sample: a part of the report
-// of `softland robustness`.
+// The other ways to the figures of a spread (studies/devices/box_and_chaos.h) stand beside those of the sample: a part of the
+// report of `softland robustness`.
 #pragma once
 
 #include "reports/robustness_report.h"
@@ -8,9 +8,9 @@ namespace softland::internal {
 
 [[nodiscard]] RobustnessRecord::OtherWays record_of(const BoxAndChaos& ways, const DriveRobustness& drive,
                                                     const PreparedScene& nominal);
-/// Of a record that has them.
+/// Makes the section; the record must hold these figures.
 [[nodiscard]] ReportSection other_ways_section(const RobustnessRecord& record);
-/// "× 1.0213", "2.013 µm"
+/// Returns "× 1.0213" or "2.013 µm".
 [[nodiscard]] std::string value_text(const RobustnessRecord::Varied& variable, double value);
 
 }  // namespace softland::internal

@@ -28,8 +28,8 @@ const RunRecord& run_of(const ClosingRecord& result, const Drawn& drawn) {
   return drawn.role == Role::best ? result.best : result.baseline();
 }
 
-/// The rows of a curve whose time is finite and does not run backwards; columns that are missing or of another length are left
-/// out.
+/// Returns the rows of a curve whose time is finite and does not run backwards; columns that are missing or of another length
+/// are left out.
 CurveTable curve_table(const CurveRecord& curve) {
   std::vector<std::size_t> sound;
   double latest = -std::numeric_limits<double>::infinity();
@@ -57,7 +57,7 @@ CurveTable curve_table(const CurveRecord& curve) {
   return table;
 }
 
-/// A drive from where it rests before t = 0 to the end of the window, where it holds its last value.
+/// Extends a drive from where it rests before t = 0 to the end of the window, where it holds its last value.
 Points whole_waveform(const Points& waveform, double rest, double end) {
   Points points = drawable(waveform);
   if (points.empty()) return points;
@@ -66,7 +66,7 @@ Points whole_waveform(const Points& waveform, double rest, double end) {
   return points;
 }
 
-/// The last time at which a drive moves; NaN when it never does.
+/// Returns the last time at which a drive moves; NaN when it never does.
 double last_move(const Points& points) {
   double time = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -99,7 +99,8 @@ std::vector<Mark> rebound_marks(const ClosingRecord& result) {
   return marks;
 }
 
-/// The end of the part worth enlarging: the winner's landing, what its drives do, and the baseline's highest rebound.
+/// Returns the end of the part worth enlarging: the winner's landing, the changes of its drives, and the baseline's highest
+/// rebound.
 double landing_end(const ClosingRecord& result, const CurveTables& tables, double window) {
   double end = std::numeric_limits<double>::quiet_NaN();
   const auto cover = [&](double time) {
@@ -127,7 +128,7 @@ double landing_end(const ClosingRecord& result, const CurveTables& tables, doubl
   return end > 0 ? std::min(window, margin * end) : window;
 }
 
-/// A column of a run; empty when there is none.
+/// Returns a column of a run; empty when the run has no such column.
 const std::vector<double>& column_of(const CurveTables& tables, const char* run, const char* name) {
   static const std::vector<double> none;
   const auto table = tables.find(run);
@@ -136,7 +137,7 @@ const std::vector<double>& column_of(const CurveTables& tables, const char* run,
   return column == table->second.end() ? none : column->second;
 }
 
-/// The largest value of a column in any run, at least 0.
+/// Returns the largest value of a column in any run, at least 0.
 double largest(const CurveTables& tables, const char* name) {
   double value = 0;
   for (const Drawn& drawn : runs) {
@@ -145,8 +146,8 @@ double largest(const CurveTables& tables, const char* name) {
   return value;
 }
 
-/// Gaps around the contact plane worth enlarging [m]: as deep as any contact is pressed before `end`, and above the plane the
-/// winner's rebounds or twice that depth. Not set when nothing touches.
+/// Returns the gaps around the contact plane worth enlarging [m]: as deep as any contact is pressed before `end`, and above the
+/// plane the winner's rebounds or twice that depth. Not set when nothing touches.
 std::optional<std::array<double, 2>> plane_band(const ClosingRecord& result, const CurveTables& tables, double end) {
   double lowest = 0;
   for (const Drawn& drawn : runs) {
@@ -160,7 +161,7 @@ std::optional<std::array<double, 2>> plane_band(const ClosingRecord& result, con
   return std::array{margin * lowest, margin * std::fmax(-2 * lowest, height)};
 }
 
-/// Adds the tables of runs and drives to a picture; the names of the drives.
+/// Adds the tables of runs and drives to a picture; returns the names of the drives.
 std::set<std::string> add_time_tables(const ClosingRecord& result, double window, Picture& out) {
   std::set<std::string> drives;
   for (const Drawn& drawn : runs) {
@@ -197,7 +198,7 @@ class TimeCharts {
     gap.height = 320;
     add_series(gap, "", "tip_gap_m");
     Chart near = gap;
-    constexpr double readable = 0.05;  // of the gap: lower ones have no room for words
+    constexpr double readable = 0.05;  // share of the gap: lower rebounds have no room for words
     for (Mark& mark : gap.marks) {
       if (mark.y < readable * largest(out_.tables, "tip_gap_m")) mark.text.clear();
     }
@@ -213,7 +214,7 @@ class TimeCharts {
     if (near.y_home) keep(std::move(near));
   }
 
-  /// When contacts are closed: of several the connection, and each.
+  /// Adds bars for the times when contacts are closed: for several contacts the connection, and each of them.
   void add_bars() {
     Chart bars = over_time("contact", "Contact: closed and open", contact_caption(result_));
     bars.x_home = bars.x_whole;
@@ -311,7 +312,7 @@ class TimeCharts {
   }
 
   const ClosingRecord& result_;
-  double window_, landing_;  // ends of what is drawn [s]
+  double window_, landing_;  // ends of the drawn parts [s]
   Picture& out_;
 };
 
@@ -357,7 +358,7 @@ void add_search_chart(const ClosingRecord& result, const SearchRecord& search, P
     chart.series.push_back({"tried", "value", "each waveform tried", Role::evaluations});
   }
   if (!best.empty()) {
-    Points stairs;  // the best so far holds until it is beaten
+    Points stairs;  // the best so far holds until a better one comes
     for (const auto& point : best) {
       if (!stairs.empty()) stairs.push_back({point[0], stairs.back()[1]});
       stairs.push_back(point);

@@ -1,4 +1,4 @@
-// A chart as a description, drawn twice: as static SVG here (print, no JavaScript, README) and by uPlot in the page.
+// A chart is a description that is drawn twice: as static SVG here (print, no JavaScript, README) and by uPlot in the page.
 #pragma once
 
 #include <array>
@@ -12,24 +12,24 @@
 
 namespace softland::internal {
 
-/// Columns of equal length; the first key of a chart's x axis is one of them.
+/// The columns have equal length; the first key of a chart's x axis is one of them.
 using CurveTable = std::map<std::string, std::vector<double>>;
 using CurveTables = std::map<std::string, CurveTable>;
 
-/// Whose data a curve shows, which gives it its pen; `third`, `fourth`, `fifth` and `measured` (dots) are for pictures of
-/// other than results, `limit` is what a source can do.
-/// `device` and `device_before` are thin: one of many devices under the winner, and under the plain step.
+/// The role says whose data a curve shows, and so chooses its pen. The roles `third`, `fourth`, `fifth` and `measured` (dots)
+/// are for other pictures than those of results. The role `limit` shows the limit of a source. The roles `device` and
+/// `device_before` are thin: one of many devices under the winner, and under the plain step.
 enum class Role { best, baseline, evaluations, third, fourth, fifth, measured, limit, device, device_before };
 enum class Scale { linear, logarithmic };
 
 struct Series {
   std::string table;
   std::string column;
-  std::string label;  ///< empty: not in the legend
+  std::string label;  ///< name in the legend; empty: not in the legend
   Role role = Role::best;
 };
 
-/// What lies between two columns.
+/// A band fills the area between two columns.
 struct Band {
   std::string table, low, high;
   Role role = Role::best;
@@ -49,22 +49,22 @@ struct Chart {
   std::string caption;
   std::string x_column;
   std::string x_label;
-  std::string x_unit;  ///< empty: a count
+  std::string x_unit;  ///< unit of x; empty: a count
   std::string y_label;
   std::string y_unit;
-  Scale scale = Scale::linear;                  ///< of y
-  Scale x_scale = Scale::linear;                ///< logarithmic: the curves join dots
-  std::array<double, 2> x_home{0, 1};           ///< what is shown before any zoom
-  std::array<double, 2> x_whole{0, 1};          ///< all there is
-  std::optional<std::array<double, 2>> y_home;  ///< not set: from the data in view
+  Scale scale = Scale::linear;                  ///< scale of y
+  Scale x_scale = Scale::linear;                ///< scale of x; logarithmic: the curves join dots
+  std::array<double, 2> x_home{0, 1};           ///< range shown before any zoom
+  std::array<double, 2> x_whole{0, 1};          ///< whole range of the data
+  std::optional<std::array<double, 2>> y_home;  ///< range of y before any zoom; not set: from the data in view
   bool zero_line = false;
   std::string zero_label;
-  bool zero_label_left = false;  ///< where the curves leave room
+  bool zero_label_left = false;  ///< true where the curves leave room on the left
   std::string group;             ///< charts of one group share cursor and zoom; empty: alone
-  int height = 300;              ///< [px]
+  int height = 300;              ///< height of the chart [px]
   std::vector<Series> series;
   std::vector<Mark> marks;
-  std::vector<Band> bands = {};  ///< below the curves, on static pictures alone
+  std::vector<Band> bands = {};  ///< drawn below the curves, on static pictures alone
   /// Each series is a bar, one below the other: full where its value is 1, pale where it is between, nothing where it is 0.
   bool is_of_bars = false;
 };
@@ -75,25 +75,26 @@ struct Picture {
   std::vector<Chart> charts;
 };
 
-/// All charts of a result, in the order of the page: gap, contact, landing, drives, velocity, force, resistance, search. What has
-/// no data is left out.
+/// Returns all charts of a result, in the order of the page: gap, contact, landing, drives, velocity, force, resistance,
+/// search. It leaves out charts that have no data.
 [[nodiscard]] Picture picture(const ClosingRecord& result);
-/// When a contact is closed, over the time until `window` [s]: columns time_s and closed, for a chart of bars.
+/// Returns when a contact is closed, until `window` [s]: columns time_s and closed, for a chart of bars.
 [[nodiscard]] CurveTable closed_table(const std::vector<ClosedStretch>& closed, double window);
-/// A chart without series over the time until `until` [s].
+/// Returns a chart without series over the time until `until` [s].
 [[nodiscard]] Chart chart_over_time(const std::string& id, const std::string& title, const std::string& y_label,
                                     const std::string& y_unit, double until, int height);
 
-/// {"unit": u, "steps": [...]}: value k is u times the sum of steps 0 ... k; null stands for a value that is not available and
-/// adds nothing.
+/// Returns {"unit": u, "steps": [...]}: value k is u times the sum of steps 0 ... k; null stands for a value that is not
+/// available and adds nothing.
 [[nodiscard]] nlohmann::json packed(const std::vector<double>& column, double unit);
-/// CurveTables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as integer steps
-/// of a unit fine enough to be invisible (one part in ten million of the largest value).
+/// Returns curve tables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as
+/// integer steps of a unit fine enough to be invisible (one part in ten million of the largest value).
 [[nodiscard]] nlohmann::json chart_json(const Picture& picture, std::size_t rows);
 
-/// The chart as SVG elements on a canvas `width` wide, its top left corner at (0, `top`); text and lines carry their own colours.
+/// Draws the chart as SVG elements on a canvas `width` wide, its top left corner at (0, `top`); text and lines carry their own
+/// colours.
 [[nodiscard]] std::string chart_svg(const CurveTables& tables, const Chart& chart, double width, double top);
-/// Its height on that canvas [px], title and axes included.
+/// Returns the height of the chart on that canvas [px], title and axes included.
 [[nodiscard]] double chart_svg_height(const Chart& chart);
 
 }  // namespace softland::internal

@@ -39,7 +39,7 @@ const char* role_name(Role role) {
 
 const char* scale_name(Scale scale) { return scale == Scale::linear ? "linear" : "log"; }
 
-// Rows of a column, packed but for values over many decades: these are numbers of six digits.
+// Returns the rows of a column, packed unless its values span many decades: these are numbers of six digits.
 json rows_json(const std::vector<double>& column, const std::vector<std::size_t>& rows, bool logarithmic) {
   std::vector<double> kept;
   double largest = 0;

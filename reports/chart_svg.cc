@@ -13,18 +13,19 @@
 namespace softland::internal {
 namespace {
 
-// Okabe and Ito's palette, which colour-blind readers tell apart; the dashes carry the same distinction without colour.
+// The palette is that of Okabe and Ito, which colour-blind readers tell apart; the dashes carry the same distinction without
+// colour.
 constexpr const char* grid = "#e4e7ea";
 
 constexpr double left = 78;
 constexpr double right = 18;
-constexpr double above = 46;  // title and legend
-constexpr double below = 46;  // tick labels and axis label
+constexpr double above = 46;  // height of title and legend [px]
+constexpr double below = 46;  // height of tick labels and axis label [px]
 
 struct Stroke {
   const char* colour;
   double width;
-  const char* dash;  // empty: solid
+  const char* dash;  // dash pattern; empty: solid
 };
 
 Stroke stroke(Role role) {
@@ -55,10 +56,10 @@ Stroke stroke(Role role) {
 
 bool is_one_of_many(Role role) { return role == Role::device || role == Role::device_before; }
 
-/// Whether a role's points are not joined.
+/// Tells whether a role's points are dots that no line joins.
 bool dots(Role role) { return role == Role::evaluations || role == Role::measured; }
 
-/// Rows of a table in view plus one on either side, thinned to first, lowest, highest and last per pixel column.
+/// Returns the rows of a table in view plus one on either side, thinned to first, lowest, highest and last per pixel column.
 std::vector<std::array<double, 2>> visible(const Axis& x, const Axis& y, const std::vector<double>& xs,
                                            const std::vector<double>& ys) {
   std::vector<std::array<double, 2>> out;
@@ -108,7 +109,7 @@ std::array<double, 2> range_in_view(const CurveTables& tables, const Chart& char
   highest = std::max(highest, 0.0);
   const double margin = highest > lowest ? 0.06 * (highest - lowest) : 1.0;
   const double words =
-      chart.zero_label.empty() ? 0 : 0.1 * (highest - lowest) * 240 / chart.height;  // room for them below the line
+      chart.zero_label.empty() ? 0 : 0.1 * (highest - lowest) * 240 / chart.height;  // room for the words below the line
   return {lowest - (lowest < 0 || chart.zero_line ? std::max(margin, words) : 0), highest + margin};
 }
 
@@ -123,7 +124,7 @@ std::string label(double x, double y, const char* anchor, const char* colour, do
                      anchor, colour, size, extra, escaped(words));
 }
 
-/// With a true minus sign, and no negative zero; powers of ten beyond four digits as such.
+/// Writes a number with a true minus sign and no negative zero; numbers beyond four digits as powers of ten.
 std::string tick_text(double value) {
   const double exponent = std::log10(std::abs(value));
   if (value > 0 && std::abs(exponent) > 3.5 && std::abs(exponent - std::round(exponent)) < 1e-9) {
@@ -136,10 +137,10 @@ std::string tick_text(double value) {
   return size == "0" ? size : with_true_minus((value < 0 ? "-" : "") + size);
 }
 
-/// A halo of the paper's colour, so that no curve runs through the words.
+/// This halo of the paper's colour keeps curves from running through the words.
 constexpr const char* halo = " paint-order=\"stroke\" stroke=\"#fff\" stroke-width=\"4\" stroke-linejoin=\"round\"";
 
-/// "Time (µs)", "Gap (nm)", "cost".
+/// Returns "Time (µs)", "Gap (nm)" or "cost".
 std::string axis_title(const std::string& name, const std::string& unit, const Prefix& prefix) {
   return unit.empty() ? name : fmt::format("{} ({}{})", name, prefix.symbol, unit);
 }
@@ -169,7 +170,7 @@ Axes axes_of(const CurveTables& tables, const Chart& chart, double width, double
 
 std::string chart_legend(const Chart& chart, double top) {
   std::string out;
-  if (chart.is_of_bars) return out;  // they bear their names
+  if (chart.is_of_bars) return out;  // bars bear their names
   double legend_x = left;
   for (const Series& one : chart.series) {
     if (one.label.empty()) continue;
@@ -186,7 +187,7 @@ std::string chart_legend(const Chart& chart, double top) {
   return out;
 }
 
-/// Grid, tick labels and names of the axes.
+/// Draws grid, tick labels and names of the axes.
 std::string chart_scales(const Chart& chart, const Axes& axes) {
   const auto& [x, y] = axes;
   std::string out;
@@ -259,7 +260,7 @@ std::string chart_bar(const CurveTable& table, const Chart& chart, std::size_t n
   const Series& one = chart.series[number];
   const std::vector<double>&xs = table.at(chart.x_column), &ys = table.at(one.column);
   constexpr double pixel = 1;
-  std::array<std::string, 2> paths;  // pale, full
+  std::array<std::string, 2> paths;  // paths of pale and full bars
   std::array<double, 2> ends{-1, -1};
   const double middle = axes.y.pixel_high + bar_height * (static_cast<double>(number) + 0.5);
   for (std::size_t row = 1; row < xs.size(); ++row) {

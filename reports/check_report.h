@@ -1,4 +1,4 @@
-// What `softland check` tells of a scene: JSON with SI units in the names, and lines for a terminal.
+// The findings of `softland check` about a scene: JSON with SI units in the names, and lines for a terminal.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct CheckRecord {
   struct Line {
     std::string name, value;
   };
-  /// How a structure that is not straight rests. A rise counts from the straight shape, away from the near electrode.
+  /// The rest shape of a structure that is not straight. A rise counts from the straight shape, away from the near electrode.
   struct Rest {
     double far_end_rise = Metrics::unset;  ///< rise of the far end [m]
     double far_end_gap = Metrics::unset;   ///< distance of the far end to the plane of the electrode [m]
@@ -26,16 +26,16 @@ struct CheckRecord {
     double least_gap = Metrics::unset;     ///< smallest gap over the near electrodes [m]
   };
   Origin origin;
-  std::string file;  ///< how the user named it
+  std::string file;  ///< name of the file as the user gave it
   std::string title;
-  std::vector<double> frequencies;                            ///< [rad/s]
-  std::optional<Rest> rest_shape;                             ///< unset of a straight structure
-  std::map<std::string, PullInRecord> pull_in;                ///< by electrode that has one; without a name where it is read
-  std::map<std::string, std::array<double, 2>> hold_windows;  ///< release and pulled-through voltage [V]
-  double dynamic_precision = Metrics::unset;                  ///< relative, of dynamic pull-in voltages
+  std::vector<double> frequencies;              ///< natural angular frequencies [rad/s]
+  std::optional<Rest> rest_shape;               ///< rest shape; not set for a straight structure
+  std::map<std::string, PullInRecord> pull_in;  ///< voltages by electrode; a single one has no name when read from JSON
+  std::map<std::string, std::array<double, 2>> hold_windows;  ///< release voltage and voltage of collapse onto the electrode [V]
+  double dynamic_precision = Metrics::unset;                  ///< relative precision of dynamic pull-in voltages
   std::optional<ClosedState> closed_state;
   std::optional<StablePathRecord> stable_path;
-  double duration = Metrics::unset, tolerance = Metrics::unset;  ///< [s]; of the integrator
+  double duration = Metrics::unset, tolerance = Metrics::unset;  ///< simulated time [s]; tolerance of the integrator
   std::vector<std::string> warnings;
   std::vector<Line> lines;  ///< derived numbers, in words
 };

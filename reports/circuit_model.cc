@@ -34,10 +34,10 @@ constexpr bool only_pushes =
     std::is_same_v<Law, UniformAsperityContact> || std::is_same_v<Law, LinearContact> ||
     std::is_same_v<Law, HuntCrossley<LinearContact>> || std::is_same_v<Law, HuntCrossley<UniformAsperityContact>>;
 
-// How a language names what a formula is made of.
+// A dialect names the operands of formulas in one language.
 struct Dialect {
   std::string voltage;  // "v" or "V"
-  bool has_variables;   // numbers that are no voltages have names, instead of nodes
+  bool has_variables;   // true where numbers other than voltages have names, instead of nodes
   [[nodiscard]] Formula node(const std::string& name) const { return Formula::named(fmt::format("{}({})", voltage, name)); }
   [[nodiscard]] Formula between(const std::string& name) const { return Formula::named(fmt::format("{}({},g)", voltage, name)); }
   [[nodiscard]] Formula variable(const std::string& name) const { return has_variables ? Formula::named(name) : node(name); }
@@ -45,24 +45,24 @@ struct Dialect {
 
 struct Point {
   std::string gap, velocity;  // sums of coordinates, over the contact gap, and of U
-  std::string load;           // times its weight, as the first mode takes it
-  std::vector<double> share;  // of every mode of that, over the first one
+  std::string load;           // load times its weight, on the first mode
+  std::vector<double> share;  // share of that load on every mode, over that on the first one
 };
 
 // The parts of the switch in one language.
 struct Circuit {
   std::vector<std::string> drives;                             // pins, in the order of Switch::drives() where they are connected
   double tau = 0;                                              // [s]
-  double gap = 0;                                              // of the contact [m]
-  std::vector<double> stiffness, friction, start, at_contact;  // of modes: (tau omega)^2, 2 zeta tau omega, Y at rest, share of y
-  std::vector<std::vector<std::pair<std::string, double>>> pushes;  // of modes: by drives that act in proportion (piezo)
+  double gap = 0;                                              // rest gap of the contact [m]
+  std::vector<double> stiffness, friction, start, at_contact;  // per mode: (tau omega)^2, 2 zeta tau omega, Y at rest, share of y
+  std::vector<std::vector<std::pair<std::string, double>>> pushes;  // per mode: drives that act in proportion (piezo)
   std::vector<Point> points;
-  std::vector<std::pair<std::string, std::string>> charges;           // of pins: a formula [C]
-  std::vector<std::pair<std::string, std::vector<double>>> currents;  // of pins: by U of the modes [A]
-  std::optional<std::string> contact;                                 // force as the first mode takes it
-  double force_scale = 0;                                             // of it [N]
+  std::vector<std::pair<std::string, std::string>> charges;           // pins, each with its formula [C]
+  std::vector<std::pair<std::string, std::vector<double>>> currents;  // pins, each with factors of U of the modes [A]
+  std::optional<std::string> contact;                                 // contact force on the first mode
+  double force_scale = 0;                                             // scale of the contact force [N]
   std::string deflection, rate;                                       // y over the gap, its rate over gap / tau
-  std::vector<std::string> tension;                                   // on every mode; empty: none
+  std::vector<std::string> tension;                                   // tension on every mode; empty: no tension
 };
 
 std::string sum_of(const Dialect& d, char letter, const Eigen::VectorXd& factors, double constant) {
@@ -129,7 +129,7 @@ class Maker {
 
   void find_points() {
     std::vector<Formula> charges(device_.electrodes.size(), Formula(0));
-    const double scale = c_.tau * c_.tau * unit_ * unit_ / c_.gap;  // of a force on the first mode
+    const double scale = c_.tau * c_.tau * unit_ * unit_ / c_.gap;  // scale of a force on the first mode
     for (Eigen::Index p = 0; p < model_.quadrature().points(); ++p) {
       const Eigen::VectorXd shape = model_.quadrature().shapes().row(p).head(model_.modes()) / unit_;
       const double x = model_.quadrature().positions()[p], weight = model_.quadrature().weights()[p];
@@ -145,7 +145,7 @@ class Maker {
       c_.charges.emplace_back(c_.drives[k], (charges[k] * d_.between(c_.drives[k])).text());
   }
 
-  // [N/m]; adds the capacitances of this point to those of the electrodes [F].
+  // Returns the load [N/m]; adds the capacitances of this point to those of the electrodes [F].
   Formula load_at(double x, const Formula& gap, const Formula& velocity, double weight, std::vector<Formula>& capacitances) {
     const Structure& s = device_.structure;
     const LocalSection local = section_at(s, x);
@@ -214,11 +214,11 @@ class Maker {
         model_.contact());
   }
 
-  // Of the tension of a stretched middle line, as model/stretching.h has it.
+  // Finds the tension of a stretched middle line, by the law of model/stretching.h.
   void find_tension() {
     if (!model_.stretching()) return;
     const MidPlaneStretching& s = *model_.stretching();
-    const double q = c_.gap / unit_;  // of Y = 1
+    const double q = c_.gap / unit_;  // coordinate q at Y = 1
     std::vector<Formula> pulls;
     Formula strain = 0;
     for (std::size_t i = 0; i < s.modes; ++i) {
@@ -228,7 +228,7 @@ class Maker {
       pulls.push_back(pull);
     }
     const double scale = s.stiffness * c_.tau * c_.tau * unit_ / c_.gap;
-    c_.tension.push_back((Formula(scale) * strain).text());  // first: of the line, then its pull on every mode
+    c_.tension.push_back((Formula(scale) * strain).text());  // the line's tension comes first, then its pull on every mode
     for (const Formula& pull : pulls) c_.tension.push_back(pull.text());
   }
 
@@ -245,16 +245,16 @@ std::string title(const PreparedScene& p) {
   return fmt::format("{}: {} modes, {} quadrature points", p.scene.file.name(), p.model.modes(), p.model.quadrature().points());
 }
 
-// Tells of renamed pins in lines that begin with `comment`.
+// Lists renamed pins in lines that begin with `comment`.
 std::string renamed_in(const PreparedScene& p, std::string_view comment) {
   std::string text;
   for (const std::string& line : renamed_pins(p.drive_names())) text += fmt::format("{} {}\n", comment, line);
   return text;
 }
 
-// What a pin cannot be called: pins and numbers of the model itself, the ground of SPICE, and words of Verilog-AMS 2.4 (annex B).
+// Reserved names of pins: pins and numbers of the model itself, the ground of SPICE, and words of Verilog-AMS 2.4 (annex B).
 constexpr std::array reserved_names{
-    // of the model
+    // names of the model
     "g", "s", "d", "y", "vel", "force", "at", "rate", "line", "push", "rc", "roff", "softland_switch",
     // SPICE
     "0", "gnd", "time", "temper", "hertz",
@@ -279,7 +279,7 @@ constexpr std::array reserved_names{
     "vectored", "wait", "wand", "weak0", "weak1", "while", "white_noise", "wire", "wor", "wreal", "xnor", "xor", "zi_nd", "zi_np",
     "zi_zd", "zi_zp"};
 
-// Modes and points of the model: y0, u0, h0, w0, f0 and so on.
+// Tells whether a name is that of a mode or point of the model: y0, u0, h0, w0, f0 and so on.
 bool is_numbered(const std::string& name) {
   constexpr std::string_view letters = "yuhwf";
   return name.size() > 1 && letters.find(name.front()) != std::string_view::npos &&
@@ -394,7 +394,7 @@ std::string spice_model(const PreparedScene& p) {
 
 std::string spice_bench(const PreparedScene& p) {
   const Circuit c = Maker(p, spice).make();
-  std::map<std::string, Signal> driven;  // as their sources give them
+  std::map<std::string, Signal> driven;  // signals as their sources give them
   const std::vector<std::string> names = circuit_pins(p.drive_names());
   const std::vector<Signal> signals = p.signals();
   std::string sources, pins;
@@ -405,7 +405,8 @@ std::string spice_bench(const PreparedScene& p) {
     sources += fmt::format("Xdrive_{0} {0} 0 softland_{0}\n", pin);
     pins += " " + pin;
   }
-  // Of trapezoids: the first mode to 1e-6, the fastest one as it takes part; one mode alone is quick enough for ten times that.
+  // Choose the step of the trapezoidal rule: the first mode is right to 1e-6, the fastest one in its share. One mode alone is
+  // quick enough for a tenth of that error.
   const Eigen::VectorXd& omega = p.model.basis().angular_frequencies();
   const double step = 2 * pi / std::max(40 * omega.maxCoeff(), (omega.size() == 1 ? 8000 : 1500) * omega[0]);
   std::string text = title(p) + "\n" + renamed_in(p, "*") + subcircuit(c) + spice_pwl(driven, p.duration) + sources;

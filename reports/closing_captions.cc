@@ -24,7 +24,7 @@ bool bounces(const RunRecord& run) { return figure_of_run(run, &Metrics::bounce_
 
 bool is_clean_run(const ConfirmationRecord& check) { return check.figures && is_clean(*check.figures); }
 
-/// What a drive does in a run: "runs between 0 V and 30 V, with a jump"; `both`: of two runs that do the same.
+/// Describes a drive in a run: "runs between 0 V and 30 V, with a jump"; `both` is for two runs with the same drive.
 std::string range_words(const Points& waveform, const DriveScale& scale, bool both) {
   const DriveDemand demand = drive_demand(waveform, scale.rest);
   if (!std::isfinite(demand.lowest)) return {};
@@ -37,7 +37,7 @@ std::string range_words(const Points& waveform, const DriveScale& scale, bool bo
                      quantity_beside(demand.highest, demand.lowest, scale.unit), slew);
 }
 
-// How much worse a closing is than another: that it stays open, then that it rebounds and how far, then how fast it touches.
+// Ranks a closing: staying open is worst, then rebounds by their height, then impact velocity.
 std::array<double, 3> badness(const ConfirmationRecord& check) {
   if (!check.figures || !touches(*check.figures)) return {2, 0, 0};
   return {is_clean_run(check) ? 0.0 : 1.0, is_clean_run(check) ? 0.0 : rebound_height(*check.figures),
@@ -48,7 +48,7 @@ std::string touch_speed_of(const ConfirmationRecord& check) {
   return quantity((*check.figures)[&Metrics::impact_velocity], "m/s");
 }
 
-// "it rebounds by up to 2.16 nm and touches at 32.5 mm/s"
+// Returns "it rebounds by up to 2.16 nm and touches at 32.5 mm/s".
 std::string course_of(const ConfirmationRecord& check) {
   if (!check.figures || !touches(*check.figures)) return "it does not close";
   const double height = rebound_height(*check.figures);
@@ -57,7 +57,7 @@ std::string course_of(const ConfirmationRecord& check) {
          touch_speed_of(check);
 }
 
-// "a tolerance of 1e-9 and with 6, 8 and 10 modes"
+// Returns "a tolerance of 1e-9 and with 6, 8 and 10 modes".
 std::string names_of(const std::vector<ConfirmationRecord>& numerics) {
   std::string tolerance, modes;
   for (const ConfirmationRecord& check : numerics) {
@@ -68,13 +68,13 @@ std::string names_of(const std::vector<ConfirmationRecord>& numerics) {
     } else if (check.name.starts_with("modes ")) {
       modes += (modes.empty() ? "" : &check == &numerics.back() ? " and " : ", ") + value;
     } else {
-      return "other settings";  // of a file of an earlier version
+      return "other settings";  // the file is of an earlier version
     }
   }
   return tolerance + (modes.empty() ? "" : (tolerance.empty() ? "" : " and with ") + modes + " modes");
 }
 
-// Where a landing belongs to the modes of its scene.
+// Says so where a landing depends on the number of modes of its scene.
 std::string of_modes(const ClosingRecord& result) {
   if (!result.best.figures || !is_clean(*result.best.figures)) return {};
   std::vector<ConfirmationRecord> modes;
@@ -86,7 +86,7 @@ std::string of_modes(const ClosingRecord& result) {
                      worst.name.substr(worst.name.find(' ') + 1), course_of(worst));
 }
 
-// Of a search over devices, where some of them fail whatever is done.
+// Says so for a search over devices in which some of them fail under any waveform.
 std::string of_devices_that_fail(const ClosingRecord& result) {
   const std::optional<RobustFindings>& robust = result.search->robust;
   if (!robust || !(robust->failing > 0)) return {};

@@ -42,7 +42,7 @@ std::string verdict_class(Verdict verdict) {
   return "neutral";
 }
 
-// What a landing is judged by: in the table of confirmations, and but for the first above everything else.
+// These figures judge a landing: they stand in the table of confirmations, and all but the first above everything else.
 constexpr std::array leading_figures{figure_of(&Metrics::initial_contact_time), figure_of(&Metrics::permanent_contact_time),
                                      figure_of(&Metrics::bounce_count), figure_of(&Metrics::major_bounce_height),
                                      figure_of(&Metrics::impact_velocity)};
@@ -71,7 +71,7 @@ std::vector<KeyNumber> key_numbers(const ClosingRecord& result) {
   return keys;
 }
 
-/// What every drive demands of its source, where there are several.
+/// Adds the demands of every drive on its source, where there are several drives.
 void add_drive_rows(ReportTable& table, const ClosingRecord& result, bool pair) {
   if (result.best.waveforms.size() < 2) return;
   for (const auto& [drive, found] : result.best.waveforms) {
@@ -92,10 +92,10 @@ void add_drive_rows(ReportTable& table, const ClosingRecord& result, bool pair) 
 }
 
 TableCell error_cell(const ClosingRecord& result, const Figure& one) {
-  constexpr double ill = 0.1;  // an error above a tenth of the figure
+  constexpr double ill = 0.1;  // least ratio of error to figure of an ill-conditioned figure
   const double own = figure_of_run(result.best, one.member), error = result.best.errors[one];
   const std::string cloud = cloud_text(result, one), stated = error_text(one, own, error);
-  const bool is_hidden = stated.starts_with('<');  // below the last digit that is shown
+  const bool is_hidden = stated.starts_with('<');  // true when the error is below the last digit that is shown
   TableCell cell(cloud.empty() ? stated : cloud);
   if (!cloud.empty() || (!is_hidden && error > ill * std::abs(own)))
     cell.html = escaped(cell.text) + " <span class=\"note\">ill-conditioned</span>";
@@ -132,7 +132,7 @@ ReportTable figures_table(const ClosingRecord& result) {
   return table;
 }
 
-// Each of several contacts; the figures above are those of the connection that they make.
+// Lists each of several contacts; the figures above are those of the connection that they make.
 ReportTable contacts_table(const ClosingRecord& result) {
   constexpr std::array shown{&Metrics::initial_contact_time, &Metrics::impact_velocity, &Metrics::major_bounce_height,
                              &Metrics::peak_contact_force, &Metrics::hold_force};
@@ -148,7 +148,7 @@ ReportTable contacts_table(const ClosingRecord& result) {
   return table;
 }
 
-// A scene with a piezo layer whose charging is no part of the drive energy.
+// Returns a note for a scene with a piezo layer whose charging is not part of the drive energy.
 std::string uncounted_layer_caption(const ClosingRecord& result) {
   const bool told = std::isfinite(figure_of_run(result.best, &Metrics::drive_energy)) ||
                     std::isfinite(figure_of_run(result.baseline(), &Metrics::drive_energy));
@@ -172,7 +172,7 @@ ReportSection figures_section(const ClosingRecord& result) {
   return section;
 }
 
-// Charts of one time share their zoom, and their cursor with the moving switch.
+// Charts over one time share their zoom, and their cursor with the moving switch.
 std::string closing_charts(const ClosingRecord& result, const Picture& drawn) {
   std::string charts;
   for (const Chart& chart : drawn.charts) {
@@ -204,7 +204,7 @@ ReportSection search_section(const ClosingRecord& result) {
   return section;
 }
 
-/// The switch from the side.
+/// Draws the switch from the side.
 std::string drawn_switch(const ClosingRecord& result) {
   const std::string drawing = sketch(result.scene);
   if (drawing.empty()) return {};
@@ -213,7 +213,7 @@ std::string drawn_switch(const ClosingRecord& result) {
 
 ReportSection checks_section(const ClosingRecord& result) {
   ReportSection section{.id = "checks", .heading = "Confirmations", .parts = {}};
-  // Of a winner that bounces there is nothing to confirm.
+  // A winner that bounces has nothing to confirm.
   if (figure_of_run(result.best, &Metrics::bounce_count) != 0) section.shown = ShownIn::page;
   if (!result.search || result.search->checks.empty()) return section;
   ReportTable table{.head = {"Simulated with"}, .rows = {}};
@@ -231,7 +231,7 @@ ReportSection checks_section(const ClosingRecord& result) {
   return section;
 }
 
-/// "piezo.level_1_V" as "piezo.level_1" and "V".
+/// Splits "piezo.level_1_V" into "piezo.level_1" and "V".
 std::pair<std::string, std::string_view> without_unit(const std::string& name) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 4> units{
       {{"_rad_s", "rad/s"}, {"_rad", "rad"}, {"_s", "s"}, {"_V", "V"}}};
@@ -241,7 +241,7 @@ std::pair<std::string, std::string_view> without_unit(const std::string& name) {
   return {name, ""};
 }
 
-/// Where a parameter acts in its waveform: the numbers of two parameters sort as the times from which they act.
+/// Returns the place of a parameter in its waveform: the numbers of two parameters sort as the times from which they act.
 int place_in_time(const std::string& name) {
   constexpr std::array<std::pair<std::string_view, int>, 8> stems{{{"rise_time", 0},
                                                                    {"start", 0},
@@ -260,13 +260,13 @@ int place_in_time(const std::string& name) {
   return found == stems.end() ? 1000000 : found->second;
 }
 
-/// The box that a parameter was searched in.
+/// Shows the box that a parameter was searched in.
 TableCell searched_cell(const ClosingRecord& result, const std::string& parameter, std::string_view unit) {
   const auto box = result.search->bounds.find(parameter);
   if (box == result.search->bounds.end()) return "";
   const auto [low, high] = box->second;
   const double value = result.search->parameters.at(parameter);
-  constexpr double near = 0.01;  // of the box
+  constexpr double near = 0.01;  // share of the box
   const char* bound = value - low <= near * (high - low)    ? "at its lower bound"
                       : high - value <= near * (high - low) ? "at its upper bound"
                                                             : "";
@@ -275,7 +275,7 @@ TableCell searched_cell(const ClosingRecord& result, const std::string& paramete
   return cell;
 }
 
-/// The parameters in the order in which they act.
+/// Lists the parameters in the order in which they act.
 ReportSection parameters_section(const ClosingRecord& result) {
   ReportSection section{.id = "parameters", .heading = "The waveform found", .parts = {}, .shown = ShownIn::page};
   if (!result.search || result.search->parameters.empty()) return section;
@@ -310,7 +310,7 @@ ReportSection parameters_section(const ClosingRecord& result) {
   return section;
 }
 
-/// What was asked for, and what the device is like.
+/// Lists the request and the properties of the device.
 ReportSection facts(const ClosingRecord& result) {
   std::string out;
   const auto fact = [&](std::string_view name, std::string value) {
@@ -365,7 +365,7 @@ Document closing_document(const ClosingRecord& result) {
                     .warnings = result.warnings,
                     .draw = [&result] { return picture(result); },
                     .made = {.origin = result.origin, .tolerance = result.tolerance}};
-  if (result.search) {  // whose terminal has room for what was found alone
+  if (result.search) {  // a search's terminal text has room for its findings alone
     const auto few = std::stable_partition(document.warnings.begin(), document.warnings.end(),
                                            [](const std::string& one) { return !is_few_summits_warning(one); });
     document.page_warnings.assign(few, document.warnings.end());

@@ -39,7 +39,7 @@ std::vector<Rebound> internal::read_rebounds(const json& rows) {
   return all;
 }
 
-// [begin, end, touches]
+// A row is [begin, end, touches].
 json internal::closed_json(const std::optional<std::vector<ClosedStretch>>& closed) {
   json rows = json::array();
   for (const ClosedStretch& one : *closed) rows.push_back({one.begin, json_number(one.end), one.touches});
@@ -72,7 +72,7 @@ std::map<std::string, std::vector<ClosedStretch>> internal::read_closed_contacts
   return all;
 }
 
-// [x, y] with x a whole number.
+// A row is [x, y] with x a whole number.
 json internal::counted_json(const Points& points) {
   json all = json::array();
   for (const auto& [index, value] : points) all.push_back({std::llround(index), json_number(value)});
@@ -90,14 +90,14 @@ json internal::pull_in_json(const std::map<std::string, PullInOfElectrode>& pull
   return all;
 }
 
-// Of one electrode without its name.
+// A single electrode is read without its name.
 std::map<std::string, PullInOfElectrode> internal::read_pull_in(const json& volts) {
   if (!volts.is_object()) return {};
   if (volts.contains("static_V") || volts.contains("dynamic_V")) return {{"", JsonReader::read<PullInOfElectrode>(volts)}};
   return JsonReader::read<std::map<std::string, PullInOfElectrode>>(volts);
 }
 
-// Of an ill-conditioned figure the cloud it is a property of.
+// An ill-conditioned figure has the cloud that it is a property of.
 json internal::certified_json(const std::vector<IllConditioned>& figures) {
   json all = json::object();
   for (const IllConditioned& f : figures) all[std::string(f.figure.key)] = record_json(f.spread);
@@ -198,7 +198,7 @@ json metrics_json(const Metrics& m) { return internal::record_json(m); }
 
 namespace {
 
-// What the checks come to.
+// Adds the verdict of the checks.
 void add_verdict(json& j, const ClosingRecord& r) {
   if (!r.best.figures || r.search->checks.empty()) return;
   j["confirmed"] = internal::all_checks_land(*r.search);
@@ -224,7 +224,7 @@ json json_of(const ClosingRecord& r) {
 
 json summary_json(json result) {
   for (const char* key : {"curves", "scene_toml", "search"}) result.erase(key);
-  if (!result.contains("baseline")) result.erase("best");  // a single run: its figures stand above
+  if (!result.contains("baseline")) result.erase("best");  // a single run has its figures above
   return result;
 }
 

@@ -1,4 +1,4 @@
-// The members of the record of a closing and of its parts, as its JSON names them, for writing and for reading: see
+// The members of the record of a closing and of its parts, named as in its JSON, for writing and for reading: see
 // reports/record.h.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace internal {
 
 inline bool every_figure(const Figure&) { return true; }
 inline bool figure_of_no_drive(const Figure& figure) { return figure.conditioning != Conditioning::drives; }
-/// A figure that each of several contacts has of its own.
+/// Tells whether each of several contacts has this figure of its own.
 inline bool figure_of_contact(const Figure& figure) {
   if (figure.key == key_of(&Metrics::drive_energy)) return false;
   const bool is_at_rest = figure.conditioning == Conditioning::rest || figure.conditioning == Conditioning::open;
@@ -24,7 +24,7 @@ inline bool figure_of_contact(const Figure& figure) {
 }
 inline bool figure_of_number(const Figure& figure) { return !figure.is_yes_or_no(); }
 
-// The status stands among the figures.
+// JSON holds the status among the figures.
 template <class A, class Asked>
 void figures_and_status(A& a, FigureValues& figures, std::string& status, const Asked& asked) {
   a.object("metrics", [&](auto& metrics) {
@@ -63,14 +63,15 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] std::vector<IllConditioned> read_certified(const nlohmann::json& figures);
 [[nodiscard]] inline std::string integrator_name(Integrator integrator) { return std::string(to_string(integrator)); }
 [[nodiscard]] Integrator read_integrator(const nlohmann::json& name);
-/// An eigenvalue and voltages of electrodes by the number of modes, with what they lead to; null where there are no more modes.
+/// Write an eigenvalue, and voltages of electrodes with their converged value, by the number of modes; null where there are no
+/// more modes.
 [[nodiscard]] nlohmann::json eigenvalues_json(const std::optional<ByModes>& found);
 [[nodiscard]] nlohmann::json voltages_json(const std::map<std::string, ByModes>& of_electrodes);
 [[nodiscard]] std::map<std::string, ByModes> read_voltages(const nlohmann::json& of_electrodes);
 [[nodiscard]] HoldWindows read_windows(const nlohmann::json& windows);
-/// Each with the quantiles of its row.
+/// Writes each choice with the quantiles of its row.
 [[nodiscard]] nlohmann::json choices_json(const DevicesFindings& devices);
-/// The outcome of all searches together.
+/// Returns the outcome of all searches together.
 [[nodiscard]] nlohmann::json seeds_summary(const SeedsFindings& seeds);
 
 }  // namespace internal
@@ -87,7 +88,7 @@ void members(A& a, MadeWith& made) {
   a("processor", OrNull{made.processor});
 }
 
-/// What every record of a study begins with.
+/// Every record of a study begins with these members.
 template <class A>
 void members(A& a, Origin& origin) {
   a("kind", origin.kind);
@@ -377,7 +378,7 @@ void members(A& a, SeedsFindings& seeds) {
   }
 }
 
-/// Those of a search stand among those of the closing that it found.
+/// The members of a search stand among those of the closing that it found.
 template <class A>
 void members_of_search(A& a, SearchRecord& search, ClosingRecord& closing) {
   a("target", search.target);
@@ -426,7 +427,7 @@ void members_of_search(A& a, SearchRecord& search, ClosingRecord& closing) {
   if (a.has(!search.checks.empty())) a("evaluations_with_more_modes", internal::Count{search.evaluations_of_modes});
 }
 
-/// But for what is worked out from others.
+/// Members that are computed from others are written elsewhere.
 template <class A>
 void members(A& a, ClosingRecord& record) {
   members(a, record.origin);

@@ -9,8 +9,8 @@
 namespace softland::internal {
 namespace {
 
-/// An estimated error beyond which a figure is quoted with "about": half a bounce, one per cent of a time. One that is not known
-/// counts as beyond after more than a few rebounds.
+/// A figure is quoted with "about" beyond this estimated error: half a bounce, one per cent of a time. An unknown error counts
+/// as beyond after more than a few rebounds.
 constexpr double doubtful_count = 0.5;
 constexpr double doubtful_time = 0.01;
 constexpr double few_rebounds = 5;
@@ -26,13 +26,13 @@ bool doubtful(const FigureValues& figures, double error, double limit) {
   return std::isfinite(error) ? error > limit : figures[&Metrics::bounce_count] > few_rebounds;
 }
 
-/// "bounces about 79 times"
+/// Returns "bounces about 79 times".
 std::string bounces(const FigureValues& figures, const FigureValues& errors) {
   const bool about = doubtful(figures, errors[&Metrics::bounce_count], doubtful_count);
   return fmt::format("bounces {}{}", about ? "about " : "", times_word(figures[&Metrics::bounce_count]));
 }
 
-/// The settling time, with "about" where it is doubtful.
+/// Returns the settling time, with "about" where it is doubtful.
 std::string settling(const FigureValues& figures, const FigureValues& errors) {
   const double settled = figures[&Metrics::permanent_contact_time];
   const double error = errors[&Metrics::permanent_contact_time];
@@ -42,7 +42,7 @@ std::string settling(const FigureValues& figures, const FigureValues& errors) {
 std::string first_touch(const FigureValues& figures) { return quantity(figures[&Metrics::initial_contact_time], "s"); }
 std::string impact_speed(const FigureValues& figures) { return quantity(figures[&Metrics::impact_velocity], "m/s"); }
 
-/// The smallest distance to the contact plane [m] of a run that never touched; NaN without its curve.
+/// Returns the smallest distance to the contact plane [m] of a run that never touched; NaN without its curve.
 double closest(const CurveRecord& curve) {
   double least = std::numeric_limits<double>::quiet_NaN();
   for (const double gap : curve.gap) least = std::fmin(least, gap);
@@ -89,7 +89,7 @@ std::string open_clause(const Actor& actor, const FigureValues& figures) {
       std::isfinite(settling) ? ", and settles after " + quantity(settling, "s") : ", and has not settled when the window ends");
 }
 
-// A run that began closed lands nowhere.
+// A run that began closed has no landing, only an opening.
 std::string opening_clause(const Actor& actor, const FigureValues& figures, const std::string& end) {
   const double settling = figures[&Metrics::open_settling_time];
   if (!std::isfinite(settling))
@@ -99,7 +99,7 @@ std::string opening_clause(const Actor& actor, const FigureValues& figures, cons
                      quantity(settling, "s"), quantity(figures[&Metrics::static_deflection], "m"));
 }
 
-// How it opens on command; empty where nothing commands it to.
+// Says how the run opens on command; empty where nothing commands it to.
 std::string opening_on_command(const FigureValues& figures) {
   const double command = figures[&Metrics::open_command], opening = figures[&Metrics::opening_time];
   if (!std::isfinite(command)) return {};

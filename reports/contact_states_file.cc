@@ -29,7 +29,7 @@ std::string prefix(const StateChannel& one) {
   return (one.device ? device_name(*one.device) + "_" : std::string()) + contact_prefix(one);
 }
 
-// Returns the value on straight lines between points, before and after which it stays.
+// Interpolates linearly between points; the value is constant before and after them.
 double on_line(const ResistanceLine& points, double time) {
   const auto to = std::ranges::upper_bound(points, time, {}, &std::pair<double, double>::first);
   if (to == points.begin()) return points.front().second;
@@ -38,11 +38,11 @@ double on_line(const ResistanceLine& points, double time) {
   return std::lerp(from, to->second, (time - a) / (to->first - a));
 }
 
-// One channel at times that do not decrease.
+// A reader follows one channel at times that do not decrease.
 class StateReader {
  public:
   explicit StateReader(const StateChannel& channel) : channel_(channel) {}
-  /// Just before, or just after, a time.
+  /// Appends the value just before, or just after, a time.
   void append(std::string& text, double time, bool after) {
     const std::vector<ClosedSpan>& spans = channel_.spans;
     while (next_ < spans.size() && (after ? spans[next_].end <= time : spans[next_].end < time)) ++next_;
@@ -59,10 +59,10 @@ class StateReader {
   std::size_t next_ = 0;
 };
 
-// [ps]
+// Converts seconds to whole picoseconds.
 std::int64_t picoseconds(double time) { return std::llround(1e12 * time); }
 
-// "!", "\"", ..., "~", "!!": all printable characters.
+// Returns "!", "\"", ..., "~", "!!": all printable characters.
 std::string identifier(std::size_t number) {
   constexpr std::size_t first = 33, count = 94;
   std::string text;
@@ -77,7 +77,7 @@ struct DumpedChange {
   std::string text;
 };
 
-// In order of time; of several changes of one variable in a picosecond the last one.
+// Writes the changes in order of time; several changes of one variable in a picosecond leave the last one.
 std::string text_of(std::vector<DumpedChange> changes) {
   std::ranges::stable_sort(changes, {}, [](const DumpedChange& one) { return std::pair(one.time, one.place); });
   std::string text;
@@ -104,7 +104,7 @@ void dump_state(const StateChannel& one, std::size_t place, std::vector<DumpedCh
 }
 
 void dump_resistance(const StateChannel& one, std::size_t place, std::vector<DumpedChange>& changes) {
-  constexpr double step = 0.05;  // relative
+  constexpr double step = 0.05;  // relative step of a resistance
   const auto set = [&](double time, double resistance) {
     changes.push_back({picoseconds(time), place, fmt::format("r{:.{}g} {}\n", resistance, resistance_digits, identifier(place))});
   };
@@ -125,9 +125,9 @@ void dump_resistance(const StateChannel& one, std::size_t place, std::vector<Dum
   }
 }
 
-// The state, or the resistance, as lines between points, with edges in the place of jumps.
+// Returns the state, or the resistance, as lines between points, with edges in the place of jumps.
 Signal on_edges(const StateChannel& one, bool is_resistance, double end) {
-  constexpr double edge = 1e-9, share = 0.25;  // [s], of the time to the jumps beside it
+  constexpr double edge = 1e-9, share = 0.25;  // edge [s]; largest half-edge over the time to the next jump
   const auto value = [&](const ClosedSpan* span, double time) {
     if (!is_resistance) return span != nullptr ? 1.0 : 0.0;
     return span != nullptr && !span->resistance.empty() ? on_line(span->resistance, time) : open_resistance;

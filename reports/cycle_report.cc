@@ -26,9 +26,9 @@ using internal::percent;
 using internal::quantity;
 using nlohmann::json;
 
-constexpr std::size_t most_of_course = 4000;  // a course has no more
-constexpr double line_tolerance = 1e-4;       // share of the largest voltage that lines may miss
-constexpr std::size_t told_cycles = 3;        // the first ones, and the last
+constexpr std::size_t most_of_course = 4000;  // largest number of points of a course
+constexpr double line_tolerance = 1e-4;       // largest error of lines as a share of the largest voltage
+constexpr std::size_t told_cycles = 3;        // number of reported cycles: the first ones, and the last
 constexpr std::size_t most_drawn_cycles = 200;
 
 CycleRecord::Devices devices_of(const CycledDrive& drive, double rate) {
@@ -41,7 +41,7 @@ CycleRecord::Devices devices_of(const CycledDrive& drive, double rate) {
           .steady = static_cast<double>(steady) / static_cast<double>(rates.size())};
 }
 
-// One cycle of every drive that is a voltage.
+// Returns one cycle of every drive that is a voltage.
 std::map<std::string, Points> waveforms_of(const PreparedScene& given, const CycledDrive& drive, const CycleTimes& times) {
   std::map<std::string, Points> all;
   CycleTimes once = times;
@@ -73,14 +73,14 @@ const CycleRecord::Drive& found_of(const CycleRecord& r) { return r.drives.back(
 
 std::string rate_words(double rate) { return std::isfinite(rate) ? quantity(rate, "Hz") : std::string("none"); }
 
-// The hardest of the cycles that were told.
+// Returns the worst value of the reported cycles.
 double hardest(const CycleRecord::Drive& drive, double Metrics::*figure) {
   double most = 0;
   for (const CycleRecord::Cycle& cycle : drive.cycles) most = std::fmax(most, cycle.metrics.*figure);
   return most;
 }
 
-// Both pairs of waveforms at the rate that is told.
+// Compares both pairs of waveforms at the reported rate.
 std::string comparison(const CycleRecord& r) {
   const auto words = [&](const CycleRecord::Drive& drive) {
     const bool sticks = std::ranges::any_of(drive.cycles, [](const auto& c) { return !std::isfinite(c.metrics.opening_time); });
@@ -305,7 +305,7 @@ internal::Role role_of(const CycleRecord& r, const CycleRecord::Drive& d) {
   return &d == &r.drives.front() ? internal::Role::baseline : internal::Role::best;
 }
 
-// Charts over the time of the cycles, which share their zoom; the first ones are shown at first.
+// Draws charts over the time of the cycles, which share their zoom; the first cycles are in view at the start.
 internal::Picture picture_of(const CycleRecord& r) {
   using internal::Chart;
   const double period = 1 / r.rate, first = period * static_cast<double>(std::min<std::uint64_t>(r.cycles, told_cycles));
@@ -367,7 +367,7 @@ std::string cycle_charts(const internal::Picture& drawn) {
   return charts;
 }
 
-// The rates that were tried, a row for each drive: a dot is steady, a ring is not.
+// Draws the rates that were tried, a row for each drive: a dot is steady, a ring is not.
 std::string drawn_rates(const CycleRecord& r) {
   constexpr double left = 110, right = 780, row = 26;
   internal::Axis axis{.scale = internal::Scale::logarithmic, .low = 1e300, .high = 0, .pixel_low = left, .pixel_high = right};

@@ -18,15 +18,15 @@
 namespace softland {
 
 struct CycleRecord {
-  /// Rates of devices: quantiles, and the share that is steady at the rate that is told.
+  /// Rates of varied devices: quantiles, and the share that is steady at the reported rate.
   struct Devices {
     std::uint64_t count = 0;
     double at_5 = Metrics::unset, at_50 = Metrics::unset, at_95 = Metrics::unset;  ///< [Hz]
     double steady = Metrics::unset;
   };
   struct Course {
-    std::vector<double> time, gap;                     ///< [s], [m]
-    std::optional<std::vector<ClosedStretch>> closed;  ///< the times in which the contact touches
+    std::vector<double> time, gap;                     ///< time [s] and gap [m]
+    std::optional<std::vector<ClosedStretch>> closed;  ///< times in which the contact touches
   };
   struct Cycle {
     Metrics metrics;                  ///< CycleFigures::metrics
@@ -36,41 +36,41 @@ struct CycleRecord {
     std::string name;
     double largest = Metrics::unset;                ///< [Hz]
     std::vector<std::array<double, 2>> windows;     ///< [Hz]
-    std::vector<double> steady_rates, other_rates;  ///< those that the scan tried [Hz]
+    std::vector<double> steady_rates, other_rates;  ///< rates that the scan tried [Hz]
     std::optional<Devices> devices;
-    std::optional<std::string> status, message;  ///< how the run at the rate ended
+    std::optional<std::string> status, message;  ///< end of the run at the rate
     std::vector<Cycle> cycles;
     std::map<std::string, Points> waveforms;  ///< one cycle, by drive: time [s] and level [V]
   };
-  /// How the waveforms were found for this rate.
+  /// The search that found the waveforms for this rate.
   struct Search {
-    std::string target, family;  ///< family of the closing
+    std::string target, family;  ///< target; waveform family of the closing
     std::uint64_t evaluations = 0;
     double cost = Metrics::unset, plain_cost = Metrics::unset;
     std::map<std::string, double> parameters;
   };
   Origin origin;
   std::string status;
-  double rate = Metrics::unset, duty = Metrics::unset;  ///< [Hz], 1
+  double rate = Metrics::unset, duty = Metrics::unset;  ///< rate [Hz]; duty [1]
   std::uint64_t cycles = 0, seed = 1;
-  double contact_gap = Metrics::unset;  ///< [m]
-  std::vector<Drive> drives;            ///< the plain one first
+  double contact_gap = Metrics::unset;  ///< rest gap of the contact [m]
+  std::vector<Drive> drives;            ///< drives; the plain one comes first
   std::optional<Search> search;         ///< none where the waveforms were given
-  std::vector<std::string> warnings;    ///< those that the scene has
+  std::vector<std::string> warnings;    ///< warnings of the scene
 
-  std::map<std::string, Course> curves;  ///< by drive; only files have them
+  std::map<std::string, Course> curves;  ///< courses by drive; only files have them
 };
 [[nodiscard]] CycleRecord record_of(const PreparedScene& given, const Cycling& cycling, const std::string& command);
 [[nodiscard]] CycleRecord record_of(const CycleSearchResult& found, const CycleSearchOptions& options,
                                     const std::string& command);
-/// The waveforms of a search as CSV: see csv() in waveforms/export.h.
+/// Returns the waveforms of a search as CSV: see csv() in waveforms/export.h.
 [[nodiscard]] std::string cycle_csv(const CycleSearchResult& found);
 
 [[nodiscard]] nlohmann::json json_of(const CycleRecord& record);
 [[nodiscard]] CycleRecord read_cycles(const nlohmann::json& from);
-/// Sentences, tables, and where the record has the courses charts of them. It refers to the record.
+/// Shows sentences and tables, and charts of the courses where the record has them. The document refers to the record.
 [[nodiscard]] Document document_of(const CycleRecord& record);
-/// Gap of the first cycles, when the contact is closed, and their drives; for a record that has the courses.
+/// Draws the gap of the first cycles, when the contact is closed, and their drives; the record must have the courses.
 [[nodiscard]] std::string svg_of(const CycleRecord& record);
 
 }  // namespace softland

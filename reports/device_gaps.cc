@@ -19,7 +19,7 @@ namespace {
 
 using namespace internal;
 
-// Whether every device has a gap at every instant, as a file that was changed may not say.
+// Tells whether every device has a gap at every instant; a file that was changed may lack some.
 bool is_drawable(const DevicesFindings::Courses& courses) {
   if (!(courses.end > 0 && courses.unit > 0) || courses.step.empty() || courses.own.empty()) return false;
   const std::size_t instants = courses.step.front().size();
@@ -27,7 +27,7 @@ bool is_drawable(const DevicesFindings::Courses& courses) {
   return instants > 1 && std::ranges::all_of(courses.step, has_all) && std::ranges::all_of(courses.own, has_all);
 }
 
-// The gaps in a table of columns "time", "low", "high", "median" and one for each device.
+// Returns the gaps in a table of columns "time", "low", "high", "median" and one for each device.
 CurveTable courses_table(const DevicesFindings::Courses& courses, const std::vector<std::vector<int>>& gaps) {
   CurveTable table;
   const std::size_t instants = gaps.front().size();

@@ -8,14 +8,15 @@
 
 namespace softland {
 
-/// A static SVG document of a search over devices: its first words, the gaps of devices, and below them what the drives do.
+/// Returns a static SVG document of a search over devices: its headline, the gaps of devices, and the waveforms of the drives
+/// below.
 [[nodiscard]] std::string svg_devices(const ClosingRecord& result);
 
 namespace internal {
 
-/// Two charts, with a curve for each device, the median and the band of 5 to 95 %; none where no gaps were kept.
+/// Returns two charts, with a curve for each device, the median and the band of 5 to 95 %; none where no gaps were kept.
 [[nodiscard]] Picture gaps_picture(const DevicesFindings& devices);
-/// The same for a page.
+/// Returns the same for a page.
 [[nodiscard]] std::string gaps_html(const DevicesFindings& devices);
 
 }  // namespace internal

@@ -27,7 +27,7 @@ using namespace internal;
 
 constexpr double half = 0.5;
 
-// A column of the table: a figure's 95th percentile over the devices, beside it the 99th.
+// A column of the table shows a figure's 95th percentile over the devices, beside it the 99th.
 struct Column {
   std::string_view key, heading, short_heading;
   bool with_99 = false;
@@ -65,7 +65,7 @@ std::string cell_of(std::string_view key, double value) {
   return quantity(value, figure_of(key).unit);
 }
 
-// "2.45 (33.8) mm/s", and with two units "723 µm/s (34.0 mm/s)".
+// Returns "2.45 (33.8) mm/s", and with two units "723 µm/s (34.0 mm/s)".
 std::string with_bracket(const std::string& value, const std::string& other) {
   constexpr std::string_view blank = "\u00a0";
   const std::size_t unit = value.find(blank), other_unit = other.find(blank);
@@ -75,7 +75,8 @@ std::string with_bracket(const std::string& value, const std::string& other) {
                  : fmt::format("{} ({})", value, other);
 }
 
-// "2.0 / 98 / 100 %": the shares of devices that rebound by no more than each height. They are cut, so that 100 % are all.
+// Returns "2.0 / 98 / 100 %": the shares of devices that rebound by no more than each height. They are cut, so that 100 % are
+// all.
 std::string yields_cell(const DevicesFindings::Row& row) {
   if (row.yield.empty()) return "—";
   std::string cell;
@@ -98,19 +99,19 @@ std::string shown_name(const DevicesFindings& d, const DevicesFindings::Row& row
 
 constexpr double least_share = 0.0005;  // smaller shares of devices are left out
 
-// Whether the table of these rows says how many devices stay open, and how many are pulled in.
+// Tells whether the table of these rows says how many devices stay open, and how many collapse.
 bool any_of(const std::vector<DevicesFindings::Row>& rows, double DevicesFindings::Row::*share) {
   return std::ranges::any_of(rows, [&](const DevicesFindings::Row& row) { return row.*share > least_share; });
 }
 
-// On a page there is room for more words.
+// A page has room for more words than a terminal.
 TableCell headed(std::string_view on_terminal, std::string_view on_page) {
   TableCell cell(on_terminal);
   cell.html = escaped(capitalised(std::string(on_page)));
   return cell;
 }
 
-// The choices beside the plain step: impact velocity over the time from which the force is steady.
+// Draws the choices beside the plain step: impact velocity over the time from which the force is steady.
 std::string choices_picture(const DevicesFindings& d) {
   if (d.choices.size() < 2) return {};
   CurveTables tables;
@@ -161,7 +162,7 @@ std::string choices_picture(const DevicesFindings& d) {
          "</div>\n";
 }
 
-// Share without a rebound and impact speed over the error of Vdp.
+// Draws the bounce-free share and the impact velocity over the error of Vdp.
 std::string error_curve(const DevicesFindings& d) {
   if (d.by_error.size() < 2) return {};
   CurveTables tables;
@@ -253,7 +254,7 @@ std::vector<KeyNumber> internal::devices_keys(const DevicesFindings& d) {
 
 namespace {
 
-// These rows, by their names in the first column.
+// Lists these rows, by their names in the first column.
 ReportTable devices_table(const DevicesFindings& d, const std::vector<std::pair<std::string, const DevicesFindings::Row*>>& rows,
                           ShownIn where) {
   ReportTable table{.head = {"95th percentile (99th)"}, .rows = {}};
@@ -283,7 +284,7 @@ ReportTable devices_table(const DevicesFindings& d, const std::vector<std::pair<
   return table;
 }
 
-// The choices beside the plain step, and what the best measurement reaches.
+// Lists the choices beside the plain step, and the row with the best measurement.
 ReportTable choices_table(const DevicesFindings& d) {
   std::vector<std::pair<std::string, const DevicesFindings::Row*>> rows;
   const auto add = [&](const std::string& row) {
@@ -297,7 +298,7 @@ ReportTable choices_table(const DevicesFindings& d) {
   return devices_table(d, rows, ShownIn::terminal);
 }
 
-// The choices come first, in their order, and the others after them.
+// Lists the choices first, in their order, and the other rows after them.
 ReportTable all_rows(const DevicesFindings& d) {
   std::vector<std::pair<std::string, const DevicesFindings::Row*>> rows;
   const auto add = [&](const DevicesFindings::Row* row) {

@@ -1,5 +1,5 @@
-// What a search for devices came to: the first words, the table that stands before all others, and the front of closing time
-// against impact speed; as text and as HTML.
+// The findings of a search for devices: the headline, the table that stands before all others, and the front of closing time
+// against impact velocity; as text and as HTML.
 #pragma once
 
 #include <string>
@@ -17,11 +17,11 @@ namespace internal {
 [[nodiscard]] std::string drawing_words(const DevicesFindings& devices);
 /// Says in a sentence how the waveform of best.toml closes the devices.
 [[nodiscard]] std::string devices_headline(const ClosingRecord& result);
-/// What stands above all else on a page: shares and 95 % quantiles of the devices, from plain step to winner.
+/// Returns the key numbers at the top of a page: shares and 95th percentiles of the devices, from plain step to winner.
 [[nodiscard]] std::vector<KeyNumber> devices_keys(const DevicesFindings& devices);
-/// A terminal shows the choices beside the plain step, what measuring wins, and the nominal design.
+/// Shows the choices beside the plain step, what measuring wins, and the nominal design, for a terminal.
 [[nodiscard]] ReportSection choices_section(const DevicesFindings& devices);
-/// A page shows all rows, the front, what knowing a device is worth.
+/// Shows all rows, the front and the value of measuring a device, for a page.
 [[nodiscard]] ReportSection devices_section(const DevicesFindings& devices);
 
 }  // namespace internal

@@ -21,17 +21,17 @@ using namespace internal;
 namespace {
 
 constexpr std::string_view words_style = "words", missing_style = "missing", part_style = "part";
-constexpr std::size_t most_warnings = 200;  // on a page
+constexpr std::size_t most_warnings = 200;  // largest number of warnings on a page
 constexpr std::size_t gap = 2;              // blanks between columns of a terminal
 
-// Of the column at `place`; null beyond the heads.
+// Returns the head of the column at `place`; null beyond the heads.
 const TableCell* head_of(const ReportTable& table, std::size_t place) {
   return place < table.head.size() ? &table.head[place] : nullptr;
 }
 
 bool is_of_words(const TableCell* head) { return head != nullptr && head->style == words_style; }
 
-// What comes from names must not act on a terminal.
+// Escape text from names: it must not act on a terminal.
 std::string shown_text(const TableCell& cell) { return (cell.style == part_style ? "  " : "") + printable_line(cell.text); }
 
 // Calls `use(cell, place)` for every cell of a row with the column at which it begins.
@@ -57,7 +57,7 @@ std::vector<std::size_t> widths_of(const ReportTable& table) {
   return widths;
 }
 
-// The columns from `first` to before `last`, beside that of the headings. Numbers stand to the right, words to the left.
+// Prints the columns from `first` to before `last`, beside that of the headings. Numbers are right-aligned, words left-aligned.
 std::string line_of(const TableRow& row, const ReportTable& table, const std::vector<std::size_t>& widths, std::size_t first,
                     std::size_t last) {
   std::string line;
@@ -93,7 +93,7 @@ std::string cell_html(const TableCell& cell, const TableCell* head, std::string_
   return out + fmt::format(">{}</{}>", cell.html.empty() ? words_html(cell.text) : cell.html, tag);
 }
 
-// Parts as a terminal shows them, a blank line between two, none below a heading.
+// Prints parts for a terminal, a blank line between two, none below a heading.
 struct OnTerminal {
   std::size_t screen;
   std::string text = {};
@@ -202,7 +202,7 @@ std::string internal::words_html(std::string_view words) {
   std::string out;
   while (!words.empty()) {
     const std::size_t end = std::min(words.find_first_of(ends), words.size());
-    const std::size_t stop = end > 0 && words[end - 1] == '.' ? end - 1 : end;  // of a sentence
+    const std::size_t stop = end > 0 && words[end - 1] == '.' ? end - 1 : end;  // end of a sentence
     const std::string_view word = words.substr(0, stop);
     out += has_index(word) ? symbol_html(word) : escaped(word);
     out += escaped(words.substr(stop, std::min(end + 1, words.size()) - stop));

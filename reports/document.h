@@ -1,4 +1,4 @@
-// What a study says, once: a terminal and a page show the same sentences and tables.
+// The content of a report, stated once: a terminal and a page show the same sentences and tables.
 #pragma once
 
 #include <cstddef>
@@ -18,15 +18,15 @@ namespace softland {
 struct TableCell {
   std::string text;
   std::string style = {};                                   ///< name of a class of the page; may be empty
-  std::size_t columns = 1;                                  ///< that it takes
-  std::string html = {};                                    ///< on a page in the place of the text
+  std::size_t columns = 1;                                  ///< number of columns that it takes
+  std::string html = {};                                    ///< replaces the text on a page
   TableCell(std::string words) : text(std::move(words)) {}  // NOLINT(google-explicit-constructor): a cell is its text
   TableCell(const char* words) : text(words) {}             // NOLINT(google-explicit-constructor)
   TableCell(std::string_view words) : text(words) {}        // NOLINT(google-explicit-constructor)
   TableCell(std::string words, std::string name, std::size_t wide = 1)
       : text(std::move(words)), style(std::move(name)), columns(wide) {}
 };
-/// What a page alone shows; `html` is not escaped.
+/// Makes a cell that only a page shows; `html` is not escaped.
 [[nodiscard]] TableCell drawn_cell(std::string html, std::string style);
 
 /// The first cell of a row is its heading.
@@ -38,26 +38,26 @@ struct ReportTable {
 
 struct Paragraph {
   std::string text;
-  bool is_note = false;  ///< below a table
+  bool is_note = false;  ///< true for a note below a table
 };
-/// Of a part of a section.
+/// The heading of a part of a section.
 struct SubHeading {
   std::string text;
 };
-/// Lines that are not broken, as commands are.
+/// Lines that are not broken, such as commands.
 struct ReportList {
   std::vector<std::string> lines;
 };
-/// What a page alone shows, made when the page is: a terminal does not wait for pictures.
+/// A picture that only a page shows. It is made with the page: a terminal does not wait for pictures.
 struct Drawing {
-  std::function<std::string(const internal::Picture&)> html;  ///< of the document's picture; not escaped
+  std::function<std::string(const internal::Picture&)> html;  ///< makes HTML from the document's picture; not escaped
 };
 [[nodiscard]] Drawing drawing_of(std::string html);
 
-/// Where a section is shown.
+/// The media that show a section.
 enum class ShownIn { everywhere, page, terminal };
 
-/// A part of a page under a heading, which a terminal does without.
+/// A part of a page under a heading; a terminal omits the heading.
 struct ReportSection {
   std::string id, heading;
   std::vector<std::variant<Paragraph, SubHeading, ReportTable, ReportList, Drawing>> parts;
@@ -67,50 +67,51 @@ struct ReportSection {
 /// A number that stands above everything else of a page, with its name.
 struct KeyNumber {
   std::string name, value;
-  std::string change = {};  ///< in words; may be empty
-  std::string before = {};  ///< of the plain step; may be empty
-  std::string style = {};   ///< of the change, a class of the page
-  bool is_words = false;    ///< a value without a number
+  std::string change = {};  ///< change in words; may be empty
+  std::string before = {};  ///< value of the plain step; may be empty
+  std::string style = {};   ///< style of the change, a class of the page
+  bool is_words = false;    ///< true for a value without a number
 };
 
-/// How the contents of a page are made again.
+/// The data that reproduce the contents of a page.
 struct MadeAgain {
   Origin origin;
   std::optional<std::uint64_t> seed = {};
-  double tolerance = Metrics::unset;        ///< of the integrator
+  double tolerance = Metrics::unset;        ///< tolerance of the integrator
   std::vector<std::string> reproduce = {};  ///< command lines; empty: that of the origin
 };
 
-/// Refers to what it was made of, which is to outlive it.
+/// A document refers to the record it was made from, which must outlive it.
 struct Document {
-  std::string title;  ///< of the scene; may be empty
+  std::string title;  ///< title of the scene; may be empty
   std::string origin;
   std::string headline, headline_rest;
   std::string doubt;
   std::vector<KeyNumber> keys;
   std::vector<ReportSection> sections;
   std::vector<std::string> warnings;
-  std::vector<std::string> page_warnings = {};  ///< these stand beside those on the page alone
-  std::function<internal::Picture()> draw;      ///< what the page's script draws; may be empty
-  MadeAgain made = {};                          ///< how to make it again
+  std::vector<std::string> page_warnings = {};  ///< warnings beside those on the page alone
+  std::function<internal::Picture()> draw;      ///< makes the charts for the page's script; may be empty
+  MadeAgain made = {};                          ///< data that reproduce the contents
   /// CSS and HTML of pictures that `draw` does not make.
   std::string style = {}, scripts = {};
 };
 
-/// Headline, sentences and tables for a terminal, at most `screen` columns wide where words permit it.
+/// Returns headline, sentences and tables for a terminal, at most `screen` columns wide where words permit it.
 [[nodiscard]] std::string terminal_text(const Document& document, std::size_t screen = 130);
-/// A self-contained HTML page (< 1 MB): it makes no request, styles, script and data are inside. Without JavaScript and in print
-/// the charts are static SVG. All text is escaped.
+/// Returns a self-contained HTML page (< 1 MB): it makes no request; styles, script and data are inside. Without JavaScript and
+/// in print the charts are static SVG. All text is escaped.
 [[nodiscard]] std::string page_html(const Document& document);
 
 namespace internal {
 
-/// Columns that do not fit on the screen stand below the others, but for a last one of words. Lines have no blanks at their end.
+/// Prints columns that do not fit on the screen below the others, except a last one of words. Lines have no blanks at their
+/// end.
 [[nodiscard]] std::string table_text(const ReportTable& table, std::size_t screen = 130);
 [[nodiscard]] std::string table_html(const ReportTable& table);
-/// Every chart of the document with its title and caption.
+/// Draws every chart of the document with its title and caption.
 [[nodiscard]] Drawing all_charts();
-/// Escaped, with the indices of figures' symbols below: "t_i".
+/// Returns the words escaped, with the indices of figures' symbols below: "t_i".
 [[nodiscard]] std::string words_html(std::string_view words);
 
 }  // namespace internal

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-// The value at this path of keys; a null value when any of them is missing.
+// Returns the value at this path of keys; a null value when any of them is missing.
 const json& at(const json& value, std::initializer_list<std::string_view> path) {
   static const json nothing;
   const json* here = &value;
@@ -33,7 +33,7 @@ double number(const json& value) { return value.is_number() ? value.get<double>(
 std::string text(const json& value) { return value.is_string() ? value.get<std::string>() : std::string(); }
 std::string text(const json& value, std::initializer_list<std::string_view> path) { return text(at(value, path)); }
 
-// A quantity as a resolved scene writes it, "2 um", in SI units; a plain number as it is.
+// Reads a quantity as a resolved scene writes it, "2 um", in SI units; a plain number as it is.
 double quantity(const json& value) {
   if (!value.is_string()) return number(value);
   try {
@@ -49,7 +49,7 @@ std::vector<double> quantities(const json& list) {
   return all;
 }
 
-// The members of an object, by name.
+// Reads the members of an object, by name.
 template <class Read>
 auto members_of(const json& object, const Read& read) {
   std::map<std::string, decltype(read(object))> all;
@@ -58,7 +58,7 @@ auto members_of(const json& object, const Read& read) {
   return all;
 }
 
-// A length, a percentage of a beam's length, or its tip.
+// Reads a length, a percentage of a beam's length, or its tip.
 double place_on(double length, const json& place) {
   const std::string written = text(place);
   if (written == "tip") return length;
@@ -71,7 +71,7 @@ std::optional<std::array<double, 2>> span_on(double length, const json& span) {
   return std::isfinite(ends[0]) && std::isfinite(ends[1]) ? std::optional(ends) : std::nullopt;
 }
 
-// The length of the structure, which sections have together.
+// Returns the length of the structure, or the sum of its sections.
 double length_of(const json& structure) {
   const double length = quantity(at(structure, {"length"}));
   const json& sections = at(structure, {"sections"});

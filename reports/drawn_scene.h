@@ -15,11 +15,11 @@ namespace softland {
 
 /// The limits of the source of a drive; a limit that the scene does not set is NaN.
 struct DriveLimits {
-  double lowest = Metrics::unset, highest = Metrics::unset;  ///< [V]
-  double slew = Metrics::unset;                              ///< [V/s]
+  double lowest = Metrics::unset, highest = Metrics::unset;  ///< limits of the voltage [V]
+  double slew = Metrics::unset;                              ///< limit of the slew rate [V/s]
 };
 
-/// The view of a kind of structure from the side.
+/// A kind of structure as seen from the side.
 enum class SideOfStructure {
   unknown,            ///< its shape is not described
   held_at_one_end,    ///< a beam
@@ -31,7 +31,7 @@ enum class SideOfStructure {
 
 /// The parts of a scene that reports show.
 struct DrawnScene {
-  using Span = std::optional<std::array<double, 2>>;  ///< from the clamped end [m]
+  using Span = std::optional<std::array<double, 2>>;  ///< distances from the clamped end [m]
   struct Piezo {
     Span span;
   };
@@ -39,12 +39,12 @@ struct DrawnScene {
     std::string name;
     Span span;
     bool far_side = false;
-    double gap = Metrics::unset;  ///< [m]
+    double gap = Metrics::unset;  ///< rest gap [m]
   };
   struct Contact {
     std::string name;
-    double at = Metrics::unset;   ///< from the clamped end [m]; NaN: at the tip, or in the middle
-    double gap = Metrics::unset;  ///< [m]
+    double at = Metrics::unset;   ///< distance from the clamped end [m]; NaN: at the tip, or in the middle
+    double gap = Metrics::unset;  ///< rest gap [m]
     bool far_side = false;
   };
   struct Waveform {
@@ -54,18 +54,18 @@ struct DrawnScene {
   };
 
   SideOfStructure structure = SideOfStructure::unknown;
-  double length = Metrics::unset;                                       ///< [m]
-  double electrode_gap = Metrics::unset, contact_gap = Metrics::unset;  ///< [m]
-  double pad_length = Metrics::unset;                                   ///< [m]
+  double length = Metrics::unset;                                       ///< length of the structure [m]
+  double electrode_gap = Metrics::unset, contact_gap = Metrics::unset;  ///< rest gaps [m]
+  double pad_length = Metrics::unset;                                   ///< length of the contact pad [m]
   std::optional<Piezo> piezo;
   std::vector<Electrode> electrodes;
-  std::vector<Contact> contacts;              ///< those that have names
-  std::map<std::string, Waveform> waveforms;  ///< by drive
+  std::vector<Contact> contacts;              ///< contacts that have names
+  std::map<std::string, Waveform> waveforms;  ///< waveforms by drive
   std::map<std::string, DriveLimits> drivers;
-  double significant_rebound = MetricsOptions{}.significant_rebound;  ///< [m]
+  double significant_rebound = MetricsOptions{}.significant_rebound;  ///< least height of a significant rebound [m]
 };
 
-/// Every part is optional: what is missing, null or of another type is not available.
+/// Reads the scene. Every part is optional: a part that is missing, null or of another type is not available.
 [[nodiscard]] DrawnScene read_drawn_scene(const nlohmann::json& scene);
 
 }  // namespace softland

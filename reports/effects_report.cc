@@ -21,12 +21,12 @@ namespace {
 using internal::json_number;
 using nlohmann::json;
 
-// How a figure changes from the scene's own closing to another.
+// Returns the change of a figure from the scene's own closing to another.
 double change(const Figure& figure, const Metrics& metrics, const Metrics& own) {
   return relative_change(figure.value(metrics), figure.value(own));
 }
 
-// What is worked out from the closings is written beside each of them.
+// Write the values that are computed from the closings beside each of them.
 template <class Closing>
 json compared_json(const std::vector<Closing>& closings, const Metrics& own) {
   json all = json::array();
@@ -42,7 +42,7 @@ std::string size_of(const NamedNumber& n) {
   return std::isfinite(n.value) ? fmt::format("{} {}", n.name, internal::quantity(n.value, n.unit)) : std::string();
 }
 
-// Each effect of the scene, left out.
+// Lists each effect of the scene, left out.
 ReportTable omissions_table(const Effects& effects) {
   const Effect& own = effects.own("gas");
   ReportTable table{.head = {"left out", {"", "words"}}, .rows = {}};
@@ -92,7 +92,7 @@ std::string spread_of_laws(const Effects& effects) {
                        : "The gas laws differ on this scene, largest less smallest over the scene's own, by: " + words + ".";
 }
 
-// A line per closing that was not followed to the end of the window.
+// Writes a line per closing that was not followed to the end of the window.
 std::vector<std::string> bounds_of(const Effects& effects) {
   std::vector<std::string> lines;
   const auto tell = [&](const std::string& closing, const Metrics& figures, const std::optional<double>& end) {
@@ -109,9 +109,9 @@ std::vector<std::string> bounds_of(const Effects& effects) {
   return lines;
 }
 
-// One line per warning, with the laws it is about.
+// Writes one line per warning, with the laws it is about.
 std::vector<std::string> warnings_of(const Effects& effects) {
-  std::vector<std::pair<std::string, std::string>> warnings;  // laws, what
+  std::vector<std::pair<std::string, std::string>> warnings;  // laws and text of each warning
   for (const Effect& e : effects.list) {
     for (const std::string& w : e.warnings) {
       const auto same = std::find_if(warnings.begin(), warnings.end(), [&](const auto& known) { return known.second == w; });

@@ -1,4 +1,4 @@
-// Text from scene files and command lines, made harmless inside HTML, SVG and scripts.
+// Escaping makes text from scene files and command lines harmless inside HTML, SVG and scripts.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,12 +7,12 @@
 
 namespace softland::internal {
 
-/// & < > " ' as entities: safe in element text and in quoted attributes of HTML and XML. Control characters, which XML forbids,
-/// become the escapes of printable().
+/// Writes & < > " ' as entities: safe in element text and in quoted attributes of HTML and XML. Control characters, which XML
+/// forbids, become the escapes of printable().
 [[nodiscard]] std::string escaped(std::string_view text);
 
-/// JSON for the inside of `<script type="application/json">`: every `<` is written `\u003c`, so that neither `</script` nor
-/// `<!--` can occur. Bytes that are not UTF-8 become U+FFFD.
+/// Returns JSON for the inside of `<script type="application/json">`: every `<` is written `\u003c`, so that neither `</script`
+/// nor `<!--` can occur. Bytes that are not UTF-8 become U+FFFD.
 [[nodiscard]] std::string script_json(const nlohmann::json& value);
 
 }  // namespace softland::internal

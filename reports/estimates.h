@@ -8,9 +8,9 @@
 
 namespace softland::internal {
 
-/// "3.4 % (2.7 to 4.3)"
+/// Returns "3.4 % (2.7 to 4.3)".
 [[nodiscard]] std::string yield_text(const Yield& yield);
-/// "26.9 mm/s (26.6 to 27.1)"; "∞" where it is infinite.
+/// Returns "26.9 mm/s (26.6 to 27.1)"; "∞" where it is infinite.
 [[nodiscard]] std::string quantile_text(const EstimatedQuantile& quantile, std::string_view unit);
 
 }  // namespace softland::internal

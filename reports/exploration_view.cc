@@ -20,13 +20,13 @@
 namespace softland::internal {
 namespace {
 
-constexpr std::size_t most_values = 800'000;  // of a page, at two letters each
-constexpr std::size_t most_reasons = 300;     // different ones
-constexpr int steps = 4094;                   // that a value has between the ends of its column
+constexpr std::size_t most_values = 800'000;  // largest number of values of a page, at two letters each
+constexpr std::size_t most_reasons = 300;     // largest number of different reasons
+constexpr int steps = 4094;                   // steps between the ends of a column
 constexpr std::size_t most_bins = 24;
 constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// A number below 4096 in two letters.
+/// Writes a number below 4096 in two letters.
 void append_letters(std::string& text, std::size_t number) {
   text += letters[number / 64];
   text += letters[number % 64];
@@ -53,23 +53,23 @@ Range range_of(const ExplorationReport& report, std::size_t column) {
   return range;
 }
 
-/// Which step from the low end of a column is nearest to a value of it.
+/// Returns the step from the low end of a column that is nearest to a value.
 std::size_t step_of(double low, double step, double value) {
   const double way = value - low;
   const double count = std::isfinite(way) ? way / step : value / step - low / step;
   return static_cast<std::size_t>(std::lround(std::clamp(count, 0.0, static_cast<double>(steps))));
 }
 
-/// A value to so many digits.
+/// Rounds a value to so many digits.
 double shortened_to(int digits, double value) {
   const double near = std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
   return std::isfinite(near) ? near : value;
 }
 
-/// The values of a column as steps between its ends; of equal ratios where the column spans decades.
+/// Returns the values of a column as steps between its ends; of equal ratios where the column spans decades.
 nlohmann::json column_json(const ExplorationReport& report, std::size_t column, const std::vector<std::size_t>& rows) {
   const Range range = range_of(report, column);
-  constexpr double decades = 100;  // high over low
+  constexpr double decades = 100;  // least ratio of high to low for equal ratios
   const bool logarithmic = range.is_known() && range.all_positive && range.high > decades * range.low;
   const auto scaled = [&](double value) { return logarithmic ? std::log(value) : value; };
   const double low = range.is_known() ? scaled(range.low) : 0, high = range.is_known() ? scaled(range.high) : 0;
@@ -85,7 +85,7 @@ nlohmann::json column_json(const ExplorationReport& report, std::size_t column, 
                      {"log", logarithmic},
                      {"prefix", takes_prefix(about.unit)},
                      {"known", range.is_known()}};
-  if (!range.is_known() || step == 0) return out;  // nothing, or everywhere the same
+  if (!range.is_known() || step == 0) return out;  // the column is empty or everywhere the same
   std::string text;
   for (const std::size_t k : rows) {
     const double value = report.points[k].values[column];
@@ -95,7 +95,7 @@ nlohmann::json column_json(const ExplorationReport& report, std::size_t column, 
   return out;
 }
 
-/// Every so many values of a variable are kept.
+/// Strides keep one of so many values of a variable.
 using Strides = std::vector<std::size_t>;
 
 std::size_t kept_values(std::size_t count, std::size_t stride) { return (count + stride - 1) / stride; }
@@ -118,7 +118,7 @@ Strides strides_for(const ExploredGrid& grid, std::size_t most_points) {
   return strides;
 }
 
-/// Points that are drawn, ascending, and how they were chosen.
+/// The points that are drawn, ascending, and the rule of their choice.
 struct Choice {
   std::vector<std::size_t> points;
   Strides strides;
@@ -152,7 +152,7 @@ Choice chosen_points(const ExplorationReport& report, const std::optional<Explor
       }
       how = stride_words(report, *grid, choice.strides);
     } else {
-      // Each with the same probability, whatever its place in the plan.
+      // Choose each point with the same probability, whatever its place in the plan.
       const double part = static_cast<double>(most) / static_cast<double>(count);
       for (std::size_t k = 0; k < count; ++k)
         kept[k] = static_cast<char>(random_uniform(0, Stream::scene, static_cast<std::uint64_t>(report.points[k].number)) < part);
@@ -177,7 +177,7 @@ nlohmann::json grid_json(const ExplorationReport& report, const ExploredGrid& gr
     for (std::size_t k = 0; k < grid.values[d].size(); k += choice.strides[d]) values.push_back(grid.values[d][k]);
     out["values"].push_back(std::move(values));
   }
-  // The cell of every drawn point, less that of the one before; a negative cell is none of the thinned grid.
+  // Write the cell of every drawn point, less that of the one before; a negative cell is not in the thinned grid.
   nlohmann::json cells = nlohmann::json::array();
   long expected = 0, before = 0;
   bool in_order = true;
@@ -199,7 +199,7 @@ nlohmann::json grid_json(const ExplorationReport& report, const ExploredGrid& gr
   return out;
 }
 
-/// Statuses and reasons of the drawn points, as numbers of words.
+/// Adds statuses and reasons of the drawn points, as indices into lists of words.
 void add_outcomes(nlohmann::json& out, const ExplorationReport& report, const std::vector<std::size_t>& rows) {
   std::map<std::string, std::size_t> statuses, reasons{{"", 0}};
   std::vector<std::string> status_words, reason_words{""};

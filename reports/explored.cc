@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_waveforms = 400;  // of a front
+constexpr std::size_t most_waveforms = 400;  // largest number of waveforms of a front
 
 Plan plan_of(const StudyReader& store) { return Plan(exploration_in(store)); }
 
@@ -33,7 +33,7 @@ ExplorationReport explored(const StudyReader& store, const std::string& pareto) 
     try {
       extra.at("waveforms").get_to(report.waveforms[row.point]);
     } catch (const json::exception&) {
-      report.waveforms.erase(row.point);  // of another version
+      report.waveforms.erase(row.point);  // another version wrote it
     }
   });
   if (!pareto.empty() || plan.is_search()) report.aims = explored_aims(report.columns, pareto.empty() ? plan.pareto() : pareto);

@@ -8,12 +8,12 @@
 
 namespace softland {
 
-/// All rows of the store, with the waveforms that it holds. `pareto` names the figures of the front, as --pareto does; empty:
-/// those that the plan itself minimises, if it does. Throws InvalidInput as explored_aims() and StudyReader do.
+/// Reads all rows of the store, with the waveforms that it holds. `pareto` names the figures of the front, as --pareto does;
+/// empty: those that the plan itself minimises, if it does. Throws InvalidInput as explored_aims() and StudyReader do.
 [[nodiscard]] ExplorationReport explored(const StudyReader& store, const std::string& pareto);
 
-/// Adds the waveforms of the points on the front that the store does not hold: those of their scenes. A point whose scene cannot
-/// be prepared stays without.
+/// Adds the waveforms of the points on the front that the store does not hold, from their scenes. A point whose scene cannot be
+/// prepared stays without.
 void add_front_waveforms(ExplorationReport& report, const StudyReader& store, const Watch& watch);
 
 }  // namespace softland

@@ -50,7 +50,7 @@ class TemporaryFile {
     return true;
   }
   [[nodiscard]] bool sync() const { return ::fsync(descriptor_) == 0; }
-  /// A new file gets the usual rights; one that replaces another gets the rights of that one.
+  /// Gives a new file the usual rights, and one that replaces another the rights of that one.
   [[nodiscard]] bool adopt_rights(const std::filesystem::path& path) const {
     std::error_code missing;
     const auto old = std::filesystem::status(path, missing);
@@ -68,7 +68,7 @@ class TemporaryFile {
   bool renamed_ = false;
 };
 
-/// The file that a link leads to, so that a link stays one.
+/// Returns the file that a link leads to, so that a link stays one.
 std::filesystem::path behind_links(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_symlink(path, error)) return path;
@@ -76,19 +76,19 @@ std::filesystem::path behind_links(const std::filesystem::path& path) {
   return error ? path : target;
 }
 
-/// By errno.
+/// Returns the message of errno.
 std::string failure(const std::filesystem::path& path, const char* what) {
   return fmt::format("{}: cannot {}: {}", path.string(), what, std::generic_category().message(errno));
 }
 
-/// For a place that the user named: it is a bad one, unless it is the disk that has no room.
+/// Throws for a place that the user named: the place is invalid, unless the disk is full.
 void require_place(bool done, const std::filesystem::path& path, const char* what) {
   if (done) return;
   if (errno == ENOSPC || errno == EDQUOT || errno == EIO) throw OutputLost(failure(path, what));
   throw InvalidInput(failure(path, what));
 }
 
-// Knows it by what every file of SQLite begins with.
+// Recognises a database by the first bytes of every SQLite file.
 bool is_database(const std::filesystem::path& path) {
   constexpr std::string_view heading("SQLite format 3\0", 16);
   std::array<char, heading.size()> begin{};

@@ -1,4 +1,4 @@
-// What a fit found: JSON with SI units, and a document.
+// The findings of a fit: JSON with SI units, and a document.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -34,12 +34,12 @@ struct FitRecord {
   std::vector<FitResidual> residuals;
   std::vector<FittedTrace> traces;
   double chi_squared = Metrics::unset, chi_squared_before = Metrics::unset;  ///< NaN where nothing was found
-  /// The residuals as a whole, data that do not agree, what the data cannot tell apart, minima.
+  /// Sentences on the residuals as a whole, data that do not agree, indistinguishable unknowns, minima.
   std::vector<std::string> words;
   bool spread_assumed = false;
   Loss loss = Loss::huber;
   std::uint64_t seed = 1;
-  double tolerance = Metrics::unset;  ///< of the integrator
+  double tolerance = Metrics::unset;  ///< tolerance of the integrator
   std::optional<Population> population;
 
   [[nodiscard]] bool is_found() const { return status != to_string(Status::numerical_failure); }
@@ -48,7 +48,7 @@ struct FitRecord {
 
 [[nodiscard]] nlohmann::json json_of(const FitRecord& record);
 [[nodiscard]] FitRecord read_fit(const nlohmann::json& from);
-/// Values and their intervals, what the data cannot tell apart and what would, residuals.
+/// Shows values and their intervals, unknowns that the data cannot tell apart and data that would, residuals.
 [[nodiscard]] Document document_of(const FitRecord& record);
 
 }  // namespace softland

@@ -1,5 +1,5 @@
-// A number that is not known yet: laws of the model that are evaluated with it leave their formula, in the syntax that ngspice,
-// LTspice and Verilog-A share.
+// A formula is a number that is not known yet: laws of the model that are evaluated with it leave their formula, in the syntax
+// that ngspice, LTspice and Verilog-A share.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@ namespace softland {
 class Formula {
  public:
   Formula(double constant) : constant_(true), value_(constant) {}  // NOLINT(google-explicit-constructor): as a number does
-  /// An operand: a name, a call, or something in parentheses.
+  /// Makes an operand: a name, a call, or something in parentheses.
   static Formula named(std::string operand);
 
-  /// In parentheses where it is more than an operand.
+  /// Returns the text, in parentheses where it is more than an operand.
   [[nodiscard]] std::string text() const;
 
   friend Formula operator+(const Formula& a, const Formula& b);
@@ -34,16 +34,16 @@ class Formula {
 [[nodiscard]] Formula log(const Formula& x);
 [[nodiscard]] Formula abs(const Formula& x);
 [[nodiscard]] Formula pow(const Formula& x, double exponent);
-/// The larger of both.
+/// Returns the larger of both.
 [[nodiscard]] Formula max(const Formula& a, const Formula& b);
 
-/// Whether a relation holds, not known yet either.
+/// A relation of which it is not known yet whether it holds.
 struct FormulaCondition {
   std::string text;
 };
 [[nodiscard]] FormulaCondition operator<(const Formula& a, const Formula& b);
 [[nodiscard]] FormulaCondition operator>(const Formula& a, const Formula& b);
-/// As base/select.h asks for it: `to` becomes one or the other.
+/// Implements the function of base/select.h: `to` becomes one or the other.
 void assign_where(const FormulaCondition& condition, Formula& to, const Formula& from);
 
 }  // namespace softland

@@ -20,7 +20,7 @@ namespace {
 using internal::plain_number;
 using internal::quantity;
 
-// "27 MS/s, 14 bit"
+// Returns "27 MS/s, 14 bit".
 std::string words(const DriverModel& source) {
   const std::string rate = internal::given_quantity(*source.sample_rate, "S/s");
   return source.bits ? fmt::format("{}, {} bit", rate, *source.bits) : rate;
@@ -30,7 +30,7 @@ std::string clause(const PreparedScene& p, const Closing& closing) {
   return internal::closing_clause({.subject = "the switch"}, record_of(p, closing, {}).best, p.duration);
 }
 
-// A rebound that has a height, and one of the drawing that is not as high.
+// Tells whether the samples no longer settle, or bounce more often and higher than the nominal design.
 bool is_worse(const Metrics& sampled, const Metrics& drawn) {
   if (drawn.settled && !sampled.settled) return true;
   constexpr double noticeable = 1.05;
@@ -70,7 +70,7 @@ std::string amplifier_words(const Drive& drive, double factor) {
 }
 
 void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling) {
-  // The scene says what is wrong with its key: it is told of the option.
+  // The scene reports errors of its key: translate them to the option.
   const auto set = [&](std::string_view option, const std::string& told, const std::string& assignment,
                        const std::string& drive) {
     try {

@@ -19,10 +19,10 @@ namespace softland::internal {
 namespace {
 
 constexpr double map_left = 84;
-constexpr double map_right = 128;  // the scale of colours
+constexpr double map_right = 128;  // room for the scale of colours
 constexpr double map_above = 14;
-constexpr double map_below = 84;    // tick labels, axis label, legend of marks
-constexpr int steps_of_scale = 32;  // colours that are told apart
+constexpr double map_below = 84;    // room for tick labels, axis label, legend of marks
+constexpr int steps_of_scale = 32;  // number of distinct colours
 
 std::vector<double> finite(const std::vector<double>& values) {
   std::vector<double> out;
@@ -30,14 +30,14 @@ std::vector<double> finite(const std::vector<double>& values) {
   return out;
 }
 
-/// The number that is nearest to one that may be beyond all numbers.
+/// Returns the finite number nearest to a value that may be infinite.
 double within(double value) {
   constexpr double largest = std::numeric_limits<double>::max();
   return std::clamp(value, -largest, largest);
 }
 
-/// The lines of one level, put together from pieces that each cross one square between four cells. A piece joins two edges of its
-/// square; an edge is known by the cell it begins at, and whether it leads to the right or up.
+/// The lines of one level are put together from pieces that each cross one square between four cells. A piece joins two edges
+/// of its square; an edge is known by the cell it begins at, and whether it leads to the right or up.
 class Contour {
  public:
   Contour(const std::vector<double>& values, std::size_t columns, double level)
@@ -50,7 +50,7 @@ class Contour {
 
   std::vector<ContourLine> lines() {
     std::vector<ContourLine> all;
-    // Open lines begin at an edge with one piece; what is left then is closed.
+    // Open lines begin at an edge with one piece; all remaining lines are closed.
     for (const bool open : {true, false}) {
       for (auto& [edge, next] : joined_) {
         if (next.empty() || (open && next.size() != 1)) continue;
@@ -81,7 +81,7 @@ class Contour {
     }
     if (crossed.size() == 2) join(crossed[0], crossed[1]);
     if (crossed.size() != 4) return;
-    // A saddle: its middle tells which two corners are connected.
+    // The middle of a saddle tells which two corners are connected.
     const bool middle = std::midpoint(std::midpoint(corners[0], corners[1]), std::midpoint(corners[2], corners[3])) > level_;
     const bool turned = middle == (corners[0] > level_);
     join(crossed[0], crossed[turned ? 1 : 3]);
@@ -115,7 +115,7 @@ class Contour {
   std::map<Edge, std::vector<Edge>> joined_;
 };
 
-/// Values of one axis on the paper: each has a cell that reaches half-way to its neighbours.
+/// The values of one axis on the paper: each has a cell that reaches half-way to its neighbours.
 class Cells {
  public:
   Cells(const HeatMapAxis& axis, double from, double to) : values_(axis.values) {
@@ -140,7 +140,7 @@ class Cells {
   }
 
   [[nodiscard]] double edge(std::size_t k) const { return axis_.pixel(edges_[k]); }
-  /// Of a place between the centres of cells.
+  /// Returns the pixel of a place between the centres of cells.
   [[nodiscard]] double place(double k) const {
     const auto lower = std::min(static_cast<std::size_t>(k), values_.size() - 1);
     const auto upper = std::min(lower + 1, values_.size() - 1);
@@ -160,7 +160,7 @@ std::string axis_label(const std::string& label, const std::string& unit, const 
   return escaped(label) + (unit.empty() ? "" : fmt::format(" ({}{})", prefix.symbol, escaped(unit)));
 }
 
-/// Rectangles of one class of cells, those that touch in a row as one.
+/// Draws rectangles of one class of cells, those that touch in a row as one.
 std::map<std::size_t, std::string> rectangles(const std::vector<std::size_t>& classes, const Cells& x, const Cells& y,
                                               std::size_t columns) {
   std::map<std::size_t, std::string> paths;
@@ -178,7 +178,7 @@ std::map<std::size_t, std::string> rectangles(const std::vector<std::size_t>& cl
   return paths;
 }
 
-/// Patterns that tell reasons apart without colour.
+/// Returns a pattern that tells reasons apart without colour.
 std::string mark_pattern(std::size_t reason) {
   constexpr std::array shapes{"M-1 7L7 -1M-1 1L1 -1M5 7L7 5", "M-1 -1L7 7M-1 5L1 7M5 -1L7 1", "M0 3H6", "M3 0V6"};
   return fmt::format(
@@ -215,7 +215,7 @@ std::string contours(const HeatMap& map, const Cells& x, const Cells& y, const C
   for (const double level : contour_levels(map.values, 9)) {
     if (level <= range.low || level >= range.high) continue;
     for (const ContourLine& line : contour_lines(map.values, columns, level)) {
-      constexpr std::size_t shortest = 4, labelled = 14;  // pieces
+      constexpr std::size_t shortest = 4, labelled = 14;  // least numbers of pieces of a line, and of a labelled line
       if (line.size() < shortest) continue;
       for (std::size_t k = 0; k < line.size(); ++k)
         paths += fmt::format("{}{:.1f} {:.1f}", k == 0 ? "M" : "L", x.place(line[k][0]), y.place(line[k][1]));
@@ -337,7 +337,7 @@ bool is_ragged(const std::vector<double>& values, std::size_t columns) {
     sum += std::min(1.0, std::abs(part_between(range.low, range.high, a) - part_between(range.low, range.high, b)));
     ++pairs;
   };
-  // What changes steadily along a row or a column is compared with the middle of its neighbours.
+  // Compare a value with the middle of its neighbours, so that a steady change along a row or a column is smooth.
   const std::size_t rows = columns == 0 ? 0 : values.size() / columns;
   for (std::size_t j = 0; j < rows; ++j) {
     for (std::size_t i = 0; i < columns; ++i) {

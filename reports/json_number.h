@@ -1,4 +1,4 @@
-// JSON knows no number that is not finite: such a figure is null in a result.
+// JSON has no non-finite numbers: such a figure is null in a result.
 #pragma once
 
 #include <cmath>

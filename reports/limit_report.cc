@@ -45,7 +45,7 @@ TableRow least_row(const std::string& name, const LeastTime& least) {
           least.from_start ? "found from the waveform of --start" : ""};
 }
 
-// Least times over what was varied, as `name` says it.
+// Lists least times over the varied quantity, which `name` formats.
 template <class Name>
 ReportTable list_table(const char* title, const std::vector<LeastTime>& all, Name name) {
   ReportTable table{.head = {title, "least time", {"", "words"}}, .rows = {}};
@@ -56,13 +56,14 @@ ReportTable list_table(const char* title, const std::vector<LeastTime>& all, Nam
   return table;
 }
 
-// The model for which a least time is a bound: a beam with more modes may touch earlier. Empty for a plate, which has one mode.
+// Names the model for which a least time is a bound: a beam with more modes may touch earlier. Empty for a plate, which has one
+// mode.
 std::string model_of(const LimitRecord& limit) {
   if (read_drawn_scene(limit.origin.scene).structure == SideOfStructure::on_springs) return {};
   return fmt::format("{} mode{}", limit.modes, limit.modes == 1 ? "" : "s");
 }
 
-// What follows the touch of a landing.
+// Describes the motion after the touch of a landing.
 std::string words_after(const LimitRecord::Landing& landing) {
   if (landing.bounce_free) return "no rebound, confirmed";
   const Metrics& own = landing.metrics;
@@ -101,7 +102,7 @@ ReportTable touches_table(const LimitRecord& limit) {
   return table;
 }
 
-// Column pairs of a curve; what was not found is left out.
+// Adds column pairs of a curve; values that were not found are left out.
 template <class X>
 void add_curve(internal::CurveTables& tables, const std::string& name, const std::vector<LeastTime>& all, X x) {
   for (const LeastTime& least : all) {
@@ -113,7 +114,7 @@ void add_curve(internal::CurveTables& tables, const std::string& name, const std
 
 internal::Chart curve(const std::string& table, const std::string& title, const std::string& x_label, const std::string& x_unit,
                       const internal::CurveTable& columns) {
-  constexpr double beside = 0.1;  // of the only place of a curve: what is shown on either side
+  constexpr double beside = 0.1;  // margin on either side of a curve with a single place, as a share of it
   const auto [low, high] = std::minmax_element(columns.at("x").begin(), columns.at("x").end());
   const double around = *low < *high ? 0 : beside * *low;
   internal::Chart chart{

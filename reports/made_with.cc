@@ -34,7 +34,7 @@ constexpr std::string_view instruction_set =
     "";
 #endif
 
-// The note that the linker leaves in the program: a hash of its content. The program itself is the first object.
+// Reads the note that the linker leaves in the program: a hash of its content. The program itself is the first object.
 std::string build_id() {
   std::string id;
   dl_iterate_phdr(
@@ -42,7 +42,7 @@ std::string build_id() {
         for (int i = 0; i < object->dlpi_phnum; ++i) {
           const auto& segment = object->dlpi_phdr[i];
           if (segment.p_type != PT_NOTE) continue;
-          // NOLINTNEXTLINE(performance-no-int-to-ptr): the loader tells addresses as numbers
+          // NOLINTNEXTLINE(performance-no-int-to-ptr): the loader gives addresses as numbers
           const auto* at = reinterpret_cast<const char*>(object->dlpi_addr + segment.p_vaddr);
           const char* end = at + segment.p_memsz;
           while (at + sizeof(ElfW(Nhdr)) <= end) {

@@ -1,4 +1,4 @@
-// What `softland calibrate` found: JSON with SI units in the names, and a table for a terminal.
+// The findings of `softland calibrate`: JSON with SI units in the names, and a table for a terminal.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,14 +13,14 @@ namespace softland {
 struct MeasurementsRecord {
   struct Figure {
     std::string name, unit;
-    double nominal = Metrics::unset;    ///< of the nominal device [unit]
-    double variation = Metrics::unset;  ///< standard deviation of the devices that have it, over their mean
-    double error = 0;                   ///< of its measurement, relative
-    std::size_t devices = 0;            ///< that have it
+    double nominal = Metrics::unset;    ///< value of the nominal device [unit]
+    double variation = Metrics::unset;  ///< standard deviation over the devices that have it, over their mean
+    double error = 0;                   ///< relative error of its measurement
+    std::size_t devices = 0;            ///< number of devices that have it
   };
   struct Row {
     Prediction found;
-    std::vector<std::string> measured;  ///< names of its figures
+    std::vector<std::string> measured;  ///< names of the measured figures
   };
   Origin origin;
   std::uint64_t seed = 1;
@@ -34,7 +34,7 @@ struct MeasurementsRecord {
 
 [[nodiscard]] nlohmann::json json_of(const MeasurementsRecord& record);
 [[nodiscard]] MeasurementsRecord read_measurements(const nlohmann::json& from);
-/// Pairs that close devices no better than the better one of their figures are left out, and so are all beyond `most` rows.
+/// Leaves out pairs that close devices no better than the better one of their figures, and all rows beyond `most`.
 [[nodiscard]] std::string text_of(const MeasurementsRecord& record, std::size_t most = 24);
 
 }  // namespace softland

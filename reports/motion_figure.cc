@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double travel = 130;  // the way from the electrode to the highest place [px]
+constexpr double travel = 130;  // distance from the electrode to the highest place [px]
 constexpr double right_end = 520, detail_left = 650,
                  detail_wide = 150;  // ends of the moving part and of the picture beside it [px]
 constexpr double figure_width = 820;
@@ -41,7 +41,7 @@ bool are_numbers(const std::vector<double>& all, std::size_t count) {
 
 bool rises(const std::vector<double>& all) { return std::ranges::is_sorted(all) && all.back() > all.front(); }
 
-// A file may be damaged.
+// A file may be damaged: check the shape of its motion.
 bool is_sound(const ShownMotion& m) {
   const auto all = [](const std::vector<std::vector<double>>& columns, std::size_t rows) {
     return std::ranges::all_of(columns, [&](const auto& column) { return are_numbers(column, rows); });
@@ -70,7 +70,7 @@ std::size_t place_of(const ShownMotion& m, double at) {
   return static_cast<std::size_t>(nearest - m.places.begin());
 }
 
-// The height of the lower face at a place, in the row of an instant [m].
+// Returns the height of the lower face at a place, in the row of an instant [m].
 double height(const ShownMotion& m, std::size_t row, std::size_t place) {
   double sum = m.rest[place];
   for (std::size_t i = 0; i < m.shapes.size(); ++i) sum -= m.amplitudes[i][row] * m.shapes[i][place];
@@ -82,7 +82,7 @@ std::size_t row_of(const ShownMotion& m, double time) {
   return next == m.time.end() ? m.time.size() - 1 : static_cast<std::size_t>(next - m.time.begin());
 }
 
-// The round length of a scale bar, at most this long [m].
+// Returns the round length of a scale bar, at most this long [m].
 double round_length(double most) {
   const double power = std::pow(10, std::floor(std::log10(most)));
   return power * (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1);
@@ -95,7 +95,7 @@ std::string scale_bar(double x, double bottom, double per_metre, double most) {
          drawn_words(x + 8, (top + bottom) / 2 + 4, "start", given_quantity(length, "m"));
 }
 
-// The places of the picture.
+// The view maps places to the picture.
 class MotionView {
  public:
   MotionView(const ClosingRecord& result, const std::vector<ShownRun>& runs) : runs_(runs), motion_(runs.front().motion()) {
@@ -135,13 +135,13 @@ class MotionView {
   [[nodiscard]] double exaggeration() const { return per_metre_ * motion_.places.back() / (right_end - SideView::left); }
   [[nodiscard]] bool has_detail() const { return detail_per_metre_ > 0; }
   [[nodiscard]] double bottom() const { return view_.floor + SideView::electrode; }
-  /// The line of the last words below the picture.
+  /// Returns the line of the last words below the picture.
   [[nodiscard]] double end() const {
     const auto near = std::ranges::count_if(motion_.contacts, [](const auto& c) { return !c.far_side; });
     return bottom() + 14 + (motion_.contacts.size() > 1 ? 14 * static_cast<double>(near) : 0);
   }
 
-  /// The parts that stand still.
+  /// Draws the parts that stand still.
   [[nodiscard]] std::string surroundings() const {
     std::string out = drawn_supports(view_) + drawn_electrodes(scene_, view_);
     double names = bottom() + 28;  // they stand below those of the electrodes
@@ -162,7 +162,7 @@ class MotionView {
     return out + drawn_words(centre, bottom() + 14, "middle", "at the contact, enlarged");
   }
 
-  /// The moving part at the instant of a row, as the data of a path.
+  /// Returns the moving part at the instant of a row, as the data of a path.
   [[nodiscard]] std::string shape(const ShownMotion& m, std::size_t row) const {
     std::string lower, upper;
     for (std::size_t k = 0; k < m.places.size(); ++k) {
@@ -173,7 +173,7 @@ class MotionView {
     return lower + upper + "Z";
   }
 
-  /// The first contact's place in the picture beside, at the instant of a row; empty where it is beyond that.
+  /// Draws the first contact's place in the picture beside, at the instant of a row; empty where it is beyond that.
   [[nodiscard]] std::string detail(const ShownMotion& m, std::size_t row, const std::string& style) const {
     if (!has_detail()) return {};
     const ShownMotion::Contact& c = m.contacts.front();
@@ -184,7 +184,7 @@ class MotionView {
                        detail_wide, style);
   }
 
-  /// The numbers that the script needs beside the runs.
+  /// Returns the numbers that the script needs beside the runs.
   [[nodiscard]] json json_of() const {
     json all{{"bottom", view_.bottom}, {"perMetre", per_metre_}, {"thick", SideView::thick}, {"contacts", json::array()}};
     for (std::size_t k = 0; k < motion_.contacts.size(); ++k)
@@ -203,7 +203,7 @@ class MotionView {
 
  private:
   [[nodiscard]] double ceiling() const { return view_.top - far_ * per_metre_ - 20; }
-  // That of a plate is drawn in its middle: all its places move alike.
+  // The contact of a plate is drawn in its middle: all its places move alike.
   [[nodiscard]] double x_of(const ShownMotion::Contact& c) const {
     return view_.x_at(view_.plate && motion_.contacts.size() == 1 ? 0.5 : c.at / view_.length);
   }
@@ -216,7 +216,7 @@ class MotionView {
            drawn_rectangle(left - contact_wide / 2, top, contact_wide, std::max(0.0, end - top), "contact") + "</g>\n";
   }
 
-  // The highest rebound of the first contact fills it.
+  // Scale the picture beside so that the highest rebound of the first contact fills it.
   void set_detail() {
     if (motion_.contacts.empty()) return;
     double highest = 0.01 * motion_.contacts.front().gap;
@@ -229,15 +229,15 @@ class MotionView {
 
   const std::vector<ShownRun>& runs_;
   const ShownMotion& motion_;
-  double far_ = 0;        // the farthest gap on the far side [m]
-  double per_metre_ = 0;  // [px/m]
+  double far_ = 0;        // largest gap on the far side [m]
+  double per_metre_ = 0;  // scale [px/m]
   SideView view_;
   DrawnScene scene_;
   std::optional<std::array<double, 2>> layer_;
   double detail_plane_ = 0, detail_per_metre_ = 0;
 };
 
-// Instants that tell the story, with their names.
+// Returns the main instants of a run, with their names.
 std::vector<std::pair<double, std::string>> told_instants(const CurveRecord& curve) {
   std::vector<std::pair<double, std::string>> all{{curve.motion->time.front(), "at the start"}};
   const bool closes = curve.closed && !curve.closed->empty();
@@ -268,7 +268,7 @@ std::string strobe(const MotionView& view, const CurveRecord& curve) {
   return "<g class=\"strobe\">\n" + shapes + names + "</g>\n";
 }
 
-// The contact is open before and after what is told.
+// The contact is open before and after the recorded times.
 json run_json(const ShownRun& run, const MotionView& view) {
   constexpr double fine = 1e-6;
   const ShownMotion& m = run.motion();
@@ -287,7 +287,7 @@ json run_json(const ShownRun& run, const MotionView& view) {
           {"x", view.x_of(m)},        {"places", places}};
 }
 
-// How long the highest rebound takes [s]; of a run without any a fiftieth of it.
+// Returns the duration of the highest rebound [s]; for a run without any a fiftieth of it.
 double slowest_stretch(const std::vector<ShownRun>& runs) {
   const Rebound* highest = nullptr;
   for (const ShownRun& run : runs) {

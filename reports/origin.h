@@ -1,4 +1,4 @@
-// Where a record of a study comes from, as every JSON and every page says it.
+// The origin of the record of a study, as every JSON and every page states it.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,27 +10,27 @@
 
 namespace softland {
 
-/// What every record of a study begins with; `scene` is null where it has none.
+/// Every record of a study begins with these members; `scene` is null where it has none.
 struct Origin {
-  std::string kind;  ///< the name of the verb, by which `report` knows the record
+  std::string kind;  ///< name of the verb, by which `report` knows the record
   std::string version, command;
   MadeWith made_with;
-  nlohmann::json scene = {};    ///< resolved, quantities as text
+  nlohmann::json scene = {};    ///< resolved scene, quantities as text
   std::string scene_toml = {};  ///< the same as a file; empty where no page shows it
 };
 [[nodiscard]] Origin origin_of(const char* kind, const std::string& command);
 [[nodiscard]] Origin origin_of(const char* kind, const PreparedScene& scene, const std::string& command);
-/// With the text of the scene.
+/// Makes the origin with the text of the scene.
 [[nodiscard]] Origin whole_origin_of(const char* kind, const PreparedScene& scene, const std::string& command);
-/// The title of the scene; empty where it has none.
+/// Returns the title of the scene; empty where it has none.
 [[nodiscard]] std::string title_of(const Origin& origin);
 
-/// The record with version, made_with and command.
+/// Returns the record with version, made_with and command.
 [[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const std::string& command);
-/// With the scene, resolved, besides.
+/// Does the same and adds the resolved scene.
 [[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const PreparedScene& scene, const std::string& command);
 
-/// Who writes into a store: this program on this machine, for this command.
+/// Describes the writer of a store: this program on this machine, for this command.
 [[nodiscard]] StoredOrigin stored_origin(const std::string& command);
 
 }  // namespace softland

@@ -8,9 +8,10 @@
 namespace softland::internal {
 namespace {
 
-/// Bytes of text shown per block; more is cut.
+/// A block shows at most this many bytes of text; the rest is cut.
 constexpr std::size_t most_text = 100'000;
-/// Rows per curve in the page: several times the pixels of a wide screen, so that zooming shows more, at about 100 kB a curve.
+/// The page has this many rows per curve: several times the pixels of a wide screen, so that zooming shows more, at about 100
+/// kB a curve.
 constexpr std::size_t rows_per_curve = 6000;
 
 }  // namespace

@@ -12,16 +12,16 @@ namespace softland::internal {
 /// Replaces each {{name}} of the text by its part; parts are not searched again, so they may contain anything.
 [[nodiscard]] std::string filled(std::string_view text, const std::map<std::string, std::string, std::less<>>& parts);
 
-/// Text cut to 100 kB at a line end, with a word about it.
+/// Returns the text, cut to 100 kB at a line end, with a note about it.
 [[nodiscard]] std::string shortened(const std::string& words);
 
-/// The chart as an <svg> element.
+/// Draws the chart as an <svg> element.
 [[nodiscard]] std::string still_picture(const CurveTables& tables, const Chart& chart);
-/// The same, small, as one of many beside each other in an element of the class "multiples".
+/// Does the same in small, as one of many beside each other in an element of the class "multiples".
 [[nodiscard]] std::string small_picture(const CurveTables& tables, const Chart& chart);
-/// The chart in a page, with its title, its caption and the place where the script draws it.
+/// Returns the chart in a page, with its title, its caption and the place where the script draws it.
 [[nodiscard]] std::string figure_html(const CurveTables& tables, const Chart& chart);
-/// The style and the scripts that draw the charts of a page.
+/// Returns the style and the scripts that draw the charts of a page.
 [[nodiscard]] std::string chart_style();
 [[nodiscard]] std::string chart_scripts(const Picture& drawn);
 

@@ -13,7 +13,7 @@ namespace softland {
 
 namespace internal {
 
-/// null where there are no values at all.
+/// JSON is null where there are no values at all.
 [[nodiscard]] nlohmann::json voltages_by_modes_json(const std::optional<VoltagesByModes>& found);
 [[nodiscard]] std::optional<VoltagesByModes> read_voltages_by_modes(const nlohmann::json& from);
 

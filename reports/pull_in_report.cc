@@ -26,7 +26,7 @@ using nlohmann::json;
 
 namespace {
 
-// The JSON keys of voltages by modes.
+// These are the JSON keys of voltages by modes.
 constexpr std::array by_modes_rows{std::pair("static_V", &VoltagesByModes::static_pull_in),
                                    std::pair("release_V", &VoltagesByModes::release),
                                    std::pair("pulled_through_V", &VoltagesByModes::pulled_through)};
@@ -43,7 +43,7 @@ std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("
 
 std::string_view branch_name(const SweepPoint& p) { return p.is_up ? "up" : "down"; }
 
-// The columns of one branch, in rising order of the voltage.
+// Returns the columns of one branch, in rising order of the voltage.
 internal::CurveTable branch_of(std::vector<SweepPoint> points, bool is_up) {
   std::erase_if(points, [&](const SweepPoint& p) { return p.is_up != is_up || p.state == SweepState::none; });
   std::stable_sort(points.begin(), points.end(), [](const SweepPoint& a, const SweepPoint& b) { return a.voltage < b.voltage; });
@@ -72,7 +72,7 @@ internal::Chart sweep_chart(const std::string& column, const std::string& title,
   return chart;
 }
 
-// How static pull-in comes about; empty where there is none.
+// Describes the kind of static pull-in; empty without pull-in.
 std::string kind_words(const std::string& kind) {
   if (kind.empty()) return {};
   return kind == to_string(StaticKind::fold) ? " (fold of the static branch)" : " (the contact point reaches the contact first)";
@@ -83,7 +83,7 @@ std::string shift_clause(const std::optional<VoltagesByModes>& found, ByModes Vo
   return shift.empty() ? shift : "; more modes move it by " + shift;
 }
 
-// The face of a dielectric with a landing is a contact, too.
+// Tells whether the scene has contacts; the face of a dielectric with a landing is a contact, too.
 bool makes_contact(const json& scene) {
   const json electrodes = scene.value("electrode", json::object());
   return scene.contains("contact") || std::ranges::any_of(electrodes, [](const json& electrode) {
@@ -189,7 +189,7 @@ ElectrodeRecord record_of(const PreparedScene& p, std::size_t k, const Electrode
                                   .deflection = s.deflection,
                                   .neutral = p.model.neutral_voltage(k) != 0 ? p.model.neutral_voltage(k) : Metrics::unset,
                                   .dynamic_kind = dynamic_kind(p, k, s.voltage, d.voltage)}};
-  const bool was_found = d.status != Status::interrupted;  // who has stopped the search waits for no more modes
+  const bool was_found = d.status != Status::interrupted;  // false when the user stopped the search: no more modes are computed
   if (const ModeLadder ladder(p); was_found && ladder.exists() && std::isfinite(s.voltage))
     found.volts.by_modes = voltages_by_modes(ladder, p.scene, k, closed.pulled_through);
   const std::vector<std::string> names = p.drive_names();

@@ -1,5 +1,5 @@
-// What `softland pull-in` found: JSON with SI units in the names, words, the points of a sweep as CSV, and a picture of them.
-// `check` has the voltages of an electrode and the stable path as well.
+// The findings of `softland pull-in`: JSON with SI units in the names, words, the points of a sweep as CSV, and a picture of
+// them. `check` has the voltages of an electrode and the stable path as well.
 #pragma once
 
 #include <cstddef>
@@ -23,8 +23,8 @@ inline constexpr const char* no_open_state = "no pull-in voltage: the switch has
 struct PullInRecord {
   double static_pull_in = Metrics::unset, dynamic_pull_in = Metrics::unset, release = Metrics::unset,
          pulled_through = Metrics::unset;
-  std::string static_kind;                  ///< of to_string(StaticKind); empty where there is no voltage
-  double deflection = Metrics::unset;       ///< of the contact point at static pull-in [m]
+  std::string static_kind;                  ///< name by to_string(StaticKind); empty where there is no voltage
+  double deflection = Metrics::unset;       ///< deflection of the contact point at static pull-in [m]
   double neutral = Metrics::unset;          ///< Switch::neutral_voltage() of a charged dielectric; unset without charge [V]
   std::string dynamic_kind;                 ///< "overshoot", "overdamped", "unstable_rest"; empty where there is no voltage
   std::optional<VoltagesByModes> by_modes;  ///< none where there are no more modes, or the search was interrupted
@@ -32,17 +32,17 @@ struct PullInRecord {
 struct ElectrodeRecord {
   Status status = Status::not_run;
   PullInRecord volts;
-  std::map<std::string, double> bias;         ///< of the drives that do not stand at 0 [V]
-  std::map<std::string, double> bias_factor;  ///< of the dispersion force, where it is not 1
+  std::map<std::string, double> bias;         ///< levels of the other drives that are not at 0 [V]
+  std::map<std::string, double> bias_factor;  ///< factor of the dispersion force, where it is not 1
 };
 [[nodiscard]] ElectrodeRecord record_of(const PreparedScene& prepared, std::size_t k, const ElectrodePullIn& known);
 
-/// "22.469 V", "none"
+/// Returns "22.469 V" or "none".
 [[nodiscard]] std::string volts(double value);
-/// "piezo -1.5 V": the other drives that do not stand at 0; empty where all do.
+/// Returns "piezo -1.5 V": the other drives that are not at 0; empty where all are.
 [[nodiscard]] std::string bias_words(const ElectrodeRecord& electrode);
-/// The dynamic pull-in voltage. A step that damping lets not overshoot needs no less than the static one; nor does one that
-/// leaves the switch where it rests.
+/// Returns the dynamic pull-in voltage in words. A step without overshoot, because of damping, needs no less than the static
+/// one; nor does one that leaves the switch where it rests.
 [[nodiscard]] std::string dynamic_words(const PullInRecord& found);
 
 /// Tells whether the charge keeps the switch closed at 0 V once it is.
@@ -50,15 +50,15 @@ struct ElectrodeRecord {
 /// Says how the charge on the dielectric shifts both polarities; empty without charge.
 [[nodiscard]] std::string charge_words(const PullInRecord& found);
 
-/// A drive that alone carries the switch to its contact through stable equilibria.
+/// The path of a drive that alone carries the switch to its contact through stable equilibria.
 struct StablePathRecord {
   std::string drive;
-  double reaches = Metrics::unset, limit = Metrics::unset;  ///< at which the nominal design touches, and of the driver [V]
-  std::optional<double> share;                              ///< of the devices of [spread]
+  double reaches = Metrics::unset, limit = Metrics::unset;  ///< first touch of the nominal design; limit of the driver [V]
+  std::optional<double> share;                              ///< share of the devices of [spread]
 };
-/// None where no drive does, or there is no contact.
+/// Returns none where no drive does, or there is no contact.
 [[nodiscard]] std::optional<StablePathRecord> stable_path_of(const PreparedScene& prepared, const Watch& watch);
-/// "the piezo alone reaches the contact at -0.9483 V through stable equilibria; 96.5 % of devices do within -1 V"
+/// Returns "the piezo alone reaches the contact at -0.9483 V through stable equilibria; 96.5 % of devices do within -1 V".
 [[nodiscard]] std::string words_of(const std::optional<StablePathRecord>& path);
 
 struct PullInsRecord {
@@ -67,19 +67,20 @@ struct PullInsRecord {
   std::map<std::string, ElectrodeRecord> electrodes;
   std::optional<StablePathRecord> stable_path;
   std::string swept;                  ///< the electrode whose voltage was swept; empty where none was
-  std::vector<SweepPoint> sweep;      ///< its points
+  std::vector<SweepPoint> sweep;      ///< points of the sweep
   std::vector<std::string> left_out;  ///< not found because the verb was asked to stop
 };
-/// What is left out where the verb was asked to stop before this was known.
+/// This name goes into left_out when the verb was asked to stop before the path was known.
 inline constexpr const char* stable_path_left_out = "the stable path";
 
 [[nodiscard]] nlohmann::json json_of(const PullInsRecord& record);
 [[nodiscard]] PullInsRecord read_pull_ins(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const PullInsRecord& record);
-/// "voltage_V,deflection_m,capacitance_F,branch,status" and a row to each point, every digit; branch is up or down, status that
-/// of to_string(SweepState). Deflection and capacitance of a beam that lies on the electrode are not known, and empty.
+/// Returns "voltage_V,deflection_m,capacitance_F,branch,status" and one row per point, every digit; branch is up or down,
+/// status that of to_string(SweepState). Deflection and capacitance of a beam that lies on the electrode are not known, and
+/// empty.
 [[nodiscard]] std::string sweep_csv(const std::vector<SweepPoint>& points);
-/// Deflection and capacitance against the voltage, up and down, with the pull-in voltage marked where it is in the sweep.
+/// Draws deflection and capacitance against the voltage, up and down, with the pull-in voltage marked where it is in the sweep.
 [[nodiscard]] std::string sweep_svg(const PullInsRecord& record);
 
 }  // namespace softland

@@ -21,38 +21,38 @@ constexpr double beyond_prefixes = 1e15;
 constexpr const char* no_break_space = "\u00a0";
 constexpr const char* none = "—";
 constexpr double most_times = 1000;
-constexpr double most_percent = 10;  // a thousand per cent
+constexpr double most_percent = 10;  // ratio of a thousand per cent
 
-/// The decimal exponent of the first digit of a value that is not 0; of one beyond all numbers that of the largest.
+/// Returns the decimal exponent of the first digit of a value that is not 0; for an infinite one that of the largest number.
 int exponent_of(double value) {
   const double size = std::min(std::abs(value), std::numeric_limits<double>::max());
   return static_cast<int>(std::floor(std::log10(size) + 1e-12));
 }
 
-/// `value` rounded to a multiple of 10^place.
+/// Rounds `value` to a multiple of 10^place.
 double rounded(double value, int place) {
   if (value == 0) return 0;
-  const int digits = exponent_of(value) - place;  // after the first
+  const int digits = exponent_of(value) - place;  // digits after the first
   if (digits < -1) return 0;
   if (digits < 0) return std::abs(value) < 0.5 * std::pow(10, place) ? 0 : std::copysign(std::pow(10, place), value);
   const double near = std::strtod(fmt::format("{:.{}e}", value, digits).c_str(), nullptr);
   return std::isfinite(near) ? near : value;
 }
 
-/// The least multiple of 10^place that is not below a positive error: an error that covers still does.
+/// Returns the least multiple of 10^place that is not below a positive error: an error that covers the value still does.
 double rounded_up(double error, int place) {
   const double last = std::pow(10, place);
-  if (last == 0) return error;  // as small as numbers are
+  if (last == 0) return error;  // 10^place underflows
   return std::min(std::ceil(error / last * (1 - 1e-9)) * last, std::numeric_limits<double>::max());
 }
 
-/// The decimal place of the last digit of an error: of the first digit, or of the second when the first is 1.
+/// Returns the decimal place of the last digit of an error: of the first digit, or of the second when the first is 1.
 int place_of_error(double error) {
   const int exponent = exponent_of(rounded(error, exponent_of(error) - 1));
   return std::abs(error) < 1.95 * std::pow(10, exponent) ? exponent - 1 : exponent;
 }
 
-/// Where the digits of a value end.
+/// Returns the decimal place of the last shown digit of a value.
 int last_place(double value, double error, std::string_view unit, int digits) {
   int place = -400;
   if (value != 0) place = exponent_of(value) - digits + 1;
@@ -61,7 +61,7 @@ int last_place(double value, double error, std::string_view unit, int digits) {
   return place;
 }
 
-/// `value` [unit] with `prefix`, to the digit 10^place.
+/// Formats `value` [unit] with `prefix`, to the digit 10^place.
 std::string in_prefix(double value, int place, Prefix prefix, std::string_view unit) {
   const double size = std::abs(value);
   if (size >= beyond_prefixes || (size > 0 && size < prefixes.front().factor))
@@ -83,7 +83,7 @@ Shown shown(double value, double error, std::string_view unit, int digits) {
   Shown s{.value = rounded(value, last_place(value, error, unit, digits))};  // first, so that 999.96 becomes 1.00 k and not 1000
   s.place = last_place(s.value != 0 ? s.value : value, error, unit, digits);
   if (unit.empty()) return s;
-  // A value that drowns in its error is read beside it.
+  // A value smaller than its error takes the prefix of the error.
   const double beside = error > 0 && std::isfinite(error) ? rounded_up(error, s.place) : 0;
   s.prefix = prefix_for(std::max(std::abs(s.value), beside));
   return s;
@@ -129,7 +129,7 @@ std::string quantity(double value, std::string_view unit, int digits) {
 
 namespace {
 
-/// From 1 kV/s on a slew rate is told in volts per microsecond.
+/// A slew rate from 1 kV/s on is shown in volts per microsecond.
 bool is_fast(double size, std::string_view unit) {
   constexpr double fast = 1e3;
   return unit == "V/s" && std::isfinite(size) && std::abs(size) >= fast;
@@ -150,7 +150,7 @@ std::string quantity_within(double value, double error, std::string_view unit, i
   if (!std::isfinite(value)) return none;
   if (is_fast(value, unit)) return quantity_within(per_microsecond * value, per_microsecond * error, fast_slew, digits);
   const double least = resolution(unit);
-  const bool known = !(error >= least);  // to better than the resolution
+  const bool known = !(error >= least);  // true when known better than the resolution
   if (known && value > 0 && value < least) return "< " + quantity(least, unit, 1);
   const Shown s = shown(value, error, unit, digits);
   if (unit.empty() && !(error > 0)) return plain_number(value, digits);

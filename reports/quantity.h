@@ -1,8 +1,8 @@
-// The one rule for every number that people read; JSON keeps all digits.
+// One rule formats every number that people read; JSON keeps all digits.
 //
 // A number has an SI prefix, a true minus sign (U+2212) and a no-break space before its unit. No digit is shown beyond those
-// asked for, below the resolution of the unit, or below the error of the value: 26 as is "< 1 fs", 306.8 µs known to 12 µs is 307
-// µs.
+// asked for, below the resolution of the unit, or below the error of the value: 26 as is "< 1 fs", 306.8 µs known to 12 µs is
+// 307 µs.
 #pragma once
 
 #include <string>
@@ -16,57 +16,59 @@ struct Prefix {
   std::string_view symbol;  ///< "n", "µ", "" ...
 };
 
-/// The prefix that shows `largest` (in absolute value) with one to three digits before the decimal point; none for 0 and
-/// non-finite values.
+/// Returns the prefix that shows `largest` (in absolute value) with one to three digits before the decimal point; none for 0
+/// and non-finite values.
 [[nodiscard]] Prefix prefix_for(double largest);
 
-/// Whether people write a unit with a prefix: "m/s" and "V" do, "kg/m^3", "m^2" and "Vdp" do not.
+/// Tells whether people write a unit with a prefix: "m/s" and "V" do, "kg/m^3", "m^2" and "Vdp" do not.
 [[nodiscard]] bool takes_prefix(std::string_view unit);
 
-/// The least value of a unit that says something about a switch, a power of ten: 1 pm, 1 fs, 1 nm/s, 1 fN, 1 zJ (thermal energy
-/// is 4 zJ), 1 µV, 1 V/s. 0 for other units.
+/// Returns the least meaningful value of a unit for a switch, a power of ten: 1 pm, 1 fs, 1 nm/s, 1 fN, 1 zJ (thermal energy is
+/// 4 zJ), 1 µV, 1 V/s. Returns 0 for other units.
 [[nodiscard]] double resolution(std::string_view unit);
 
-/// A number in text, its leading hyphen replaced by U+2212.
+/// Returns a number in text, its leading hyphen replaced by U+2212.
 [[nodiscard]] std::string with_true_minus(const std::string& number);
 
-/// `value` with `digits` significant digits and the prefix that suits it: 4.45e-05, "s" -> "44.5 µs". Non-finite: an em dash; 0:
-/// "0 s"; positive and below the resolution: "< 1 fs"; negative and above minus the resolution: "0 s". An empty unit gives a
-/// plain number without prefix; what is beyond the prefixes has an exponent: "1e300 s".
+/// Formats `value` with `digits` significant digits and the prefix that suits it: 4.45e-05, "s" -> "44.5 µs". Non-finite: an em
+/// dash; 0: "0 s"; positive and below the resolution: "< 1 fs"; negative and above minus the resolution: "0 s". An empty unit
+/// gives a plain number without prefix; a value beyond the prefixes has an exponent: "1e300 s".
 [[nodiscard]] std::string quantity(double value, std::string_view unit, int digits = 3);
 
-/// As above, but a 0 gets the prefix of `neighbour`, beside which it is read: "803 nm" and "0 nm".
+/// Does the same, but gives a 0 the prefix of `neighbour`, beside which it is read: "803 nm" and "0 nm".
 [[nodiscard]] std::string quantity_beside(double value, double neighbour, std::string_view unit, int digits = 3);
 
-/// As quantity(), but rounded to `error` [unit] as well, so that the last digit means something; NaN: not known.
+/// Formats as quantity(), but rounds to `error` [unit] as well, so that the last digit means something; NaN: not known.
 [[nodiscard]] std::string quantity_within(double value, double error, std::string_view unit, int digits = 3);
 
-/// The error of a value that quantity_within() shows, in the prefix of the value: one significant digit, two when the first is 1,
-/// rounded up; what the value's digits do not show is "< 0.01 µs". Non-finite: an em dash.
+/// Formats the error of a value that quantity_within() shows, in the prefix of the value: one significant digit, two when the
+/// first is 1, rounded up. An error below the value's digits is "< 0.01 µs". Non-finite: an em dash.
 [[nodiscard]] std::string error_of(double value, double error, std::string_view unit, int digits = 3);
 
-/// A value that somebody typed: as quantity(), without trailing zeros: "30 V".
+/// Formats a value that somebody typed: as quantity(), without trailing zeros: "30 V".
 [[nodiscard]] std::string given_quantity(double value, std::string_view unit, int digits = 5);
 
-/// `value` with at most `digits` significant digits and no trailing zeros; an exponent, as in 1.41e7, only beyond 1e-4 and 1e6.
+/// Formats `value` with at most `digits` significant digits and no trailing zeros; an exponent, as in 1.41e7, only beyond 1e-4
+/// and 1e6.
 [[nodiscard]] std::string plain_number(double value, int digits = 3);
 
-/// A count with all its digits: "2500"; an exponent only from 1e15 on.
+/// Formats a count with all its digits: "2500"; an exponent only from 1e15 on.
 [[nodiscard]] std::string whole(double count);
 
-/// With one digit before the point and an exponent as a scene writes it: "1e-4", "2.6e-9". Non-finite: an em dash.
+/// Formats with one digit before the point and an exponent as a scene writes it: "1e-4", "2.6e-9". Non-finite: an em dash.
 [[nodiscard]] std::string scientific(double value, int digits = 2);
 
-/// A relative error: scientific(), "0", or "< 1e-9" where it is smaller than any figure is worth.
+/// Formats a relative error: scientific(), "0", or "< 1e-9" where it is smaller than any meaningful error of a figure.
 [[nodiscard]] std::string relative_error(double value);
 
-/// A ratio of at least 1: "8.4 times", "107 times", "more than 1000 times".
+/// Formats a ratio of at least 1: "8.4 times", "107 times", "more than 1000 times".
 [[nodiscard]] std::string times(double ratio);
 
-/// A share or spread: 0.212 -> "21.2 %"; above a thousand per cent as times().
+/// Formats a share or spread: 0.212 -> "21.2 %"; above a thousand per cent as times().
 [[nodiscard]] std::string percent(double share);
 
-/// A relative change: 0.25 -> "+25.0 %", -0.05 -> "−5.0 %"; an increase above a thousand per cent as factor: "× 54", "> × 1000".
+/// Formats a relative change: 0.25 -> "+25.0 %", -0.05 -> "−5.0 %"; an increase above a thousand per cent as factor: "× 54", ">
+/// × 1000".
 [[nodiscard]] std::string relative_change(double change);
 
 }  // namespace softland::internal

@@ -1,8 +1,8 @@
-// A record and its JSON from one list of its members. `members(archive, record)`, a function template beside the record's type,
+// One list of members makes a record and its JSON. `members(archive, record)`, a function template beside the record's type,
 // names every member once; a JsonWriter and a JsonReader both go through it, as archives do in Drake's Serialize.
 //
-// In JSON a number that is not finite is null. A reader takes what is there: a number that is missing or null is NaN, and what is
-// missing otherwise, or of another type, stays as it is in the record.
+// A non-finite number is null in JSON. A reader takes the members that are present. A number that is missing or null becomes
+// NaN. Any other member that is missing or of another type stays as it is in the record.
 #pragma once
 
 #include <array>
@@ -27,29 +27,29 @@ namespace softland::internal {
 
 using nlohmann::json;
 
-/// A number of things: whole in JSON.
+/// A number of things is whole in JSON.
 struct Count {
   double& value;
 };
-/// What is null in JSON is infinite, in a number or in each of a map.
+/// A null in JSON means infinite, for a number or for each value of a map.
 template <class T>
 struct OrInfinite {
   T& value;
 };
 template <class T>
 OrInfinite(T&) -> OrInfinite<T>;
-/// null in JSON where it is not set, or an empty text; else a member that is not set is left out.
+/// JSON has null where the member is not set or an empty text; without OrNull a member that is not set is left out.
 template <class T>
 struct OrNull {
   T& value;
 };
 template <class T>
 OrNull(T&) -> OrNull<T>;
-/// The status of a study that cannot but be done, or interrupted.
+/// The status of a study that is either done or interrupted.
 struct Stopped {
   bool& interrupted;
 };
-/// A choice by the name that its table has for it.
+/// A choice is written by the name that its table has for it.
 template <class Rows>
 struct Chosen {
   decltype(Rows::value_type::value)& value;
@@ -60,13 +60,13 @@ Chosen(T&, const Rows&) -> Chosen<Rows>;
 
 template <class Record>
 [[nodiscard]] json record_json(const Record& record);
-/// Throws InvalidInput, which names the first difference, unless JSON that was read is what its record is written as.
+/// Throws InvalidInput, which names the first difference, unless its record is written as the same JSON that was read.
 void require_same(const json& written, const json& read);
 
 class JsonWriter {
  public:
   static constexpr bool reads = false;
-  /// Whether a member belongs there that is written only `where`.
+  /// Tells whether a member is present that is written only `where`.
   [[nodiscard]] static bool has(bool where) { return where; }
 
   template <class T>
@@ -77,26 +77,26 @@ class JsonWriter {
   void operator()(std::string_view key, const std::optional<T>& value) {
     if (value) (*this)(key, *value);
   }
-  /// Two numbers as a list.
+  /// Writes two numbers as a list.
   void pair(std::string_view key, double low, double high) { json_[std::string(key)] = {json_number(low), json_number(high)}; }
-  /// A value with a JSON of its own making.
+  /// Writes a value with its own conversion to JSON.
   template <class T, class Write, class Read>
   void custom(std::string_view key, const T& value, const Write& write, const Read&) {
     json_[std::string(key)] = write(value);
   }
-  /// A value that is worked out from members.
+  /// Writes a value that is computed from members.
   template <class T>
   void derived(std::string_view key, const T& value) {
     (*this)(key, value);
   }
-  /// The members that `inside(archive)` names, in an object of their own.
+  /// Writes the members that `inside(archive)` names, in an object of their own.
   template <class Inside>
   void object(std::string_view key, const Inside& inside) {
     JsonWriter own;
     inside(own);
     json_[std::string(key)].update(own.json_);
   }
-  /// Those figures that are asked for.
+  /// Writes those figures that are asked for.
   template <class Asked>
   void figures(const FigureValues& values, const Asked& asked) {
     for (const Figure& figure : all_figures) {
@@ -167,7 +167,7 @@ class JsonReader {
   static constexpr bool reads = true;
   [[nodiscard]] static bool has(bool) { return true; }
 
-  /// `json` is looked into, and must outlive the reader.
+  /// The reader keeps a reference to `json`, which must outlive it.
   explicit JsonReader(const json& json) : json_(&json) {}
 
   template <class T>
@@ -199,16 +199,16 @@ class JsonReader {
       take(figure, at(figure.key), values[figure]);
     }
   }
-  /// The value of a type that is described, as far as the JSON has it.
+  /// Reads the value of a type that has members(), as far as the JSON has it.
   template <class T>
   [[nodiscard]] static T read(const json& from) {
     T value = blank<T>();
     take(from, value);
     return value;
   }
-  /// All that is read.
+  /// Returns the whole JSON that is read.
   [[nodiscard]] const json& whole() const { return *json_; }
-  /// A null value where there is none.
+  /// Returns a null value for a missing key.
   [[nodiscard]] const json& at(std::string_view key) const {
     static const json nothing;
     if (!json_->is_object()) return nothing;
@@ -269,7 +269,7 @@ class JsonReader {
     if (from.is_null() || (std::is_class_v<T> && !from.is_object() && !std::is_same_v<T, std::string>)) return;
     value = read<T>(from);
   }
-  // Of numbers each is there, NaN for what is none.
+  // A list of numbers keeps its length: an entry that is not a number becomes NaN.
   template <class T>
   static void take(const json& from, std::vector<T>& all) {
     if (!from.is_array()) return;
@@ -282,7 +282,7 @@ class JsonReader {
       if (one.is_string() && one != "") all.push_back(one.get<std::string>());
     }
   }
-  // A list of numbers, points among them, is whole or not there.
+  // A list of numbers, points among them, is taken whole or not at all.
   static bool is_point(const json& from) { return from.is_array() && from.size() == 2; }
   static std::array<double, 2> point(const json& from) {
     std::array<double, 2> both{Metrics::unset, Metrics::unset};
@@ -324,11 +324,11 @@ class JsonReader {
 template <class Record>
 json record_json(const Record& record) {
   JsonWriter archive;
-  members(archive, const_cast<Record&>(record));  // which a writer leaves as it is
+  members(archive, const_cast<Record&>(record));  // a writer does not change it
   return std::move(archive).take();
 }
 
-/// The record of this JSON. Throws InvalidInput where anything of it is missing, unknown or not as it would be written.
+/// Returns the record of this JSON. Throws InvalidInput where any part is missing, unknown or not as it would be written.
 template <class Record>
 [[nodiscard]] Record whole_record(const json& from) {
   Record record = JsonReader::read<Record>(from);

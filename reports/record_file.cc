@@ -28,7 +28,7 @@ json without_curves(json record) {
 }
 
 json parse_record(std::string_view content, const std::string& name) {
-  // A result of ours is 6 deep; reports walk through what they show by recursion.
+  // Our results are 6 deep; reports walk through their content by recursion.
   constexpr int deepest = 64;
   const auto watch_depth = [&](int around, json::parse_event_t event, const json&) {
     const bool opens = event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;

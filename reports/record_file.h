@@ -7,16 +7,16 @@
 
 namespace softland {
 
-/// JSON on one line, or with `indent` blanks per level; what is not UTF-8 (a path may not be) becomes U+FFFD.
+/// Returns JSON on one line, or with `indent` blanks per level; bytes that are not UTF-8 (a path may hold some) become U+FFFD.
 [[nodiscard]] std::string json_text(const nlohmann::json& data, int indent = -1);
 
-/// The record of a study as --json gives it.
+/// Returns the record of a study as --json gives it.
 [[nodiscard]] nlohmann::json without_curves(nlohmann::json record);
 
-/// The JSON that the content of a file holds, which says of what kind it is: an object; everything else in it may be missing or
-/// of another type. `name` stands for the file in messages. Throws InvalidInput for anything else.
+/// Parses the content of a file: a JSON object that states its kind; everything else in it may be missing or of another type.
+/// `name` stands for the file in messages. Throws InvalidInput for anything else.
 [[nodiscard]] nlohmann::json parse_record(std::string_view content, const std::string& name);
-/// Throws InvalidInput unless it was made by this version of softland.
+/// Throws InvalidInput unless this version of softland made the record.
 void require_version(const nlohmann::json& record, const std::string& name);
 
 }  // namespace softland

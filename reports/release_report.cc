@@ -28,9 +28,9 @@ using internal::spread_words;
 using nlohmann::json;
 
 constexpr const char* plain_words = "plain opening";
-constexpr double curve_tolerance = 1e-4;  // of the largest voltage, where a drive is no straight line
+constexpr double curve_tolerance = 1e-4;  // share of the largest voltage, where a drive is not piecewise linear
 
-// Drives that are voltages, with their signals.
+// Returns the drives that are voltages, with their signals.
 std::map<std::string, Signal> voltages(const OpeningResult& r, const Opening& o) {
   std::map<std::string, Signal> all;
   const std::vector<std::string> names = r.given.drive_names();
@@ -45,14 +45,14 @@ double hold_of(const OpeningResult& r, const std::string& drive) {
   return r.holds[static_cast<std::size_t>(std::find(names.begin(), names.end(), drive) - names.begin())];
 }
 
-// A drive from its hold level on.
+// Returns a drive from its hold level on.
 std::vector<std::pair<double, double>> line_of(const OpeningResult& r, const std::string& drive, const Signal& signal,
                                                double end) {
   const double hold = hold_of(r, drive);
   const double size = std::max({std::abs(hold), signal.peak(), 1e-9});
   std::vector<std::pair<double, double>> points = polyline(signal, end, curve_tolerance * size, 0);
   if (points.size() > 1 && points[0].first == 0 && points[1].first == 0)
-    points.erase(points.begin());  // from 0 V, which it was not at
+    points.erase(points.begin());  // remove the start at 0 V: the drive was at its hold level
   if (points.front().second != hold) points.insert(points.begin(), {0, hold});
   return points;
 }
@@ -96,7 +96,7 @@ std::string finding(const ReleaseRecord& r) {
   return words + ".";
 }
 
-// Where the figures are from, what confirms them.
+// Names the sources of the figures and their confirmations.
 std::string remarks(const ReleaseRecord& r) {
   std::string words = fmt::format(
       "Open for good: the contact point stays within {} of its open position ({} of the contact gap). Residual vibration: how "
@@ -114,7 +114,7 @@ std::string remarks(const ReleaseRecord& r) {
   return words;
 }
 
-// Until the braked switch is quiet and a little longer.
+// Ends a little after the braked switch is quiet.
 double shown_until(const ReleaseRecord& r, double window) {
   constexpr double longer = 3;
   if (!r.best) return window;
@@ -122,7 +122,7 @@ double shown_until(const ReleaseRecord& r, double window) {
   return std::min(window, longer * end);
 }
 
-// What 95 % of the devices do under either opening.
+// Shows the 95th percentiles of the devices under either opening.
 ReportSection devices_section(const ReleaseRecord::Devices& found) {
   ReportTable table{.head = {"", plain_words, "found"}, .rows = {}};
   table.rows = {{"open for good", percent(found.plain.open), percent(found.best.open)},
@@ -307,11 +307,11 @@ std::string svg_of(const ReleaseRecord& r) {
   }
   drawn.charts.push_back(gap);
   for (const Drawn& run : runs) {
-    std::size_t place = 1;  // of the drive's chart
+    std::size_t place = 1;  // place of the drive's chart
     for (const auto& [drive, points] : run.run->waveforms) {
       const std::string table = fmt::format("{}/{}", run.name, drive);
       Points line = points;
-      if (!line.empty() && line.back()[0] < shown) {  // it stays there
+      if (!line.empty() && line.back()[0] < shown) {  // the drive stays at its last level
         const bool is_flat = line.size() > 1 && line[line.size() - 2][1] == line.back()[1];
         if (!is_flat) line.push_back(line.back());
         line.back()[0] = shown;
@@ -335,7 +335,7 @@ std::string release_csv(const OpeningResult& r) {
   const std::string whole = csv(signals, o.voltages_end);
   const auto row_end = [&](std::size_t from) { return whole.find('\n', from) + 1; };
   const std::size_t first = row_end(0), second = row_end(first);
-  // A closing's drives begin at 0 V, which these did not.
+  // The drives of a closing begin at 0 V, these did not.
   const bool jumps = whole.compare(second, 2, "0,") == 0;
   std::string held = "0";
   bool begins_held = true;

@@ -1,4 +1,5 @@
-// What `softland release` found: JSON with SI units in the names, a table for a terminal, the drives as CSV, and a picture.
+// The findings of `softland release`: JSON with SI units in the names, a table for a terminal, the drives as CSV, and a
+// picture.
 #pragma once
 
 #include <map>
@@ -17,13 +18,13 @@ struct ReleaseRecord {
   struct Run {
     OpeningFigures figures;
     std::string message;
-    double drives_end = Metrics::unset;       ///< from when on all drives stand at 0 V [s]
-    std::map<std::string, Points> waveforms;  ///< by drive, from their hold levels on: time [s] and level [V]
+    double drives_end = Metrics::unset;       ///< time from which all drives stay at 0 V [s]
+    std::map<std::string, Points> waveforms;  ///< waveforms by drive, from their hold levels on: time [s] and level [V]
   };
   struct Gap {
-    std::vector<double> time, gap;  ///< [s], [m]
+    std::vector<double> time, gap;  ///< time [s] and gap [m]
   };
-  /// Of DeviceOpenings, and the spread in words.
+  /// The openings of the devices, and the spread in words.
   struct Devices {
     std::uint64_t count = 0;
     bool spread_assumed = false;
@@ -33,9 +34,9 @@ struct ReleaseRecord {
   Origin origin;
   std::string status;
   Actuator actuator = Actuator::electrostatic;
-  std::map<std::string, double> hold_levels;                                                     ///< by drive [V]
+  std::map<std::string, double> hold_levels;                                                     ///< hold levels by drive [V]
   double contact_force = Metrics::unset, open_position = Metrics::unset, band = Metrics::unset;  ///< [N], [m], [m]
-  double band_share = Metrics::unset;                                                            ///< of the contact gap
+  double band_share = Metrics::unset;                                                            ///< share of the contact gap
   Run plain;
   std::optional<Run> best;
   std::map<std::string, double> parameters;
@@ -45,7 +46,7 @@ struct ReleaseRecord {
   long evaluations = 0;
   std::uint64_t seed = 1;
   std::string termination;
-  std::vector<std::string> warnings;  ///< of the scene, and of a contact force at hold that few summits carry
+  std::vector<std::string> warnings;  ///< warnings of the scene, and of a contact force at hold that few summits carry
   std::map<std::string, Gap> gaps;    ///< "plain" and "best"; only files have them
 };
 [[nodiscard]] ReleaseRecord record_of(const OpeningResult& release, const std::string& command);
@@ -53,9 +54,9 @@ struct ReleaseRecord {
 [[nodiscard]] nlohmann::json json_of(const ReleaseRecord& record);
 [[nodiscard]] ReleaseRecord read_release(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const ReleaseRecord& record);
-/// Gap of the plain opening and of the best, and the drives; of a record that has the gaps.
+/// Draws the gap of the plain opening and of the best, and the drives; the record must have the gaps.
 [[nodiscard]] std::string svg_of(const ReleaseRecord& record);
-/// The drives of the best opening, or where there is none of the plain one, from the hold levels on: a header
+/// Returns the drives of the best opening, or of the plain one without a best, from the hold levels on: a header
 /// `time_s,<drive>,...` [s, V], straight lines between the rows; rows of the same time are a jump.
 [[nodiscard]] std::string release_csv(const OpeningResult& release);
 

@@ -15,7 +15,7 @@ namespace {
 
 const ForDevicesResult& raced(const SearchReport& report) { return std::get<ForDevicesResult>(report.found.result); }
 
-// Of a part of the report.
+// Adds the files of a part of the report.
 template <class Part>
 void add(std::vector<ReportFile<SearchReport>>& files, const Part& part, const Part& (*part_of)(const SearchReport&)) {
   for (ReportFile<Part>& file : files_of(part)) {

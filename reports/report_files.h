@@ -1,4 +1,4 @@
-// The files of reports: which there are, and the text of each.
+// The files of reports: their names, and the text of each.
 #pragma once
 
 #include <array>
@@ -18,17 +18,17 @@ struct ReportFile {
   std::function<std::string(const Report&)> text;
 };
 
-/// report.html, gap.svg, result.json, and trajectory.csv where there is a trajectory.
+/// Lists report.html, gap.svg, result.json, and trajectory.csv where there is a trajectory.
 [[nodiscard]] std::vector<ReportFile<ClosingRecord>> files_of(const ClosingRecord& result);
 
-/// Those of a judgement of drives on devices, by `robustness` or at the end of a search for devices.
+/// These files hold a judgement of drives on devices, by `robustness` or at the end of a search for devices.
 inline constexpr std::array robustness_files{"robustness.html", "robustness.json", "devices.csv"};
 [[nodiscard]] std::vector<ReportFile<RobustnessReport>> files_of(const RobustnessReport& report);
 
-/// What a search for devices leaves besides.
+/// A search for devices writes these files besides.
 inline constexpr std::array for_devices_files{"drawing.toml", "drawing.csv", "calibrated.toml", "calibrated.csv", "fast.toml",
                                               "fast.csv",     "soft.toml",   "soft.csv",        "devices.svg"};
-/// Those of the result, the waveforms that were found as scenes and as what sources are told, and those of the devices.
+/// Lists the files of the result, the waveforms found, as scenes and as commanded voltages, and the files of the devices.
 [[nodiscard]] std::vector<ReportFile<SearchReport>> files_of(const SearchReport& report);
 
 }  // namespace softland

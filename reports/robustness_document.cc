@@ -55,7 +55,7 @@ std::string label_of(const Figure& f) {
   return fmt::format("{}{}{}", f.name, has_index ? ", " : "", has_index ? f.symbol : "");
 }
 
-// Softland's pen for the last drive, that of the baseline for the plain step, others between.
+// Returns Softland's pen for the last drive, that of the baseline for the plain step, others between.
 internal::Role role_of(std::size_t i, std::size_t count) {
   if (i + 1 == count && i > 0) return internal::Role::best;
   if (i == 0) return internal::Role::baseline;
@@ -94,7 +94,7 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
       table["x"].push_back(values[k]);
       table["y"].push_back(100 * static_cast<double>(k + 1) / all);
     }
-    // Seen as far as all but a few of any drive go.
+    // Show the range of all but a few devices of any drive.
     most = std::max(most, values[std::min(values.size() - 1, values.size() * 99 / 100)]);
     chart.series.push_back({.table = name, .column = "y", .label = drives[i].name, .role = role_of(i, drives.size())});
     chart.x_whole[1] = std::max(chart.x_whole[1] == 1 ? 0.0 : chart.x_whole[1], values.back());
@@ -105,7 +105,7 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
   return chart;
 }
 
-// How many devices have which value, in bins that all drives share, as far as the cumulative curves are shown: two kinds of
+// Draws the number of devices by value, in bins that all drives share, over the range of the cumulative curves: two kinds of
 // closings are two heaps.
 internal::Chart histogram_chart(const RobustnessReport& report, std::string_view key, const internal::Chart& cumulative,
                                 internal::CurveTables& tables) {
@@ -199,13 +199,13 @@ internal::Picture picture_of(const RobustnessReport& report) {
   return drawn;
 }
 
-// The end of a name tells more of it: of a folder its own name.
+// Cut a name at its beginning: the end says more, such as a folder's own name.
 std::string shown_name(const std::string& name, std::size_t columns) {
   if (internal::display_width(name) <= columns) return name;
   std::string end = name;
   while (internal::display_width(end) >= columns) {
     std::size_t first = 1;
-    while (first < end.size() && (static_cast<unsigned char>(end[first]) & 0xC0U) == 0x80U) ++first;  // UTF-8
+    while (first < end.size() && (static_cast<unsigned char>(end[first]) & 0xC0U) == 0x80U) ++first;  // UTF-8 tails
     end.erase(0, first);
   }
   return "…" + end;
@@ -246,7 +246,7 @@ ReportSection statistics_section(const RobustnessRecord& found) {
                     Paragraph{.text = internal::window_words(found.windows), .is_note = true}}};
 }
 
-// What each measurement is worth: the last drive with more and more known of the devices.
+// Shows the value of measurements: the last drive with more and more known of the devices.
 ReportSection knowledge_section(const RobustnessRecord& found) {
   ReportSection section{.id = "knowledge", .heading = "What measuring a device is worth", .parts = {}};
   if (found.by_knowledge.empty()) return section;
@@ -263,7 +263,7 @@ ReportSection knowledge_section(const RobustnessRecord& found) {
   return section;
 }
 
-// "62 % (55 to 69)"
+// Returns "62 % (55 to 69)".
 std::string index_text(const SobolIndex& index) {
   if (!std::isfinite(index.value)) return "—";
   const auto share = [](double value) { return 100 * internal::share_of(value) + 0.0; };
@@ -384,7 +384,7 @@ Document robustness_document(const RobustnessReport& report) {
   if (report.found.devices == 0) return document;
   document.draw = [&report] { return picture_of(report); };
   document.sections.front().parts.emplace_back(internal::all_charts());
-  constexpr std::ptrdiff_t behind_figures = 3;  // what is known of devices and the figures stand before
+  constexpr std::ptrdiff_t behind_figures = 3;  // the sections on known units and figures come first
   document.sections.insert(document.sections.begin() + behind_figures, internal::device_scatter(report));
   return document;
 }

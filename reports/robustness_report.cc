@@ -57,7 +57,7 @@ std::map<std::string, Points> waveforms_of(const PreparedScene& nominal, const D
   return all;
 }
 
-// Those of the nominal scene, and why the last drive does not hold the nominal device.
+// Returns the warnings of the nominal scene, and why the last drive does not hold the nominal device.
 std::vector<std::string> warnings(const RobustnessReport& report) {
   std::vector<std::string> all = report.nominal.scene.warnings;
   if (!report.unheld.empty()) all.push_back(report.unheld);
@@ -131,7 +131,7 @@ std::string about_words(const RobustnessReport& report) {
                      internal::error_words(spread), internal::outside_words(found));
 }
 
-// Parts by figure, in the order of `keys`.
+// Writes parts by figure, in the order of `keys`.
 template <class A, class Part, class Keys>
 void by_figure(A& a, std::vector<Part>& parts, const Keys& keys) {
   if constexpr (A::reads) {
@@ -410,7 +410,7 @@ RobustnessRecord record_of(const RobustnessReport& report) {
 
 json json_of(const RobustnessRecord& record) { return internal::record_json(record); }
 
-// In the JSON a number that is not finite is null; a device that does not close counts as infinite.
+// A non-finite number is null in the JSON; a device that does not close counts as infinite.
 RobustnessRecord read_robustness(const json& from) {
   RobustnessRecord record = internal::whole_record<RobustnessRecord>(from);
   require(!record.drives.empty(), "\"drives\" is empty");

@@ -1,5 +1,4 @@
-// What `softland robustness` found: JSON with SI units in the names, one line per device as CSV, and a
-// document.
+// The findings of `softland robustness`: JSON with SI units in the names, one line per device as CSV, and a document.
 #pragma once
 
 #include <cstddef>
@@ -22,41 +21,41 @@
 
 namespace softland {
 
-/// What is reported; `sensitivity`, `derivatives` and `courses` are of the last drive and may be left out.
+/// The input of a report; `sensitivity`, `derivatives` and `courses` are of the last drive and may be left out.
 struct RobustnessReport {
   const PreparedScene& nominal;
   const Robustness& found;
   RobustnessOptions options;
-  std::string command;          ///< the command line
-  bool spread_assumed = false;  ///< the scene says nothing of how devices differ
+  std::string command;          ///< command line
+  bool spread_assumed = false;  ///< true when the scene gives no process variation
   Sensitivity sensitivity = {};
   Derivatives derivatives = {};
   std::vector<DeviceCourse> courses = {};
-  std::optional<BoxAndChaos> box_and_chaos = {};  ///< of the last drive as well
-  HoldWindows windows = {};                       ///< of hold levels, whatever the drive
-  std::string unheld = {};                        ///< why the last drive does not hold the nominal device, hold_warning()
-  bool interrupted = found.interrupted;           ///< in the study, or in what was to be known beside it
+  std::optional<BoxAndChaos> box_and_chaos = {};  ///< other ways, also of the last drive
+  HoldWindows windows = {};                       ///< windows of hold levels, whatever the drive
+  std::string unheld = {};                        ///< reason why the last drive does not hold the nominal device, hold_warning()
+  bool interrupted = found.interrupted;           ///< true when the study, or the work on the details, was interrupted
 };
 
-/// What is known of the last drive beside its figures, `other_ways_too` at the cost of further searches; nothing where the work
-/// was interrupted.
+/// Adds the details of the last drive beside its figures, with `other_ways_too` at the cost of further searches; it adds
+/// nothing where the work was interrupted.
 void add_details(RobustnessReport& report, bool other_ways_too, const Watch& watch);
 
-/// What JSON, text and tables are made of.
+/// JSON, text and tables are made from this record.
 struct RobustnessRecord {
   /// A quantity that varies.
   struct Varied {
     std::string name;
     std::vector<std::string> keys;
-    std::string distribution, unit;  ///< the unit of its first key
+    std::string distribution, unit;  ///< distribution; unit of its first key
     bool is_factor = true;
     double mean = Metrics::unset, deviation = Metrics::unset;
   };
   struct Device {
     std::size_t number = 0;
-    std::map<std::string, double> values;  ///< of what varies [SI unit, or factor]
+    std::map<std::string, double> values;  ///< values of the varying quantities [SI unit, or factor]
     std::string status, failure;
-    std::map<std::string, double> figures;  ///< by key of device_figures
+    std::map<std::string, double> figures;  ///< figures by key of device_figures
   };
   struct Drive {
     std::string name;
@@ -66,7 +65,7 @@ struct RobustnessRecord {
     std::map<std::string, Points> waveforms;
     Yield closing, collapsed, bounce_free;
     PerFigure<FigureStatistics> figures;
-    std::map<std::string, std::size_t> failures;  ///< devices by why they do not close
+    std::map<std::string, std::size_t> failures;  ///< number of devices by the reason why they do not close
     std::vector<Device> worst;
   };
   struct Sensitive {
@@ -75,7 +74,7 @@ struct RobustnessRecord {
     };
     std::string_view key;
     std::size_t rows = 0, failed_rows = 0;
-    std::map<std::string, Indices> variables;  ///< none where too many rows failed
+    std::map<std::string, Indices> variables;  ///< indices by variable; none where too many rows failed
   };
   struct Derived {
     struct Variable {
@@ -85,13 +84,13 @@ struct RobustnessRecord {
     struct Slope {
       double derivative = Metrics::unset;
       double relative = Metrics::unset;  ///< per cent of the figure for one per cent of the quantity; NaN where one of them is 0
-      double step = Metrics::unset;      ///< for one standard deviation
+      double step = Metrics::unset;      ///< change of the figure for one standard deviation
     };
     struct Of {
       std::string_view key;
       double nominal = Metrics::unset, deviation = Metrics::unset, error = Metrics::unset;
       std::map<std::string, Slope> by;
-      bool agrees = false;  ///< the devices spread as much, as far as that is known
+      bool agrees = false;  ///< true where the devices spread as much, as far as that is known
       std::string why_none;
     };
     std::string drive, why_none;
@@ -123,8 +122,8 @@ struct RobustnessRecord {
   std::size_t devices = 0;
   std::uint64_t seed = 1;
   PointSet points = PointSet::sobol;
-  double duration = Metrics::unset, tolerance = Metrics::unset;  ///< window [s]; of the integrator
-  std::vector<std::string> about;                                ///< paragraphs on which devices these are
+  double duration = Metrics::unset, tolerance = Metrics::unset;  ///< window [s]; tolerance of the integrator
+  std::vector<std::string> about;                                ///< paragraphs that describe the devices
   std::vector<Varied> spread;
   HoldWindows windows;
   std::vector<Drive> drives, by_knowledge;
@@ -137,21 +136,21 @@ struct RobustnessRecord {
 [[nodiscard]] RobustnessRecord record_of(const RobustnessReport& report);
 [[nodiscard]] nlohmann::json json_of(const RobustnessRecord& record);
 [[nodiscard]] RobustnessRecord read_robustness(const nlohmann::json& from);
-/// All but the diagrams: what a terminal shows, and the worst devices.
+/// Shows all but the diagrams: the text for a terminal, and the worst devices.
 [[nodiscard]] Document document_of(const RobustnessRecord& record);
 
-/// A line per device: its number, the varying quantities [SI unit, or factor; of jitter the time drawn for the first edge], and
-/// for every drive its status and figures; a figure that a device does not have is empty.
+/// Writes a line per device: its number, the varying quantities, and for every drive its status and figures. A quantity is in
+/// its SI unit or a factor; jitter is the time drawn for the first edge. A figure that a device does not have is empty.
 [[nodiscard]] std::string robustness_csv(const RobustnessReport& report);
 
-/// Statistics, cumulative distributions and histograms, the closings of typical devices, every figure against every quantity,
-/// what measuring is worth, where the spread comes from, derivatives at the nominal device, the other ways, the worst devices,
-/// failures.
+/// Shows statistics, cumulative distributions and histograms, the closings of typical devices, every figure against every
+/// quantity. It also shows the value of measurements, the sources of the spread, derivatives at the nominal device, the other
+/// ways, the worst devices, failures.
 [[nodiscard]] Document robustness_document(const RobustnessReport& report);
 
 namespace internal {
 
-/// [lower, upper] by electrode [V]; null where no level holds as many devices, or an end where there is none.
+/// Returns [lower, upper] by electrode [V]; null where no level holds as many devices, and for an end that does not exist.
 [[nodiscard]] nlohmann::json windows_json(const HoldWindows& windows);
 
 }  // namespace internal

@@ -21,9 +21,9 @@ using Points = std::vector<std::array<double, 2>>;
 
 /// A time in which a contact is closed.
 struct ClosedStretch {
-  double begin = 0;                                       ///< [s]
-  double end = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: the contact is closed at the end of the window
-  std::uint64_t touches = 1;                              ///< more than one: the openings between them are left out
+  double begin = 0;                                       ///< begin [s]
+  double end = std::numeric_limits<double>::quiet_NaN();  ///< end [s]; NaN: the contact is closed at the end of the window
+  std::uint64_t touches = 1;  ///< number of touches; more than one: the openings between them are left out
 };
 
 /// The motion of a run at the contact point. A column that is not as long as `time` is damaged, or missing.
@@ -32,15 +32,15 @@ struct CurveRecord {
   std::vector<double> gap;       ///< distance to the contact plane [m]
   std::vector<double> velocity;  ///< towards the contact [m/s]
   std::vector<double> force;     ///< contact force on the beam [N]
-  /// Of the connection, NaN while it is open [Ohm]; empty where the contacts have no resistivity.
+  /// Resistance of the connection, NaN while it is open [Ohm]; empty where the contacts have no resistivity.
   std::vector<double> resistance = {};
   std::vector<Rebound> rebounds;
-  std::optional<std::vector<ClosedStretch>> closed = {};                   ///< the contact, or the connection of several
-  std::map<std::string, std::vector<ClosedStretch>> closed_contacts = {};  ///< each of several, by name
-  std::optional<ShownMotion> motion = {};  ///< all places move so; none where the run did not come to its end
+  std::optional<std::vector<ClosedStretch>> closed = {};  ///< times in which the contact, or the connection of several, is closed
+  std::map<std::string, std::vector<ClosedStretch>> closed_contacts = {};  ///< the same for each of several contacts, by name
+  std::optional<ShownMotion> motion = {};  ///< motion of all places; none where the run did not come to its end
 };
 
-/// The winner or the single run, or the baseline.
+/// The record is that of the winner or the single run, or of the baseline.
 struct RunRecord {
   std::string status;
   std::optional<FigureValues> figures;  ///< none: the run is not there
@@ -48,7 +48,7 @@ struct RunRecord {
   CurveRecord curve;
   std::map<std::string, Points> waveforms;  ///< time [s] and level [V] by drive; the dispersion force has its factor
   double cost = Metrics::unset;
-  double collapse_time = Metrics::unset;  ///< the time at which the beam met the electrode [s]
+  double collapse_time = Metrics::unset;  ///< time at which the beam met the electrode [s]
 };
 
 /// One of several contacts in the winner or the single run.
@@ -57,8 +57,8 @@ struct ContactFigures {
   FigureValues figures;
 };
 
-/// Rows of a curve, rebounds, evaluations of a search and times in which a contact is closed that a result holds at most: its
-/// file stays readable (base/read_file.h) however long a run is.
+/// A result holds at most this many rows of a curve, rebounds, evaluations of a search and times in which a contact is closed:
+/// its file stays readable (base/read_file.h) however long a run is.
 inline constexpr std::size_t most_curve_rows = 20'000, most_rebounds = 20'000, most_evaluations = 100'000,
                              most_closed_stretches = 1000;
 

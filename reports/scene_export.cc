@@ -33,12 +33,12 @@ namespace {
 using internal::plain_number;
 using Say = std::function<void(const std::string&)>;
 
-constexpr double usual_error = 0.01;  // of a measurement whose error nobody gives, relative
+constexpr double usual_error = 0.01;  // relative error of a measurement whose error nobody gives
 
-// The formats that are no files of generators.
+// These formats are not files of generators.
 constexpr std::array<std::string_view, 6> other_formats{"csv", "spice-pwl", "codes", "spice-model", "spice-bench", "verilog-a"};
 
-// Null: none of a generator. Throws InvalidInput where it is no format at all.
+// Returns null for a format of no generator. Throws InvalidInput for an unknown format.
 const GeneratorFormat* generator_format(const std::string& name) {
   if (std::ranges::find(other_formats, name) != other_formats.end()) return nullptr;
   std::vector<std::string_view> names(other_formats.begin(), other_formats.end());
@@ -60,7 +60,7 @@ static_assert(is_complete<sent_names>());
 struct Measured {
   std::string_view name;
   Dimension due;
-  std::string said = {};  // how it was given
+  std::string said = {};  // text in which it was given
   std::optional<double> value = {};
 
   void read(const std::string& option, const std::string& text) {
@@ -79,12 +79,12 @@ struct Measured {
   }
 };
 
-// What was measured on the device that gets the waveform.
+// The measurements on the device that gets the waveform.
 struct Measurements {
   Measured pull_in{.name = measured_pull_in, .due = dimension::voltage};
   Measured frequency{.name = measured_frequency, .due = dimension::frequency};
   Measured piezo{.name = measured_piezo, .due = dimension::inverse_voltage};  // its deflection per volt over the contact gap
-  Measured time{.name = measured_time, .due = dimension::time};               // of closing under a step to closing_step Vdp
+  Measured time{.name = measured_time, .due = dimension::time};               // time of closing under a step to closing_step Vdp
 
   explicit Measurements(const ExportRequest& request) {
     if (request.device_pull_in) pull_in.read(requested("device-vdp"), *request.device_pull_in);
@@ -115,7 +115,7 @@ struct Measurements {
   }
 };
 
-// Of a measurement, relative: what [calibration] says, or the usual one, which is told.
+// Returns the relative error of a measurement: that of [calibration], or the usual one, with a remark.
 double error_of(const Measured& measured, const std::optional<double>& given, const Say& say) {
   if (given && *given > 0) return *given;
   say(fmt::format("{}: taken to be right to {}: [calibration] gives no error of {}", measured.said,
@@ -123,8 +123,8 @@ double error_of(const Measured& measured, const std::optional<double>& given, co
   return usual_error;
 }
 
-// Warns of a device that hardly any is like; `deviation`: of the spread, `ratio`: of the unit that the measurement tells over
-// that of the nominal device, `own`: what is measured over the nominal value.
+// Warns of a device that hardly any device of the spread is like. The argument `deviation` is that of the spread; `ratio` is
+// the measured unit over that of the nominal device; `own` is the measured value over the nominal one.
 void warn_if_strange(const Measured& measured, double own, double ratio, double deviation, const std::optional<double>& error,
                      const Say& say) {
   constexpr double strange = 4;
@@ -136,13 +136,13 @@ void warn_if_strange(const Measured& measured, double own, double ratio, double 
                   measured.said, plain_number(100 * std::abs(own - 1), 3), plain_number(off / sigma, 2)));
 }
 
-// The scene, whose devices differ in the usual way where it does not say how.
+// Returns the scene, with the usual process variation where it gives none.
 PreparedScene with_spread(const PreparedScene& p) {
   SceneFile file = p.scene.file;
   return assume_spread(file) ? prepare(file) : p;
 }
 
-// The units of the device on which this was measured.
+// Returns the units of the device on which this was measured.
 DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int jobs, const Watch& watch, const Say& say) {
   const DeviceMeter meter(p, {.pull_in = measured.pull_in.value.has_value(),
                               .closing_time = measured.time.value.has_value(),
@@ -173,7 +173,7 @@ DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int j
   return known.of({.volts = volts, .time = time, .piezo = piezo, .volts_by_time = told.volts_by_time});
 }
 
-// The waveforms of that device. Throws InvalidInput where a source cannot give them.
+// Returns the waveforms of that device. Throws InvalidInput where a source cannot give them.
 std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& measured, int jobs, const Watch& watch,
                                    const Say& say) {
   const std::vector<Waveform> own = in_units(p.waveforms(), p.scene.device, units_of(p, measured, jobs, watch, say));
@@ -188,7 +188,7 @@ std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& m
   return own;
 }
 
-// Of the drives that are samples of so many bits; tells which are not.
+// Returns the drives whose samples have a number of bits; `say` names the others.
 std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& sent, const Say& say) {
   std::map<std::string, Coded> all;
   const std::vector<std::string> names = p.drive_names();
@@ -218,10 +218,10 @@ double last_breakpoint(const std::map<std::string, Signal>& signals) {
   return last;
 }
 
-// What is exported of the scene, with the samples that are asked for.
+// The exported scene, with the samples that are asked for.
 struct Exported {
   PreparedScene sampled;
-  std::optional<PreparedScene> drawn;  // where the samples are not those of the scene
+  std::optional<PreparedScene> drawn;  // set where the samples are not those of the scene
   std::vector<std::string> drives;
 };
 Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_in, const Watch& watch) {
@@ -232,7 +232,7 @@ Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_i
   return {prepare_and_choose(file, need_pull_in, watch), std::move(drawn), std::move(drives)};
 }
 
-// These drives, one alone of the file of a generator, as a file of that format.
+// Writes these drives, one alone for the file of a generator, as a file of that format.
 std::string sent_text(const std::string& format, const PreparedScene& p, const std::vector<std::string>& drives,
                       const SentSignals& sent, double end, const Sampling& sampling, const Say& say) {
   if (format == "csv") return csv(sent.signals, end, sent.sample_rates);
@@ -247,12 +247,12 @@ std::string sent_text(const std::string& format, const PreparedScene& p, const s
 
 constexpr std::array<std::string_view, 3> circuits{"spice-model", "spice-bench", "verilog-a"};
 
-// ".arb"
+// Returns the ending of a file of this format: ".arb".
 std::string_view ending_of(const std::string& format) {
   return format == "spice-pwl" ? ".cir" : format == "keysight-arb" ? ".arb" : ".csv";
 }
 
-// The switch itself, where that is asked for. Throws InvalidInput for what has no such model.
+// Returns the switch itself, where that is asked for. Throws InvalidInput for a switch that has no such model.
 std::optional<std::string> circuit(const std::string& format, const PreparedScene& p) {
   if (format == "spice-model") return spice_model(p);
   if (format == "spice-bench") return spice_bench(p);

@@ -1,4 +1,4 @@
-// What a search has found so far, kept current on disk while it runs.
+// The log keeps the findings of a search current on disk while it runs.
 #pragma once
 
 #include <chrono>
@@ -14,21 +14,21 @@
 
 namespace softland {
 
-/// best.toml and evaluations.csv among the unfinished results of a folder. May be told from several threads.
+/// The log writes best.toml and evaluations.csv among the unfinished results of a folder. Several threads may call it.
 class SearchLog {
  public:
-  /// `columns`: of evaluations.csv. Writes the file with its header, so that a
-  /// folder that takes none ends the run before its first evaluation.
+  /// `columns` are those of evaluations.csv. Writes the file with its header, so that a folder that is not writable ends the
+  /// run before its first evaluation.
   SearchLog(ResultFolder& folder, FamilyColumns columns);
 
   /// Notes an evaluation for evaluations.csv.
   void evaluated(const Evaluation& evaluation);
   /// Notes a better scene; best.toml and evaluations.csv are rewritten whole, at most once a second.
   void improved(const SceneFile& best);
-  /// Writes what is still only noted.
+  /// Writes all pending notes.
   void flush();
 
-  /// When nothing more is told.
+  /// Call it after the last note only.
   [[nodiscard]] const std::map<long, Evaluation>& evaluations() const { return evaluations_; }
 
  private:
@@ -36,8 +36,8 @@ class SearchLog {
 
   ResultFolder& folder_;
   FamilyColumns columns_;
-  std::mutex mutex_;                        // of what follows
-  std::map<long, Evaluation> evaluations_;  // by index: the order that does not depend on the number of jobs
+  std::mutex mutex_;                        // guards the members below
+  std::map<long, Evaluation> evaluations_;  // kept by index: this order does not depend on the number of jobs
   std::string best_;
   bool pending_ = false;
   std::chrono::steady_clock::time_point written_{};

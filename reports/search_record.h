@@ -21,29 +21,29 @@ namespace softland {
 struct ConfirmationRecord {
   std::string name, status;
   std::optional<FigureValues> figures;
-  /// Tells whether it is under another gas law: it then differs in what is simulated, not in how.
+  /// Tells whether it is under another gas law: it then differs in the simulated physics, not in the method.
   [[nodiscard]] bool is_of_gas() const { return name.starts_with("gas "); }
 };
 
 struct SearchCourse {
-  std::string value_name;  ///< names the value that the search minimises
+  std::string value_name;  ///< name of the value that the search minimises
   Points best_so_far;      ///< index of an evaluation, value
-  Points evaluations;      ///< the same of all; a value is NaN where it was infeasible
+  Points evaluations;      ///< the same for all evaluations; a value is NaN where it was infeasible
 };
 
 /// The least time in which any waveform of the same drives and limits touches no faster than the winner.
 struct TouchLimit {
-  double least_time = Metrics::unset, impact_velocity = Metrics::unset;  ///< [s], [m/s]
+  double least_time = Metrics::unset, impact_velocity = Metrics::unset;  ///< time [s] and velocity [m/s]
 };
 
 /// Searches that differ in their seeds alone; the result is that of the best.
 struct SeedsFindings {
-  std::uint64_t planned = 0;           ///< searches, of which those below are done
+  std::uint64_t planned = 0;           ///< planned number of searches; those below are done
   std::vector<SearchOfSeed> searches;  ///< ascending by seed
-  std::size_t best = 0;                ///< of them
+  std::size_t best = 0;                ///< index of the best search
 };
 
-/// What is not available is NaN, empty or not set.
+/// A member that is not available is NaN, empty or not set.
 struct SearchRecord {
   std::string target, actuator, waveform, optimizer, termination, termination_message;
   std::vector<SearchedFamilyResult> families;  ///< empty unless there were several
@@ -51,8 +51,8 @@ struct SearchRecord {
   std::optional<bool> goal_met, better_than_baseline, plain_step_wins;
   double harder_than_step = Metrics::unset;  ///< see OptimizeResult
   double evaluations = Metrics::unset;
-  RunRecord baseline;                                   ///< the plain step
-  std::map<std::string, double> parameters;             ///< the winner's, by drive.name
+  RunRecord baseline;                                   ///< run of the plain step
+  std::map<std::string, double> parameters;             ///< parameters of the winner, by drive.name
   std::map<std::string, std::array<double, 2>> bounds;  ///< the box in which they were searched
   std::vector<ConfirmationRecord> checks;
   double evaluations_of_modes = Metrics::unset;  ///< see OptimizeResult

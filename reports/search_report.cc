@@ -10,8 +10,8 @@
 namespace softland {
 namespace {
 
-// Writes the waveform of a device that was measured, or where measuring wins nothing that of every device; empty where neither
-// was found.
+// Writes the waveform of a measured device, or that of every device where measuring wins nothing; empty where neither was
+// found.
 std::string next_command(const ForDevicesResult& found, const std::filesystem::path& folder) {
   if (!found.calibrated && !found.chosen) return {};
   if (!found.calibrated) return fmt::format("softland export {} --format spice-pwl", shell_word(folder.string()));

@@ -1,4 +1,4 @@
-// A search as it is reported, whatever its kind.
+// A search as reports show it, whatever its kind.
 #pragma once
 
 #include <filesystem>
@@ -13,22 +13,22 @@
 
 namespace softland {
 
-/// `result` and `devices` tell of `found`, which stays where it is.
+/// `result` and `devices` refer to `found`, which stays where it is.
 struct SearchReport {
   explicit SearchReport(FoundSearch search) : found(std::move(search)) {}
   SearchReport(const SearchReport&) = delete;
   SearchReport& operator=(const SearchReport&) = delete;
 
   FoundSearch found;
-  std::optional<RobustnessReport> devices = {};  ///< none where none were judged
+  std::optional<RobustnessReport> devices = {};  ///< report on devices; none where none were judged
   ClosingRecord result = {};
 };
 
-/// What is known of the devices that were judged. It is further work for a search by one measure, of which `watch` is told; where
-/// that is interrupted, so is the search.
+/// Adds the report on the devices that were judged. It is further work for a search by one measure, and `watch` follows it; an
+/// interruption marks the search as interrupted.
 void add_devices(SearchReport& report, const PlannedSearch& search, const std::string& command, const Watch& watch);
 
-/// The result. `folder`: where the files of the search will be, for the command that says how a device is measured.
+/// Adds the result. `folder` is the final place of the search's files, for the command that says how a device is measured.
 void add_result(SearchReport& report, const PlannedSearch& search, const std::filesystem::path& folder,
                 const std::string& command);
 

@@ -1,5 +1,5 @@
-// A search from its first evaluation to the files that it leaves: the folder that it fills, the store of its evaluations, with
-// which it can be gone on with, and its log.
+// A session runs a search from its first evaluation to its files: it has the folder, the log, and the store of evaluations,
+// from which the search can be resumed.
 //
 //   SearchSession session(search, known, output);
 //   search.options.on_start = [&](const auto& columns) { session.begin(columns); };
@@ -26,10 +26,10 @@
 
 namespace softland {
 
-/// In the folder of searches from several seeds.
+/// This store lies in the folder of searches from several seeds.
 inline constexpr const char* seeds_file = "seeds.sqlite";
 
-/// Where a search leaves what it finds.
+/// The destination of the findings of a search.
 struct SearchOutput {
   std::filesystem::path folder;
   std::string command;
@@ -45,13 +45,13 @@ class SearchPlaces {
 
   [[nodiscard]] ResultFolder& folder() { return folder_; }
   [[nodiscard]] EvaluationStore& evaluations() { return evaluations_; }
-  /// Where another store of the search is.
+  /// Returns the path of another store of the search.
   [[nodiscard]] std::filesystem::path store(const std::string& name);
-  /// Whether the stores are, or will be, among results that are put here.
+  /// Tells whether the stores are, or will be, among results that are put here.
   [[nodiscard]] bool stores_go_to(const std::filesystem::path& place) const { return !kept_ || place == folder_.path(); }
 
  private:
-  std::optional<std::filesystem::path> kept_;  // the stores of the folder itself are gone on with
+  std::optional<std::filesystem::path> kept_;  // set when the stores of the folder itself are continued
   ResultFolder folder_;
   EvaluationStore evaluations_;
 };
@@ -63,16 +63,17 @@ class SearchSession {
   SearchSession(StoredSearch& search, const std::optional<KnownSearch>& known, const SearchOutput& output,
                 SearchPlaces* places = nullptr);
 
-  /// When the parameters are known: opens folder, store and log, and gives the search its memory. Throws what these throw.
+  /// Call it when the parameters are known: opens folder, store and log, and gives the search its memory. Throws what these
+  /// throw.
   void begin(const FamilyColumns& columns);
-  /// Throws what kept the store from keeping an evaluation.
+  /// Throws the error that kept the store from keeping an evaluation.
   void evaluated(const Evaluation& evaluation);
   void improved(const SceneFile& best) { log_->improved(best); }
-  /// When the search has ended: lets the store go.
+  /// Call it when the search has ended: closes the store.
   void close();
-  /// Where the files will be.
+  /// Returns the final place of the files.
   [[nodiscard]] std::filesystem::path destination(const SearchReport& report) const;
-  /// The costs of the evaluations, and the command lines that make the result again.
+  /// Adds the costs of the evaluations, and the command lines that make the result again.
   void add_log(SearchRecord& search, const SearchReport& report) const;
   /// Writes the files, puts them where they belong, and names them with those that were kept on the way.
   std::vector<std::string> leave(const SearchReport& report);

@@ -58,7 +58,7 @@ json five_json(const FiveNumbers& n) {
           {"most", json_number(n[4])}};
 }
 
-// Why a search has failed; empty where it has not.
+// Says why a search has failed; empty where it has not.
 std::string failure(const SearchOfSeed& one) {
   if (!std::isfinite(one.cost)) return "no feasible waveform";
   if (!one.better_than_baseline && !one.goal_met) return "no better than the plain step";

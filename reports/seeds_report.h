@@ -13,9 +13,10 @@
 
 namespace softland {
 
-/// Orders the searches and sets which is the best. On the nominal device goes first what is confirmed, then what meets the goal,
-/// then what settles, each by the target's own figure, a rebound below `significant` [m] counting as one, and then by cost, a sum
-/// of targets by cost alone; over devices that differ what fulfils its conditions, by cost. Of equals the first seed.
+/// Orders the searches and sets the best one. On the nominal device a confirmed search goes first, then one that meets the
+/// goal, then one that settles. Each group is sorted by the target's own figure, then by cost; a rebound below `significant`
+/// [m] counts as one, and a sum of targets is sorted by cost alone. Under process variation a search that fulfils its
+/// conditions goes first, sorted by cost. Among equals the first seed wins.
 void rank(SeedsFindings& seeds, const Aim& target, double significant, bool over_devices);
 
 /// The record that an interrupted study of several seeds leaves.
@@ -29,9 +30,9 @@ struct SeedsRecord {
 
 namespace internal {
 
-/// What the searches came to together, in sentences.
+/// Summarises the outcome of the searches together, in sentences.
 [[nodiscard]] std::string seeds_caption(const SeedsFindings& seeds);
-/// The caption and a table.
+/// Makes the caption and a table.
 [[nodiscard]] ReportSection seeds_section(const SeedsFindings& seeds);
 
 }  // namespace internal

@@ -1,4 +1,5 @@
-// A switch from the side, as parts of an <svg> element: what holds the moving part, and electrodes. Its colours are the page's.
+// A switch from the side, as parts of an <svg> element: the supports of the moving part, and electrodes. Its colours are the
+// page's.
 #pragma once
 
 #include <array>
@@ -12,15 +13,15 @@ namespace softland::internal {
 [[nodiscard]] std::string drawn_line(double x1, double y1, double x2, double y2, const char* what);
 [[nodiscard]] std::string drawn_words(double x, double y, const char* anchor, const std::string& text);
 
-/// Begin and end of a span as shares of the length; the whole length where none is given.
+/// Returns begin and end of a span as shares of the length; the whole length where none is given.
 [[nodiscard]] std::array<double, 2> shares_of(const DrawnScene::Span& span, double length);
 
-/// Places in a view of a straight switch [px].
+/// The places in a view of a straight switch [px].
 struct SideView {
   static constexpr double left = 60, thick = 14, electrode = 10, layer = 7;
   bool plate, both_ends;
   double length, top, right = 440, gap = 60, bottom = top + thick, floor = bottom + gap;
-  double far = 0.75 * gap;  ///< the way from the upper face to what is on the far side
+  double far = 0.75 * gap;  ///< distance from the upper face to the far side
   double per_metre = 0;     ///< heights to scale [px/m]; 0: the far side is at `far`, whatever its gaps are
 
   [[nodiscard]] double x_at(double share) const { return left + share * (right - left); }

@@ -16,25 +16,25 @@
 namespace softland::internal {
 namespace {
 
-constexpr double width = 740;  // with the words beside the measures of a plate between its anchors
+constexpr double width = 740;  // width with the words beside the measures of a plate between its anchors [px]
 
-/// A measure between two heights, with its words to the right.
+/// Draws a measure between two heights, with its words to the right.
 std::string height_measure(double x, double top, double bottom, const std::string& text) {
   return drawn_line(x, top, x, bottom, "measure") + drawn_line(x - 4, top, x + 4, top, "measure") +
          drawn_line(x - 4, bottom, x + 4, bottom, "measure") + drawn_words(x + 8, (top + bottom) / 2 + 4, "start", text);
 }
 
-// What the parameters of a waveform are, where a drawing can show them.
+// The parameters of a waveform that a drawing can show.
 struct Described {
   struct Place {
     std::string name;
-    double from, to;  // in time
+    double from, to;  // times
   };
   std::vector<Place> spans;
   std::vector<std::pair<std::string, double>> levels;  // name, time at which it holds
 };
 
-/// The parameters of a drive of a result, which moves until `moves`; empty where its family or its times are not known.
+/// Returns the parameters of a drive of a result, which moves until `moves`; empty where its family or its times are not known.
 Described described_parameters(const ClosingRecord& result, const std::string& drive, double moves) {
   const auto parameter = [&](const std::string& name) {
     const auto found = result.search->parameters.find(drive + "." + name);
@@ -58,7 +58,7 @@ Described described_parameters(const ClosingRecord& result, const std::string& d
   return known ? d : Described{};
 }
 
-/// The beam or plate, what holds it, and its layer.
+/// Draws the beam or plate, its supports, and its layer.
 std::string drawn_beam(const DrawnScene& scene, const SideView& view) {
   constexpr double left = SideView::left, thick = SideView::thick, layer = SideView::layer;
   const double top = view.top, right = view.right;
@@ -83,7 +83,7 @@ double plane_of(const SideView& view, const DrawnScene& scene, double gap) {
   return view.bottom + view.gap * std::min(1.0, gap / scene.electrode_gap);
 }
 
-/// Contacts that have names stand at their places, those of the far side hang above the beam; gaps beside them.
+/// Draws contacts: those that have names stand at their places, those of the far side hang above the beam; gaps beside them.
 std::string drawn_contacts(const DrawnScene& scene, const SideView& view) {
   constexpr double wide = 12, foot = SideView::electrode;
   const double usual = view.plate || view.both_ends ? 0.5 : 1;
@@ -129,7 +129,7 @@ std::string sketch(const DrawnScene& scene) {
   std::string out = drawn_beam(scene, view) + drawn_electrodes(scene, view) + drawn_contacts(scene, view);
   const double measure = both_ends || plate ? right + 64 : right + 16;
   if (scene.contacts.empty()) {
-    // The contact stands at the centre of the pad, of a beam between two clamps and of a plate in the middle.
+    // The contact stands at the centre of the pad, or in the middle for a beam between two clamps and for a plate.
     const double pad = scene.pad_length;
     const double contact_at = plate || both_ends ? 0.5 : 1 - (pad > 0 ? std::min(1.0, pad / length) / 2 : 0);
     const double plane = plane_of(view, scene, scene.contact_gap);

@@ -7,12 +7,12 @@
 
 namespace softland::internal {
 
-/// The switch at rest as an <svg> element: anchor, beam or plate, piezo layer, electrodes, contact, and the gaps. To scale along
-/// the beam, heights exaggerated. Empty where the scene does not say what the switch is like. Its colours are the page's.
+/// Draws the switch at rest as an <svg> element: anchor, beam or plate, piezo layer, electrodes, contact, and the gaps. The
+/// length is to scale, heights are exaggerated. Empty where the scene does not describe the switch. Its colours are the page's.
 [[nodiscard]] std::string sketch(const DrawnScene& scene);
 
-/// The waveform of a drive from 0 to where it holds, with the searched parameters written where they act; empty for a drive
-/// without searched parameters.
+/// Draws the waveform of a drive from 0 to where it holds, with the searched parameters written where they act; empty for a
+/// drive without searched parameters.
 [[nodiscard]] std::string parameter_drawing(const ClosingRecord& result, const std::string& drive);
 
 }  // namespace softland::internal

@@ -1,4 +1,4 @@
-// The members of what several studies find, as their JSON names them: see reports/record.h.
+// The members of several studies' findings, named as in their JSON: see reports/record.h.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace softland {
 
-/// Status and figures of a run, but for those of the drives.
+/// Lists status and figures of a run, except those of the drives.
 template <class A>
 void members(A& a, Metrics& metrics) {
   FigureValues values(metrics);

@@ -15,9 +15,9 @@
 namespace softland {
 namespace {
 
-constexpr double between = 14;  // parts of a picture
+constexpr double between = 14;  // distance between parts of a picture [px]
 
-/// Words in lines of at most `columns` bytes; a longer word stands alone.
+/// Breaks words into lines of at most `columns` bytes; a longer word stands alone.
 std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
   const std::string words = printable_line(text);
   std::vector<std::string> lines{""};

@@ -25,7 +25,7 @@ void require_value(bool holds, std::string_view key, const json& value, std::str
   require(holds, [&] { return fmt::format("{} = {}: {}", key, shown(value), rule); });
 }
 
-// A key that is misspelt would say that nothing happened.
+// Refuse a misspelt key: the record would otherwise say that nothing happened.
 void require_known(const json& object, const std::string& path, std::initializer_list<std::string_view> known) {
   for (const auto& [key, value] : object.items()) {
     require(std::find(known.begin(), known.end(), key) != known.end(), [&key = key, &path, &known] {
@@ -110,7 +110,7 @@ std::vector<Waveform> ToldShot::waveforms(const PreparedScene& nominal) const {
 }
 
 ToldShot told_shot(int number, double hold_time, const SentSignals& sent) {
-  constexpr double tolerance = 1e-4;  // of the peak
+  constexpr double tolerance = 1e-4;  // share of the peak
   ToldShot shot{.number = number, .hold_time = hold_time, .drives = {}, .amplifiers = sent.amplifiers};
   for (const auto& [name, signal] : sent.signals) {
     Table& table = shot.drives[name];

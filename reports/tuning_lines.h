@@ -1,14 +1,14 @@
-// The lines by which a tuning and a device talk to each other: one JSON object each, in SI units.
+// A tuning and a device exchange lines: one JSON object each, in SI units.
 //
 //   to the device     {"shot":1,"hold_s":2e-4,"drives":{"main":{"time_s":[0,1e-6],"V":[0,17.5]}}}      {"done":true}
 //   from the device   {"shot":1,"edges_s":[[3.6e-5,1],[3.8e-5,0],[4.1e-5,1]]}
 //                     {"shot":1,"closing_time_s":3.6e-5,"bounce_count":1}
 //                     {"shot":1,"error":"no trigger"}
 //
-// Voltages go straight from row to row, two rows of the same time are a jump, and the last one is held, and recorded, for hold_s
+// Voltages are linear between rows, two rows of the same time are a jump, and the last one is held, and recorded, for hold_s
 // after the last row of any drive. An edge is a time since the drives began, and 1 where the contact closes there, 0 where it
 // opens. No edge, or a closing time that is null, says that the contact stayed open. Beside edges or closing time a device may
-// tell a loudness, any number that rises with the impact.
+// report a loudness, any number that rises with the impact.
 #pragma once
 
 #include <limits>
@@ -26,47 +26,47 @@
 
 namespace softland {
 
-/// What a device is told.
+/// A shot as it is sent to a device.
 struct ToldShot {
-  int number = 0;                                 ///< counted from 1
-  double hold_time = 0;                           ///< how long the last levels are held and recorded [s]
-  std::map<std::string, Table> drives;            ///< by name, in volts at the switch
-  std::map<std::string, double> amplifiers = {};  ///< of those that have one: volts at the switch per volt of the source
+  int number = 0;                                 ///< number, counted from 1
+  double hold_time = 0;                           ///< time for which the last levels are held and recorded [s]
+  std::map<std::string, Table> drives;            ///< waveforms by drive, in volts at the switch
+  std::map<std::string, double> amplifiers = {};  ///< drives that have one: volts at the switch per volt of the source
 
-  /// When the last row of any drive comes [s].
+  /// Returns the time of the last row of any drive [s].
   [[nodiscard]] double last_row() const;
-  /// How long the closing is recorded from t = 0 on [s].
+  /// Returns the time for which the closing is recorded, from t = 0 on [s].
   [[nodiscard]] double duration() const { return last_row() + hold_time; }
-  /// In the order of the drives of a device; a factor of the dispersion force, which is no voltage, stays that of its scene.
-  /// Throws InvalidInput for a drive that it has not.
+  /// Returns the waveforms in the order of the drives of a device; a factor of the dispersion force, which is not a voltage,
+  /// stays that of its scene. Throws InvalidInput for a drive that the device does not have.
   [[nodiscard]] std::vector<Waveform> waveforms(const PreparedScene& nominal) const;
 };
 
-/// Signals at the switch in rows: straight pieces exactly, curves within 1e-4 of their peak.
+/// Returns the signals at the switch in rows: straight pieces exactly, curves within 1e-4 of their peak.
 [[nodiscard]] ToldShot told_shot(int number, double hold_time, const SentSignals& sent);
 
 /// The longest line that is read [byte].
 inline constexpr std::size_t longest_line = std::size_t{16} << 20;
 
-/// One line as a JSON object. Throws InvalidInput with the rule, as all of these do: "is no JSON object: ...".
+/// Reads one line as a JSON object. Throws InvalidInput with the rule, as all of these do: "is no JSON object: ...".
 [[nodiscard]] nlohmann::json read_line(std::string_view line);
-/// Whether this says that there are no more shots.
+/// Tells whether this line says that there are no more shots.
 [[nodiscard]] bool is_end(const nlohmann::json& line);
-/// The number of a shot: a whole number from 1 on.
+/// Returns the number of a shot: a whole number from 1 on.
 [[nodiscard]] int shot_number(const nlohmann::json& line);
-/// Messages begin with the key at fault: "drives.main.V: must be a list of numbers".
+/// Reads a shot. Messages begin with the key at fault: "drives.main.V: must be a list of numbers".
 [[nodiscard]] ToldShot read_shot(const nlohmann::json& line);
-/// What came of shot number `shot`, whose record lasts `duration` [s].
+/// Reads the record of shot number `shot`, which lasts `duration` [s].
 [[nodiscard]] ContactRecord read_record(const nlohmann::json& line, int shot,
                                         double duration = std::numeric_limits<double>::infinity());
 
 [[nodiscard]] nlohmann::json shot_json(const ToldShot& shot);
 [[nodiscard]] nlohmann::json record_json(int shot, const ContactRecord& record);
 [[nodiscard]] nlohmann::json end_json();
-/// Of the log of a tuning: {"recipes":[{"x":[...],"volts":1,"time":1,"cost":0.8}]}, to the last bit.
+/// Returns the recipes for the log of a tuning: {"recipes":[{"x":[...],"volts":1,"time":1,"cost":0.8}]}, to the last bit.
 [[nodiscard]] nlohmann::json recipes_json(const std::vector<Recipe>& recipes);
 [[nodiscard]] std::vector<Recipe> read_recipes(const nlohmann::json& line);
-/// With its line feed; what is not UTF-8 becomes U+FFFD.
+/// Returns the line with its line feed; bytes that are not UTF-8 become U+FFFD.
 [[nodiscard]] std::string line_text(const nlohmann::json& line);
 
 }  // namespace softland

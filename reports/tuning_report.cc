@@ -57,7 +57,7 @@ std::string bounces_words(int count) {
   return count == 0 ? "without a bounce" : count == 1 ? "with one bounce" : fmt::format("with {} bounces", count);
 }
 
-// "touched at 41.2 µs with 3 bounces"
+// Returns "touched at 41.2 µs with 3 bounces".
 std::string record_words(const ContactRecord& record) {
   if (!record.error.empty()) return "gave no record: " + record.error;
   const std::optional<double> touch = first_touch(record);
@@ -66,7 +66,7 @@ std::string record_words(const ContactRecord& record) {
   return fmt::format("touched at {}{}", quantity(*touch, "s", 4), count ? " " + bounces_words(*count) : "");
 }
 
-// "41.0 to 41.4 µs"
+// Returns "41.0 to 41.4 µs".
 std::string range_words(double low, double high) {
   if (!std::isfinite(low) || !std::isfinite(high)) return "—";
   const std::string from = quantity(low, "s", 4), to = quantity(high, "s", 4);
@@ -116,11 +116,11 @@ std::pair<std::string, std::string> headline_of(const TuningReport& report) {
 
 // ---- the page
 
-// A rectangle on a canvas whose width is `strip_width`, whatever the width it is shown at.
+// The canvas of the rectangles has this width, whatever the width it is shown at.
 constexpr double strip_width = 1000;
 
 std::string bar(double from, double to, double top, double height, const char* what) {
-  constexpr double least = 2;  // still to be seen
+  constexpr double least = 2;  // least visible width
   const double begin = std::clamp(from, 0.0, strip_width), end = std::clamp(std::max(to, from + least), 0.0, strip_width);
   if (!(end > begin)) return {};
   return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"{}\"/>", begin, top, end - begin,
@@ -133,7 +133,7 @@ std::string strip(const std::string& bars, const std::string& words) {
       strip_width, escaped(words), bars);
 }
 
-// Two deviations to either side, of three of the prior's.
+// Draws two deviations to either side, out of three of the prior's.
 std::string belief_bar(const BelievedQuantity& q) {
   constexpr double shown = 3, drawn = 2;
   const auto place = [&](double value) { return strip_width * (0.5 + (value - q.prior_mean) / (2 * shown * q.prior_deviation)); };
@@ -143,7 +143,7 @@ std::string belief_bar(const BelievedQuantity& q) {
       fmt::format("{}: now {}, before {}", q.name, q.mean, q.prior_mean));
 }
 
-// Factors as they change the scene's value, other quantities as they are.
+// Show factors as they change the scene's value, other quantities as they are.
 std::string believed_text(double mean, double deviation, const BelievedQuantity& q) {
   if (!q.unit.empty()) return fmt::format("{} ± {}", quantity(mean, q.unit), quantity(deviation, q.unit, 2));
   return fmt::format("{} ± {}\u00a0%", internal::relative_change(mean - 1), internal::plain_number(100 * deviation, 2));
@@ -172,7 +172,7 @@ ReportSection belief_section(const BeliefSummary& belief) {
   return section;
 }
 
-// What all strips of records show [s].
+// The time range of all strips of records [s].
 struct Shown {
   double from = std::numeric_limits<double>::infinity(), to = 0;
   void take(double time) {
@@ -186,9 +186,9 @@ void take(Shown& shown, const PredictedRecord& p) {
   for (const double time : {p.touch_low, p.touch_high}) shown.take(time);
 }
 
-// The touches, and as much of what follows; an early prediction may reach much further.
+// Shows the touches, and some time after them; an early prediction may reach much further.
 Shown shown_times(const TuningReport& report, std::size_t first) {
-  constexpr double before = 0.8, after = 1.6;  // of the first and of the last touch
+  constexpr double before = 0.8, after = 1.6;  // factors of the time of the first and of the last touch
   Shown touches;
   take(touches, report.next.predicted);
   for (std::size_t i = first; i < report.closings.size(); ++i) {
@@ -203,7 +203,7 @@ std::string expected_bar(const PredictedRecord& p, const Shown& shown) {
   return bar(shown.place(p.touch_low), shown.place(p.touch_high), 1, 22, "expected");
 }
 
-// Closed where it is thick.
+// Draws a thick bar where the contact is closed.
 std::string record_bars(const ContactRecord& record, const Shown& shown) {
   std::string bars;
   double closed_since = std::numeric_limits<double>::quiet_NaN();
@@ -216,7 +216,7 @@ std::string record_bars(const ContactRecord& record, const Shown& shown) {
     }
   }
   if (std::isfinite(closed_since)) bars += bar(shown.place(closed_since), strip_width, 7, 10, "seen");
-  // Of a closing time alone nothing is known of what follows.
+  // A closing time alone says nothing about the time after it.
   if (record.edges.empty() && record.closing_time) bars += bar(shown.place(*record.closing_time), 0, 3, 18, "seen");
   return bars;
 }
@@ -237,9 +237,9 @@ TableRow record_row(const TuningReport::Closing& one, const Shown& shown) {
                      "picture")};
 }
 
-// Empty where the records may begin with the drives, as far as is known.
+// Describes the delay; empty where the records may begin with the drives, as far as is known.
 std::string delay_words(const BeliefSummary& belief) {
-  constexpr double certain = 2;  // standard errors
+  constexpr double certain = 2;  // least number of standard errors
   const auto delay = std::find_if(belief.quantities.begin(), belief.quantities.end(),
                                   [](const BelievedQuantity& one) { return one.name == trigger_delay_name; });
   if (delay == belief.quantities.end() || !(std::abs(delay->mean) > certain * delay->deviation)) return {};
@@ -276,7 +276,7 @@ internal::Picture picture_of(const TuningReport& report) {
   internal::Picture drawn;
   const auto &kept = report.kept.waveforms, &next = report.next.waveforms;
   const bool differ = kept != next;
-  const double hold = 0.25;  // of the time before it, shown of the hold level
+  const double hold = 0.25;  // shown part of the hold level, as a share of the time before it
   for (const auto& [name, rows] : kept) {
     internal::Chart chart{.id = "drive-" + std::to_string(drawn.charts.size()),
                           .title = kept.size() == 1 ? "Voltage" : "Voltage of " + name,
@@ -343,7 +343,7 @@ bool TuningReport::ever_bounce_free() const {
 
 namespace {
 
-// The last one that gave a record; null where none did.
+// Returns the last closing that gave a record; null where none did.
 template <class Closing>
 const Closing* last_record(const std::vector<Closing>& closings) {
   const auto last = std::find_if(closings.rbegin(), closings.rend(), [](const auto& one) { return one.record.error.empty(); });

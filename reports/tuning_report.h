@@ -1,4 +1,4 @@
-// What a tuning knows and proposes: JSON with SI units in the names, a line for a log, and a document.
+// The knowledge and the proposals of a tuning: JSON with SI units in the names, a line for a log, and a document.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@
 
 namespace softland {
 
-/// How a tuning stands.
+/// The state of a tuning.
 enum class TuningEnd { under_way, done, closings_used, stopped, interrupted, failed };
 inline constexpr auto tuning_ends = std::to_array<Named<TuningEnd>>({{TuningEnd::under_way, "under_way"},
                                                                      {TuningEnd::done, "done"},
@@ -32,10 +32,10 @@ struct TunedClosing {
 
 /// The record of a tuning as it stands now.
 struct TuningReport {
-  /// A shot by the voltages of its drives: a factor of the dispersion force is no voltage.
+  /// A shot by the voltages of its drives: a factor of the dispersion force is not a voltage.
   struct Shot {
     int number = 0;
-    std::map<std::string, Points> waveforms = {};  ///< told to the sources, by drive: time [s] and voltage [V]
+    std::map<std::string, Points> waveforms = {};  ///< commanded voltages by drive: time [s] and voltage [V]
     double hold_time = 0, expected_cost = 0;       ///< see TunerShot
     PredictedRecord predicted = {};
   };
@@ -44,13 +44,13 @@ struct TuningReport {
     ContactRecord record;
   };
   Origin origin;
-  std::vector<Closing> closings = {};  ///< all in their order, also those that failed
+  std::vector<Closing> closings = {};  ///< all closings in their order, also those that failed
   Shot next, kept;
   BeliefSummary belief = {};
   std::optional<std::string> broken_assumption = {};
   double step_closing_time = 0;  ///< first touch of the plain step on the nominal device [s]
   Approach approach = Approach::fast;
-  double step_permanent_contact = Metrics::unset;  ///< where the approach is quasi-static [s]
+  double step_permanent_contact = Metrics::unset;  ///< set where the approach is quasi-static [s]
   int bounce_free_in_a_row = 0;
   bool spread_assumed = false;
   std::uint64_t seed = 1;
@@ -58,9 +58,9 @@ struct TuningReport {
   TuningEnd end = TuningEnd::under_way;
   nlohmann::json setting = {};  ///< tells apart tunings that cannot go on with each other
 
-  /// The shot of this number was recorded without a bounce.
+  /// Tells whether the shot of this number was recorded without a bounce.
   [[nodiscard]] bool was_bounce_free(int shot) const;
-  /// Whether any was.
+  /// Tells whether any shot was.
   [[nodiscard]] bool ever_bounce_free() const;
   /// Tells whether the last closing was of the waveform kept, and without a bounce.
   [[nodiscard]] bool lands() const;
@@ -74,11 +74,12 @@ struct TuningReport {
 [[nodiscard]] nlohmann::json json_of(const TuningReport& report);
 [[nodiscard]] TuningReport read_tuning(const nlohmann::json& from);
 [[nodiscard]] nlohmann::json belief_json(const TunedBelief& belief);
-/// What the JSON of a tuning tells of its device. Throws InvalidInput with the rule: "holds no belief ...".
+/// Reads the belief about the device from the JSON of a tuning. Throws InvalidInput with the rule: "holds no belief ...".
 [[nodiscard]] TunedBelief tuned_belief(const nlohmann::json& written);
-/// One line: what the last closing was, and what is expected of the next.
+/// Returns one line on the last closing and the expectation for the next.
 [[nodiscard]] std::string closing_words(const TuningReport& report);
-/// What is known of the device, every closing's record under the predicted one, and the voltages that are kept and proposed.
+/// Shows the knowledge of the device, every closing's record under the predicted one, and the voltages that are kept and
+/// proposed.
 [[nodiscard]] Document tuning_document(const TuningReport& report);
 
 }  // namespace softland

@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// What all closings of a log have in common.
+// Lists the values that all closings of a log have in common.
 Json origin_of(const SceneFile& file, const TunerOptions& options) {
   return {{"scene", content_key(canonical(file, "scene").text()).hexadecimal()},
           {"actuator", name_of(actuators, options.actuator)},
@@ -38,7 +38,7 @@ Json origin_of(const SceneFile& file, const TunerOptions& options) {
           {"constrain", options.touch ? Json(options.touch->text) : Json()}};
 }
 
-// What a tuning began with and found, in the folder that --out named.
+// Reads the start and the findings of a tuning, from the folder that --out named.
 TunedBelief tuned_in(const std::string& folder, const Json& origin) {
   const std::string path = (std::filesystem::path(folder) / "tune.json").string();
   try {
@@ -63,7 +63,7 @@ struct TuningSession::State {
   std::filesystem::path log_file = {};
   std::unique_ptr<TuningLog> log = {};
   std::size_t behind = 0;     // closings of the log that were learned
-  bool is_on_record = false;  // what came of the next shot, which is not learned
+  bool is_on_record = false;  // true while the log holds the record of the next shot, which is not learned
   std::optional<Tuner> tuner = {};
   std::vector<TunedClosing> closings = {};
 
@@ -109,7 +109,8 @@ void TuningSession::begin(const Watch& watch) {
   if (s.log && s.log->recipes().empty()) s.log->append(s.tuner->recipes());
 }
 
-// What was proposed then is proposed again, or the waveform kept was fired once more, or these closings are of something else.
+// Check that the same shot is proposed again, or that the kept waveform was fired once more; otherwise the closings belong to
+// something else.
 bool TuningSession::learn_kept(const Watch& watch) {
   State& s = *state_;
   if (!s.log || s.behind == s.log->closings().size()) return false;
@@ -150,7 +151,7 @@ std::optional<TuningEnd> TuningSession::ends(int most) {
 }
 
 void TuningSession::throw_if_failing() const {
-  constexpr std::ptrdiff_t most_failures = 3;  // in a row
+  constexpr std::ptrdiff_t most_failures = 3;  // failures in a row
   const std::vector<TunedClosing>& all = closings();
   const auto of_log = all.rend() - static_cast<std::ptrdiff_t>(state_->behind);
   const auto failures =

@@ -35,7 +35,7 @@ using internal::plain_number;
 using internal::quantity;
 using internal::scientific;
 
-// At which factor the dispersion force closes the switch.
+// Says at which factor the dispersion force closes the switch.
 std::string dispersion_words(const PreparedScene& p, const Watch& watch) {
   const std::size_t k = p.scene.device.electrodes.size();
   const std::vector<double> bias = bias_of(p.scene, k);
@@ -56,7 +56,7 @@ std::string dispersion_words(const PreparedScene& p, const Watch& watch) {
   return fmt::format("{}closes by itself at {} (static){} of its nominal strength", rest, factor(statically.voltage), step);
 }
 
-// Under the hold levels, and up to which voltage.
+// Describes the state under the hold levels, and the voltage up to which it exists.
 std::string closed_state_words(const ClosedState& state) {
   std::string words = !state.exists   ? "no equilibrium under the hold levels"
                       : !state.stable ? "stable or not is not judged: one mode of a beam clamped at both ends cannot tell"
@@ -75,7 +75,7 @@ std::string closed_state_words(const ClosedState& state) {
   return words;
 }
 
-// Capacitance of the closed state of a switch that lands on a dielectric, and what more modes do to it.
+// Gives the capacitance of the closed state of a switch that lands on a dielectric, and its change with more modes.
 std::string capacitance_words(const PreparedScene& p) {
   const ModeLadder ladder(p);
   const ByModes found = closed_capacitance_by_modes(ladder, hold_levels(p.signals()));
@@ -85,7 +85,7 @@ std::string capacitance_words(const PreparedScene& p) {
          (ladder.exists() ? "; more modes move it by " + shift_words(found, "F") : "");
 }
 
-// What is to be said of a key, with its place.
+// Returns the message about a key, with its place.
 std::string said_of(const SceneFile& file, const std::string& key, std::string_view words) {
   try {
     file.refuse(key, words);
@@ -94,15 +94,15 @@ std::string said_of(const SceneFile& file, const std::string& key, std::string_v
   }
 }
 
-// A step of a switch with a compressible film takes a thousand times longer to follow: here its pull-in voltage is found to this
-// precision, by coarser runs. `pull-in` finds it as well as any other.
+// A step of a switch with a compressible film takes a thousand times longer to follow: this verb finds its pull-in voltage to
+// this precision, by coarser runs. `pull-in` finds it as well as any other.
 constexpr double film_precision = 1e-3;
 
 double precision_of(const Switch& model) { return model.film_states() > 0 ? film_precision : dynamic_pull_in_precision; }
 
 ElectrodePullIn quick_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch) {
   if (model.film_states() == 0) return electrode_pull_in(model, electrode, bias, watch);
-  constexpr double tolerance = 1e-4;  // of the integrator
+  constexpr double tolerance = 1e-4;  // tolerance of the integrator
   ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
   found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, watch, tolerance, film_precision);
   return found;
@@ -117,7 +117,7 @@ std::string end_words(const Anchor& anchor) {
   return fmt::format("rotation {}, translation {}", stiffness(anchor.rotation, "N m/rad"), stiffness(anchor.translation, "N/m"));
 }
 
-// Sections, layers and anchors of a beam that has any.
+// Lists sections, layers and anchors of a beam that has any.
 void add_parts(CheckRecord& record, const Device& device) {
   const Structure& s = device.structure;
   const Beam* const beam = s.find<Beam>();
@@ -146,7 +146,7 @@ void add_parts(CheckRecord& record, const Device& device) {
         {"anchors", fmt::format("near end {}; far end {}", end_words(s.near_hold()), end_words(s.far_hold()))});
 }
 
-// How far a structure that is not straight rests from the straight shape.
+// Gives the distance of the rest shape from the straight shape, for a structure that is not straight.
 void add_rest_shape(CheckRecord& record, const Device& device) {
   constexpr int places = 200;
   const double length = device.structure.length, gap = device.gap.electrode;
@@ -223,7 +223,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   add_rest_shape(record, p.scene.device);
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   if (p.model.has_contact()) add("in-contact period", quantity(p.model.basis().in_contact_period(), "s", 4));
-  std::map<std::string, PullInVoltages> searched_to;  // what a search takes for the limit where the scene has none
+  std::map<std::string, PullInVoltages> searched_to;  // a search takes these as the limit where the scene has none
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     const std::string& name = p.scene.device.electrodes[k].name;
     if (!pulls_in(p.scene.device, k)) {

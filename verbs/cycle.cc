@@ -1,4 +1,4 @@
-// Verb `cycle`: a switch that is closed and opened at a rate, and how high that may be.
+// Verb `cycle`: closes and opens a switch at a rate, and finds how high the rate may be.
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,8 +44,8 @@ struct CycleRequest : Usual {
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_cycles(json)); }
 
   CyclingOptions options{.jobs = one_per_core()};
-  std::vector<std::string> results;  ///< with other waveforms
-  bool searches = false;             ///< both waveforms, for the rate
+  std::vector<std::string> results;  ///< results with other waveforms
+  bool searches = false;             ///< true when both waveforms are searched for the rate
   std::string target = "bounce", waveform = {};
   Actuator actuator = Actuator::electrostatic;
   long budget = CycleSearchOptions{}.max_evaluations;
@@ -77,7 +77,8 @@ void options(Archive& a, CycleRequest& r) {
   jobs_option(a, o.jobs);
 }
 
-// The waveforms of a scene: of its closing, or of its opening where it begins closed, or of both where it opens on command.
+// Takes the waveforms of a scene: of its closing, or of its opening where it begins closed, or of both where it opens on
+// command.
 void take(CycleWaveforms& waveforms, const PreparedScene& scene) {
   std::vector<Signal> told = scene.told(scene.waveforms());
   if (scene.start() == StartState::closed) {

@@ -20,14 +20,14 @@ struct DeviceVerb : Usual, DeviceRequest {
       "  softland device scenes/mem-gold.toml --seed 7 --model \"modes=+1|stiffness=1.1\" < shots.jsonl";
 };
 
-// A quantity that may begin with a minus sign.
+// Reads a quantity that may begin with a minus sign.
 double signed_quantity(const std::string& option, const std::string& text, const Dimension& due) {
   const bool is_negative = text.starts_with('-');
   const double size = told_quantity(option, text.substr(is_negative ? 1 : 0), due);
   return is_negative ? -size : size;
 }
 
-// "1 %/1000": the share by which the volts change in so many shots, or in one.
+// Reads "1 %/1000": the share by which the volts change in so many shots, or in one.
 void read_drift(const std::string& option, const std::string& text, double& drift) {
   const std::size_t stroke = text.find('/');
   const int shots =
@@ -35,7 +35,7 @@ void read_drift(const std::string& option, const std::string& text, double& drif
   drift = signed_quantity(option, text.substr(0, stroke), dimension::none) / shots;
 }
 
-// "1 us" or "-1 us".
+// Reads "1 us" or "-1 us".
 void read_delay(const std::string& option, const std::string& text, double& delay) {
   delay = signed_quantity(option, text, dimension::time);
 }

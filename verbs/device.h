@@ -1,4 +1,4 @@
-// Verb `device`: a simulated device that answers as one in a laboratory does, to practise on.
+// Verb `device`: a simulated device that answers as a laboratory device does, to practise on.
 #pragma once
 
 #include "studies/tuning/practice_device.h"
@@ -13,7 +13,7 @@ struct DeviceRequest {
 
   [[nodiscard]] PracticeOptions options(const SceneFile& file) const;
 };
-/// Throws InvalidRequest.
+/// Reads the request. Throws InvalidRequest.
 [[nodiscard]] DeviceRequest device_request(const Told& told);
 
 }  // namespace softland::verbs

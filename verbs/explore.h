@@ -1,4 +1,4 @@
-// Verb `explore`: many points of a design space, computed into a store.
+// Verb `explore`: computes many points of a design space into a store.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace softland::verbs {
 
-/// Options that are not told are empty.
+/// Options that are not given are empty.
 struct ExploreRequest {
   std::vector<std::string> vary, options;
   std::string sample, pareto, list, study, target, actuator, waveform, optimizer, shard, out;
@@ -22,14 +22,14 @@ struct ExploreRequest {
   int jobs = one_per_core();
   bool certify = false, resume = false;
 
-  /// What belongs to a plan, by the name of its option.
+  /// Returns the options that belong to a plan, by name.
   [[nodiscard]] std::map<std::string, std::string> of_plan() const;
-  /// The plan of this scene. Messages begin with an option as `spelling` has it. Throws InvalidInput.
+  /// Returns the plan of this scene. Messages begin with an option as `spelling` has it. Throws InvalidInput.
   [[nodiscard]] PlanRequest plan(SceneFile scene, const Spelling& spelling) const;
-  /// The part of its points. Throws InvalidRequest.
+  /// Returns the part of its points. Throws InvalidRequest.
   [[nodiscard]] Shard part() const;
 };
-/// Throws InvalidRequest.
+/// Reads the request. Throws InvalidRequest.
 [[nodiscard]] ExploreRequest explore_request(const Told& told);
 
 }  // namespace softland::verbs

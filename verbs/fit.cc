@@ -1,4 +1,4 @@
-// Verb `fit`: a scene fitted to measurements.
+// Verb `fit`: fits a scene to measurements.
 #include "studies/fitting/fit.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
-// What the verbs of a laboratory are told about its instruments, in one wording: `device` simulates these errors, `tune` expects
-// them.
+// The laboratory verbs share these options about the instruments: `device` simulates these errors, `tune` expects them.
 #pragma once
 
 #include <optional>
@@ -10,13 +9,13 @@
 
 namespace softland::verbs {
 
-/// Errors that are not told are the usual ones of the scene.
+/// Errors that are not given are the usual ones of the scene.
 struct ToldErrors {
   std::optional<double> edge_error = {}, unseen = {}, gain_error = {}, shot_error = {};
-  std::optional<double> trigger_delay = {};  ///< expected by `tune`, which alone has the option
-  std::optional<double> capacitance = {};    ///< a threshold, where the instrument sees that
+  std::optional<double> trigger_delay = {};  ///< delay that `tune` expects; it alone has the option
+  std::optional<double> capacitance = {};    ///< threshold, for an instrument that measures the capacitance
 
-  /// Throws InvalidInput for a scene that cannot be read.
+  /// Returns the errors. Throws InvalidInput for a scene that cannot be read.
   [[nodiscard]] LaboratoryErrors errors(const SceneFile& file) const;
 };
 

@@ -16,7 +16,7 @@
 namespace softland::verbs {
 namespace {
 
-// "settling, impact and energy"
+// Returns "settling, impact and energy".
 std::string targets_with_own_cost() {
   std::vector<std::string_view> names;
   for (const TargetRow& row : targets) {

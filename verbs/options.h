@@ -1,5 +1,5 @@
-// Options of a verb. A request is a struct with a function template `options(archive, request)`, which names each option once.
-// The command line and Python declare, read and explain their options by archives of that template.
+// The options of a verb are those of its request: a struct with a function template `options(archive, request)`, which names
+// each option once. The command line and Python declare, read and explain their options by archives of that template.
 #pragma once
 
 #include <fmt/format.h>
@@ -39,34 +39,34 @@ struct Wanted {
 
 /// An option as the command line and Python declare it.
 struct OptionRow {
-  enum class Kind { text, flag, repeated, further, object };  ///< further: words behind the scene; object: no text can hold it
+  enum class Kind { text, flag, repeated, further, object };  ///< further: words behind the scene; object: has no text form
   enum class Door { both, program, python };
 
   std::string name, word, about;  ///< "impact-velocity", "SPEED"; `about` begins in lower case
   Kind kind = Kind::text;
-  Door door = Door::both;     ///< an object is one of Python alone
-  bool may_be_empty = false;  ///< else the door refuses an empty text
+  Door door = Door::both;     ///< an object is for Python alone
+  bool may_be_empty = false;  ///< false: the door refuses an empty text
 
-  // In Python:
-  std::string keyword = {};  ///< "impact_velocity"
-  std::string type = {};     ///< "float | str | None"
-  std::string value = {};    ///< its default, "None"
-  std::string note = {};     ///< before `about`: the unit of a number, which value `about` is of
-  std::string told = {};     ///< an expression that makes the texts of Told of it, "_quantity(impact_velocity, 'm/s')"
+  // These members are for Python.
+  std::string keyword = {};  ///< name in Python, "impact_velocity"
+  std::string type = {};     ///< type in Python, "float | str | None"
+  std::string value = {};    ///< default, "None"
+  std::string note = {};     ///< text before `about`: the unit of a number, and the value that `about` describes
+  std::string told = {};     ///< expression that makes the texts of Told, "_quantity(impact_velocity, 'm/s')"
   bool is_positional = false;
 };
 
-/// How Python has an option; what is not said follows from its kind. Without a value it must be given.
+/// The form of an option in Python; members that are not set follow from its kind. Without a value it must be given.
 struct InPython {
   std::optional<std::string> keyword = {}, type = {}, value = {}, told = {};
   bool is_positional = false;
 };
 
-/// "impact_velocity".
+/// Returns "impact_velocity".
 [[nodiscard]] std::string keyword_of(std::string_view name);
-/// How a door spells the name of an option: "--impact-velocity", "impact_velocity".
+/// A spelling maps the name of an option to the form of a door: "--impact-velocity", "impact_velocity".
 using Spelling = std::function<std::string(std::string_view)>;
-/// Words whose options are spelled so: those that requested() has marked, whichever library wrote them.
+/// Spells the options that requested() has marked in a text, whichever library wrote it.
 [[nodiscard]] std::string spelled(std::string_view marked, const Spelling& spelling);
 [[nodiscard]] std::string spelled(const InvalidRequest& error, const Spelling& spelling);
 /// The type that an optional holds, or the type itself.
@@ -116,11 +116,11 @@ class OptionList {
   void text(const char* name, const std::string& value, const char* word, const std::string& about) {
     add({.name = name, .word = word, .about = about}, "str", fmt::format("\"{}\"", value), "_text({})");
   }
-  /// An option whose empty text is looked at with the value.
+  /// Adds an option whose empty text is checked like any other value.
   void text(const char* name, const std::optional<std::string>&, const char* word, const std::string& about) {
     add({.name = name, .word = word, .about = about, .may_be_empty = true}, "str | None", "None", "_text({})");
   }
-  /// An option with a text of its own form. Python has a list for "1.1,1.25" and a mapping for "Vdp:1 %,time:0.5 %".
+  /// Adds an option with a text of its own form. Python has a list for "1.1,1.25" and a mapping for "Vdp:1 %,time:0.5 %".
   template <class T, class Parse>
   void parsed(const char* name, T&, const Parse&, const char* word, const std::string& about, const char* keyword,
               const char* type) {
@@ -129,7 +129,7 @@ class OptionList {
     add({.name = name, .word = word, .about = about, .keyword = keyword}, type, kind.ends_with("None") ? "None" : "()",
         is_mapping ? "_pairs({}, \":\")" : "_joined({})");
   }
-  /// Texts "KEY=VALUE", which Python has as a mapping.
+  /// Adds an option with texts "KEY=VALUE", which Python has as a mapping.
   void assignments(const char* name, std::vector<std::string>&, const char* word, const std::string& about) {
     add({.name = name, .word = word, .about = about, .kind = OptionRow::Kind::repeated}, "Mapping[str, float | str] | None",
         "None", "_assigned({})");
@@ -144,7 +144,7 @@ class OptionList {
          .is_positional = is_positional},
         "Sequence[str]", "()", "list({})");
   }
-  /// More results behind the scene; in Python waveforms by name.
+  /// Adds further results behind the scene; in Python waveforms by name.
   void results(const char* name, std::vector<std::string>&, const std::string& about) {
     add({.name = name,
          .word = "",
@@ -154,7 +154,7 @@ class OptionList {
          .is_positional = true},
         "Mapping[str, Mapping[str, Waveform]] | None", "None", "list({} or ())");
   }
-  /// The file of measurements; in Python these themselves, too.
+  /// Adds the file of measurements; Python also takes the measurements themselves.
   void measurements(const char* name, std::string&, const std::string& about) {
     add({.name = name, .word = "FILE", .about = about, .is_positional = true},
         "str | os.PathLike[str] | Sequence[Mapping[str, Any]]", "", "[{}]");
@@ -162,11 +162,11 @@ class OptionList {
   void flag(const char* name, bool&, const std::string& about) {
     add({.name = name, .word = "", .about = about, .kind = OptionRow::Kind::flag}, "bool", "False", "_flag({})");
   }
-  /// A function or another object of Python, which is handed on as it is.
+  /// Adds a function or another object of Python, which is handed on as it is.
   void object(const char* keyword, const char* type, const char* value, const std::string& about) {
     python().add({.name = keyword, .word = "", .about = about, .kind = OptionRow::Kind::object}, type, value, "");
   }
-  /// A member that is true unless the flag "no-NAME" is told.
+  /// Adds a member that is true unless the flag "no-NAME" is given.
   void unless(const char* name, bool&, const std::string& about) {
     constexpr std::string_view no = "no-";
     add({.name = name,
@@ -180,7 +180,7 @@ class OptionList {
   [[nodiscard]] const std::vector<OptionRow>& all() const { return all_; }
 
  private:
-  /// `told` has {} for the keyword.
+  /// Adds an option; `told` has {} for the keyword.
   void add(OptionRow row, const std::string& type, const std::string& value, const std::string& told) {
     const auto [door, form] = std::exchange(next_, {});
     row.door = door;
@@ -198,7 +198,7 @@ class OptionList {
   std::vector<OptionRow> all_;
 };
 
-/// The number that an option was told. Throws InvalidRequest that names option, text and rule.
+/// Reads the number of an option. Throws InvalidRequest that names option, text and rule.
 template <class Number>
 [[nodiscard]] Number whole_number(const std::string& option, const std::string& text, const Range& range) {
   Number value = 0;
@@ -214,8 +214,8 @@ template <class Number>
   return value;
 }
 
-/// Sets the members of a request; what is not told keeps its value. Throws InvalidRequest with option, value
-/// and rule.
+/// Sets the members of a request; options that are not given keep their value. Throws InvalidRequest with option, value and
+/// rule.
 class OptionReader {
  public:
   explicit OptionReader(const Told& told) : told_(told) {}
@@ -285,11 +285,11 @@ class OptionReader {
   const Told& told_;
 };
 
-// Options that several verbs have.
+// Several verbs have the following options.
 template <class Archive, class Seed>
 void seed_option(Archive& a, Seed& seed, const std::string& same) {
   const std::string about = "whole number from 0 on (default 1): same seed, " + same;
-  if constexpr (std::is_same_v<Seed, std::optional<std::string>>)  // which is read elsewhere
+  if constexpr (std::is_same_v<Seed, std::optional<std::string>>)  // such a seed is read elsewhere
     a.text("seed", seed, "N", about);
   else
     a.whole("seed", seed, {.least = 0}, about);
@@ -303,7 +303,7 @@ template <class Archive>
 void samples_option(Archive& a, std::uint64_t& samples, Range range, const std::string& about) {
   a.whole("samples", samples, range, about);
 }
-/// Threads, where nothing is told of them.
+/// Returns the default number of threads.
 [[nodiscard]] int one_per_core();
 
 }  // namespace softland::verbs

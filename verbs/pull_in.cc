@@ -1,4 +1,4 @@
-// Verb `pull-in`: pull-in voltages of every electrode.
+// Verb `pull-in`: finds the pull-in voltages of every electrode.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -29,13 +29,13 @@ namespace {
 
 constexpr double most_bias = 1e6;  // [V]
 
-// Of a voltage on the command line.
+// Returns the rule for a voltage on the command line.
 std::string voltage_rule() {
   return fmt::format("must be {} from {} to {}, such as \"{}\"", describe(dimension::voltage), engineering(-most_bias, "V"),
                      engineering(most_bias, "V"), example(dimension::voltage));
 }
 
-// "V1:V2:N"
+// Reads "V1:V2:N".
 void read_sweep(const std::string& option, const std::string& text, std::optional<SweepRange>& asked) {
   constexpr int most_points = 100'000;
   const auto refuse = [&](std::string_view rule) { throw InvalidRequest(fmt::format("{} {}: {}", option, visible(text), rule)); };
@@ -59,7 +59,7 @@ void read_sweep(const std::string& option, const std::string& text, std::optiona
   asked = range;
 }
 
-// --bias NAME=V: takes the place of what the drive stands at in the scene.
+// Sets --bias NAME=V, which replaces the level of the drive in the scene.
 void set_bias(PreparedScene& p, const std::string& assignment) {
   const auto refuse = [&](std::string_view rule) {
     throw InvalidRequest(fmt::format("{} {}: {}", requested("bias"), visible(assignment), rule));
@@ -85,7 +85,7 @@ void set_bias(PreparedScene& p, const std::string& assignment) {
   p.scene.standing[static_cast<std::size_t>(drive - names.begin())] = is_factor ? given.value - 1 : given.value;
 }
 
-// The sentence that names what was not found because the verb was asked to stop.
+// Names in a sentence the results that are missing because the verb was asked to stop.
 std::string left_out_words(const std::vector<std::string>& left_out) {
   return wrapped(fmt::format("interrupted: not found yet: {}.", fmt::join(left_out, "; "))) + "\n";
 }
@@ -135,7 +135,7 @@ void add_sweep(PullInsRecord& record, const PreparedScene& p, const SweepRange& 
   record.sweep = static_sweep(p.model, drive, bias_of(p.scene, drive), range, watch);
 }
 
-// `done`, or the status of the first electrode that pulls and has no voltage; of one electrode its own.
+// Returns `done`, or the status of the first electrode that pulls and has no voltage; a single electrode gives its own.
 Status status_of(const PreparedScene& p, const PullInsRecord& record) {
   if (record.electrodes.size() == 1) return record.electrodes.begin()->second.status;
   const auto& electrodes = p.scene.device.electrodes;
@@ -176,7 +176,8 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   const Watch& watch = setting.watch;
   PullInMemory remembered;
   const PullInFinder find_pull_in = remembered.finder(file);
-  // The voltages come before what a waveform in Vdp needs, so that they are told where the search for more is stopped.
+  // Find the voltages first, before the values that a waveform in Vdp needs: they are reported even where the search for more
+  // is stopped.
   const Scene scene = read_scene(file);
   const bool leaves_choices = scene.auto_modes || scene.simulate.automatic_effects;
   PreparedScene prepared = leaves_choices ? prepare_and_choose(file, false, watch) : prepare_statics(file);
@@ -187,7 +188,7 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   try {
     watch.throw_if_stopped();
     if (!leaves_choices) {
-      const std::vector<double> standing = prepared.scene.standing;  // with --bias
+      const std::vector<double> standing = prepared.scene.standing;  // levels with --bias
       prepared = prepare(file, false, watch, find_pull_in);
       prepared.scene.standing = standing;
     }
@@ -205,7 +206,7 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
     record.left_out.push_back(record.sweep.empty() ? "the sweep"
                                                    : fmt::format("the sweep beyond its first {} points", record.sweep.size()));
   record.origin = origin_of("pull-in", setting.command);
-  record.origin.scene = interrupted ? file.json() : prepared.resolved().json();  // volts may not be known yet
+  record.origin.scene = interrupted ? file.json() : prepared.resolved().json();  // the volts may not be known yet
   record.status = to_string(interrupted ? Status::interrupted : status_of(prepared, record));
   Outcome outcome = shown(record);
   outcome.ending = interrupted ? Ending::interrupted : worst_ending(prepared, record);

@@ -1,5 +1,5 @@
-// Writes the methods of a scene in Python, one for each study: softland/_studies.py. What they take, and what their docstrings
-// say, is what the program says of its options.
+// This program writes the methods of a scene in Python, one for each study: softland/_studies.py. Their parameters and
+// docstrings come from the program's own description of its options.
 #include <fmt/format.h>
 
 #include <cctype>
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 class Studies(Studying):
 )";
 
-// A paragraph of a docstring: lines of 150 characters at the most, those after the first further in.
+// Formats a paragraph of a docstring: lines of 150 characters at most, those after the first further in.
 std::string paragraph(std::string_view text) {
   constexpr std::size_t columns = 138;
   std::string line(text), lines;
@@ -53,7 +53,7 @@ std::string parameter(const OptionRow& one) {
   return fmt::format("        {}: {}{},\n", one.keyword, one.type, one.value.empty() ? "" : " = " + one.value);
 }
 
-// Words of the program with its options as Python has them: "threads of certify".
+// Replaces the program's options in its words by those of Python: "threads of certify".
 std::string in_keywords(std::string words, const Study& study) {
   for (const OptionRow& one : study.options) {
     const std::string option = "--" + one.name;
@@ -66,7 +66,7 @@ std::string in_keywords(std::string words, const Study& study) {
   return words;
 }
 
-// A verb that this module runs in its own way is handed what was told, and objects as they are.
+// A verb that this module runs in its own way gets the given texts, and objects as they are.
 std::string call(const Study& study, const std::string& told, const std::string& objects) {
   return study.ask && study.returns == std::string_view("Outcome")
              ? fmt::format("self._study(\"{}\", {}, progress{})", study.name, told, objects)

@@ -1,4 +1,4 @@
-// Reports (reports/report_files.h) as the outcome of a verb.
+// Reports (reports/report_files.h) become the outcome of a verb.
 #pragma once
 
 #include <memory>
@@ -26,7 +26,8 @@ template <class Report>
       .json = summary_json(json_of(*result)), .text = terminal_text(closing_document(*result)), .files = files_of_report(result)};
 }
 
-/// The result of simulate or optimize from its JSON; that of --json has no curves, which all of its files show.
+/// Shows the result of simulate or optimize from its JSON. JSON from --json has no curves, which all of the files show, so it
+/// gives no files.
 [[nodiscard]] inline Outcome closing_shown_again(const nlohmann::json& json) {
   require_reportable(json);
   Outcome outcome = closing_shown(std::make_shared<const ClosingRecord>(read_closing(json)));

@@ -1,4 +1,4 @@
-// Verb `robustness`: drives on devices with the process variation of [spread].
+// Verb `robustness`: judges drives on devices with the process variation of [spread].
 #include "studies/devices/robustness.h"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t most_worst = 3;
 
 std::string worst_file(std::size_t i) { return fmt::format("worst-{}.toml", i + 1); }
-// The scene of the worst device of the box.
+// Names the file with the scene of the worst device of the box.
 std::string box_file(std::string_view key) { return fmt::format("box-{}.toml", figure_of(key).symbol); }
 
 Outcome shown(const RobustnessRecord& record) {
@@ -54,13 +54,13 @@ struct RobustnessRequest : Usual {
     return all;
   }
 
-  // Diagrams are of all devices, which stand in devices.csv.
+  // Diagrams need all devices, which stand in devices.csv.
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_robustness(json)); }
 
   RobustnessOptions options{.jobs = one_per_core(), .worth_of_measuring = true, .opens_on_command = true};
-  std::vector<std::string> results;  ///< whose drives are judged as well
-  std::string calibration;           ///< the measurements of every device; empty: the scene says them
-  bool box_and_chaos = false;        ///< ranges over a box, and polynomial chaos, beside the sample
+  std::vector<std::string> results;  ///< results whose drives are judged as well
+  std::string calibration;           ///< measurements of every device; empty: those of the scene
+  bool box_and_chaos = false;        ///< true: ranges over a box, and polynomial chaos, beside the sample
 };
 
 template <class Archive>
@@ -78,7 +78,7 @@ void options(Archive& a, RobustnessRequest& r) {
   jobs_option(a, r.options.jobs);
 }
 
-// The nominal design and the findings that the report refers to.
+// The report refers to the nominal design and the findings.
 struct Judged {
   std::shared_ptr<const PreparedScene> nominal;
   Robustness found = {};

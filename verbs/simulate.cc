@@ -41,7 +41,7 @@ void options(Archive& a, SimulateVerb& r) {
   jobs_option(a, r.jobs, "threads of --certify (default: one per core); the result does not depend on them");
 }
 
-// effects = "auto": what leaving effects out has saved.
+// Says how much time effects = "auto" has saved by leaving effects out.
 std::string time_saved(const PreparedScene& chosen) {
   PreparedScene whole = chosen;
   whole.scene.device = chosen.effects->described.device;

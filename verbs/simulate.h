@@ -1,4 +1,4 @@
-// Verb `simulate`: the closing that a scene describes.
+// Verb `simulate`: computes the closing that a scene describes.
 #pragma once
 
 #include <memory>
@@ -13,10 +13,10 @@ struct SimulateRequest {
   bool certified = false;
   int jobs = one_per_core();  ///< threads of a certified run
 };
-/// Throws InvalidRequest.
+/// Reads the request. Throws InvalidRequest.
 [[nodiscard]] SimulateRequest simulate_request(const Told& told);
 
-/// A closing, and what it is of.
+/// A closing and the scene that it belongs to.
 struct Simulated {
   std::shared_ptr<const PreparedScene> prepared;
   Closing closing;

@@ -1,6 +1,6 @@
-// A study is a verb that looks at one scene. Its options, its computation and its files are said once, for the command line and
-// for Python. A verb that a door runs in its own way, such as a tuning on instruments or on a function of Python, is one without
-// a computation: both doors take name, options and help from it.
+// A study is a verb that looks at one scene. Its options, its computation and its files are described once, for the command
+// line and for Python. A verb that a door runs in its own way, such as a tuning on instruments or on a function of Python, has
+// no computation: both doors take name, options and help from it.
 #pragma once
 
 #include <functional>
@@ -19,9 +19,9 @@
 
 namespace softland::verbs {
 
-/// How a verb ended. The program has an exit status for each.
+/// The ending of a verb. The program has an exit status for each.
 enum class Ending { done, no_success, numerical_failure, interrupted };
-/// The ending of a verb whose closing has this status.
+/// Returns the ending of a verb whose closing has this status.
 [[nodiscard]] Ending ending_of(Status status);
 
 /// The findings of a verb, as the command line and Python take them.
@@ -29,62 +29,64 @@ struct Outcome {
   struct File {
     std::string name;
     std::function<std::string()> text;
-    std::string listed = {};  ///< how its name stands where files are listed, "" where it does not
+    std::string listed = {};  ///< name in the list of files, "" where it is not listed
   };
   nlohmann::json json;
-  std::string text;  ///< shown on a terminal
+  std::string text;  ///< text for a terminal
   std::vector<File> files = {};
-  std::string next = {};   ///< below the files; "{}" stands for the scene in their folder that `export` takes
-  std::string last = {};   ///< below all
-  std::string fault = {};  ///< why it is not done, for standard error even of a quiet run
+  std::string next = {};   ///< text below the files; "{}" stands for the scene in their folder that `export` takes
+  std::string last = {};   ///< text below all
+  std::string fault = {};  ///< reason why it is not done, for standard error even of a quiet run
   Ending ending = Ending::done;
 };
 
 /// The input of every verb.
 struct Setting {
   SceneFile scene;
-  std::string name;     ///< how the user named it
-  std::string command;  ///< for provenance
+  std::string name;     ///< name of the scene as the user gave it
+  std::string command;  ///< command line, for provenance
   const Watch& watch;
-  /// The scene made ready; without and with the limits that a search takes where the scene says nothing.
+  /// Prepares the scene, without or with the limits that a search takes where the scene has none.
   std::function<std::shared_ptr<const PreparedScene>(bool default_limits)> prepared;
-  /// The scene of a file, or of a result.
+  /// Loads the scene of a file, or of a result.
   std::function<SceneFile(const std::string&)> load;
-  /// The waveforms of a result for the switch of `nominal`. Throws InvalidInput where it cannot be driven by them.
+  /// Returns the waveforms of a result for the switch of `nominal`. Throws InvalidInput where they cannot drive it.
   std::function<DriveWaveforms(const std::string& result, const PreparedScene& nominal)> waveforms_of;
-  /// The scene as it is written, with its comments.
+  /// Returns the scene as it is written, with its comments.
   std::function<std::string()> text;
-  /// Takes a line about the scene or the result while the verb runs; empty: nobody listens. It names options as requested() does.
+  /// Takes a line about the scene or the result while the verb runs; empty: nobody listens. It names options as requested()
+  /// does.
   std::function<void(const std::string&)> note = {};
 };
 
-/// What a verb takes besides its own options.
+/// The general options that a verb takes besides its own.
 struct Takes {
-  bool scene = true;                           ///< it cannot do without
+  bool scene = true;                           ///< true where a scene is required
   bool set = true, quiet = true, json = true;  ///< options of the program
 };
 
 struct Study {
   const char *name, *about;
   const char *python, *returns, *progress;  ///< the method of a scene in Python, the type of its value, and a default
-  const char* in_python;                    ///< what its docstring says besides
-  const char *subject, *scene;              ///< --help has the scene by this word, and describes it
+  const char* in_python;                    ///< further text of its docstring
+  const char *subject, *scene;              ///< word for the scene in --help, and its description
   Takes takes;
-  bool is_explorable;   ///< an exploration may ask it of every point
-  const char* leaves;   ///< description of the files in --out; null: there are none
-  const char* place;    ///< the folder where --out names none; null: then none is written
-  const char* leaving;  ///< the option that files are of, which --out asks for and which asks for --out; null: they are of all
-  const char* changes;  ///< an example of --set
+  bool is_explorable;   ///< true where an exploration may run it at every point
+  const char* leaves;   ///< description of the files in --out; null: it leaves no files
+  const char* place;    ///< folder where --out names none; null: then none is written
+  const char* leaving;  ///< option that the files belong to: --out requires it, and it requires --out; null: they belong to all
+  const char* changes;  ///< example of --set
   std::string remarks;
   std::vector<std::string> files;  ///< names of files that --out may hold
   std::vector<OptionRow> options;
-  /// Reads what was told; the study itself runs when that is called. Throws InvalidRequest. Empty where a door runs the verb.
+  /// Reads the given options; the study itself runs when the result is called. Throws InvalidRequest. Empty where a door runs
+  /// the verb.
   std::function<std::function<Outcome(const Setting&)>(const Told&)> ask = {};
-  /// Makes of the JSON of an outcome what can be made of it again: its text and files. Throws InvalidInput for other JSON. Empty
-  /// where the verb leaves no record.
+  /// Makes the text and the files of an outcome again from its JSON, as far as possible. Throws InvalidInput for other JSON.
+  /// Empty where the verb leaves no record.
   std::function<Outcome(const nlohmann::json&)> shown_again = {};
 
-  /// The name of an option in Python.
+  /// Returns the name of an option in Python.
   [[nodiscard]] std::string keyword(std::string_view option) const;
 };
 
@@ -103,7 +105,7 @@ struct Usual {
   static std::vector<std::string> files() { return {}; }
 };
 
-/// A request of what was told. Throws InvalidRequest.
+/// Reads a request from the given options. Throws InvalidRequest.
 template <class Request>
 [[nodiscard]] Request read_options(const Told& told) {
   Request request;
@@ -112,8 +114,8 @@ template <class Request>
   return request;
 }
 
-/// The description of a request: a struct with name, about, python and remarks, and a template options(archive, request). It has
-/// shown_again(json) where it leaves a record.
+/// Returns the description of a request: a struct with name, about, python and remarks, and a template options(archive,
+/// request). It has shown_again(json) where it leaves a record.
 template <class Request>
 [[nodiscard]] Study described() {
   OptionList list;
@@ -146,7 +148,7 @@ template <class Request>
   return study;
 }
 
-/// The study of a request that has run(setting, request), too.
+/// Returns the study of a request that has run(setting, request), too.
 template <class Request>
 [[nodiscard]] Study study_of() {
   Study study = described<Request>();
@@ -156,7 +158,7 @@ template <class Request>
   return study;
 }
 
-// One file each.
+// Each study has a file of its own.
 [[nodiscard]] Study accuracy_study();
 [[nodiscard]] Study calibrate_study();
 [[nodiscard]] Study check_study();
@@ -174,10 +176,10 @@ template <class Request>
 [[nodiscard]] Study simulate_study();
 [[nodiscard]] Study tune_study();
 
-/// The studies of a scene alone, and all studies, in the order of --help.
+/// Return the studies of a scene alone, and all studies, in the order of --help.
 [[nodiscard]] const std::vector<Study>& scene_studies();
 [[nodiscard]] const std::vector<Study>& all_studies();
-/// Throws InvalidInput where there is none of this name.
+/// Throws InvalidInput where no study has this name.
 [[nodiscard]] const Study& study_named(std::string_view name);
 
 }  // namespace softland::verbs

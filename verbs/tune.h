@@ -1,5 +1,5 @@
-// Verb `tune`: a waveform tuned on one device, closing after closing. Who fires the shots is for the doors: a command or a person
-// for the program, a function for Python.
+// Verb `tune`: tunes a waveform on one device, closing after closing. The doors choose who fires the shots: a command or a
+// person for the program, a function for Python.
 #pragma once
 
 #include <chrono>
@@ -19,18 +19,18 @@ struct TuneRequest {
   std::string device;
   bool by_hand = false, resume = false;
   std::vector<std::string> wafer;     ///< folders of earlier tunings
-  std::vector<std::string> contact;   ///< how recorded voltages of the contact are read
-  std::optional<std::string> format;  ///< the format of the files of shots
-  Sampling sampling;                  ///< how the sources take samples
+  std::vector<std::string> contact;   ///< keys that say how to read recorded voltages of the contact
+  std::optional<std::string> format;  ///< format of the files of shots
+  Sampling sampling;                  ///< sampling of the sources
   int closings = usual_closings;
   std::chrono::milliseconds patience = std::chrono::minutes(1);
   TunerOptions tuner{.jobs = one_per_core()};
   ToldErrors laboratory;
 
-  /// A tuning of this scene. Throws InvalidInput.
+  /// Starts a tuning of this scene. Throws InvalidInput.
   [[nodiscard]] TuningSession session(const SceneFile& file) const;
 };
-/// Throws InvalidRequest.
+/// Reads the request. Throws InvalidRequest.
 [[nodiscard]] TuneRequest tune_request(const Told& told);
 
 }  // namespace softland::verbs

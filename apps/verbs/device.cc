@@ -1,4 +1,4 @@
-// A simulated device that answers as one in a laboratory does, to practise on.
+// A simulated device answers as a laboratory device does, to practise on.
 #include "verbs/device.h"
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-// What the device says to a line, and what is wrong with it where it cannot be done.
+// Returns the answer of the device to a line, or the fault of a line that it cannot use.
 json answer(const PracticeDevice& device, const json& line) {
   try {
     const ToldShot shot = read_shot(line);

@@ -47,7 +47,7 @@ int status_of(const Overview& found, bool interrupted) {
   return found.has_figures ? exit_done : exit_no_success;
 }
 
-// The plan of a scene and options, of a plan file, or of a store that is gone on with.
+// Returns the plan of a scene and options, of a plan file, or of a store that is continued.
 PlanRequest plan_request(const Common& c, const ExploreRequest& r) {
   const bool of_store = is_store(c.scene);
   if (!of_store && !is_plan(SceneFile::load(c.scene)))
@@ -65,7 +65,7 @@ PlanRequest completed_request(const Common& c, const ExploreRequest& r) {
   return request;
 }
 
-// The scene of one point, as `simulate` takes it.
+// Prints the scene of one point, as `simulate` takes it.
 int print_point(const Common& c, const ExploreRequest& r) {
   const std::uint64_t k = r.point.value();
   const Plan plan(completed_request(c, r));
@@ -113,7 +113,7 @@ std::pair<double, std::string> state_of(const FrontFound& f, double elapsed) {
           fmt::format("{} of {} points, {:.0f} s", f.asked, f.points, elapsed)};
 }
 
-// Shows how far the work is, at last where it has ended.
+// Shows the progress, and at last the state at the end.
 template <class State>
 class ShownProgress {
  public:
@@ -153,7 +153,7 @@ StudyStore opened(const std::string& out, const Exploration& exploration, const 
           resume ? StudyStore::Opening::resume : StudyStore::Opening::fresh};
 }
 
-// A search for a front, whose points are known only as it goes.
+// Searches a front; its points become known only during the search.
 int search_the_front(const Common& c, const ExploreRequest& r, Exploration& exploration, const std::string& out) {
   const Plan& plan = exploration.plan();
   const std::vector<ExploredAim> aims = aims_of(exploration);

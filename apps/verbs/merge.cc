@@ -1,4 +1,4 @@
-// Parts of a study as one store.
+// The verb joins parts of a study into one store.
 #include <fmt/format.h>
 
 #include <filesystem>

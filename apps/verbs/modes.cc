@@ -1,4 +1,4 @@
-// Natural frequencies of a scene, and modes that another program computed as a table that a scene reads.
+// The verb shows the natural frequencies of a scene, or writes modes of another program as a table that a scene reads.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -43,7 +43,7 @@ int frequencies_of_scene(const Common& c) {
   return exit_done;
 }
 
-/// One of a unit, which the option names alone, such as "mm".
+/// Returns the size of a unit in SI; the option gives the unit alone, such as "mm".
 std::optional<double> unit_of(const char* option, const std::string& unit, const Dimension& due) {
   if (unit.empty()) return std::nullopt;
   const double size = told_quantity(option, "1 " + unit, due);
@@ -55,7 +55,7 @@ ModeKeys keys_of(const ModesRequest& r) {
   ModeKeys keys{
       .axis = r.axis, .direction = r.direction, .mass_normalised = r.mass_normalised, .prefix = "--", .word_separator = '-'};
   keys.length_unit = unit_of("--length-unit", r.length_unit, dimension::length);
-  // A tonne is the mass of models in mm, s and N.
+  // Models in mm, s and N have masses in tonnes.
   keys.mass_unit = r.mass_unit == "t" ? std::optional(1e3) : unit_of("--mass-unit", r.mass_unit, dimension::mass);
   if (!r.mass.empty()) {
     keys.mass = told_quantity("--mass", r.mass, dimension::mass);
@@ -72,7 +72,7 @@ ModeKeys keys_of(const ModesRequest& r) {
   return keys;
 }
 
-// A file beside the other outputs of the run, which replaces none of them.
+// Claims a file beside the other outputs of the run; it must not replace any of them.
 void claim_file(const char* option, const std::string& file, const std::vector<std::string>& others) {
   if (file.empty()) return;
   for (const std::string& other : others) {

@@ -1,4 +1,4 @@
-// Scenes to start from: each can be checked, simulated, searched and judged on devices that differ.
+// The verb writes scenes to start from: each can be checked, simulated, searched and judged under process variation.
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace softland::apps {
 namespace {
 
 struct Kind {
-  std::string_view name, scene;  // a shipped one
+  std::string_view name, scene;  // name; shipped scene
 };
 constexpr std::array kinds{Kind{"cantilever", "mem-gold.toml"},
                            Kind{"cantilever-pzt", "mem-gold-pzt.toml"},

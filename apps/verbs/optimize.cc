@@ -1,4 +1,4 @@
-// The search for a waveform, of the nominal device or of devices that differ.
+// The verb searches a waveform for the nominal device or under process variation.
 #include "studies/search/optimize.h"
 
 #include <fmt/format.h>
@@ -49,7 +49,7 @@ namespace fs = std::filesystem;
 using internal::percent;
 using internal::quantity;
 
-// How a winner does on devices of its scene's spread, beside the plain step, in a sentence; empty where nothing varies, or when
+// Compares a winner with the plain step on devices of its scene's spread, in a sentence; empty where nothing varies, or when
 // asked to stop.
 std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, const fs::path& place) {
   if (winner.scene.spread.empty()) return {};
@@ -87,21 +87,21 @@ int status_of(const FoundSearch& found) {
   return found.is_success() ? exit_done : exit_no_success;
 }
 
-// A search on its way to the result that is reported; of several the best.
+// A search whose result is reported; among several searches the best.
 struct Asked {
   const Common& c;
   StoredSearch& search;
   const std::optional<KnownSearch>& known;
   const SearchOutput& output;
-  SearchPlaces* places = nullptr;           // those that a study of seeds shares
-  std::optional<SeedsFindings> seeds = {};  // the searches that are done
-  bool limit = false;                       // the least time is told however long it takes
+  SearchPlaces* places = nullptr;           // places that a study of seeds shares
+  std::optional<SeedsFindings> seeds = {};  // searches that are done
+  bool limit = false;                       // true: find the least time however long it takes
 };
 
-// Whether the least time takes a small part of the search's own time: a second or two, but many times that with a slew limit, and
-// with more modes than four of a cantilever, whose frequencies are 34 to 1.
+// Tells whether finding the least time takes a small part of the search's own time: a second or two. It takes many times that
+// with a slew limit, and with more modes than four of a cantilever, whose frequencies are 34 to 1.
 bool takes_little(const Asked& asked, const OptimizeResult& result) {
-  constexpr double widest_band = 40;  // the highest natural frequency over the lowest
+  constexpr double widest_band = 40;  // largest ratio of the highest natural frequency to the lowest
   const Eigen::VectorXd& omega = result.best_scene->model.basis().angular_frequencies();
   return asked.search.options.max_evaluations >= verbs::evaluations_worth_a_limit &&
          omega.maxCoeff() <= widest_band * omega.minCoeff() &&
@@ -109,11 +109,11 @@ bool takes_little(const Asked& asked, const OptimizeResult& result) {
                               [](const Drive& one) { return one.limits && std::isfinite(one.limits->max_slew); });
 }
 
-// The least time of any waveform of the winner's drives at its impact speed; none where the scene does not fit the question.
+// Finds the least time of any waveform of the winner's drives at its impact velocity; none where the scene does not allow it.
 std::optional<TouchLimit> limit_of(const Asked& asked, const OptimizeResult& result) {
   if (!result.best || result.search.termination == Termination::interrupted) return std::nullopt;
   if (!asked.limit && !takes_little(asked, result)) return std::nullopt;
-  constexpr double softest = 1e-3;  // of the plain step's impact speed
+  constexpr double softest = 1e-3;  // share of the plain step's impact velocity
   const double own = result.best->metrics.impact_velocity, step = result.baseline.metrics.impact_velocity;
   if (!std::isfinite(own)) return std::nullopt;
   const double velocity = std::isfinite(step) ? std::max(own, softest * step) : own;
@@ -130,7 +130,7 @@ std::optional<TouchLimit> limit_of(const Asked& asked, const OptimizeResult& res
   }
 }
 
-// What follows the table of a result: how the winner does on devices.
+// Returns the text below the table of a result: how the winner does on devices.
 std::string words_on_devices(const Asked& asked, const SearchReport& report, const fs::path& place) {
   const FoundSearch& found = report.found;
   if (asked.search.robust && report.devices) return "\n" + terminal_text(robustness_document(*report.devices));
@@ -139,7 +139,7 @@ std::string words_on_devices(const Asked& asked, const SearchReport& report, con
   return on_devices(asked.c, *found.best().best_scene, asked.search.options.jobs, place);
 }
 
-// Lists the pages and the waveforms of a search over devices, and says how many files there are besides.
+// Lists the pages and the waveforms of a search over devices, and says how many other files there are.
 std::vector<std::string> foremost(std::vector<std::string> files) {
   const auto others = std::ranges::stable_partition(
       files, [](const std::string& name) { return name.ends_with(".html") || name.ends_with(".toml"); });
@@ -180,14 +180,14 @@ int run_search(const Asked& asked) {
   return status_of(report.found);
 }
 
-// The searches that are done, ranked.
+// Returns the searches that are done, ranked.
 SeedsFindings ranked(const SeedStudy& study, const StoredSearch& search, double significant) {
   SeedsFindings seeds{.planned = search.seeds, .searches = study.searches()};
   if (!seeds.searches.empty()) rank(seeds, search.options.target, significant, search.robust.has_value());
   return seeds;
 }
 
-// Reports a study of several seeds that was interrupted; --resume goes on with it.
+// Reports a study of several seeds that was interrupted; --resume continues it.
 int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, const SeedsFindings& seeds) {
   const fs::path stores = places.store(evaluations_file).parent_path();
   std::string left = left_in(stores, {evaluations_file, seeds_file});
@@ -211,7 +211,7 @@ std::pair<double, std::string> words_of(const SeedStudy::State& now, const Store
   return {now.part, words + fmt::format(", {:.0f} s", elapsed)};
 }
 
-// Shows how far they are, and keeps the best scene in the folder.
+// Runs the searches, shows their progress, and keeps the best scene in the folder.
 void run_shown(SeedStudy& study, const Common& c, const StoredSearch& search, SearchPlaces& places,
                const FamilyColumns& columns) {
   SearchLog log(places.folder(), columns);
@@ -245,13 +245,13 @@ int run_seeds(const Common& c, StoredSearch& search, const std::optional<KnownSe
     places.evaluations().close();
     return tell_of_part(c, places, study, seeds);
   }
-  // The best once more, all of whose evaluations are known, for the report.
+  // Run the best search once more for the report; all of its evaluations are known.
   search.options.seed = seeds.searches.at(seeds.best).seed;
   return run_search(
       {.c = c, .search = search, .known = known, .output = output, .places = &places, .seeds = seeds, .limit = limit});
 }
 
-// Says so where the folder holds what was found for another scene: all of it gives way to the results of this search.
+// Warns where the folder holds results for another scene: the results of this search will replace all of them.
 void tell_of_another_scene(const fs::path& folder, const SceneFile& scene) {
   try {
     const fs::path best = folder / "best.toml";
@@ -263,7 +263,7 @@ void tell_of_another_scene(const fs::path& folder, const SceneFile& scene) {
   }
 }
 
-// The search for a pair of waveforms is that of `cycle`.
+// `cycle` searches pairs of waveforms.
 int run_cycle_search(const Common& c, const verbs::Told& told) {
   static const verbs::Study cycle = verbs::cycle_study();
   verbs::Told own{{"search", {""}}};

@@ -1,4 +1,4 @@
-// What a file of an instrument holds, without a scene.
+// The verb shows the content of an instrument's file, without a scene.
 #include <memory>
 #include <string>
 

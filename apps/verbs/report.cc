@@ -1,4 +1,4 @@
-// The report of what a study found, made again, or of an exploration.
+// The verb makes the report of a study's findings again, or that of an exploration.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -34,11 +34,11 @@ namespace {
 
 struct ReportRequest {
   std::string result;
-  std::string pareto;  ///< of an exploration: the figures of its front
-  std::string map;     ///< of an exploration: the picture's figure, and over which two variables
+  std::string pareto;  ///< figures of the front of an exploration
+  std::string map;     ///< figure of the picture of an exploration, and its two variables
 };
 
-// The column that an option names.
+// Returns the column that an option names.
 std::size_t column_named(const ExplorationReport& report, const std::string& name, bool is_variable) {
   std::string there;
   for (std::size_t c = 0; c < report.columns.size(); ++c) {
@@ -52,7 +52,7 @@ std::size_t column_named(const ExplorationReport& report, const std::string& nam
 
 std::string folder_of(const std::filesystem::path& file) { return file.has_parent_path() ? file.parent_path().string() : "."; }
 
-// The picture that --map asks for, FIGURE or FIGURE:ACROSS:UP.
+// Draws the picture that --map asks for, FIGURE or FIGURE:ACROSS:UP.
 std::string map_of(const ExplorationReport& report, const std::string& words) {
   std::vector<std::string> parts{""};
   for (const char letter : words) {
@@ -71,7 +71,7 @@ std::string map_of(const ExplorationReport& report, const std::string& words) {
   return exploration_map_svg(report, axes[0], axes[1], figure);
 }
 
-// `record`: the JSON that named the store; empty where the store is what was named.
+// `record` is the JSON that named the store; empty where the user named the store itself.
 int report_exploration(const Common& given, const ReportRequest& request, const std::filesystem::path& record = {}) {
   const std::filesystem::path path = request.result;
   const StudyReader store(path);
@@ -102,7 +102,7 @@ int report_exploration(const Common& given, const ReportRequest& request, const 
   return exit_done;
 }
 
-// The JSON that a verb left in a folder.
+// Returns the JSON that a verb left in a folder.
 std::filesystem::path record_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   for (const verbs::Study& study : verbs::all_studies()) {
@@ -115,7 +115,7 @@ std::filesystem::path record_in(const std::filesystem::path& folder) {
   throw InvalidInput(fmt::format("{}: holds no result: none of {}", folder.string(), fmt::join(names, ", ")));
 }
 
-// Writes those files that --out has, and says what was found.
+// Writes those files that --out has, and prints the findings.
 int leave(Common c, const std::filesystem::path& record, std::vector<verbs::Outcome::File> all, const std::string& text) {
   std::erase_if(all, [](const auto& file) { return file.name.ends_with(".json"); });
   std::vector<std::string> files;
@@ -129,7 +129,7 @@ int leave(Common c, const std::filesystem::path& record, std::vector<verbs::Outc
   return exit_done;
 }
 
-// The store that the JSON of an exploration names, as seen from the JSON's folder or from the current one.
+// Returns the store that the JSON of an exploration names, as seen from the JSON's folder or from the current one.
 std::string store_of(const nlohmann::json& j, const std::filesystem::path& record) {
   const std::filesystem::path named = internal::JsonReader::read<std::string>(internal::JsonReader(j).at("store"));
   for (const std::filesystem::path& place : {record.parent_path() / named, named}) {
@@ -139,7 +139,7 @@ std::string store_of(const nlohmann::json& j, const std::filesystem::path& recor
                                  shortened(printable_line(named.string()))));
 }
 
-// The figures of its front, as --pareto names them.
+// Returns the figures of its front, as --pareto names them.
 std::string aims_of(const nlohmann::json& j) {
   std::string aims;
   for (const nlohmann::json& one : internal::JsonReader(internal::JsonReader(j).at("pareto")).at("aims")) {

@@ -1,4 +1,4 @@
-// A job script for a cluster.
+// The verb writes a job script for a cluster.
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t most_tasks = 100'000;  // more than any cluster lets one array have
+constexpr std::uint64_t most_tasks = 100'000;  // more than any cluster allows for one array
 
 struct SlurmRequest {
   std::string plan;
@@ -42,7 +42,7 @@ Plan plan_of(const std::string& file) {
   return Plan(request);
 }
 
-// What stands in the script of this study alone; the rest is the same for all.
+// Returns the beginning of the script, which is specific to this study; the rest is the same for all.
 std::string head(const Common& c, const Plan& plan, std::uint64_t tasks, std::uint64_t processors, const fs::path& out) {
   const std::string digest = content_key(plan.text()).hexadecimal();
   const fs::path parts = out.parent_path() / (out.stem().string() + "-parts");

@@ -1,4 +1,4 @@
-// How far studies are.
+// The verb shows the progress of studies.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ struct StatusRequest {
   std::vector<std::string> more;
 };
 
-/// What a store says of itself.
+/// The state that a store reports.
 struct State {
   std::string file;
   StoredPlan plan;
@@ -39,7 +39,7 @@ struct State {
   std::optional<std::string> writer;
 
   [[nodiscard]] std::string part() const { return fmt::format("{}/{}", plan.shard.index, plan.shard.count); }
-  /// Rows per second of the last session [1/s]; NaN where that is not known.
+  /// Returns the rows per second of the last session [1/s]; NaN where that is not known.
   [[nodiscard]] double rate() const {
     const StoredSession& last = sessions.back();
     return last.rows > 0 && last.seconds > 0 ? static_cast<double>(last.rows) / last.seconds

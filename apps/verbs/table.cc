@@ -1,4 +1,4 @@
-// The rows of a store, as CSV or for people.
+// The verb prints the rows of a store, as CSV or for people.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -32,13 +32,13 @@ struct TableRequest {
   bool csv = false;
 };
 
-/// A column of the table, as it is asked for and shown.
+/// A column of the table, with the key that selects it and the text of its cells.
 struct Column {
   std::string key, unit;
   std::function<std::string(const StoredRow&)> csv, shown;
 };
 
-// Quoted where a reader of CSV (RFC 4180) would not leave it as it is.
+// Quotes text that a reader of CSV (RFC 4180) would otherwise change.
 std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -53,7 +53,7 @@ Column text_column(const char* key, const std::function<std::string(const Stored
           .shown = [text](const StoredRow& row) { return printable_line(text(row)); }};
 }
 
-// Of numbers the shortest text that reads back to the same bits; nothing where there is none.
+// Writes a number as the shortest text that reads back to the same bits; a missing number is empty.
 Column number_column(const StoredColumn& column, std::size_t place) {
   return {
       .key = column.key,
@@ -67,7 +67,7 @@ Column number_column(const StoredColumn& column, std::size_t place) {
           }};
 }
 
-// All that a store has, in the order of the table.
+// Returns all columns of a store, in the order of the table.
 std::vector<Column> columns_of(const StoredPlan& plan) {
   std::vector<Column> all{text_column("point", [](const StoredRow& row) { return std::to_string(row.point); })};
   for (std::size_t i = 0; i < plan.columns.size(); ++i) all.push_back(number_column(plan.columns[i], i));
@@ -79,7 +79,7 @@ std::vector<Column> columns_of(const StoredPlan& plan) {
 std::vector<Column> selected(const StoredPlan& plan, const std::string& select) {
   std::vector<Column> all = columns_of(plan);
   if (select.empty()) return all;
-  // Only shown when they are asked for.
+  // These columns appear only when they are asked for.
   all.push_back(text_column("content", [](const StoredRow& row) { return row.content.hexadecimal(); }));
   all.push_back(text_column("extra", [](const StoredRow& row) { return row.extra; }));
   std::vector<Column> chosen;
@@ -101,7 +101,7 @@ std::vector<Column> selected(const StoredPlan& plan, const std::string& select) 
 
 using Sink = std::function<void(std::string_view)>;
 
-// The same bytes wherever they go: a terminal, where nothing acts on it, or a file.
+// Writes the same bytes to a terminal, on which they cannot act, and to a file.
 void write_csv(const StudyReader& store, const TableRequest& request, const std::vector<Column>& columns, const Watch& watch,
                const Sink& sink) {
   constexpr std::size_t most = 1 << 16;
@@ -124,7 +124,7 @@ void print_table(const StudyReader& store, const TableRequest& request, const st
     widths.push_back(std::max<std::size_t>(column.key.size(), 12) + 1);
     header += internal::right_aligned(column.key, widths.back());
   }
-  // Before the first row the expression is looked at.
+  // Check the expression before the first row is written.
   std::string text = header + "\n";
   store.read(
       [&](const StoredRow& row) {

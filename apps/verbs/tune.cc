@@ -1,4 +1,4 @@
-// Tunes a waveform on a device, closing after closing.
+// The verb tunes a waveform on a device, closing after closing.
 #include "verbs/tune.h"
 
 #include <fmt/format.h>
@@ -39,7 +39,7 @@ constexpr const char* log_file = "closings.jsonl";
 
 using verbs::TuneRequest;
 
-// Puts what is said of the sources into [driver], and refuses a format that cannot hold their shots before anything is searched.
+// Puts the options about the sources into [driver], and refuses a format that cannot hold their shots before any search.
 void set_sources(SceneFile& file, const TuneRequest& request, Actuator actuator) {
   const PreparedScene drawn = prepare_and_choose(file, true);
   std::vector<std::string> shaped;
@@ -58,16 +58,16 @@ void set_sources(SceneFile& file, const TuneRequest& request, Actuator actuator)
   require_shots(request.format.value_or("csv"), prepare_and_choose(file, true), shaped);
 }
 
-/// A tuning, and the files that tell of it.
+/// A tuning, and the files that describe it.
 class Tuning {
  public:
   Tuning(const Common& common, const SceneFile& file, const TuneRequest& request);
 
-  /// Learns what was recorded before.
+  /// Learns the closings that were recorded before.
   void learn_log();
   /// Fires shots until the switch has landed often enough, `closings` are used, or the lab wants no more.
   TuningEnd run(TuningLab& lab, int closings);
-  /// The files as they stand.
+  /// Writes the files as they stand.
   void write(TuningEnd end);
   [[nodiscard]] TuningReport report(TuningEnd end) const { return session_.report(end, common_.command); }
   [[nodiscard]] const ResultFolder& folder() const { return *folder_; }

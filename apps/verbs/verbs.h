@@ -1,5 +1,5 @@
-// What the command line alone runs: the verbs of verbs/study.h without a computation, and in the order of --help those that it
-// alone has, each a file here that says what it may be told and does it.
+// The command line alone runs these: the verbs of verbs/study.h without a computation, and its own verbs in the order of
+// --help. Each of the latter is a file here that declares its options and runs it.
 #pragma once
 
 #include <array>
@@ -18,10 +18,11 @@ void add_new(Verb& verb);
 void add_report(Verb& verb);
 void add_read(Verb& verb);
 
-/// What `report` makes of the JSON of `modes`, which verbs/study.h does not list. Throws InvalidInput for other JSON.
+/// Shows the JSON of `modes` again, as `report` does; verbs/study.h does not list that verb. Throws InvalidInput for other
+/// JSON.
 [[nodiscard]] verbs::Outcome modes_shown_again(const nlohmann::json& json);
 
-// Verbs of verbs/study.h that the program runs in its own way.
+// The program runs these verbs of verbs/study.h in its own way.
 [[nodiscard]] int run_optimize(const Common& common, const verbs::Told& told);
 [[nodiscard]] int run_explore(const Common& common, const verbs::Told& told);
 [[nodiscard]] int run_tune(const Common& common, const verbs::Told& told);
@@ -37,10 +38,10 @@ inline constexpr std::array runs{RunRow{"optimize", run_optimize}, RunRow{"explo
 struct VerbRow {
   const char* name;
   const char* about;
-  void (*add)(Verb& verb);  ///< says what the verb may be told, and what it runs
+  void (*add)(Verb& verb);  ///< declares the options of the verb, and its action
 };
 
-/// In --help they stand behind those of verbs/study.h.
+/// These verbs stand behind those of verbs/study.h in --help.
 inline constexpr std::array other_verbs{
     VerbRow{"modes", "natural frequencies; modes of another program as a table for a scene", add_modes},
     VerbRow{"table", "print the rows of a store, as CSV or for people", add_table},
