@@ -1,12 +1,12 @@
-// Whether the accuracy that a scene asks for is the accuracy of its figures, on random scenes: bench_accuracy [COUNT [SEED
+// Compares the accuracy that a scene asks for with the error of its figures, on random scenes: bench_accuracy [COUNT [SEED
 // [film]]]
 //
 // Every scene is run as `simulate` runs it at accuracies from 1e-2 to 1e-5, and against a reference at an integrator tolerance of
-// 1e-12 with more quadrature points than the finest setting. With `film` every scene has a compressible film in the place of its
-// gas, whose stiff equations take a hundred times longer: the tightest accuracy is then 1e-3, scenes that take more than 3000
-// steps are left out, and the reference is explicit, in as many steps as the film's stiffness asks for. A figure counts where it
-// is well-conditioned and known: where a change of the contact gap by a billionth, which nobody could see, and a tenfold
-// tolerance of the reference move it by less than a tenth of the accuracy asked for. Prints Markdown.
+// 1e-12 with more quadrature points than the finest setting. The argument `film` gives every scene a compressible film in place
+// of its gas. The film's stiff equations take a hundred times longer. The tightest accuracy is then 1e-3, and scenes of more than
+// 3000 steps are left out. The reference is explicit, in as many steps as the film's stiffness asks for. A figure counts if it is
+// well conditioned and known. A change of the contact gap by a billionth, which is invisible, and a tenfold tolerance of the
+// reference must then move it by less than a tenth of the accuracy asked for. Prints Markdown.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -100,7 +100,7 @@ double relative(double value, double truth, double least) {
   return std::isnan(e) ? std::numeric_limits<double>::infinity() : e;
 }
 
-/// What is known of a scene's figures.
+/// The reference values of a scene's figures.
 struct Truth {
   Figures value, spread, least;
 };

@@ -1,4 +1,4 @@
-// What building a switch costs in time of the processor, for every scene: its own, and that of a device of an ensemble, which
+// Measures the processor time of building a switch, for every scene: its own, and that of a device of an ensemble, which
 // differs in thickness, gap and modulus only.
 //   bench_building [SCENE ...]     (default: every shipped scene)
 #include <fmt/format.h>

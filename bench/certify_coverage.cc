@@ -1,4 +1,4 @@
-// How often the errors that --certify gives cover the true ones, and by how much they exceed them, on random scenes.
+// Measures how often the errors that --certify gives cover the true ones, and by how much they exceed them, on random scenes.
 //
 // The truth is a run at a ten-thousandth of the tolerance of the run that the figures are of, with four times its quadrature
 // points, 96 at least. A figure whose difference from it is below what two such runs differ by counts as covered by any error.
@@ -34,13 +34,13 @@ constexpr double truth_tighter = 1e-4;  // than the tolerance of the run
 constexpr double truth_finer = 4;
 constexpr double fewest_truth_points = 96;
 constexpr double stated_rounding = 1e-9, far_off = 10;
-constexpr double truth_rounding = 1e-11;  // relative: closer to it nothing is told apart
+constexpr double truth_rounding = 1e-11;  // relative: smaller differences are not resolved
 
 struct Options {
   std::uint64_t seed = 2;
   std::uint64_t scenes = 200;
   double accuracy = 1e-6;
-  long steps = 20000;  // of the closing itself: seventeen that are tighter follow
+  long steps = 20000;  // steps of the closing itself: seventeen that are tighter follow
   bool film = false;
 };
 
@@ -69,7 +69,7 @@ std::string percent(int part, int all) { return all == 0 ? "-" : fmt::format("{:
 
 enum class Outcome { none, without_touch, failed, too_long, certified };
 
-// Of the errors that a run states without --certify.
+// Counts of the errors that a run states without --certify.
 struct Stated {
   int held = 0, missed = 0, none = 0, far_off = 0;  // far off: by more than ten times what is stated
 };
@@ -181,7 +181,7 @@ void run(const Options& options) {
   std::map<std::string_view, Stated> stated;
   std::map<Outcome, std::uint64_t> counts;
   std::vector<std::string> misses;
-  for (const auto& [index, scene] : scenes) {  // in order, so that threads do not matter
+  for (const auto& [index, scene] : scenes) {  // count in order, so that threads do not matter
     if (counts[Outcome::certified] == options.scenes) break;
     ++counts[scene.outcome];
     for (const auto& [key, one] : scene.tallies) tallies[key].add(one);

@@ -43,7 +43,7 @@ def table(build, junit):
     there = collections.Counter(label for _, of_one in all_labels for label in of_one)
     for case in suite.iter("testcase"):
         name = printable(case.get("name"))
-        # What stands behind an odd byte is not in ctest's JSON: then the labels are those of the other parameters.
+        # ctest's JSON omits what stands behind an odd byte: then the labels are those of the other parameters.
         for label in (labels.get(name) or labels.get(name.rsplit("/", 1)[0], ["?"])) + ["all"]:
             row = rows[label]
             row[0] += 1

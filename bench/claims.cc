@@ -1,6 +1,6 @@
-// What Bognash's 2019 thesis ("Bouncing of MEM/NEM switches", University of Western Ontario) says of its switches, tried on
-// the shipped reconstructions: bench_claims nem-voltage|casimir-size|micro-bounces FOLDER writes a picture and a table into
-// FOLDER.
+// Tries the claims of Bognash's 2019 thesis ("Bouncing of MEM/NEM switches", University of Western Ontario) on the shipped
+// reconstructions of its switches. The command bench_claims nem-voltage|casimir-size|micro-bounces FOLDER writes a picture and a
+// table into FOLDER.
 //
 // The same program gives the same files: runs and searches depend on nothing else.
 #include <fmt/format.h>
@@ -69,7 +69,7 @@ struct Cloudy {
 };
 
 Cloudy closings(const std::function<SceneFile(double)>& scaled) {
-  constexpr int neighbours = 4;  // on either side
+  constexpr int neighbours = 4;  // neighbours on either side
   std::vector<double> first, settled, count, height, speed;
   for (int k = -neighbours; k <= neighbours; ++k) {
     const Metrics m = simulate(prepare(scaled(1 + 1e-6 * k)), false).metrics;
@@ -98,10 +98,10 @@ std::string made_by(const std::string& study) {
 
 /// Figures of steps, and as curves over their height.
 struct Steps {
-  std::map<int, Cloudy> by_percent;  // of the dynamic pull-in voltage
+  std::map<int, Cloudy> by_percent;  // closings by step height [% of the dynamic pull-in voltage]
   Points first, settled, count, height, speed;
 
-  /// What a step of about this height takes: t_p of single heights jumps.
+  /// The time that a step of about this height takes: t_p of single heights jumps.
   [[nodiscard]] double usual(int percent) const {
     constexpr int around = 3;
     std::vector<double> times;
@@ -112,7 +112,7 @@ struct Steps {
   }
 };
 
-/// Of the scenes at(height over the dynamic pull-in voltage).
+/// Runs the scenes at(height over the dynamic pull-in voltage).
 Steps steps_of(const std::function<SceneFile(double)>& at) {
   constexpr int lowest = 101, highest = 200;
   Steps steps;
@@ -173,7 +173,7 @@ void nem_voltage(const std::filesystem::path& folder) {
   const SceneFile scene = shipped("nem-tin.toml");
   const double dynamic = prepare(scene, true).voltage_units().at("main").dynamic_pull_in;
   constexpr double window = 40e-9;
-  constexpr double room = 1.2;  // peak of the shaped waveforms over their hold level, as the thesis' dither of 20 %
+  constexpr double room = 1.2;  // peak of the shaped waveforms over their hold voltage, as the thesis' dither of 20 %
   const auto at = [&](double level) {
     return with(scene,
                 {fmt::format("waveform.main.level={:.17g} V", level),

@@ -1,8 +1,8 @@
-// What one closing costs: wall time, steps, right-hand sides and the errors they buy, per integrator and tolerance, on one core.
+// Measures one closing: wall time, steps, right-hand sides and errors, per integrator and tolerance, on one core.
 //
 // The closing is the reference one (gold cantilever, a step of 17.771 V without rise time, 100 us), described by the same scene
-// file a user starts from. `--integrator` and `--tolerance` keep one row, `--runs` sets how often it is repeated; the median is
-// given, because a shared machine only ever adds time.
+// file a user starts from. `--integrator` and `--tolerance` keep one row, `--runs` sets how often it is repeated. The output is
+// the median, because a shared machine only ever adds time.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What bounds a right-hand side, and how the cost of a closing grows: bench_cost > results/cost.md
+// Measures what bounds a right-hand side, and how the cost of a closing grows: bench_cost > results/cost.md
 //
 // The reference closing (gold cantilever, a step of 17.771 V, 100 us). Operations are counted from the formulas, what the machine
 // can do of each is measured here, and the slowest of them is the bound. Exponents are slopes of least-squares lines through the

@@ -18,7 +18,7 @@ from tables import revision
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 FEW, MANY = 1000, 3000
-# In volts: nothing then has to find a pull-in voltage, which takes minutes under callgrind and is not counted.
+# Levels are in volts: nothing then has to find a pull-in voltage, which takes minutes under callgrind and is not counted.
 VOLTS = {name: ["waveform.main.level=20 V", "driver.main.max_voltage=60 V"] for name in ("mem-gold.toml", "nem-tin.toml")}
 PAD = 'pad_length = "5 um"'
 ROUGH = f'{PAD}, asperity_radius = "100 nm", asperity_density = "1e11 1/m^2", effective_modulus = "48 GPa"'

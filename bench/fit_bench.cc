@@ -1,8 +1,8 @@
-// What fits reach: bench_fit FOLDER [CASES] writes fit.md into FOLDER.
+// Measures the accuracy of fits: bench_fit FOLDER [CASES] writes fit.md into FOLDER.
 //
-// First synthetic data: devices of the spread of mem-gold, measured with errors that are drawn, each fitted on its own: how often
-// the 95 % intervals cover the truth. Then the gap-closing actuators that Rauf et al. measured: one undercut and one modulus for
-// nine devices, and what they predict of devices and closing times that were not fitted.
+// The first part has synthetic data: devices of the spread of mem-gold, measured with random errors, each fitted on its own. It
+// counts how often the 95 % intervals cover the truth. The second has the gap-closing actuators that Rauf et al. measured: one
+// undercut and one modulus for nine devices, and what they predict of devices and closing times that were not fitted.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -131,7 +131,7 @@ double closing_time(const Device& d, double volts) {
   return t.touches.empty() ? Metrics::unset : t.touches.front().begin;
 }
 
-// In standard deviations of what was known before.
+// The process parameters, in standard deviations of the prior knowledge.
 struct Process {
   double undercut = test::published_undercut, modulus = test::textbook_modulus;
   static Process at(std::span<const double> x) {
@@ -143,7 +143,7 @@ struct Process {
   }
 };
 
-// Of the nine overlaps, where there is such a device: pull-in voltages of three chips.
+// Computes pull-in voltages of three chips for each of the nine overlaps with such a device.
 std::vector<double> readings(const Process& process) {
   std::vector<double> all;
   for (const test::MeasuredPullIn& m : test::measured_pull_in) all.insert(all.end(), 3, pull_in(process.device(m.overlap)));

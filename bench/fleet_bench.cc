@@ -1,4 +1,4 @@
-// Closings of devices that differ, one at a time and in lanes: what building and closing one of them takes on one core, sampling
+// Times varied devices, one at a time and in lanes: how long it takes to build and close one of them on one core, sampling
 // included, and the error of its B_H against a run at a tight setting.
 //   bench_fleet [SCENE [DEVICES [ACCURACY [TOLERANCE [key=value ...]]]]]     (default: mem-gold.toml 2000 1e-4 1e-5)
 // ACCURACY chooses the quadrature, as simulate.accuracy does. The output is JSON, times in seconds: medians of five rounds that
@@ -20,8 +20,8 @@ namespace {
 using namespace softland;
 
 constexpr int rounds = 5;
-constexpr std::uint64_t judged_devices = 500;  // whose error is looked at
-constexpr double tight_tolerance = 1e-10;      // of the runs that they are judged by
+constexpr std::uint64_t judged_devices = 500;  // number of devices whose error is looked at
+constexpr double tight_tolerance = 1e-10;      // tolerance of the runs that they are judged by
 constexpr std::string_view tight_accuracy = "1e-8";
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }

@@ -1,7 +1,7 @@
-// What the gradient of a search's cost costs, in closings, and how far it is off, by the number of parameters and by the number
-// of arcs that a step of the closing is divided into. Which parameters share a difference of waveforms is found once, beforehand,
-// as a search does it. A second table has the gradients of searches of some families, a third the derivatives by parameters of
-// the device, with the building of the two switches beside it for each.
+// Measures the cost of the gradient of a search's cost, in closings, and its error, by the number of parameters and the number
+// of arcs that a step of the closing is divided into. The parameters that share a difference of waveforms are found before,
+// once, as a search does it. A second table has the gradients of searches of some families, a third the derivatives by parameters
+// of the device, with the building of the two switches beside it for each.
 //   bench_gradient [SCENE]     (default: mem-gold.toml)
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 using namespace softland;
 
-// Of the processor: what else the machine does takes no part in it.
+// The time of the processor, so that other work of the machine does not count.
 template <class F>
 double milliseconds(F&& f) {
   double least = 1e9;
@@ -171,7 +171,7 @@ void measure_device(const SearchSetting& s, std::size_t parameters) {
              forward / closing, 1 + 0.6 * static_cast<double>(parameters), building / closing, error);
 }
 
-// As a search takes it, at the first of its starting points.
+// Measures the gradient as a search takes it, at the first of its starting points.
 void measure_search(const std::string& scene, const std::string& family) {
   const SearchSetting s = search_setting(SceneFile::load(scene), Target::bounce, Actuator::electrostatic, family, {});
   const std::vector<ParameterGroup> groups = s.parameter_groups();

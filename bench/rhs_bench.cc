@@ -1,6 +1,6 @@
-// Right-hand sides of a scene and nothing else, to count instructions by: bench_rhs CALLS SCENE [key=value | -SECTION ...]
+// Computes right-hand sides of a scene alone, to count their instructions: bench_rhs CALLS SCENE [key=value | -SECTION ...]
 //
-// The contact is closed and every drive stands at its peak, so that every law of the scene takes part.
+// The contact is closed and every drive stands at its peak. All laws of the scene thus contribute.
 // bench/count_instructions.py runs it under callgrind with two numbers of CALLS and takes the difference.
 #include <cmath>
 #include <cstdlib>

@@ -20,7 +20,7 @@ GOLD = ["mem-gold.toml", "--robust", "cvar:0.9"]
 PZT = ["mem-gold-pzt.toml", "--robust", "cvar:0.9"]
 BOTH_QUICKLY = PZT + ["--actuator", "both", "--waveform", "bspline:8", "--constrain", "initial_contact_time < 45 us", "--budget", "150000"]
 UNITS = ["--calibrate", "Vdp,frequency"]
-# What is searched, and its words; further ones search again, from the winner.
+# The searches, each with its description; further ones search again, from the winner.
 SEARCHES = {
     "gold-65us": ("gold, nothing known, t_i 95 % below 65 us", GOLD + [
         "--waveform", "knots:4", "--constrain", "initial_contact_time < 65 us", "--budget", "150000"]),

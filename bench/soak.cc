@@ -1,6 +1,6 @@
-// Thousands of random scenes, each with every invariant: bench_soak [COUNT] [SEED] [--from N] runs scenes N to N + COUNT - 1 of
-// tests/support/random_scenes.h on two threads, writes a summary in Markdown to standard output and progress to standard error,
-// and ends with 1 when an invariant was violated. bench_soak --print INDEX [SEED] prints a scene.
+// Checks every invariant on thousands of random scenes. bench_soak [COUNT] [SEED] [--from N] runs scenes N to N + COUNT - 1 of
+// tests/support/random_scenes.h on two threads. It writes a summary in Markdown to standard output and progress to standard
+// error, and ends with 1 when an invariant was violated. bench_soak --print INDEX [SEED] prints a scene.
 #include <fmt/format.h>
 #include <sys/utsname.h>
 
@@ -35,9 +35,9 @@ struct Outcome {
   std::uint64_t index = 0;
   std::string what;  // became of it
   long steps = 0;
-  double surplus = 0, energy_error = 0;  // of the bending energy
-  double balance = 0;                    // the latter over the sources' work where that is more
-  bool implicit = false;                 // went over to an implicit method
+  double surplus = 0, energy_error = 0;  // energies over the bending energy
+  double balance = 0;                    // energy error over the sources' work where that is more
+  bool implicit = false;                 // true if the run went over to an implicit method
   double depth = 0;                      // deepest interference over its bound
   double time = 0, velocity = 0;         // difference of t_i and v_i to a run a hundred times tighter, relative
   std::vector<std::string> violations;

@@ -1,4 +1,4 @@
-// What a store of studies takes: bench_store FOLDER [ROWS]
+// Measures a store of studies: bench_store FOLDER [ROWS]
 //
 // Rows like those of an exploration, two variables and thirteen figures, are written, read, gone on with, found by content and
 // merged. The files stay in FOLDER, on whose disk the times depend.

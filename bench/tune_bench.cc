@@ -1,6 +1,6 @@
-// What tuning by the contact reaches on devices that no belief has seen (results/tune.md). Every device is simulated with one
-// mode more than the belief, and as accurately as its scene says. After 1, 2, 3, 4, 6, 8 and 12 closings the waveform that is
-// kept is shot 20 more times: the 95 % quantile of the highest rebound of the true motion counts.
+// Shows how well tuning by the contact does on devices that no belief has seen (results/tune.md). Each device has one mode more
+// than the belief and is simulated as accurately as its scene says. After 1, 2, 3, 4, 6, 8 and 12 closings the waveform that is
+// kept is shot 20 more times. The 95th percentile of the highest rebound of the true motion counts.
 //
 //   bench_tune [--KEY VALUE]...   keys and defaults are those of Arguments below; --model as of `softland device`
 //
@@ -94,14 +94,14 @@ double quantile(const std::vector<double>& sample, double p) {
   return sample.empty() ? Metrics::unset : sample_quantile(sample, p);
 }
 
-// What is learned of one device.
+// The record of one device.
 struct Course {
   std::map<int, double> kept;        // highest rebound of the kept waveform, 95 %, after so many closings [m]
   std::vector<double> on_the_way;    // highest rebound of each shot [m]
   std::vector<double> touches;       // first touch of each shot [s]
-  std::map<int, double> kept_touch;  // of the kept waveform [s]
-  std::vector<double> seconds;       // of each learning and proposal
-  std::vector<double> expected;      // cost of what comes next
+  std::map<int, double> kept_touch;  // first touch of the kept waveform [s]
+  std::vector<double> seconds;       // wall time of each learning and proposal
+  std::vector<double> expected;      // expected cost of the next shot
   std::vector<double> surprises;     // Tuner::surprises()
   int unexpected_bounces = 0;
   std::string broken;
@@ -109,7 +109,7 @@ struct Course {
   double gaps = 1;               // factor of the contact gap that is believed
   TouchMisfit misfit;            // the largest over its bound
   std::vector<double> repeated;  // highest rebound of each repetition [m]
-  int learned = 0;               // of these
+  int learned = 0;               // number of these
 };
 
 class Laboratory {
@@ -162,7 +162,7 @@ Course by_belief(const Arguments& a, const Tuner& fresh, Laboratory& lab) {
     course.touches.push_back(closing.motion.initial_contact_time);
     const auto begin = std::chrono::steady_clock::now();
     ContactRecord record = closing.record;
-    if (!record.error.empty()) record = {};  // pulled through: a lab sees no contact that it can use
+    if (!record.error.empty()) record = {};  // collapsed onto the electrode: a lab sees no usable contact
     tuner.learn(record);
     if (const TouchMisfit now = tuner.belief().touch_misfit;
         k == 1 || now.least * course.misfit.bound > course.misfit.least * now.bound)

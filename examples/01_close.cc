@@ -1,7 +1,7 @@
 // Example 01: one closing.
 //
-// Reads a scene, lets it run under its own waveform and prints the figures of merit with the errors that softland states for
-// them; then the ten highest rebounds. What `softland simulate SCENE` does.
+// Reads a scene, simulates it under its own waveform and prints the figures of merit with the errors that softland states for
+// them; then the ten highest rebounds. `softland simulate SCENE` does the same.
 //
 //   01_close ../scenes/mem-gold.toml
 //

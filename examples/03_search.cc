@@ -1,8 +1,8 @@
 // Example 03: a search for waveforms, those that open a closed switch without leaving it to swing.
 //
-// For every scene that is named the plain opening, all drives to 0 V at once, stands beside the best that a search has found
-// within the limits of the drivers. What `softland release SCENE` does. The lines are those of results/release.md, whose searches
-// began with five seeds. The search that closes a switch is called in the same way: example 04.
+// The plain opening of every named scene, all drives to 0 V at once, stands beside the best waveform that a search has found
+// within the limits of the drivers. `softland release SCENE` does the same. The lines are those of results/release.md, whose
+// searches began with five seeds. The search that closes a switch is called in the same way: example 04.
 //
 //   03_search ../scenes/mem-gold.toml ../scenes/mem-gold-pzt.toml ../scenes/nem-tin.toml ../scenes/two-electrodes.toml
 //
@@ -18,7 +18,7 @@
 #include <string>
 #include <thread>
 
-// "28 us"; "-" where it is not known. What is below a picometre is no vibration.
+// Writes "28 us", or "-" for an unknown value. A vibration below a picometre counts as zero.
 std::string text(double value, const char* unit) {
   if (!std::isfinite(value)) return "-";
   return softland::engineering(unit == std::string("m") && value < 1e-12 ? 0 : value, unit, 3);
@@ -36,7 +36,7 @@ int main(int argc, char** argv) try {
                                  .max_evaluations = 3000,
                                  .seed = 1,
                                  .jobs = static_cast<int>(std::thread::hardware_concurrency()),
-                                 .devices = 0};  // how devices do that differ is not asked
+                                 .devices = 0};  // do not ask how varied devices behave
     const OpeningResult found = search_opening(SceneFile::load(scene.string()), request);
     const OpeningFigures &plain = found.plain.figures, best = found.best ? found.best->figures : OpeningFigures{};
     std::printf("%-18s%22s%20s%22s%20s%11s\n", scene.stem().c_str(), text(plain.settling_time, "s").c_str(),

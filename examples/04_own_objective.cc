@@ -1,7 +1,7 @@
 // Example 04: an objective of your own.
 //
-// softland searches the waveform that lands a switch without a rebound and, among those that do, the one of least value of this
-// class: a contact that is pressed as gently as can be, by a source of as few volts as can be.
+// softland searches for a bounce-free waveform and, among those, for the one with the lowest value of this class.
+// Such a waveform presses the contact as gently as possible, from a source of as few volts as possible.
 //
 //   04_own_objective ../scenes/mem-gold.toml
 //
@@ -30,7 +30,7 @@ int main(int argc, char** argv) try {
   if (argc != 2) return std::fputs("usage: 04_own_objective SCENE\n", stderr), 2;
   const auto objective = std::make_shared<LowAndGentle>();
 
-  // Where a built-in target could stand (Target::bounce, parse_aim("0.7 bounce + 0.3 energy")) an own objective can.
+  // An own objective can stand wherever a built-in target could (Target::bounce, parse_aim("0.7 bounce + 0.3 energy")).
   const SceneFile scene = SceneFile::load(argv[1]);
   OptimizeOptions request = usual_options(scene, Aim(objective));
   request.family = "pulse";

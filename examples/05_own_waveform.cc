@@ -1,7 +1,7 @@
 // Example 05: a waveform of your own.
 //
-// A swell: half a cosine up to a level, half a cosine down to another and half a cosine to the hold level. It is run as it
-// stands, then its five parameters are searched, and what is found is judged on 200 devices that differ as the scene says.
+// A swell: half a cosine up to a level, half a cosine down to another and half a cosine to the hold voltage. It is run as it
+// stands. Then its five parameters are searched, and the result is judged on 200 varied devices of the scene.
 //
 //   05_own_waveform ../scenes/mem-gold.toml
 //
@@ -49,7 +49,7 @@ int main(int argc, char** argv) try {
   using namespace softland;
   if (argc != 2) return std::fputs("usage: 05_own_waveform SCENE\n", stderr), 2;
   const SceneFile scene = SceneFile::load(argv[1]);
-  PreparedScene prepared = prepare_and_choose(scene, true);  // with the limits that drivers have where the scene names none
+  PreparedScene prepared = prepare_and_choose(scene, true);  // usual driver limits apply where the scene names none
   const double hold = prepared.drives.at("main").hold_level();
   const auto swell = std::make_shared<Swell>(hold, prepared.drives.at("main").limits.value().max_voltage);
   const auto row = [](const char* what, const Metrics& m) {
@@ -57,7 +57,7 @@ int main(int argc, char** argv) try {
                 1e3 * m.impact_velocity, 1e9 * m.major_bounce_height);
   };
 
-  // 1. In the place of the scene's own waveform.
+  // 1. Let it replace the scene's own waveform.
   prepared.drives.at("main").waveform = own(swell);
   row("as it stands", simulate(prepared, false).metrics);
 

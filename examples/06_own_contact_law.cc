@@ -42,7 +42,7 @@ int main(int argc, char** argv) try {
                 1e6 * m.initial_contact_time, 1e3 * m.impact_velocity, 1e9 * m.major_bounce_height, 1e6 * m.peak_contact_force);
   };
 
-  // 1. With the law of the scene.
+  // 1. Simulate with the law of the scene.
   SceneFile scene = SceneFile::load(argv[1]);
   const PreparedScene given = prepare(scene);
   row("of softland", simulate(given, false).metrics);
@@ -58,7 +58,7 @@ int main(int argc, char** argv) try {
   const PreparedScene own = prepare(scene);
   row("own", simulate(own, false).metrics);
 
-  // 3. On devices that differ.
+  // 3. Simulate varied devices.
   const Robustness found = robustness(own, {}, {.samples = 200});
   const FigureStatistics& impact = found.drives.front().figures[&Metrics::largest_impact_velocity];
   std::printf("%zu devices touch with %.4g +- %.2g mm/s\n", found.devices, 1e3 * impact.mean, 1e3 * impact.standard_deviation);

@@ -1,9 +1,9 @@
 // Reduced-order models of ANSYS (.rom, of the elements ROM144): frequencies of modes, which of them are used, and their shapes at
 // a few nodes, each 1 at its largest. No mass stands in the file, and its units are those of the model.
 //
-// After the frequencies stand blocks of numbers that are not needed here (damping, ranges of the modal coordinates and what they
-// make of loads), then the numbers of the nodes, their direction of motion, their positions and a row of shapes per mode. Which
-// modes are used is told by their ranges. Source: the layout of files written by ANSYS 18; the element: ANSYS Mechanical APDL,
+// Blocks of numbers that are not needed here follow the frequencies (damping, ranges of the modal coordinates, loads). Next are
+// the numbers of the nodes, their direction of motion, their positions and a row of shapes per mode. The ranges say which modes
+// are used. Source: the layout of files written by ANSYS 18; the element: ANSYS Mechanical APDL,
 // Coupled-Field Analysis Guide, "Reduced Order Modeling".
 #include <fmt/format.h>
 

@@ -61,12 +61,12 @@ class BlockReader {
   bool may_be_pairs_ = true;  // all rows so far could be such pairs
   std::vector<bool> is_numeric_;
   Block block_;
-  CellList headings_;  // of all columns
+  CellList headings_;  // headings of all columns
   std::string_view first_row_;
   std::size_t width_ = 0;  // cells of a row
   std::size_t rows_with_words_ = 0;
-  std::vector<std::optional<Unit>> cell_units_;  // of each column, that its numbers have beside them
-  std::size_t last_length_ = 0;                  // of the last cell of all rows so far; 0 where they differ
+  std::vector<std::optional<Unit>> cell_units_;  // unit that the numbers of each column have beside them
+  std::size_t last_length_ = 0;                  // length of the last cell of all rows so far; 0 where they differ
 };
 
 void BlockReader::find_layout() {
@@ -155,10 +155,10 @@ void BlockReader::take_beside(const CellList& cells, std::size_t line, std::stri
   block_.preamble.take_line(text, others);
 }
 
-// What a number takes without its sign.
+// Returns the number of characters of a number without its sign.
 std::size_t digits_in(std::string_view cell) { return cell.size() - (cell.starts_with('-') || cell.starts_with('+') ? 1 : 0); }
 
-// Whether the last number of a last line without a line end is shorter than all numbers above it, which are of one length.
+// Tells if the last number of a last line without a line end is shorter than all numbers above it, which are of one length.
 bool BlockReader::was_cut(const CellList& cells) const {
   constexpr std::size_t fewest = 3;
   return block_.lines.size() >= fewest && digits_in(cells[is_numeric_.size() - 1]) < last_length_;
@@ -169,7 +169,7 @@ void BlockReader::take_number(std::size_t k, const Cell& cell, std::string_view 
   block_.values[k].push_back(cell.kind == CellKind::number ? cell.value : not_a_number);
   Missing& missing = block_.missing[k];
   if (cell.kind == CellKind::number) {
-    // Of few rows: those whose number is a power of two.
+    // Look only at rows whose number is a power of two: they are few.
     if ((row & (row - 1)) == 0 || unended) block_.digits[k] = std::max(block_.digits[k], significant_digits(text));
   } else if (missing.count++ == 0) {
     missing.line = line;
@@ -204,7 +204,7 @@ void BlockReader::take_unit(std::size_t k, Cell& cell, std::string_view text, st
 
 void BlockReader::read_row(const CellList& cells, std::size_t line, bool unended) {
   const auto cut = [&](const std::string& why) {
-    // What ends in the middle is shorter than a row.
+    // A row that the file's end cuts is shorter than a full row.
     if (cells.back().data() + cells.back().size() - cells.front().data() > static_cast<std::ptrdiff_t>(2 * first_row_.size()))
       fail(line, 0, why);
     block_.left_out.push_back(fmt::format("line {}: {}: the file ends in the middle of it", line, why));
@@ -244,7 +244,7 @@ void BlockReader::read_row(const CellList& cells, std::size_t line, bool unended
   block_.lines.push_back(static_cast<std::uint32_t>(line));
 }
 
-// Whether a line has a cell for nearly every column of numbers.
+// Tells if a line has a cell for nearly every column of numbers.
 bool BlockReader::may_be_headings(const CellList& cells) const {
   const auto filled = std::count_if(cells.begin(), cells.end(), [](std::string_view cell) { return !cell.empty(); });
   const auto due = std::count(is_numeric_.begin(), is_numeric_.end(), true);
@@ -306,7 +306,7 @@ void BlockReader::take_headings(const std::vector<Line>& above) {
     block_.names.emplace_back(i < names.size() ? names[i] : std::string_view());
     block_.units.emplace_back(i < units.size() ? units[i] : std::string_view());
   }
-  // Beyond the columns of numbers a name may have a value in the row of units.
+  // A name beyond the columns of numbers may have a value in the row of units.
   for (std::size_t i = 0; i < std::min(names.size(), units.size()); ++i) {
     if ((i >= is_numeric_.size() || !is_numeric_[i]) && !names[i].empty()) block_.preamble.take(names[i], units[i]);
   }

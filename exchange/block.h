@@ -14,11 +14,11 @@
 namespace softland::internal {
 
 struct Block {
-  std::vector<int> columns;                 ///< in the file, from 1
+  std::vector<int> columns;                 ///< number of each column in the file, from 1
   std::vector<std::vector<double>> values;  ///< NaN where a number is missing
   std::vector<Missing> missing;
-  std::vector<std::uint32_t> lines;       ///< of the rows
-  std::vector<std::string> names, units;  ///< of the columns, as they stand above or in them; empty where there are none
+  std::vector<std::uint32_t> lines;       ///< line of each row
+  std::vector<std::string> names, units;  ///< name and unit of each column, from above or in it; empty without any
   std::vector<int> digits;                ///< significant ones of the numbers of each column, of some rows
   bool has_headings = false;
   Preamble preamble;

@@ -43,7 +43,7 @@ bool is_not_finite(std::string_view cell) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-// What from_chars makes of the whole text, which begins with a digit, a point or a minus.
+// Applies from_chars to the whole text, which begins with a digit, a point or a minus.
 std::optional<double> converted(const char* first, const char* last) {
   double value = 0;
   const auto [stop, error] = std::from_chars(first, last, value);

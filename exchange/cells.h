@@ -9,7 +9,7 @@
 
 namespace softland::internal {
 
-/// Which character is the decimal sign: the first cell that has one decides for all, unless it is given.
+/// The decimal sign: the first cell that has one decides for all, unless it is given.
 struct DecimalSign {
   char sign = '\0';  ///< '.', ',' or not known yet
   bool is_given = false;
@@ -30,7 +30,7 @@ struct Cell {
   CellKind kind = CellKind::blank;
   double value = 0;
 };
-/// What a cell holds; a first decimal sign is kept in `decimal`.
+/// The content of a cell; a first decimal sign is kept in `decimal`.
 [[nodiscard]] Cell read_cell(std::string_view cell, DecimalSign& decimal);
 
 /// ASCII letters in lower case.
@@ -39,10 +39,10 @@ struct Cell {
 /// A finite number with a decimal point and nothing around it, or nothing. A leading plus and the minus sign of print are read.
 [[nodiscard]] std::optional<double> plain_decimal(std::string_view text);
 
-/// Whether a cell is a number with either decimal sign.
+/// True if a cell is a number with either decimal sign.
 [[nodiscard]] bool looks_like_number(std::string_view cell);
 
-/// How many digits of a number are written down from the first one that is not 0: of "-9.9998e+00" 5, of "0.00120" 3.
+/// Number of digits of a number that are written down from the first one that is not 0: of "-9.9998e+00" 5, of "0.00120" 3.
 [[nodiscard]] int significant_digits(std::string_view cell);
 
 }  // namespace softland::internal

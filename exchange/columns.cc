@@ -52,7 +52,7 @@ class RecordingMaker {
   Recording made_;
 };
 
-// What the row of units says, or else the heading.
+// Returns the unit that the row of units names, or else the one that the heading names.
 std::optional<Unit> RecordingMaker::unit_of_column(std::size_t k) const {
   std::optional<Unit> unit = unit_of(block_.units[k]);
   return unit ? unit : heading_of(block_.names[k]).unit;
@@ -109,13 +109,13 @@ std::optional<std::size_t> RecordingMaker::time_place() const {
   if (const auto time = named_one_of(times)) return time;
   if (const auto row = named_one_of(rows)) return row;
   if (block_.has_headings || count < 2) return std::nullopt;
-  // Without names: the first column where it never falls, and does not stand still.
+  // Columns without names: the times are the first one if it never falls, and does not stand still.
   const std::vector<double>& first = block_.values.front();
   const bool rises = std::is_sorted(first.begin(), first.end()) && first.front() < first.back();
   return rises ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
-// Whether a column is a second one of times, which must be the same, unless the user says which one is meant.
+// True if a column is a second one of times, which must be the same, unless the user says which one is meant.
 bool RecordingMaker::is_second_time(std::size_t k, std::size_t time) const {
   const bool is_said = !keys_.time_column.empty() || keys_.time_column_number > 0;
   if (is_said || !block_.has_headings || block_.names[time].empty() || block_.names[k] != block_.names[time]) return false;
@@ -157,7 +157,7 @@ void RecordingMaker::scale_codes() {
     fail("codes whose volts per division cannot be told; save one channel per file");
   if (made_.channels.size() != 1) return;
   Channel& channel = made_.channels.front();
-  double full_scale = 1, factor = 1, offset = 0;  // at full scale a value is offset + factor, to the bit
+  double full_scale = 1, factor = 1, offset = 0;  // a value at full scale is offset + factor, to the bit
   if (preamble_.high && preamble_.low && made_.format == "Keysight arb") {
     const bool is_short = preamble_.text.find("short") != std::string::npos;
     if (is_short) full_scale = largest_code;

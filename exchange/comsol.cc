@@ -299,7 +299,7 @@ class ComsolReader {
   std::optional<double> nodes_;
   std::vector<std::size_t> positions_;
   std::vector<Column> columns_;
-  std::vector<std::vector<Complex>> values_;  // by column and node [m]
+  std::vector<std::vector<Complex>> values_;  // motion by column and node [m]
   std::vector<std::string_view> cells_;
 };
 

@@ -1,6 +1,6 @@
 // Results of CalculiX (.frd): modes of *FREQUENCY, which CalculiX normalises to a mass of 1 in the units of its input.
 //
-// Columns are fixed and may run together. Of a record " -1": the number of a node in 10 columns (5 in the short format), then
+// Columns are fixed and may run together. A record " -1" holds the number of a node in 10 columns (5 in the short format), then
 // numbers of 12 columns. Source: CalculiX GraphiX user manual, "Result Format", sections "Nodal Point Coordinate Block" and
 // "Nodal Results Block".
 #include <fmt/format.h>
@@ -154,7 +154,7 @@ class FrdReader {
         {.frequency = value, .modal_mass = modal_mass_, .motion = std::move(motion), .name = fmt::format("mode {}", mode)});
   }
 
-  // Of a mode in Hz, beside which stands its square in rad/s, times the generalised mass.
+  // Checks the frequency of a mode [Hz] against its square [rad^2/s^2] times the generalised mass, which the file has as well.
   void check_frequency(double frequency) const {
     constexpr double printed = 1e-4;  // six digits of either
     const double angular = 2 * std::numbers::pi * frequency, squared = squared_frequency_ / modal_mass_;

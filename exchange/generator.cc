@@ -15,7 +15,7 @@ namespace {
 struct Range {
   double low, high;
 };
-// Of the samples; one that is none is that to 0 V, or of one volt.
+// Returns the range of the samples; a constant one is extended to 0 V, and a zero one is one volt wide.
 Range range_of(const std::vector<double>& volts) {
   const auto [low, high] = std::ranges::minmax(volts);
   if (low < high) return {low, high};
@@ -36,7 +36,7 @@ std::string keysight_arb(const GeneratorSamples& s) {
   return text;
 }
 
-// As EasyWave writes and reads it: the record is one period.
+// Writes as EasyWave writes and reads: the record is one period.
 std::string siglent_csv(const GeneratorSamples& s) {
   const auto [low, high] = range_of(s.volts);
   const auto count = static_cast<double>(s.volts.size());
@@ -61,7 +61,7 @@ std::string tektronix_csv(const GeneratorSamples& s) {
   return text;
 }
 
-// As Ultra Station writes it: volts behind an empty cell.
+// Writes as Ultra Station does: volts behind an empty cell.
 std::string rigol_csv(const GeneratorSamples& s) {
   const auto [low, high] = range_of(s.volts);
   std::string text = fmt::format(
@@ -71,7 +71,7 @@ std::string rigol_csv(const GeneratorSamples& s) {
   return text;
 }
 
-// As the oscilloscope of WaveForms exports it, and its generator imports it.
+// Writes the CSV that the oscilloscope of WaveForms exports and its generator imports.
 std::string digilent_csv(const GeneratorSamples& s) {
   std::string text =
       fmt::format("#Digilent WaveForms\n#Sample rate: {}Hz\n#Samples: {}\n\nTime (s),{} (V)\n", s.rate, s.volts.size(), s.name);

@@ -14,7 +14,7 @@ namespace softland {
 struct GeneratorSamples {
   std::string name;
   double rate = 0;                         ///< [Hz]
-  std::vector<double> volts;               ///< at the output of the generator
+  std::vector<double> volts;               ///< samples at the output of the generator
   std::optional<std::size_t> marker = {};  ///< the sample at which its sync output falls
 };
 

@@ -1,4 +1,4 @@
-// How the lines of a file are divided into columns. Internal to exchange/.
+// Divides the lines of a file into columns. Internal to exchange/.
 #pragma once
 
 #include <cstddef>
@@ -30,14 +30,14 @@ class Refusals {
   std::string file_;
 };
 
-/// As much of a cell as a message shows.
+/// The part of a cell that a message shows.
 [[nodiscard]] std::string shown_cell(std::string_view cell);
 /// The cells of a line; a unit behind a number belongs to its cell, "5.0 V", where blanks separate, too.
 void split_row(std::string_view line, char separator, CellList& cells);
 [[nodiscard]] bool is_blank(const CellList& cells);
-/// Whether a cell is a number, with or without a unit.
+/// True if a cell is a number, with or without a unit.
 [[nodiscard]] bool holds_number(std::string_view cell);
-/// Whether a cell is that, nothing, or what instruments write for a number that they do not have.
+/// True if a cell is such a number, blank, or the word that instruments write for a number that they do not have.
 [[nodiscard]] bool may_be_value(std::string_view cell);
 [[nodiscard]] std::size_t numbers_in(const CellList& cells);
 
@@ -45,11 +45,11 @@ void split_row(std::string_view line, char separator, CellList& cells);
 /// may have cut comes last of all. Their numbers count from some line on.
 [[nodiscard]] std::vector<Line> last_lines(std::string_view text, std::size_t skip);
 
-/// What separates the cells of these lines: that with which most of them are numbers alone, or else hold one.
+/// The separator of the cells of these lines: that with which most of them are numbers alone, or else hold one.
 [[nodiscard]] char separator_of(const std::vector<Line>& lines);
 
-/// Which columns hold numbers: those that hold more of them than words in the last lines, as far up as lines hold any. Numbers of
-/// lines without words decide where there are such lines. The last one is true; empty where there are no numbers.
+/// The columns that hold numbers: those with more of them than words in the last lines, as far up as lines hold any. Numbers of
+/// lines without words decide if there are such lines. The last one is true; empty where there are no numbers.
 [[nodiscard]] std::vector<bool> numeric_columns(const std::vector<Line>& last, char separator);
 
 }  // namespace softland::internal

@@ -14,22 +14,22 @@
 namespace softland {
 
 struct ThresholdKeys {
-  /// [unit of the trace]; NaN where nobody says it: contact_edges() takes a half for a channel of states.
+  /// [unit of the trace]; NaN where it is not given: contact_edges() takes a half for a channel of states.
   double threshold = 0;
   double hysteresis = 0;         ///< [unit of the trace], not negative
-  bool is_closed_below = false;  ///< rather than above
+  bool is_closed_below = false;  ///< true if closed below rather than above
   double merge = 0;              ///< [s]
 };
 
 struct LevelEdge {
   double time = 0;      ///< [s]
-  bool closed = false;  ///< from then on
+  bool closed = false;  ///< true if the contact is closed from then on
 };
 
-/// In order, by turns closed and open. A trace that begins closed has its first edge at its first row.
+/// The edges in order, by turns closed and open. A trace that begins closed has its first edge at its first row.
 [[nodiscard]] std::vector<LevelEdge> level_edges(const Trace& trace, const ThresholdKeys& keys);
 
-/// What is added to the times of a file.
+/// The shift that is added to the times of a file.
 struct TimeShift {
   bool first_is_zero = false;  ///< the first row is at t = 0
   double shift = 0;            ///< else [s]

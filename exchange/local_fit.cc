@@ -9,11 +9,11 @@ namespace softland::internal {
 namespace {
 
 constexpr std::size_t fit_terms = 8;
-using Equation = std::array<double, fit_terms + 1>;  // of the normal equations, right-hand side last
+using Equation = std::array<double, fit_terms + 1>;  // one of the normal equations, right-hand side last
 
 // Gauss's elimination with the largest pivot; nothing where one is next to 0.
 std::optional<double> first_unknown(std::array<Equation, fit_terms>& rows) {
-  constexpr double nothing = 1e-10;  // of the largest element
+  constexpr double nothing = 1e-10;  // a pivot that counts as zero, as a share of the largest element
   double largest = 0;
   for (const Equation& row : rows) {
     for (std::size_t k = 0; k < fit_terms; ++k) largest = std::max(largest, std::abs(row[k]));

@@ -12,7 +12,7 @@ namespace softland::internal {
 namespace {
 
 struct UnitRow {
-  std::string_view word;  ///< as written, in any case where it is longer than three letters
+  std::string_view word;  ///< the unit as written, in any case where it is longer than three letters
   Measure measure;
   std::string_view symbol;
   double per_si = 1;
@@ -186,7 +186,7 @@ std::optional<Measured> measured_value(std::string_view text, const std::optiona
 
 bool is_unit_of_cells(const std::optional<Unit>& unit) {
   if (!unit) return false;
-  const bool is_suffix = unit->symbol == "m" || unit->symbol == "g";  // of SPICE, too
+  const bool is_suffix = unit->symbol == "m" || unit->symbol == "g";  // a suffix of SPICE, too
   return unit->measure == Measure::time || unit->measure == Measure::voltage || (unit->measure == Measure::other && !is_suffix);
 }
 

@@ -12,7 +12,7 @@ enum class Measure { time, voltage, frequency, samples, level, other };  // leve
 struct Unit {
   Measure measure = Measure::other;
   std::string symbol;  ///< "s", "mV"; the text itself where it is not known
-  double per_si = 1;   ///< how many of it are one SI unit: 1000 of ms
+  double per_si = 1;   ///< number of these units that make one SI unit: 1000 of ms
   [[nodiscard]] double in_si(double value) const { return value / per_si; }
 };
 
@@ -28,18 +28,18 @@ struct Heading {
 
 /// A number with the unit that stands behind it, where there is one.
 struct Measured {
-  double value = 0;         ///< as written
+  double value = 0;         ///< value as written
   std::string_view number;  ///< the text of it
   std::optional<Unit> unit = {};
   [[nodiscard]] double si() const { return unit ? unit->in_si(value) : value; }
 };
-/// "160000Hz", "8 ns", "5"; nothing where there is no number, or no unit that is known behind it.
+/// Reads "160000Hz", "8 ns", "5"; nothing if the text has no number, or an unknown unit behind it.
 [[nodiscard]] std::optional<Measured> measured(std::string_view text);
 /// The same of a value in a preamble, which may have the name of a channel before it, "CH1:2e-06", but is no time of the day. A
 /// unit that is given by the key of the number, "Sample interval (us)", comes in `unit`.
 [[nodiscard]] std::optional<Measured> measured_value(std::string_view text, const std::optional<Unit>& unit);
 
-/// Whether a unit is one that stands beside numbers in cells: "5.0 V", "-52.43 us".
+/// True if a unit is one that stands beside numbers in cells: "5.0 V", "-52.43 us".
 [[nodiscard]] bool is_unit_of_cells(const std::optional<Unit>& unit);
 /// A cell that is a number with such a unit; nothing for any other.
 [[nodiscard]] std::optional<Measured> measured_cell(std::string_view cell);

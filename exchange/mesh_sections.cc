@@ -14,8 +14,8 @@
 namespace softland::internal {
 namespace {
 
-constexpr double printed = 2e-5;             // of the length: what six digits of a file leave
-constexpr std::size_t nodes_of_section = 3;  // of fewer there is no mean
+constexpr double printed = 2e-5;             // rounding of the six digits of a file, as a share of the length
+constexpr std::size_t nodes_of_section = 3;  // a mean needs as many
 constexpr std::size_t nearby = 3;            // even places on either side
 constexpr int place_digits = 6;
 
@@ -58,7 +58,7 @@ void MeshSections::gather() {
 }
 
 void MeshSections::measure_extent() {
-  constexpr double rounding = 1e-9;  // of the length
+  constexpr double rounding = 1e-9;  // tolerance, as a share of the length
   for (std::size_t d = 0; d < 3; ++d) {
     const auto [low, high] =
         std::minmax_element(nodes_.begin(), nodes_.end(), [d](const Vector3& a, const Vector3& b) { return a[d] < b[d]; });
@@ -158,7 +158,7 @@ void MeshSections::add_motion(const Section& section, const NodalMode& mode, Sec
   }
   for (const std::size_t node : section.nodes) {
     for (std::size_t d = 0; d < 3; ++d) {
-      // What differs along the axis over a section is its rotation as it bends.
+      // The difference along the axis over a section is its rotation as it bends.
       if (d != axis_.direction) motion.torsion += std::pow(mode.motion[node][d] - mean[d], 2);
     }
   }
@@ -206,7 +206,7 @@ double MeshSections::fitted(std::size_t place, const NodalMode& mode) const {
   return *value;
 }
 
-// Within the digits of a file.
+// True if the motion at the first place is zero within the digits of the file.
 bool MeshSections::stands_still_at_first(const NodalMode& mode) const {
   const double rounding = printed * (sections_.back().place - sections_.front().place);
   double most = 0, here = 0;

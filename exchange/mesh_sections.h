@@ -1,8 +1,8 @@
 // Nodes of a mesh by their places along an axis, and how they move there. Internal to exchange/.
 //
-// Nodes at one place are a section, which counts by its mean motion. Where most places have fewer than three nodes, as of
-// tetrahedra, there are no sections: the nodes then belong to the nearest of even places, where the motion on the axis is fitted
-// (exchange/local_fit.h).
+// Nodes at one place are a section, which counts by its mean motion. There are no sections where most places have fewer than
+// three nodes, as in meshes of tetrahedra. The nodes then belong to the nearest of even places, where the motion on the axis is
+// fitted (exchange/local_fit.h).
 #pragma once
 
 #include <cstddef>
@@ -21,10 +21,10 @@ struct Way {
   double sign = 1;
 };
 
-/// How the sections move in one mode, in the unit of its motion, and the squared motions of all nodes by what they are.
+/// Motion of the sections in one mode, in the unit of the mode's motion, and the squared motions of all nodes by their kind.
 struct SectionMotion {
-  std::vector<double> along, across, axial;  ///< by place: in the direction of motion, across both, along the axis
-  std::vector<double> twist;                 ///< by rotation about the axis, half the extent of the mesh from the middle
+  std::vector<double> along, across, axial;  ///< motion by place: in the direction of motion, across both, along the axis
+  std::vector<double> twist;                 ///< motion by rotation about the axis, half the extent of the mesh from the middle
   double bending = 0, in_plane = 0, axial_share = 0, torsion = 0;
   [[nodiscard]] double all() const { return bending + in_plane + axial_share + torsion; }
 };
@@ -36,16 +36,16 @@ class MeshSections {
   MeshSections(const std::vector<Vector3>& nodes, Way axis, Way direction, double length_unit, std::optional<double> clamp,
                const Refusals& refusals);
 
-  [[nodiscard]] std::vector<double> places() const;      ///< from the clamp on [m]
+  [[nodiscard]] std::vector<double> places() const;      ///< distances from the clamp [m]
   [[nodiscard]] double first() const { return first_; }  ///< place of the first node on the axis [m]
   [[nodiscard]] bool is_irregular() const { return step_ > 0; }
   [[nodiscard]] std::vector<double> widths() const;   ///< across axis and direction, by place [m]; NaN where there is no extent
-  [[nodiscard]] std::vector<double> offsets() const;  ///< of the face towards the direction from that at the first place [m]
+  [[nodiscard]] std::vector<double> offsets() const;  ///< face towards the direction, above that at the first place [m]
   [[nodiscard]] SectionMotion motion(const NodalMode& mode) const;
 
  private:
   struct Section {
-    double place = 0;  ///< from the clamp [m]
+    double place = 0;  ///< distance from the clamp [m]
     std::vector<std::size_t> nodes;
   };
   [[nodiscard]] double along_axis(const Vector3& v) const;  ///< [m]
@@ -64,10 +64,10 @@ class MeshSections {
   double length_unit_;  // [m]
   const Refusals& refusals_;
   std::vector<Section> sections_;
-  double first_ = 0, clamp_ = 0;  // on the axis [m]
-  double step_ = 0;               // of the even places of an irregular mesh [m]; 0: there are sections
-  Vector3 middle_{};              // of the mesh, in the unit of the file
-  double extent_ = 0;             // the larger one across the axis, in the unit of the file; 0 of a line
+  double first_ = 0, clamp_ = 0;  // places on the axis [m]
+  double step_ = 0;               // distance of the even places of an irregular mesh [m]; 0: there are sections
+  Vector3 middle_{};              // middle of the mesh, in the unit of the file
+  double extent_ = 0;             // the larger extent across the axis, in the unit of the file; 0 for a line
 };
 
 }  // namespace softland::internal

@@ -137,7 +137,7 @@ class TableMaker {
           fmt::format("an irregular mesh: motions on the axis are fitted at {} even places", made_.places.size()));
   }
 
-  // What a mode is, by the squared motions of its nodes.
+  // Classifies a mode by the squared motions of its nodes.
   void judge(std::size_t k) {
     const NodalMode& mode = read_.modes[k];
     SectionMotion motion = sections_->motion(mode);
@@ -195,7 +195,7 @@ class TableMaker {
     }
   }
 
-  // To a modal mass of 1 kg: by what the file says, or by the mass of an even structure.
+  // Normalises to a modal mass of 1 kg, by the file's unit of mass or by the mass of an even structure.
   void normalise() {
     const double mass_unit = keys_.mass_unit.value_or(1);
     if (keys_.mass) {
@@ -236,7 +236,7 @@ class TableMaker {
   std::vector<double> modal_masses_;
 };
 
-constexpr double still = 1e-4;  // of the largest motion
+constexpr double still = 1e-4;  // threshold, as a share of the largest motion
 
 double largest_motion(const std::vector<double>& shape) {
   double most = 0;
@@ -254,7 +254,7 @@ double TableMaker::mean_square(const std::vector<double>& shape) const {
   return ClampedSpline(made_.positions, shape, far_end_of(made_)).integral_of_square() / made_.positions.back();
 }
 
-// What holds of every table, whatever it was read from. Modes become positive at the far end, and exactly 0 at the clamp.
+// These rules hold for every table, whatever its source. Modes become positive at the far end, and exactly 0 at the clamp.
 void check(ModeTable& table, const ModeKeys& keys) {
   constexpr std::size_t fewest = 3;
   const auto fail = [&](const std::string& rule) { throw InvalidInput(fmt::format("{}: {}", table.file, rule)); };

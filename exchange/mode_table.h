@@ -1,10 +1,10 @@
 // Modes that another program computed, as a table along the axis of a structure.
 //
-// Read are: tables of softland (CSV), results of *FREQUENCY of CalculiX (.frd), exports of COMSOL as text and CSV, data sets 55
-// of the Universal File Format with the positions of the nodes (15, 2411), and reduced-order models of ANSYS (.rom). Nodes at one
-// place along the axis are a section, of which the mean motion counts. Only bending along the direction of motion is taken; modes
-// in the plane, along the axis and of torsion are left out by name. Nothing is guessed in silence: what a file does not say
-// (units, mass) is told, or refused with the key that decides.
+// The reader takes tables of softland (CSV), results of *FREQUENCY of CalculiX (.frd) and exports of COMSOL as text and CSV. It
+// takes data sets 55 of the Universal File Format with the node positions (15, 2411), and reduced-order models of ANSYS (.rom).
+// Nodes at one place along the axis are a section, which counts by its mean motion. Only bending along the direction of motion
+// is taken. Modes in the plane, along the axis and of torsion are left out by name. Nothing is guessed in silence. The user
+// supplies what a file lacks (units, mass), or the error names the key that decides.
 #pragma once
 
 #include <string>
@@ -18,14 +18,14 @@ namespace softland {
 
 enum class ModeKind { bending, in_plane, axial, torsional, unused };
 
-/// What one mode of a file is. Motions are means over the nodes of a section, in the unit of the file.
+/// The kind of one mode of a file. Motions are means over the nodes of a section, in the unit of the file.
 struct ModeFound {
-  int number = 0;        ///< in the file, from 1
+  int number = 0;        ///< number in the file, from 1
   double frequency = 0;  ///< [Hz]
   ModeKind kind = ModeKind::bending;
-  double share = 0;  ///< of the squared motion of all nodes that is of this kind; 1 where the file holds one direction only
-  std::vector<double> along, across, axial;  ///< by section: in the direction of motion, across both, along the axis
-  std::vector<double> twist;                 ///< by rotation about the axis, half the extent of the mesh from the middle
+  double share = 0;  ///< share of the squared motion of all nodes that is of this kind; 1 if the file holds one direction only
+  std::vector<double> along, across, axial;  ///< motion by section: in the direction of motion, across both, along the axis
+  std::vector<double> twist;                 ///< motion by rotation about the axis, half the extent of the mesh from the middle
   /// "bending", "in-plane"
   [[nodiscard]] std::string name() const;
 };
@@ -35,16 +35,16 @@ struct ModeTable {
   std::string format;
   std::vector<double> positions;            ///< [m], from 0, the clamp, rising
   std::vector<double> widths;               ///< [m], by position; NaN where the file does not say
-  std::vector<double> rest_offsets;         ///< of the face towards the direction of motion at rest [m], by position
+  std::vector<double> rest_offsets;         ///< height of the face, towards the direction of motion, at rest [m], by position
   std::vector<double> frequencies;          ///< [Hz], rising
   std::vector<std::vector<double>> shapes;  ///< mass-normalised [kg^(-1/2)]: of each mode by position, positive at the far end
   SplineEnd far_end = SplineEnd::free;      ///< clamped where it stands still in every mode, and mode_1 leaves it without a slope
 
-  std::size_t nodes = 0;            ///< of the mesh; 0 of a table
-  std::vector<ModeFound> found;     ///< every mode of a mesh, taken or not; empty of a table
-  std::vector<double> places = {};  ///< where the sections of `found` are, from the clamp [m]
+  std::size_t nodes = 0;            ///< number of nodes of the mesh; 0 for a table
+  std::vector<ModeFound> found;     ///< every mode of a mesh, taken or not; empty for a table
+  std::vector<double> places = {};  ///< places of the sections of `found`, from the clamp [m]
   std::vector<std::string> left_out = {};
-  std::vector<std::string> notes = {};  ///< what was taken for what the file does not say
+  std::vector<std::string> notes = {};  ///< assumptions about what the file does not say
 };
 
 /// Reads a file. Throws InvalidInput with file, line and rule for what cannot be read, for what holds no modes (a static result,

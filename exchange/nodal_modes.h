@@ -17,8 +17,8 @@ inline constexpr Vector3 no_motion{0, 0, 0};
 
 struct NodalMode {
   double frequency = std::numeric_limits<double>::quiet_NaN();   ///< [Hz]; NaN where the file does not say
-  double modal_mass = std::numeric_limits<double>::quiet_NaN();  ///< in the file's unit of mass; NaN where it is not said
-  std::vector<Vector3> motion;                                   ///< by node, in any unit
+  double modal_mass = std::numeric_limits<double>::quiet_NaN();  ///< mass in the file's unit; NaN where the file does not say
+  std::vector<Vector3> motion;                                   ///< motion by node, in any unit
   std::string name;                                              ///< "mode 1", as messages name it
   bool is_used = true;                                           ///< a reduced-order model has modes that it does not use
 };
@@ -26,11 +26,11 @@ struct NodalMode {
 struct NodalModes {
   std::string format;
   std::vector<Vector3> nodes;    ///< positions in the unit of length; NaN in a direction that the file does not hold
-  std::vector<NodalMode> modes;  ///< as in the file
-  std::array<bool, 3> holds{true, true, true};  ///< which directions of motion the file holds
-  std::optional<double> length_unit = {};       ///< that the file says [m]
-  bool needs_length_unit = false;               ///< no usual one: it must be said
-  std::string normalised_by = {};               ///< what the file says of the mass of its modes; empty: nothing
+  std::vector<NodalMode> modes;  ///< modes in the order of the file
+  std::array<bool, 3> holds{true, true, true};  ///< true for the directions of motion that the file holds
+  std::optional<double> length_unit = {};       ///< unit of length that the file names [m]
+  bool needs_length_unit = false;               ///< true if there is no usual one: the user must name it
+  std::string normalised_by = {};               ///< statement of the file on the mass of its modes; empty: nothing
   std::vector<std::string> left_out = {}, notes = {};
 };
 

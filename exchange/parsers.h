@@ -1,4 +1,4 @@
-// What reads one kind of content each. Internal to exchange/.
+// Parsers of one kind of content each. Internal to exchange/.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ namespace softland::internal {
 /// Columns, or rows, of numbers.
 [[nodiscard]] Recording read_columns(std::string_view text, const std::string& file, const ReadKeys& keys);
 
-/// Whether a text is breakpoints as sources of SPICE have them, rather than columns of plain numbers.
+/// True if a text is breakpoints as sources of SPICE have them, rather than columns of plain numbers.
 [[nodiscard]] bool is_spice_pwl(std::string_view text);
 [[nodiscard]] Recording read_spice_pwl(std::string_view text, const std::string& file, const ReadKeys& keys);
 
@@ -23,7 +23,7 @@ namespace softland::internal {
 [[nodiscard]] bool is_vcd(std::string_view text);
 [[nodiscard]] Recording read_vcd(std::string_view text, const std::string& file, const ReadKeys& keys);
 
-/// Whether bytes begin as the Universal File Format does.
+/// True if bytes begin as the Universal File Format does.
 [[nodiscard]] bool is_uff(std::string_view content);
 [[nodiscard]] Recording read_uff(std::string_view content, const std::string& file, const ReadKeys& keys);
 

@@ -18,7 +18,7 @@ enum class Says { interval, rate, start, trigger_sample, centre, samples, freque
 struct KeyRow {
   std::string_view key;
   Says says;
-  std::optional<double> Preamble::*member = nullptr;  ///< of a level; the others are claims
+  std::optional<double> Preamble::*member = nullptr;  ///< the level that the key states; the others are claims
 };
 constexpr std::array known_keys{
     KeyRow{"sampleinterval", Says::interval},
@@ -119,7 +119,7 @@ std::string letters_of(std::string_view key) {
   return letters;
 }
 
-// What a number says of the times; nothing where its unit does not go with its key.
+// Returns the statement of a number about the times; nothing if its unit does not go with its key.
 std::optional<TimeClaim> claim_of(Says says, const Measured& number) {
   using Of = TimeClaim::Of;
   const bool is_rate = says == Says::rate || says == Says::frequency;

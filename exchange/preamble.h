@@ -1,4 +1,4 @@
-// What stands above the numbers of an instrument's file: how often it took a sample, when the first one was, in which unit.
+// The lines above the numbers of an instrument's file: the sampling rate, the time of the first sample, the units.
 #pragma once
 
 #include <optional>
@@ -14,20 +14,20 @@ namespace softland::internal {
 struct TimeClaim {
   enum class Of { interval, start, trigger_sample, centre, samples, period };
   Of of = Of::interval;
-  std::string key;        ///< as the file writes it
+  std::string key;        ///< key as the file writes it
   double value = 0;       ///< [s], or a number of samples
   bool has_unit = false;  ///< the file says the unit of this number
 };
 
-/// What is known after all lines above the numbers; nothing where the file does not say it.
+/// The result of all lines above the numbers; nothing where the file does not say it.
 struct Preamble {
-  std::vector<TimeClaim> claims = {};         ///< in the order of the file, none of them twice
+  std::vector<TimeClaim> claims = {};         ///< claims in the order of the file, none of them twice
   std::optional<double> vertical_scale = {};  ///< per division
-  std::optional<double> high = {}, low = {};  ///< that the largest and the smallest code stand for [V]
+  std::optional<double> high = {}, low = {};  ///< voltages of the largest and the smallest code [V]
   std::optional<Unit> vertical_unit = {};
   std::optional<Unit> horizontal_unit = {};
   std::string source;  ///< name of the channel
-  std::string text;    ///< all of it, lower case, by which a format is known
+  std::string text;    ///< the whole preamble in lower case, by which a format is known
 
   /// Takes what one line says: `cells` as separated in the file.
   void take_line(std::string_view line, const std::vector<std::string_view>& cells);
@@ -37,7 +37,7 @@ struct Preamble {
   [[nodiscard]] const TimeClaim* first(TimeClaim::Of of) const;
 };
 
-/// Whether a line of cells is a key that is known, and a number or a unit as its value.
+/// True if a line of cells is a key that is known, and a number or a unit as its value.
 [[nodiscard]] bool is_setting(const std::vector<std::string_view>& cells);
 
 /// The name of the format that a preamble and headings belong to, "Rigol CSV"; "columns" where it is none that is known.

@@ -67,7 +67,7 @@ class RowTimer {
   const Preamble& preamble_;
   const ReadKeys& keys_;
   const Refusals& refusals_;
-  std::optional<Unit> unit_, unit_above_;  // of the column, and that the file names for the horizontal axis
+  std::optional<Unit> unit_, unit_above_;  // unit of the column, and unit that the file names for the horizontal axis
   std::vector<Interval> intervals_;
   RowTimes made_;
 };
@@ -181,7 +181,7 @@ void RowTimer::set_even(double first_sample) {
       break;
     }
   }
-  // Where the first sample is a whole number of intervals from t = 0, one sample is at 0 exactly.
+  // One sample is at 0 exactly if the first sample is a whole number of intervals from t = 0.
   constexpr double whole = 1e-6;
   const double steps = start / *made_.interval, rounded = std::round(steps);
   made_.times.resize(count_);
@@ -191,7 +191,7 @@ void RowTimer::set_even(double first_sample) {
   }
 }
 
-// Whether the column numbers the samples, whose interval the file says.
+// True if the column numbers the samples, whose interval the file says.
 bool RowTimer::is_sample_count() const {
   if (unit_) return unit_->measure == Measure::samples;
   const std::vector<double>& raw = column_->raw;

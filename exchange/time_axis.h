@@ -19,17 +19,17 @@ namespace softland::internal {
 struct TimeColumn {
   const std::vector<double>& raw;
   const Missing& missing;
-  std::string name;               ///< without a unit
-  std::optional<Unit> unit = {};  ///< that the column or its heading names
-  int column = 0;                 ///< in the file, from 1
-  int digits = 0;                 ///< significant ones of its numbers
+  std::string name;               ///< name without a unit
+  std::optional<Unit> unit = {};  ///< unit that the column or its heading names
+  int column = 0;                 ///< number in the file, from 1
+  int digits = 0;                 ///< significant digits of its numbers
   const std::vector<std::uint32_t>& lines;
 };
 
 struct RowTimes {
   std::vector<double> times = {};       ///< [s]; empty where the file has none and says no interval
-  std::optional<double> interval = {};  ///< that the file says [s]
-  bool stand_in_file = false;           ///< rather than follow from the interval
+  std::optional<double> interval = {};  ///< interval that the file states [s]
+  bool stand_in_file = false;           ///< true if the file has the times, false if they follow from the interval
   bool have_unit = false;
   double last_digit = 0;  ///< [s]
   std::vector<std::string> notes = {};

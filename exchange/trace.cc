@@ -51,7 +51,7 @@ std::vector<double> even(double first, double interval, std::size_t count) {
   return times;
 }
 
-/// How far times are from even ones that begin with them [s].
+/// Largest distance of times from even ones that begin with them [s].
 double deviation(const std::vector<double>& times, double interval) {
   double most = 0;
   for (std::size_t i = 0; i < times.size(); ++i)
@@ -59,7 +59,7 @@ double deviation(const std::vector<double>& times, double interval) {
   return most;
 }
 
-/// What rounding leaves of times as they are written [s].
+/// Rounding error of times as they are written [s].
 double rounding(const Recording& recording) {
   const std::vector<double>& t = recording.times;
   return 1.01 * recording.last_digit + single_precision * std::max(std::abs(t.front()), std::abs(t.back()));
@@ -125,7 +125,7 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
   }
   if (!recording.has_times) return recording.times;
   if (recording.interval) {
-    constexpr double printed = 1e-5;  // of an interval that is written with few digits, relative
+    constexpr double printed = 1e-5;  // error of an interval that is written with few digits, relative
     const double off = deviation(recording.times, *recording.interval), duration = std::abs(axis.last - axis.first);
     if (!(off <= rounding(recording) + printed * duration)) {
       throw InvalidInput(
@@ -134,7 +134,7 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
                       "\"uneven\" the times",
                       recording.file, seconds(*recording.interval), seconds(off), seconds(*recording.interval)));
     }
-    constexpr double exact = 1e-3;  // of an interval: times that are nearer to even ones are taken as they are
+    constexpr double exact = 1e-3;  // share of an interval: times that are nearer to even ones are taken as they are
     if (axis.repeated == 0 && !axis.back && off <= exact * *recording.interval) return recording.times;
     told += fmt::format("; times are rounded to {}: taken from the first and the interval of the file",
                         seconds(recording.last_digit));

@@ -15,9 +15,9 @@ struct Trace {
 };
 
 /// The channel of channel_of() over the times that `keys`, with which it was read, and the file say. Throws InvalidInput with
-/// file, line and the key that decides where there is no such channel, where times repeat, go back or drift from the interval of
-/// the file, where there are none, where a value is not finite between finite ones, and where the unit is no voltage unless
-/// `any_unit`.
+/// file, line and the key that decides. It does so if there is no such channel, or if times repeat, go back or drift from the
+/// interval of the file, or where there are none. It also does where a value is not finite between finite ones, and where the
+/// unit is not a voltage unless `any_unit`.
 [[nodiscard]] Trace trace_of(const Recording& recording, const ReadKeys& keys, const std::string& usual, bool any_unit = false);
 
 }  // namespace softland

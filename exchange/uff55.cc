@@ -160,7 +160,7 @@ class Uff55Reader {
     if (reals.size() != count || count < (is_normal ? 1U : 2U))
       fail(fmt::format("{} numbers of the mode, where {} are due, the frequency first", reals.size(), of_mode[1]));
     Set55 set{.mode = of_mode[3]};
-    // Of a complex mode the eigenvalue [rad/s].
+    // The eigenvalue of a complex mode is in rad/s.
     set.frequency = is_normal ? reals[0] : std::hypot(reals[0], reals[1]) / (2 * std::numbers::pi);
     set.modal_mass = is_normal && reals.size() > 1 ? reals[1] : 0;
     if (!(set.frequency >= 0)) fail("the frequency must not be negative");

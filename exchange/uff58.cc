@@ -29,7 +29,7 @@ namespace {
 constexpr std::size_t header_lines = 11;
 constexpr std::string_view end_mark = "    -1";
 
-/// What a data set 58 holds, by its function type.
+/// Names of the contents of a data set 58, by its function type.
 constexpr std::array function_names{"a general or unknown function",
                                     "a time response",
                                     "an auto spectrum",
@@ -62,7 +62,7 @@ class Reader {
     return text;
   }
   void skip(std::size_t bytes) { rest_.remove_prefix(std::min(bytes, rest_.size())); }
-  /// Whether the last line ended with the file.
+  /// True if the last line ended with the file.
   [[nodiscard]] bool is_cut() const { return is_cut_; }
   [[noreturn]] void fail(const std::string& rule) const { throw InvalidInput(fmt::format("{}:{}: {}", file_, number_, rule)); }
 

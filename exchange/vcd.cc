@@ -144,7 +144,7 @@ class VcdReader {
     std::uint64_t time;
     std::uint32_t line;
   };
-  std::vector<Moment> moments_;  // of changes, in order
+  std::vector<Moment> moments_;  // moments of changes, in order
 };
 
 void VcdReader::declarations() {

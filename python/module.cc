@@ -1,5 +1,4 @@
-// softland as a Python module: the library's functions, with arrays and JSON. What users meet stands in the package softland
-// beside it.
+// softland as a Python module: the library's functions, with arrays and JSON. Its users meet the package softland beside it.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 

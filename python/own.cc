@@ -18,8 +18,8 @@ namespace py = pybind11;
 namespace {
 
 constexpr std::size_t fewest_intervals = 8, most_intervals = 512, most_known = 64;
-constexpr double aim =
-    1e-12;  // of the polynomials, over the largest voltage: beyond own_waveform_accuracy, since they converge so fast
+// Accuracy of the polynomials over the largest voltage: beyond own_waveform_accuracy, since they converge so fast.
+constexpr double aim = 1e-12;
 
 // Chebyshev point k of so many intervals over [begin, end], from the end to the begin.
 double chebyshev_point(double begin, double end, std::size_t k, std::size_t intervals) {
@@ -74,7 +74,7 @@ double PythonWaveform::Arc::at(double time) const {
     above += weight * values[k], below += weight;
   }
   const double value = above / below;
-  // What rounding leaves beyond the samples would break a limit of a driver that they keep.
+  // Rounding beyond the samples would break a limit of a driver that they keep.
   if (value < least && least - value <= own_waveform_accuracy * std::max(-least, most)) return least;
   if (value > most && value - most <= own_waveform_accuracy * std::max(-least, most)) return most;
   return value;
@@ -111,8 +111,8 @@ std::shared_ptr<const PythonWaveform::Course> PythonWaveform::course(std::span<c
     std::vector<std::size_t> open(made->arcs.size());
     for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
     for (std::size_t intervals = fewest_intervals; !open.empty() && intervals <= most_intervals; intervals *= 2) {
-      // All arcs that are not followed yet in one call. What holds at a breakpoint is the voltage after it: the end of an arc is
-      // looked at from inside.
+      // One call asks for all arcs that are not followed yet. The value at a breakpoint is the voltage after it: the end
+      // of an arc is looked at from inside.
       std::vector<double> times;
       for (const std::size_t i : open) {
         const Arc& arc = made->arcs[i];
@@ -160,7 +160,7 @@ double PythonWaveform::voltage(double time, std::span<const double> x) const {
   }
   const auto after =
       std::upper_bound(known->arcs.begin(), known->arcs.end(), time, [](double t, const Arc& arc) { return t < arc.end; });
-  if (after == known->arcs.end()) {  // at the end, what it stays on
+  if (after == known->arcs.end()) {  // the voltage stays on this value at the end
     const py::gil_scoped_acquire held;
     return called({time}, x)[0];
   }

@@ -40,8 +40,8 @@ class FirstError {
   std::exception_ptr first_;
 };
 
-/// A voltage that a Python function tells for an array of times. Between two breakpoints it is followed by the polynomial through
-/// Chebyshev points of the second kind, doubled in number until the polynomial of half of them gives the others within
+/// A voltage that a Python function computes for an array of times. A polynomial approximates it between two breakpoints,
+/// through Chebyshev points of the second kind. Their number doubles until the polynomial of half of them gives the others to
 /// own_waveform_accuracy, so that a candidate takes a few calls. Barycentric formula: J.-P. Berrut & L. N. Trefethen, SIAM Review
 /// 46 (2004) 501, eq. 4.2.
 class PythonWaveform final : public OwnWaveform {
@@ -61,8 +61,8 @@ class PythonWaveform final : public OwnWaveform {
  private:
   struct Arc {
     double begin = 0, end = 0;
-    std::vector<double> values;  // at Chebyshev points, from the end to the begin
-    double least = 0, most = 0;  // of these
+    std::vector<double> values;  // voltages at Chebyshev points, from the end to the begin
+    double least = 0, most = 0;  // extremes of these
     [[nodiscard]] double at(double time) const;
   };
   struct Course {

@@ -1,4 +1,4 @@
-// How a computation runs under Python: without the GIL, stopped by Ctrl-C, and with Python functions that are told how far it is.
+// Runs a computation under Python: without the GIL, stopped by Ctrl-C, and with Python functions that get its progress.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -39,8 +39,8 @@ class Run {
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
-  /// What it computes without the GIL, work(watch). Raises what Python raised in one of its functions, KeyboardInterrupt where
-  /// Ctrl-C stopped it, and what the work throws.
+  /// Returns the result of work(watch), run without the GIL. Raises what Python raised in one of its functions,
+  /// KeyboardInterrupt where Ctrl-C stopped it, and what the work throws.
   template <class Work>
   auto operator()(Work&& work) {
     std::optional<std::invoke_result_t<Work, const Watch&>> result;
@@ -60,9 +60,9 @@ class Run {
 
   [[nodiscard]] const Watch& watch() const { return watch_; }
   [[nodiscard]] const std::atomic<bool>* stop() const { return &stop_; }
-  /// Whether it was asked to stop, and not by a wish to see what there is.
+  /// True if it was asked to stop, other than by end_by_wish().
   [[nodiscard]] bool given_up() const { return stop_.load(std::memory_order_relaxed) && !ended_by_wish_; }
-  /// For callbacks of the library: ends the work at once where it was asked to stop by Ctrl-C or by a failed function.
+  /// Ends the work at once, in callbacks of the library, if Ctrl-C or a failed function has asked it to stop.
   void throw_if_given_up() const {
     if (given_up()) throw Interrupted();
   }
@@ -77,7 +77,7 @@ class Run {
       keep(std::current_exception());
     }
   }
-  /// Of an exception that is on its way through the library, which may take it for a bad candidate.
+  /// Keeps an exception that is on its way through the library, which may take it for a bad candidate.
   void keep(std::exception_ptr error);
 
  private:
@@ -93,7 +93,7 @@ class Run {
   Watch watch_;
 
  public:
-  /// Ends the work by the wish of a callback: what there is by then is the result.
+  /// Ends the work by the wish of a callback: the result is then the one found so far.
   void end_by_wish() {
     ended_by_wish_ = true;
     stop_ = true;

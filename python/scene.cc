@@ -61,14 +61,14 @@ namespace {
 
 using Value = std::variant<bool, int, double, std::string>;
 
-// As --set, or of a number as its SI unit has it.
+// Changes a key as --set does; a number is in SI units.
 void change(SceneFile& file, const std::string& key, const Value& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return file.set(key + "=" + *text);
   try {
     if (const auto* flag = std::get_if<bool>(&value)) return file.assign(key, SceneValue(*flag));
     if (const auto* whole = std::get_if<int>(&value)) return file.assign(key, SceneValue(*whole));
     file.assign(key, SceneValue(std::get<double>(value)));
-  } catch (const std::logic_error&) {  // what reads the scene says what is wrong with the key
+  } catch (const std::logic_error&) {  // the reader of the scene reports what is wrong with the key
     file.set(key + "=" +
              std::visit(
                  []<class T>(const T& one) {

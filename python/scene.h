@@ -20,7 +20,7 @@ namespace softland::python {
 /// A scene file and what was made of it, which is kept until the scene changes.
 struct PyScene {
   SceneFile file;
-  std::filesystem::path directory;                                ///< from which relative paths in it are taken
+  std::filesystem::path directory;                                ///< the directory that relative paths in it start from
   std::shared_ptr<const PreparedScene> plain = {}, limited = {};  ///< prepare_and_choose() without and with default limits
 
   /// Made ready, when it is first asked for.
@@ -31,7 +31,7 @@ struct PyScene {
   }
 };
 
-/// What a verb found: its JSON, and the files that the program writes of it, each made when it is asked for.
+/// The result of a verb: its JSON, and the files that the program writes of it, each made when it is asked for.
 struct Outcome {
   std::string json;
   std::map<std::string, std::function<std::string()>> files = {};
@@ -59,11 +59,11 @@ struct PyWaveform {
   Waveform value;
 };
 
-/// What stands in the place of a scene's waveforms, by drive.
-/// From a Python dict of softland._softland.Waveform.
+/// The waveforms that replace those of a scene, by drive.
+/// Takes a Python dict of softland._softland.Waveform.
 [[nodiscard]] DriveWaveforms waveforms_of(const pybind11::dict& given, Run& run);
 
-/// What `work` gives. Messages about a request have its options in the words of Python.
+/// Returns the result of `work`. Messages about a request have its options in the words of Python.
 template <class Work>
 auto in_keywords(const char* verb, Work&& work) {
   try {

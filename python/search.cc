@@ -22,7 +22,7 @@ namespace py = pybind11;
 
 namespace {
 
-// What a search is asked for, and what no text can hold.
+// The request of a search, with the parts that no text can hold.
 struct Request {
   verbs::OptimizeRequest words;
   std::shared_ptr<PythonObjective> objective;
@@ -49,7 +49,7 @@ PlannedSearch planned_search(const Request& request, const SceneFile& file, Run&
   return search;
 }
 
-// The same, as one that is kept in a folder. What starts it is written into its plan, and has to be something that can be.
+// The same search, kept in a folder. Its starts are written into its plan, and have to be possible to write.
 StoredSearch kept_search(const Request& request, const PyScene& scene, std::optional<KnownSearch>& known, Run& run) {
   require(!request.objective && request.own_waveforms.empty(),
           "out: a search with functions of Python cannot be kept, since no file tells which functions they were");
@@ -68,7 +68,7 @@ StoredSearch kept_search(const Request& request, const PyScene& scene, std::opti
   return stored_search(asked, stores, known);
 }
 
-// The callbacks: what Python is told, and how it ends a search. Once candidates are tried they throw nothing, which a search
+// The callbacks report to Python, which may end a search. Once candidates are tried they throw nothing, which a search
 // would take for a bad candidate: run.stop() ends it.
 void listen(PlannedSearch& search, const Request& request, Run& run, SearchSession* session = nullptr) {
   OptimizeOptions& options = search.options;

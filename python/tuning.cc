@@ -41,7 +41,7 @@ std::unique_ptr<PyTuning> made_tuning(const PyScene& scene, const verbs::Told& t
   return tuning;
 }
 
-// number, how long the last levels are held [s], (times, volts) by drive, and the line that a program is told
+// number, how long the last levels are held [s], (times, volts) by drive, and the line that a program gets
 py::tuple shot_of(const PyTuning& tuning) {
   const ToldShot shot = tuning.session.told();
   py::dict drives;

@@ -83,7 +83,7 @@ py::array_t<double> voltages(const PyWaveform& waveform,
   return volts;
 }
 
-// Straight lines through samples that are held on average: at k / rate, with the hold level as the last row.
+// Straight lines through samples that are held on average: at k / rate, with the hold voltage as the last row.
 PyWaveform resampled(const PyWaveform& waveform, double rate, double end) {
   require(rate > 0 && end > 0 && std::isfinite(rate * end) && rate * end <= 1e7,
           "resampled: rate and end must be above 0, and at most 1e7 samples");

@@ -1,6 +1,6 @@
 # %% [markdown]
 # # A waveform of your own
-# A swell: half a cosine up to a level, half a cosine down to another, half a cosine to the hold level. It is run as it stands, then its five
+# A swell: half a cosine up to a level, half a cosine down to another, half a cosine to the hold voltage. It is run as it stands, then its five
 # parameters are searched, and what is found is written for a generator. The same as `examples/05_own_waveform.cc`.
 
 # %%

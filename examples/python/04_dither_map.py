@@ -1,6 +1,6 @@
 # %% [markdown]
 # # A map of dither
-# A small sine on top of the step changes how the switch bounces: "dither" (Bognash 2019). Which frequency and amplitude help? A map of 60 x 40
+# A small sine on top of the step changes how the switch bounces: "dither" (Bognash 2019). Find the frequency and amplitude that help: a map of 60 x 40
 # closings, in one call.
 
 # %%

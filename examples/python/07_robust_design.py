@@ -1,6 +1,6 @@
 # %% [markdown]
-# # From the drawing to a waveform for devices
-# A waveform that lands the drawing softly is of little use for devices that differ. Here one is searched for devices, by the mean of the worst tenth of
+# # From the nominal design to a waveform for devices
+# A waveform that closes the nominal design softly is of little use under process variation. Here one is searched for devices, by the mean of the worst tenth of
 # them, and judged on fresh ones beside the plain step.
 
 # %%

@@ -1,6 +1,6 @@
 # %% [markdown]
 # # Many devices on a cluster
-# The evaluator can be pickled, so that Dask sends it to its workers. What a killed worker was at is computed by another one: the table is the same.
+# The evaluator can be pickled, so that Dask sends it to its workers. Another worker computes what a killed one was at: the table is the same.
 
 # %%
 import sys

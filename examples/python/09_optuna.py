@@ -22,7 +22,7 @@ bounds = {
 evaluate = scene.evaluator(list(bounds), ["initial_contact_time", "impact_velocity"])
 
 # %% [markdown]
-# `ask` gives a candidate and `tell` takes what came of it. What has no figures, a pulse that never touches, say, is pruned.
+# `ask` gives a candidate and `tell` takes its result. A candidate without figures, a pulse that never touches, say, is pruned.
 
 # %%
 optuna.logging.set_verbosity(optuna.logging.WARNING)

@@ -1,7 +1,7 @@
 # %% [markdown]
 # # A waveform for one device on the bench
 # A device is a function: it gets a shot, the voltages to be played, and returns when its contact was closed. This one is simulated. It differs from
-# the drawing as devices do, has a mode that the scene does not know, and tells nothing but the voltage of its contact, noise and all.
+# the nominal design as devices do, has a mode that the scene does not know, and tells nothing but the voltage of its contact, noise and all.
 
 # %%
 from typing import Any

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-# How the keys of every JSON of softland end, and the unit that this is.
+# Endings of the keys of every JSON of softland, with their units.
 _ENDINGS = {
     "_rad2_s2": "rad^2/s^2", "_rad_s": "rad/s", "_m_s2": "m/s^2", "_m_s": "m/s", "_V_s": "V/s", "_N_m": "N/m", "_kg_m3": "kg/m^3",
     "_s": "s", "_m": "m", "_V": "V", "_N": "N", "_J": "J", "_F": "F", "_Hz": "Hz", "_Pa": "Pa", "_K": "K", "_W": "W", "_C": "C", "_A": "A",
@@ -115,7 +115,7 @@ def _wrapped(value: Any, unit: str, error: Any = None) -> Any:
     return value
 
 
-# Where a result comes from, which its representation leaves out.
+# The origin of a result, which its representation leaves out.
 _ORIGIN = ("command", "made_with", "reproduce", "scene", "scene_toml", "version", "curves")
 
 

@@ -162,7 +162,7 @@ class Scene(Studies, MutableMapping[str, Any]):
         """Makes the scene ready to run, and returns its warnings. Raises InvalidInput for one that cannot be run."""
         return self._native.warnings()
 
-    # What drives it.
+    # The following are the drives and the verbs.
 
     @property
     def drives(self) -> list[str]:

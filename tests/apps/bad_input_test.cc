@@ -40,7 +40,8 @@ class BadInput : public ::testing::Test {
     delete here;
     here = nullptr;
   }
-  /// Of a message with "…" what stands before and behind: a list that the program makes of a table is not written down here.
+  /// Compares the text before and behind "…" of a message alone: a list that the program makes of a table is not written down
+  /// here.
   static void expect_message(const std::string& said, const std::string& message, const std::string& line) {
     const std::string whole = "softland: " + message + "\n", ellipsis = "…";
     const std::size_t gap = whole.find(ellipsis);

@@ -1,4 +1,4 @@
-// What the verbs answer when all is well.
+// Tests the answers of the verbs when all is well.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -409,7 +409,7 @@ TEST(PullIn, SaysWhenTheDynamicOneEqualsTheStaticOne_optimized) {
   }
 }
 
-// What the JSON of every study gives is a matter of tests/verbs.
+// The JSON of every study is a matter of tests/verbs.
 TEST(Report, FindsWhatAStudyLeftInItsFolder_optimized) {
   const Workplace here;
   ASSERT_NE(here.run({"release", "gold.toml", "--budget", "60", "--samples", "0", "--set", "structure.modes=1", "--out", "open"})
@@ -580,7 +580,7 @@ TEST(Effects, AreChosenByTheSceneAndSaidInTheResult) {
   EXPECT_EQ(j["scene"]["simulate"]["effects"], "all") << "the scene written is the one that ran";
 }
 
-// What decides the last digits: the very program, found by the hash that it holds of itself, and the processor.
+// The last digits depend on the very program, found by the hash that it holds of itself, and on the processor.
 TEST(Results, SayWhatTheyWereMadeWith_long) {
   const Workplace here;
   const Outcome o = here.run({"simulate", "gold.toml", "--set", "simulate.duration=20 us", "--json", "-", "--out", "made"});
@@ -786,7 +786,7 @@ TEST(Export, PrintsTheWaveformOfOneDeviceInItsOwnUnits_optimized) {
     EXPECT_NEAR(own[i][0], 1.2 * nominal[i][0], 1e-5 * own[i][0]);
     EXPECT_NEAR(own[i][1], 1.1 * nominal[i][1], 1e-5 * own[i][1]);
   }
-  // What was not measured is that of the nominal device.
+  // A value that was not measured is that of the nominal device.
   EXPECT_EQ(waveform(here.run({"export", "pulse.toml", "--device-frequency", std::to_string(own_frequency) + " Hz"}).out).size(),
             nominal.size());
 }
@@ -797,7 +797,7 @@ std::string sampled_gold() {
                 "max_voltage = \"22 V\"\nsample_rate = \"25 MHz\"\nbits = 12\nbandwidth = \"1 MHz\"\nmax_slew = \"20 V/us\"");
 }
 
-// For a generator: what it is told, on its grid; read back under the same driver it is the same closing.
+// A generator gets samples on its own grid; read back under the same driver it is the same closing.
 TEST(Export, HoldsTheSamplesThatASourceIsTold_optimized) {
   const Workplace here;
   write(here.path() / "sampled.toml", sampled_gold());
@@ -822,7 +822,7 @@ TEST(Export, HoldsTheSamplesThatASourceIsTold_optimized) {
   ASSERT_EQ(output.status, 0) << output.err;
   EXPECT_NE(output.out, told.out);
   EXPECT_GT(waveform(output.out).size(), 2 * rows.size()) << "the answer of the filter";
-  // Of a filter alone the waveform is told.
+  // The waveform of a filter alone is the commanded one.
   EXPECT_EQ(here.run({"export", "gold.toml"}).out, here.run({"export", "gold.toml", "--signal", "output"}).out);
   for (const auto& [words, said] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"gold.toml", "--format", "codes"}, "no driver takes samples"},
@@ -895,7 +895,7 @@ TEST(Export, ForAGeneratorTellsHowTheSwitchClosesAsSampled_optimized) {
   }
 }
 
-// The closing, its limits and all that is said of it are those at the switch; only what the generator is told is less.
+// The closing, its limits and every statement about it are those at the switch; only the samples of the generator are smaller.
 TEST(Export, AnAmplifierOfTheDriverIsCountedOnce) {
   const Workplace here;
   const auto scene = [&](const std::string& name, const std::string& keys) {
@@ -993,7 +993,7 @@ TEST(Scenes, AreTakenFromResults_optimized) {
   EXPECT_THAT(empty.err, HasSubstr("empty: holds none of result.json, best.toml, release.toml"));
 }
 
-// Of every name that the model, SPICE or Verilog-A has for something else the pin is another, and that is told.
+// A pin gets another name where the model, SPICE or Verilog-A uses its name for something else, and a message tells it.
 TEST(Export, NamesPinsOfCircuitsThatAreNoOthers) {
   const Workplace here;
   const std::string gold = shipped("mem-gold.toml");
@@ -1035,7 +1035,7 @@ TEST(Export, NamesPinsOfCircuitsThatAreNoOthers) {
   EXPECT_THAT(alike.err, HasSubstr("drive a_b is the pin a_b_2"));
 }
 
-// By ngspice where there is one, whose steps are by trapezoids.
+// The simulator is ngspice, if installed; its steps are by trapezoids.
 TEST(Export, OfTheSwitchForACircuitClosesAsItDoes_slow) {
   if (std::system("command -v ngspice >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no circuit simulator; needs: ngspice";
   const Workplace here;
@@ -1135,7 +1135,7 @@ TEST(Export, GivesAPiezoVoltsByWhatOneDeflects_optimized) {
   const Outcome own = here.run({"export", "pzt.toml", "--measured", half}), nominal = here.run({"export", "pzt.toml"});
   ASSERT_EQ(own.status, 0) << own.err;
   EXPECT_THAT(own.err, HasSubstr("warning: --measured piezo = "));
-  const auto voltages = [](const std::string& csv) {  // of the electrode and of the piezo
+  const auto voltages = [](const std::string& csv) {  // voltages of the electrode and of the piezo
     std::vector<std::array<double, 2>> rows;
     std::istringstream in(csv.substr(csv.find('\n') + 1));
     double time = 0;
@@ -1175,7 +1175,7 @@ TEST(Sources, HaveAGainThatCanBeSetAndVaried_optimized) {
   const Outcome table = here.run({"table", "gains.sqlite"});
   EXPECT_EQ(std::count(table.out.begin(), table.out.end(), '\n'), 4) << table.out;
   EXPECT_THAT(table.out, HasSubstr("steady_force_time_s"));
-  // What is asked for is sent, whatever comes of it.
+  // The commanded waveform is sent, whatever comes of it.
   const Outcome asked = here.run({"export", "gold.toml"});
   write(here.path() / "gain.toml", edited(shipped("mem-gold.toml"), "[driver.main]", "[driver.main]\ngain = 1.02"));
   EXPECT_EQ(here.run({"export", "gain.toml"}).out, asked.out);

@@ -36,7 +36,7 @@ std::vector<Shipped> shipped_scenes() {
   return all;
 }
 
-/// What a verb printed, as people see it: never a number that is none, and no mishap of our own.
+/// Expects the text that a verb printed to be readable: every number is finite, and there is no internal error.
 void expect_readable(const std::string& text, const std::string& place) {
   static const std::regex odd("\\b(nan|inf|internal error)\\b", std::regex::icase);
   std::smatch found;
@@ -47,7 +47,7 @@ class EveryVerb : public testing::TestWithParam<Shipped> {
  protected:
   void SetUp() override {
     write(here.path() / scene().name, scene().text);
-    // What scenes name beside them.
+    // Copy the files that scenes name beside them.
     for (const auto& entry : fs::directory_iterator(fs::path(SOFTLAND_SOURCE_DIR) / "scenes")) {
       if (entry.path().extension() == ".csv") write(here.path() / entry.path().filename(), read(entry.path()));
     }
@@ -76,7 +76,7 @@ class EveryVerb : public testing::TestWithParam<Shipped> {
       refused(words, "there is no waveform to export");
     }
   }
-  /// What `check` and `pull-in` tell of the voltages of each electrode, under the same keys.
+  /// Compares the voltages of each electrode in `check` and `pull-in`, under the same keys.
   static void expect_same_pull_in(const json& checked, const json& pull_in, bool contact) {
     const json& by_name = pull_in["electrodes"];
     const bool is_one = by_name.size() == 1;
@@ -87,7 +87,7 @@ class EveryVerb : public testing::TestWithParam<Shipped> {
       EXPECT_FALSE(one.contains("scene")) << "as README.md says";
       const json& voltages = one["pull_in"];
       EXPECT_EQ(voltages["static_V"].is_null(), voltages["static_kind"].is_null());
-      if (voltages["static_V"].is_null()) continue;  // on the far side
+      if (voltages["static_V"].is_null()) continue;  // the electrode is on the far side
       const json& own = is_one || !checked["pull_in"].contains(name) ? checked["pull_in"] : checked["pull_in"][name];
       EXPECT_EQ(own, voltages) << name;
       windows += contact ? 1 : 0;
@@ -228,7 +228,7 @@ TEST_P(EveryVerb, CyclesAtARate_optimized) {
     EXPECT_GT(cycle["closed_time_s"], 0);
     EXPECT_GT(cycle["largest_impact_velocity_m_s"], 0);
   }
-  // Of several contacts the first touch of a cycle is that of all.
+  // The first touch of a cycle with several contacts is that of all.
   if (!j["scene"]["contact"].contains("model")) return;
   EXPECT_NEAR(drive["cycles"][0]["initial_contact_time_s"].get<double>(), touch.get<double>(), 1e-5 * touch.get<double>());
 }
@@ -372,7 +372,7 @@ TEST(EveryKind, OfNewSceneIsCheckedAndSaysHowDevicesDiffer_optimized) {
   }
 }
 
-// What a user starts from goes through all that docs/own-switch.md tells to do next.
+// A new scene goes through all that docs/own-switch.md tells to do next.
 TEST(EveryKind, OfNewSceneIsSimulatedSearchedAndJudged_slow) {
   const Workplace here;
   for (const std::string& kind : kinds_of_new(here)) {

@@ -1,4 +1,4 @@
-// What can go wrong around the program, for every verb: output that is lost, signals, files that are none. The verbs are those
+// Tests what can go wrong around the program, for every verb: lost output, signals, bad files. The verbs are those
 // that the program itself lists, so that a new one is tried as well.
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -97,7 +97,7 @@ std::map<std::string, Call> calls() {
   };
 }
 
-// With the scenes of those that take no --set, and a line for those that read standard input.
+// Makes the scenes of the verbs that take no --set, and a line for those that read standard input.
 std::unique_ptr<Workplace> workplace() {
   auto place = std::make_unique<Workplace>();
   const std::string gold = shipped("mem-gold.toml");
@@ -233,14 +233,14 @@ TEST_F(Faults, AFileAboveItsLimitIsAnErrorOfEveryVerbThatWritesOne_optimized) {
   EXPECT_FALSE(fs::exists(here->path() / "lost-simulate/report.html"));
 }
 
-// Whether every key of an object, and all that is no object, has the same value in the other.
+// Returns true if every key of an object, and all that is no object, has the same value in the other.
 bool holds(const json& all, const json& part) {
   if (!part.is_object() || !all.is_object()) return all == part;
   return std::ranges::all_of(part.items(),
                              [&](const auto& one) { return all.contains(one.key()) && holds(all[one.key()], one.value()); });
 }
 
-// What --json tells stands in the folder too, which may hold more: curves.
+// The output of --json stands in the folder too, which may hold more: curves.
 TEST_F(Faults, TheJsonOfAFolderIsThatOfTheOption_optimized) {
   int compared = 0;
   for (const std::string& verb : verbs) {
@@ -393,7 +393,7 @@ TEST_F(Faults, EveryVerbThatTakesLongShowsHowFarItIs_slow) {
   }
 }
 
-// What is ignored from the start, as under nohup, stays ignored.
+// A signal that is ignored from the start, as under nohup, stays ignored.
 TEST_F(Faults, AnIgnoredSignalStaysIgnored) {
   const pid_t child =
       here->start({"-c", "trap '' HUP; : > ignoring; exec \"$0\" simulate gold.toml", SOFTLAND_PROGRAM}, "/bin/sh");
@@ -597,7 +597,7 @@ TEST_F(Faults, AFolderThatVanishesIsOutputThatIsLost_optimized) {
       place.start(words("optimize", std::vector<std::string>{"gold.toml"} + in_volts +
                                         std::vector<std::string>{"--robust", "none", "--budget", "2 s", "--out", "out"}));
   for (int i = 0; i < 600 && !fs::exists(place.path() / "out/unfinished/best.toml"); ++i) std::this_thread::sleep_for(20ms);
-  fs::rename(place.path() / "out", place.path() / "gone");  // at once, whatever is being written in it
+  fs::rename(place.path() / "out", place.path() / "gone");  // move it at once, whatever is being written in it
   // Somebody else works there now.
   fs::create_directories(place.path() / "out");
   write(place.path() / "out/softland.lock", "process 1 on elsewhere");
@@ -625,7 +625,7 @@ TEST_F(Faults, NothingInTheFolderIsTakenForWhatItIsNot) {
 }
 
 TEST_F(Faults, JsonKeepsOffStandardOutputAndUnfinishedResults) {
-  const Workplace place;  // where standard output is stdout.txt
+  const Workplace place;  // standard output is stdout.txt there
   fs::create_directories(place.path() / "out");
   for (const std::string file :
        {"out/softland.lock", "out/unfinished", "out/unfinished/result.json", "out/unfinished-2", "stdout.txt"}) {

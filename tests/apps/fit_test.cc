@@ -42,7 +42,7 @@ accuracy = 1e-4
 "structure.stiffness" = { distribution = "normal", cov = "6 %" }
 "structure.mass" = { distribution = "normal", cov = "3 %" }
 )";
-// The frequency of the drawing is 21.054 kHz; 3 % above it is 6 % more stiffness.
+// The frequency of the nominal design is 21.054 kHz; 3 % above it is 6 % more stiffness.
 constexpr const char* bench = R"([[measurement]]
 quantity = "frequency"
 value = "21.686 kHz"

@@ -24,7 +24,7 @@ const std::string aims = "initial_contact_time,impact_velocity,peak_voltage";
 std::vector<std::string> search(const std::string& store, int points, const std::vector<std::string>& more = {}) {
   std::vector<std::string> words = explore({"--vary", "waveform.main.level=18 V:30 V", "--vary", "gap.contact=1.6 um:2.2 um",
                                             "--pareto", aims, "--sample", fmt::format("nsga2:{}", points), "--out", store});
-  words.insert(words.end(), {"--set", "simulate.duration=600 us"});  // in which they settle
+  words.insert(words.end(), {"--set", "simulate.duration=600 us"});  // a window in which they settle
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }

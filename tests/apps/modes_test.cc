@@ -93,7 +93,7 @@ TEST(ModesOfAFile, OfABeamCloseAsTheBeam_optimized) {
   EXPECT_LE(relative(table, beam, "major_bounce_height_m"), height);
 }
 
-// What a search leaves needs no other file, wherever it is moved.
+// The results of a search need no other file, wherever they are moved.
 TEST(ModesOfAFile, StandInTheResultOfASearch_optimized) {
   const Workplace here;
   write(here.path() / "modes.toml", shipped("mem-gold-modes.toml"));
@@ -143,7 +143,7 @@ std::string mesh_of_gold() {
          "*STEP\n*FREQUENCY\n8\n*NODE FILE\nU\n*END STEP\n";
 }
 
-// By Debian's CalculiX where there is one.
+// The program is Debian's CalculiX, if installed.
 TEST(ModesOfAFile, OfAMeshByCalculixCloseAsTheBeam_slow) {
   if (std::system("command -v ccx >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no CalculiX; needs: calculix-ccx";
   constexpr double time = 1e-4, speed = 1e-4, height = 5e-3;

@@ -46,9 +46,9 @@ struct Outcome {
   std::string out, err;
 };
 
-/// What /proc/PID/stat tells of a process (proc(5)).
+/// State of a process, from /proc/PID/stat (proc(5)).
 struct ProcessState {
-  char state = 'X';     ///< R: runs or could, S: sleeps, Z: has ended, X: there is none
+  char state = 'X';     ///< R: runs or could, S: sleeps, Z: has ended, X: no process
   long cpu_ticks = -1;  ///< used so far, by all of its threads
 };
 inline ProcessState process_state(pid_t child) {
@@ -131,7 +131,7 @@ class Workplace {
     };
     connect(1, out, "stdout.txt");
     connect(2, err, "stderr.txt");
-    // As from a terminal, whatever the tests were started to ignore.
+    // Signals act as from a terminal, whatever the tests were started to ignore.
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     sigset_t all;
@@ -159,7 +159,7 @@ class Workplace {
   fs::path path_;
 };
 
-/// Of a JSON object.
+/// Keys of a JSON object.
 inline std::set<std::string> keys(const nlohmann::json& object) {
   std::set<std::string> all;
   for (const auto& [key, value] : object.items()) all.insert(key);

@@ -48,7 +48,7 @@ TEST_F(Resume, AfterKillsAtRandomMomentsEndsWithTheSameBits_slow) {
   };
   done(with({"--out", "whole"}));
   std::mt19937 random(3);
-  constexpr int kills = 4;  // after the second in which rows may be lost
+  constexpr int kills = 4;  // kills after the second in which rows may be lost
   for (int i = 0; i < kills; ++i)
     killed(with({"--out", "killed", "--resume"}), std::chrono::milliseconds(1200 + random() % 1200));
   done(with({"--out", "killed", "--resume"}));
@@ -71,7 +71,7 @@ TEST_F(Resume, WithALargerBudgetIsTheSearchThatBeganWithIt_optimized) {
   done(optimize({"--out", "whole", "--budget", "500", "--optimizer", "cma-es"}));
   expect_same_search(at("whole"), at("out"));
   EXPECT_EQ(rows_of(at("out/evaluations.sqlite")).size(), rows_of(at("whole/evaluations.sqlite")).size());
-  // Once more, all of it is known.
+  // A repeated run knows every evaluation.
   done({"optimize", "--resume", "--quiet", "--out", "out"});
   expect_same_search(at("whole"), at("out"));
   EXPECT_EQ(StudyReader(at("out/evaluations.sqlite")).sessions().back().rows, 0);
@@ -182,7 +182,7 @@ TEST_F(Start, FromTheWinnerOfAnotherSearchNeverEndsWorse_slow) {
   // The same from the folder, and from its result.json.
   done(optimize({"--out", "folder", "--budget", "12", "--start", "one"}));
   EXPECT_EQ(read(at("folder/best.toml")), read(at("two/best.toml")));
-  // Beside a worse one.
+  // A worse start beside it does no harm.
   done(optimize({"--out", "more", "--budget", "12", "--start", "one/best.toml", "--start", "two/best.toml"}));
   EXPECT_LE(test::result_in(at("more"))["best"]["cost"].get<double>(), refined["best"]["cost"].get<double>() * (1 + 1e-9));
 }
@@ -194,7 +194,7 @@ TEST_F(Start, FromAnotherFamilyKeepsTheLandingUnlessItFindsABetterOne) {
   const json kept = test::result_in(at("two"));
   EXPECT_LE(kept["best"]["cost"].get<double>(), found["best"]["cost"].get<double>() * (1 + 1e-9));
   EXPECT_TRUE(kept["best"]["parameters"].empty()) << "of the winner, which is no broken line";
-  // With a few evaluations more than its starts the search has better ones than it would have by itself.
+  // A search with a few evaluations more than its starts has better ones than it would have by itself.
   done(optimize({"--out", "with", "--budget", "30", "--waveform", "knots:12", "--start", "one"}));
   done(optimize({"--out", "without", "--budget", "30", "--waveform", "knots:12"}));
   const auto least = [&](const char* out) {

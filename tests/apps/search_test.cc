@@ -1,4 +1,4 @@
-// What a search leaves behind: when it ends, when it is interrupted, when it is killed.
+// Tests what a search leaves behind: when it ends, when it is interrupted, when it is killed.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-// In a window that holds every landing a search may choose, a quarter of the scene's own.
+// The window holds every landing a search may choose, and is a quarter of the scene's own.
 const std::vector<std::string> quick_search{"gold.toml", "--quiet", "--set", "simulate.duration=150 us"};
 
 std::vector<std::string> words(const std::string& verb, std::vector<std::string> more) {
@@ -36,7 +36,7 @@ Outcome search(const Workplace& here, const std::string& out, std::vector<std::s
 
 json result(const Workplace& here, const std::string& out) { return json::parse(read(here.path() / out / "result.json")); }
 
-// What may differ between two runs of one search: how long they took and how they were called.
+// Removes what may differ between two runs of one search: how long they took and how they were called.
 void forget_circumstances(json& j) {
   if (j.is_object()) {
     for (const char* key : {"wall_s", "command", "reproduce"}) j.erase(key);
@@ -125,7 +125,7 @@ TEST_F(Search, IsNotExportedOnceASimulationHasLeftItsResultInTheFolder) {
   EXPECT_EQ(here->run({"export", "mixed"}).out, read(here->path() / "mixed/best.csv"));
   ASSERT_EQ(here->run({"simulate", "gold.toml", "--quiet", "--out", "mixed"}).status, 0);
   EXPECT_EQ(here->run({"export", "mixed"}).out, here->run({"export", "gold.toml"}).out);
-  fs::remove(here->path() / "mixed/result.json");  // as a search that was killed leaves its folder
+  fs::remove(here->path() / "mixed/result.json");  // a killed search leaves its folder so
   EXPECT_EQ(here->run({"export", "mixed"}).out, read(here->path() / "mixed/best.csv"));
 }
 
@@ -391,7 +391,7 @@ TEST(EarlierSearch, KeepsItsResultsUntilTheNextHasItsOwn_slow) {
   EXPECT_EQ(left, expected);
 }
 
-// A search over devices that differ.
+// A search over varied devices.
 const std::vector<std::string> over_devices{"--robust", "cvar:0.9", "--samples", "16", "--constrain", "t_i < 60 us"};
 
 TEST(RobustSearch, LeavesWhatRobustnessFindsAgain_slow) {
@@ -424,7 +424,7 @@ TEST(RobustSearch, LeavesWhatRobustnessFindsAgain_slow) {
   EXPECT_NE(o.out.find("Searched over 16 devices"), std::string::npos) << o.out;
 }
 
-// A few modes and devices, and no race: the drawing's candidates are ranked again.
+// A few modes and devices, and no race: the candidates of the nominal design are ranked again.
 const std::vector<std::string> for_few_devices{"--robust", "auto",  "--samples",         "100",   "--budget",
                                                "600",      "--set", "structure.modes=2", "--set", "simulate.accuracy=1e-3"};
 
@@ -450,7 +450,7 @@ TEST(SearchForDevices, LeavesTheDrawingAndWhatDevicesGet_optimized) {
   EXPECT_EQ(found["devices"]["count"], 100);
   EXPECT_EQ(found["devices"]["rows"][0]["name"], "plain step");
   EXPECT_TRUE(found["devices"]["better_than_plain_step"]);
-  // Both waveforms simulate to the figures that are told.
+  // Both waveforms simulate to the reported figures.
   for (const auto& [scene, told] : {std::pair("best", found["metrics"]), std::pair("drawing", found["drawing"]["metrics"])}) {
     const Outcome again = here.run({"simulate", std::string("out/") + scene + ".toml", "--json", "-", "--quiet"});
     const json own = json::parse(again.out)["metrics"];
@@ -550,7 +550,7 @@ TEST(SearchForDevices, SaysThatTheSpreadIsAssumed_optimized) {
 
 TEST(RobustSearch, DrivesDevicesBySourcesThatErr_slow) {
   const Workplace here;
-  std::string scene = edited(shipped("mem-gold.toml"), "accuracy = 1e-6", "tolerance = 1e-5");  // that of robustness
+  std::string scene = edited(shipped("mem-gold.toml"), "accuracy = 1e-6", "tolerance = 1e-5");  // tolerance of robustness
   scene +=
       "\"driver.main.gain\" = { distribution = \"normal\", cov = \"0.5 %\" }\n"
       "\"driver.main.offset\" = { distribution = \"uniform\", half_width = \"20 mV\" }\n"
@@ -661,7 +661,7 @@ TEST(Robustness, LeavesTheWorstDevicesOfTheBox) {
   EXPECT_LE(box["closings"], 1800) << "as --help says";
   const Outcome latest = here.run({"simulate", "out/box-t_i.toml", "--quiet", "--json", "-"});
   ASSERT_EQ(latest.status, 0) << latest.err;
-  constexpr double integrated_with = 1e-4;  // by another tolerance
+  constexpr double integrated_with = 1e-4;  // error of another tolerance
   const double first_contact = box["figures"]["initial_contact_time_s"]["most"]["value"];
   EXPECT_NEAR(json::parse(latest.out)["metrics"]["initial_contact_time_s"].get<double>(), first_contact,
               integrated_with * first_contact);

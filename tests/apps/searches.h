@@ -20,10 +20,10 @@ inline const std::vector<std::string> quick_closings{"--set", "structure.modes=2
                                                      "--set", "simulate.duration=150 us",    "--set", "waveform.main.level=18 V",
                                                      "--set", "driver.main.max_voltage=40 V"};
 
-/// In place of some of them where there is to be time to kill a search.
+/// Replaces some of them where there is to be time to kill a search.
 inline const std::vector<std::string> slower{"--set", "structure.modes=8"};
 
-/// On the nominal device, where nothing else is asked for.
+/// Searches for the nominal device, unless `more` asks for others.
 inline std::vector<std::string> optimize(std::vector<std::string> more) {
   std::vector<std::string> words{"optimize", "gold.toml", "--quiet"};
   words.insert(words.end(), quick_closings.begin(), quick_closings.end());
@@ -32,7 +32,7 @@ inline std::vector<std::string> optimize(std::vector<std::string> more) {
   return words;
 }
 
-/// What may differ between two runs of one search: how long they took and how they were called.
+/// Removes what may differ between two runs of one search: how long they took and how they were called.
 inline void forget_circumstances(json& j) {
   if (j.is_object()) {
     for (const char* key : {"wall_s", "command", "reproduce"}) j.erase(key);

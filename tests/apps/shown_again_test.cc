@@ -13,7 +13,7 @@ namespace softland {
 namespace {
 
 struct Run {
-  const char* what;  ///< of the verb whose JSON it is
+  const char* what;  ///< verb whose JSON it is
   std::vector<std::string> words;
   std::vector<std::string> pages = {};  ///< files of out that are made again
 };
@@ -69,7 +69,7 @@ TEST_P(EveryJson, IsShownAgainWithItsPages_long) {
     EXPECT_THAT(here.run({"report", "run.json"}).err, testing::HasSubstr("\"store\" must name the store of the exploration"));
     return;
   }
-  // What a search says of its devices, and of a part of them, comes of the whole of them.
+  // The search's statements on its devices, and on a part of them, come of the whole of them.
   EXPECT_TRUE(first.out.starts_with(findings(again.out).substr(0, again.out.size() - 1))) << first.out << "\nagain:\n"
                                                                                           << again.out;
   if (pages.empty()) return;

@@ -253,7 +253,7 @@ TEST_F(Stores, AreOfNoMorePartsThanTheStudyHasPoints) {
   EXPECT_FALSE(fs::exists(at("softland-out.sqlite")));
 }
 
-// What a damaged store holds is told by every verb that reads it, as bad input.
+// Every verb that reads a damaged store reports it as bad input.
 TEST_F(Stores, ThatAreDamagedAreBadInputToEveryVerb) {
   ASSERT_EQ(
       here.run({"explore", "gold.toml", "--vary", "waveform.main.level=20 V:24 V:3", "--out", "sound.sqlite", "--quiet"}).status,
@@ -327,7 +327,7 @@ TEST_F(SlurmVerb, PrintsAScriptThatASubmissionRunsToTheBitsOfOneRun) {
   ASSERT_EQ(here.run({"explore", "map.toml", "--out", "whole.sqlite", "--quiet"}).status, 0);
   EXPECT_EQ(dump(at(folder) / "map.sqlite"), dump(at("whole.sqlite")));
   EXPECT_EQ(test::rows_in(at("whole.sqlite")).size(), 11u);
-  // What stands there is not replaced, and nothing is submitted for it.
+  // The existing file is not replaced, and nothing is submitted for it.
   fs::remove(at("asked.txt"));
   EXPECT_NE(submitted(), 0);
   EXPECT_THAT(read(at("log.txt")), HasSubstr("map.sqlite exists already"));

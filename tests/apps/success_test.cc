@@ -1,4 +1,4 @@
-// What is told as a success is one: exit statuses and first lines of what does not last, is refused, or gains nothing.
+// Tests that a reported success is one: exit statuses and first lines of what does not last, is refused, or gains nothing.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-// A nickel bridge that touches at its centre. From 66.1 V on the electrode, long to both sides, pulls it through there.
+// A nickel bridge that touches at its centre. It collapses there onto the electrode, long to both sides, from 66.1 V on.
 const std::string bridge = [] {
   std::string text(test::nickel_bridge);
   for (const auto& [from, to] : {std::pair("modes = 5", "modes = 4"),
@@ -200,7 +200,7 @@ TEST(NotFinite, IsRefusedByEveryVerbWithItsKey) {
     EXPECT_EQ(here.run({"limit", "gold.toml", "--impact-velocity", speed}).status, 2) << speed;
 }
 
-// Of devices of which too many cannot be, no waveform can be told from another.
+// A search cannot tell one waveform from another if too many of the devices cannot be built.
 TEST(Success, OfARobustSearchIsNotThatOfDevicesThatAllFail_optimized) {
   const Workplace here;
   const std::string text = shipped("mem-gold.toml");
@@ -268,7 +268,7 @@ TEST(SetElement, OfAListIsThatOfTheWholeList_optimized) {
   EXPECT_EQ(modes("electrode.main.span[2]=2 V").err.substr(0, 47), "softland: --set electrode.main.span[2]=2 V: val");
 }
 
-// What a run writes does not grow with it: a beam in vacuum that swings, and bounces, for a thousand periods.
+// Files do not grow with the run: a beam in vacuum that swings, and bounces, for a thousand periods.
 TEST(LongRuns, LeaveFilesThatCanBeReadAgain_optimized) {
   const Workplace here;
   const std::string gold = shipped("mem-gold.toml");

@@ -193,7 +193,7 @@ TEST_F(TuneVerb, LandsADeviceAndLeavesWhatItKnows_optimized) {
   EXPECT_THAT(exported.err, HasSubstr("this waveform was tuned on one device"));
 }
 
-// What a power cut leaves is gone on with, to the bits of a run that nothing interrupts.
+// A tuning goes on after a power cut, to the bits of a run that nothing interrupts.
 TEST_F(TuneVerb, GoesOnAfterAKillToTheSameBits_optimized) {
   ASSERT_EQ(here.run(words(device(), {"--closings", "4"})).status % 4, 0);
   const std::string whole = read(here.path() / "out/closings.jsonl");
@@ -362,7 +362,7 @@ TEST_F(TuneVerb, WritesItsShotsInEveryFormatOfExport_optimized) {
     const double held = tune_json()["next"]["waveforms"]["main"].back()[1].get<double>();
     const json limits =
         json::parse(here.run({"check", "out/best.toml", "--json", "-", "--quiet"}).out)["scene"]["driver"]["main"];
-    constexpr double highest_code = 16383, of_samples = 2e-4;  // of the range, 14 bit
+    constexpr double highest_code = 16383, of_samples = 2e-4;  // code of 14 bit; error as a share of the range
     const double highest = std::stod(limits["max_voltage"].get<std::string>());
     const double last = channel["last"].get<double>() * (format == "codes" ? highest / highest_code : 20);
     EXPECT_NEAR(last, held, of_samples * highest) << format;
@@ -384,7 +384,7 @@ TEST_F(TuneVerb, WritesItsShotsInEveryFormatOfExport_optimized) {
   EXPECT_THAT(shot_in("rigol", sources).err, HasSubstr("--format rigol: must be one of csv"));
 }
 
-// What landed once and bounces when it is fired again is no success, and what lands then is one. Touches are answered as they are
+// A waveform that landed once and bounces when it is fired again is no success; one that lands then is. Touches are answered as
 // expected, so that one that landed stays the best known.
 TEST_F(TuneVerb, FiresTheWaveformKeptOnceMoreBeforeItEnds_optimized) {
   constexpr int most = 6;

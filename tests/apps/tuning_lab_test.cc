@@ -1,4 +1,4 @@
-// What fires the shots of a tuning, and what keeps their records: commands that answer, err, die and hang.
+// Tests the commands that fire the shots of a tuning, and the keeper of their records: commands that answer, err, die and hang.
 #include "apps/tuning_lab.h"
 
 #include <gmock/gmock.h>
@@ -26,7 +26,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-// As a program of ours: writing to a closed pipe is an error of that write.
+// SIGPIPE is ignored as in a program of ours: writing to a closed pipe is an error of that write.
 class TuningLabs : public testing::Test {
  protected:
   static void SetUpTestSuite() { std::signal(SIGPIPE, SIG_IGN); }

@@ -13,7 +13,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double rounding = 1e-13;  // of matrices of order 1 and size 3
+constexpr double rounding = 1e-13;  // error for matrices of order 1 and size 3
 
 const MatrixXd definite = (MatrixXd(3, 3) << 4, 1, 0.5, 1, 3, -0.25, 0.5, -0.25, 2).finished();
 const VectorXd right = (VectorXd(3) << 1, -2, 0.5).finished();
@@ -42,7 +42,7 @@ TEST(Decompositions, FitWhatCannotBeMet) {
   tall << 1, 0, 1, 1, 1, 2, 1, 3, 1, 5;
   const VectorXd heights = (VectorXd(5) << 1, 2, 2, 5, 4).finished();
   const VectorXd left = tall * least_squares(tall, heights) - heights;
-  EXPECT_LT((tall.transpose() * left).norm(), 1e2 * rounding);  // what is left stands on every column
+  EXPECT_LT((tall.transpose() * left).norm(), 1e2 * rounding);  // the residual is orthogonal to every column
   MatrixXd twice(5, 2);
   twice << tall.col(1), tall.col(1);
   EXPECT_LT((twice.transpose() * (twice * least_squares(twice, heights) - heights)).norm(), 1e2 * rounding);
@@ -59,7 +59,8 @@ TEST(Decompositions, OfTwoMatricesSatisfyTheirDeterminant) {
   MatrixXd other = MatrixXd::Identity(3, 3);
   other(0, 0) = 2;
   const VectorXd values = generalized_eigenvalues(definite, other);
-  for (const double k : values) EXPECT_LT(std::abs((definite - k * other).determinant()), 1e-11) << k;  // of terms of order 50
+  for (const double k : values)
+    EXPECT_LT(std::abs((definite - k * other).determinant()), 1e-11) << k;  // the determinant has terms of order 50
 }
 
 TEST(Decompositions, MakeBasesOrthonormal) {

@@ -32,7 +32,7 @@ bool wait_until(const std::function<bool()>& holds, std::chrono::steady_clock::t
   return holds();
 }
 
-/// How many threads are between entry and exit at once.
+/// Counts the threads that are between entry and exit at once.
 class Crowd {
  public:
   void enter() {
@@ -239,7 +239,7 @@ TEST(RunTasks, RefusesToRunOnNoThread) {
   EXPECT_EQ(message_of([] { run_tasks(1, 0, [](std::size_t) {}); }), "jobs = 0 must be at least 1");
 }
 
-/// Lets this process start at most so many further threads. As root it becomes another user first: root has no limit.
+/// Lets this process start at most `further` more threads. As root it becomes another user first: root has no limit.
 void limit_threads(rlim_t further) {
   constexpr uid_t nobody_else = 54'321;
   if (geteuid() == 0 && setuid(nobody_else) != 0) std::_Exit(2);

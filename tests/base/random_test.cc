@@ -23,7 +23,7 @@ TEST(SplitMix64, GivesThePublishedNumbers) {
   }
 }
 
-// What earlier versions drew: a seed that someone has written down must go on to mean the same search.
+// The numbers are those of earlier versions: a seed that someone has written down must go on to mean the same search.
 TEST(Random, GivesTheNumbersItAlwaysGave) {
   constexpr std::uint64_t largest = std::numeric_limits<std::uint64_t>::max();
   EXPECT_EQ(random_bits(1, Stream::library_seed, 0), 0xca32e53bf572740bu);
@@ -66,7 +66,7 @@ TEST(Random, NormalNumbersAreQuantilesOfUniformOnes) {
   for (std::uint64_t counter = 0; counter < 10'000; ++counter) {
     const double x = random_normal(7, Stream::normals, counter);
     const double probability = random_uniform(7, Stream::normals, counter);
-    constexpr double kept_bits = 0x1p-52;  // of the uniform number
+    constexpr double kept_bits = 0x1p-52;  // rounding of the uniform number
     ASSERT_NEAR(std::erfc(-x / std::sqrt(2.0)) / 2, probability, 4 * kept_bits) << x;
   }
 }

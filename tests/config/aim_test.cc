@@ -1,4 +1,4 @@
-// What a search minimises, from text.
+// Tests the aim of a search, read from text.
 #include "config/aim.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a robust search is asked for: read, and refused with the reason.
+// Tests the criterion of a robust search: it is read, or refused with the reason.
 #include "config/criterion.h"
 
 #include <gtest/gtest.h>

@@ -175,7 +175,7 @@ TEST(Drives, AnAmplifierIsNoGain) {
     EXPECT_THAT(message(text(fmt::format("gain = {}\n", gain))),
                 testing::AllOf(testing::HasSubstr("x.toml:42: driver.main.gain"), testing::HasSubstr("must be in [0.5, 2]"),
                                testing::HasSubstr("key amplifier")));
-    // The same of devices that differ by it.
+    // The message is the same for devices that vary in it.
     const std::string spread =
         fmt::format("[spread]\n\"driver.main.gain\" = {{ distribution = \"empirical\", values = [\"{} %\", \"{} %\"] }}\n",
                     99 * gain, 101 * gain);
@@ -263,7 +263,7 @@ TEST(Drives, ATableStandsInTheSceneOrInAFileBesideIt) {
   const auto file_table = std::get<Table>(scene.drives(pull_in).at("main").waveform.value());
   EXPECT_EQ(file_table.time, inline_table.time);
   EXPECT_EQ(file_table.voltage, inline_table.voltage);
-  // What is resolved no longer needs the file.
+  // The resolved scene no longer needs the file.
   std::filesystem::remove(directory / "drive.csv");
   const Scene again =
       read_scene(SceneFile::parse(resolved(with_main("family = \"table\"\ntimes = [\"0 s\", \"10 us\"]\nvoltages = [\"0 V\", "
@@ -288,7 +288,7 @@ TEST(Drives, AnElectrodeIsLimitedByDefaultWhereItsPullInIsKnown) {
   EXPECT_EQ(limits.min_voltage, 0);
   EXPECT_EQ(limits.max_voltage, 1.5 * 50) << "of the larger of Vsp and Vdp";
   EXPECT_TRUE(std::isinf(limits.max_slew));
-  // Where more than the static voltage closes the switch from rest, Vdp is the larger one.
+  // Vdp is the larger one where more than the static voltage closes the switch from rest.
   const std::map<std::string, PullInVoltages> slow{{"main", {.static_pull_in = 30, .dynamic_pull_in = 40}}};
   EXPECT_EQ(scene.drives(slow).at("main").limits.value().max_voltage, 1.5 * 40);
   const Scene above = with_main("family = \"step\"\nlevel = \"1.2 Vsp\"\n");

@@ -1,4 +1,4 @@
-// Scenes and options that nobody means well with: each is taken, or refused with place, key, value and rule in a message of one
+// Hostile scenes and options: each is taken, or refused with place, key, value and rule in a message of one
 // readable line, quickly.
 #include <fmt/format.h>
 #include <gmock/gmock.h>

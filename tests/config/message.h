@@ -1,4 +1,4 @@
-// What a user is told about a scene.
+// Messages about a scene, for tests.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace softland {
 
-/// What the user is told about this text and these options; empty when nothing is wrong.
+/// The message about this text and these options; empty when nothing is wrong.
 inline std::string message(const std::string& text, const std::vector<std::string>& options = {}) {
   try {
     SceneFile file = SceneFile::parse(text, "x.toml");

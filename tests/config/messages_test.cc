@@ -36,7 +36,7 @@ const std::string main_step = "family = \"step\"\nlevel = \"1.25 Vdp\"";
 const std::string harmonic = "family = \"harmonic\"\n";
 const std::string table = "family = \"table\"\n";
 
-/// As a message lists them.
+/// The families as a message lists them.
 std::string listed_families() {
   std::string all;
   for_each_family(

@@ -82,7 +82,7 @@ TEST(Plan, InMultiplesOfAPullInVoltageKeepsThem) {
       1.05 * 40);
 }
 
-// Of a place that is a length a percentage is of that length; of one that is a percentage it is one of the beam's.
+// A percentage varies a place that is a length by a share of that length, and one that is a percentage by one of the beam's.
 TEST(Plan, OfAPlaceVariesAsItIsWritten) {
   const Plan of_length = plan({"electrode.main.span[2]=50 %:100 %:2"});
   EXPECT_TRUE(of_length.variables()[0].is_factor);
@@ -242,7 +242,7 @@ TEST(Plan, RefusesWhatAFileSaysWrongWithItsPlace) {
       return error.what();
     }
   };
-  const auto line = 4 + std::count(small_scene.begin(), small_scene.end(), '\n');  // what follows the scene
+  const auto line = 4 + std::count(small_scene.begin(), small_scene.end(), '\n');  // line that follows the scene
   const std::string place = fmt::format("map.toml:{}: plan.", line);
   EXPECT_EQ(told("vari = 1\n"), place + "vari = 1: unknown key (did you mean 'vary'?)");
   EXPECT_EQ(told("vary = [3]\n"), place + "vary = [3]: value 1: expected a text in quotes");

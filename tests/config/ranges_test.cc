@@ -68,7 +68,7 @@ struct Example {
     path_ = join_path(section.is_named ? fmt::format("{}.{}", section.name, entry_) : std::string(section.name), key.name);
   }
 
-  /// What the reader says to this value as TOML; empty when it takes it.
+  /// The reader's message for this value as TOML; empty when it takes it.
   [[nodiscard]] std::string answer(const std::string& value) const {
     const SceneFile file = SceneFile::parse(fmt::format("{}{} = {}\n", head_, key_.name, value), "x.toml");
     try {

@@ -1,4 +1,4 @@
-// What the keys of a scene are bound to. The list of keys is the schema itself.
+// Tests the bindings of the keys of a scene. The list of keys is the schema itself.
 #include "config/schema.h"
 
 #include <fmt/format.h>
@@ -79,7 +79,7 @@ TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {
   }
 }
 
-/// How many members of a scene under these laws the keys set.
+/// Counts the members of a scene under these laws that the keys set.
 int members_set(const ContactModel& contact, const Gas& gas) {
   Scene scene = whole_scene();
   for (Contact& one : scene.device.contacts) one.model = contact;

@@ -43,7 +43,7 @@ TEST(Spread, InTheUnitOfTheKeyIsItsValue) {
 "gap.contact" = { distribution = "triangular", low = "1.8 um", high = "2.1 um" }
 "piezo.d31" = { distribution = "normal", standard_deviation = "9 pm/V", truncate_low = "-190 pm/V" }
 )");
-  ASSERT_EQ(spread.variables.size(), 4U);  // by name
+  ASSERT_EQ(spread.variables.size(), 4U);  // they are ordered by name
   const auto& [gap, d31, thickness, modulus] =
       std::tie(spread.variables[0], spread.variables[1], spread.variables[2], spread.variables[3]);
   for (const SpreadVariable& v : spread.variables) EXPECT_FALSE(v.is_factor) << v.name;
@@ -108,7 +108,7 @@ gaps = { keys = ["gap.electrode", "gap.contact"], distribution = "normal", cov =
   EXPECT_DOUBLE_EQ(film_of(*scene.device.gas)->viscosity, 1.5 * 1.86e-5);
 }
 
-// As --vary names them.
+// The keys are those of --vary.
 TEST(Spread, TakesTheEndsOfASpan) {
   const DeviceSpread spread = spread_of(R"(
 "electrode.main.span[2]" = { distribution = "normal", standard_deviation = "1 um" }
@@ -244,7 +244,7 @@ trigger = { keys = ["driver.main.delay", "driver.piezo.delay"], distribution = "
 correlation = [["amplifier", "trigger", 0.5]]
 )");
   EXPECT_TRUE(spread.varies_drives());
-  ASSERT_EQ(spread.variables.size(), 5U);  // by name
+  ASSERT_EQ(spread.variables.size(), 5U);  // they are ordered by name
   const SpreadVariable &gain = spread.variables[0], &offset = spread.variables[1], &jitter = spread.variables[2],
                        &delay = spread.variables[4];
   EXPECT_TRUE(gain.is_factor);
@@ -260,7 +260,7 @@ correlation = [["amplifier", "trigger", 0.5]]
   EXPECT_NEAR(offset.distribution.support().low, -0.02, rounding);
   EXPECT_EQ(offset.keys[0].unit, "V");
   EXPECT_EQ(offset.keys[0].refusal(-0.1), "") << "an offset may be negative";
-  // Of one error several drives have the same value.
+  // Several drives have the same value of one error.
   ASSERT_EQ(delay.keys.size(), 2U);
   EXPECT_EQ(DeviceSpread::value(delay, delay.keys[0], 3e-8), 3e-8);
   EXPECT_EQ(DeviceSpread::value(delay, delay.keys[1], 3e-8), 3e-8);

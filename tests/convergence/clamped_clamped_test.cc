@@ -1,5 +1,6 @@
 // Pull-in of beams between two clamps against an independent program: the integral equation of the beam (Green's function, no
-// modes) with displacement control; with residual stress and stretching, published beams by shooting (fourth-order Runge-Kutta).
+// modes) with displacement control. Beams with residual stress and stretching are published ones, by shooting (Runge-Kutta of
+// order 4).
 #include <gtest/gtest.h>
 
 #include <array>

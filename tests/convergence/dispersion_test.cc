@@ -134,7 +134,7 @@ TEST(Dispersion, DetachmentLengthsOfFreestandingBeamsAreTheReference) {
 }
 
 TEST(Dispersion, AtRestTheBendingBalancesTheForce) {
-  // At a small parameter the tip hangs down by al4 / 8 of the gap, as under a uniform load.
+  // The tip hangs down at a small parameter by al4 / 8 of the gap, as under a uniform load.
   Device d = casimir_cantilever();
   d.structure.length *= std::pow(1e-4 / casimir_parameter(d), 0.25);
   d.electrodes[0].end = d.structure.length;

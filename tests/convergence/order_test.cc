@@ -26,7 +26,7 @@ double pull_in_beta(int modes, double points_per_length = 48) {
 
 TEST(Order, OfTheModesIsSeven) {
   // The modal forces of a load that does not vanish at the clamp fall like 1/N; the null vector of the fold, whose load vanishes
-  // there together with its slope, like 1/N^7. What N modes leave out therefore sums to 1/N^7.
+  // there together with its slope, like 1/N^7. The contributions beyond N modes therefore sum to 1/N^7.
   const double exact = pull_in_beta(20);
   const double four = std::abs(pull_in_beta(4) - exact), eight = std::abs(pull_in_beta(8) - exact);
   const double order = std::log2(four / eight);
@@ -82,7 +82,7 @@ double slope(const std::vector<double>& tolerances, const std::vector<double>& e
 TEST(Order, ErrorsOfAClosingAreProportionalToTheTolerance) {
   // A run is a chain of smooth stretches, restarted at every make and break: no event costs an order.
   const std::vector<double> tolerances{1e-7, 3e-8, 1e-8, 3e-9, 1e-9, 3e-10, 1e-10, 1e-11, 1e-12};
-  // What a user may expect of a tolerance: t_i and v_i better than it, B_H within a hundred times it. Measured: 0.02, 1 and 6.
+  // A user may expect of a tolerance: t_i and v_i better than it, B_H within a hundred times it. Measured: 0.02, 1 and 6.
   constexpr double of_contact_time = 0.1, of_impact_velocity = 3, of_bounce_height = 100;
   const Figures exact = closing({}, 1e-13);
   std::vector<double> bounce_height;

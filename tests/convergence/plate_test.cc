@@ -1,6 +1,6 @@
 // The rigid plate on springs against what is known of it exactly: pull-in in closed form, switching times as quadratures.
 //
-// In units of the gap g, sqrt(m / k) and with lambda = eps0 A V^2 / (2 k g^3):  x'' + x' / Q + x = lambda / (1 - x)^2.
+// The units are the gap g and sqrt(m / k), and lambda = eps0 A V^2 / (2 k g^3):  x'' + x' / Q + x = lambda / (1 - x)^2.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -61,7 +61,7 @@ TEST(Plate, DispersionForcesCollapseItAtAFifthAndAQuarterOfTheGap) {
   const double spring = part_of<Plate>(d.structure).stiffness * plate_gap, area = plate_side * plate_side;
   d.dispersion = Dispersion{.model = DispersionModel::casimir};
   const StaticPullIn retarded = static_pull_in(Switch(d), 0);
-  const double casimir = IdealCasimir{}.pressure(plate_gap) * area / spring;  // at factor 1
+  const double casimir = IdealCasimir{}.pressure(plate_gap) * area / spring;  // force at factor 1
   EXPECT_NEAR((1 + retarded.voltage) * casimir, 256.0 / 3125, factor_digits);
   EXPECT_NEAR(retarded.deflection, plate_gap / 5, deflection_digits * plate_gap);
   d.dispersion = Dispersion{.model = DispersionModel::van_der_waals, .hamaker_constant = 4e-19};
@@ -127,7 +127,8 @@ TEST(Plate, ClosesInTheTimeOfItsQuadratureWithTheSpeedOfItsEnergy) {
 }
 
 TEST(Plate, HeavilyDampedLingersAtTheGhostOfTheFold) {
-  // Without inertia x' k/c = -x + lambda / (1 - x)^2 with lambda = 4/27 (1 + eps); T k/c goes as 2 pi / sqrt(3 eps).
+  // The motion without inertia is x' k/c = -x + lambda / (1 - x)^2 with lambda = 4/27 (1 + eps); T k/c goes as 2 pi / sqrt(3
+  // eps).
   constexpr double inertia = 2e-4;  // relative: what a damping ratio of 100 leaves of it, and the last 2 % of the gap
   constexpr double damping_ratio = 100;
   struct Row {

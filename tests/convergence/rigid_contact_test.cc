@@ -20,7 +20,7 @@ using namespace literals;
 
 constexpr double gap = 1_um, mass = 1e-9, stiffness = 4e-5, volts = 1e8_V;
 constexpr double electrode = 100, area = 1e-8;
-constexpr double digits = 1e-7;  // of the electrode's force along 1 um of 100 m, 2e-8 are not constant
+constexpr double digits = 1e-7;  // error: 2e-8 of the electrode's force along 1 um of 100 m are not constant
 
 /// A plate under a constant force, its electrode being far away, on springs that carry a thousandth of it.
 Device falling(double restitution) {
@@ -30,7 +30,7 @@ Device falling(double restitution) {
           .contacts = {Contact{.model = RigidStop{.restitution = restitution}}}};
 }
 
-// At rest, and at the plane; where the two are the same (no springs) the rebounds' times are a geometric series too.
+// Accelerations at rest, and at the plane; where both are the same (no springs) the rebounds' times are a geometric series too.
 constexpr double at_rest = vacuum_permittivity * area * volts * volts / (2 * electrode * electrode) / mass;
 constexpr double at_plane = at_rest - stiffness / mass * gap;
 const double omega = std::sqrt(stiffness / mass);
@@ -166,7 +166,7 @@ TEST(RigidContact, LeavesAndReturnsWithEveryDipOfADither) {
                                                                     .phase = -angular_frequency * begin}})};
   const Trajectory t = simulate_closing(model, drives, {.duration = 160_us, .tolerance = 1e-10});
   ASSERT_EQ(t.status, Status::done);
-  // How often it comes to rest between the dips is a matter of chance, but for the first time.
+  // The number of rests between the dips is a matter of chance, but for the first time.
   EXPECT_GE(t.touches.size(), 5u);
   EXPECT_TRUE(std::any_of(t.touches.begin(), t.touches.end(), [](const Touch& one) { return one.end > one.begin; }));
   EXPECT_LT(t.work.steps, 10000);

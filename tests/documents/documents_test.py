@@ -105,7 +105,7 @@ def typed(text):
     code = blocks(text, "sh") + blocks(text, "") + re.findall(r"`([^`\n]+)`", FENCE.sub("", text))
     for line in "\n".join(code).replace("\\\n", " ").splitlines():
         line = re.sub(r"\s#\s.*", "", line)
-        # What is quoted is an argument, or a command that another one runs.
+        # Quoted text is an argument, or a command that another one runs.
         quoted = [text for text in re.findall(r'"([^"]*)"', line) if text.startswith("softland ")]
         for command in re.split(r"&& |\| ", re.sub(r'"[^"]*"', '""', line)) + quoted:
             words = re.match(r"\s*(?:\./)?softland ([a-z][a-z-]*)\b(.*)", command)
@@ -298,7 +298,7 @@ def published(program):
             yield f"results/published.md has no figure that check prints of {scene.name}"
 
 
-# What a link in a document leads to is there: files, and headings as GitHub names them.
+# Every link in a document leads to something: files, and headings as GitHub names them.
 
 
 def anchors(text):
@@ -328,7 +328,7 @@ def links(_):
         yield f"only {count} links are found in the documents"
 
 
-# What is cited is this version, under its licence.
+# CITATION.cff names this version, under its licence.
 
 
 def citation(program):

@@ -99,7 +99,7 @@ inline std::string sample_comsol(bool is_csv, double imaginary = 0) {
                  : "% x                       y                        z                        w (m) @ freq=25000       w (m) @ "
                    "freq=156000\n";
   for (const double x : sample_positions()) {
-    // Of sizes that are not those of a mass.
+    // Sizes are not those of a mass.
     const std::string first = number(-3e-12 * sample_shape(0, x)), second = number(7e-13 * sample_shape(1, x));
     text += is_csv ? fmt::format("{:.15g},0,0,{},{}\n", x * 1e6, first, second)
                    : fmt::format("{:<25.15g}{:<25}{:<25}{:<25} {}\n", x * 1e6, 0, 0, first, second);

@@ -62,7 +62,7 @@ TEST(ModeTable, IsTheSameFromEveryFormat) {
     for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(table.positions[i], x[i], sample.digits * test::sample_length);
     for (std::size_t k = 0; k < 2; ++k) {
       EXPECT_NEAR(table.frequencies[k], test::sample_frequencies[k], sample.digits * test::sample_frequencies[k]);
-      // What is normalised by a mass is so up to what a cubic of five points tells of its integral.
+      // Normalisation by a mass is exact up to what a cubic of five points tells of its integral.
       const double scale = sample.keys.mass ? table.shapes[k].back() / test::sample_shape(k, test::sample_length) : 1;
       EXPECT_GT(scale, 0);
       for (std::size_t i = 0; i < x.size(); ++i)
@@ -132,7 +132,7 @@ TEST(ModeTable, RefusesWithTheRule) {
     change(keys);
     return refusal_of(sample_named(name).content, keys);
   };
-  // What a file does not say.
+  // These files lack something.
   EXPECT_THAT(keyed("comsol", [](ModeKeys& k) { k.mass.reset(); }), HasSubstr("structure.mass gives that of the structure"));
   EXPECT_THAT(keyed("frd", [](ModeKeys& k) { k.mass = 1e-12; }),
               HasSubstr("structure.mass: the modes of the file are mass-normalised already"));
@@ -150,11 +150,11 @@ TEST(ModeTable, RefusesWithTheRule) {
   EXPECT_THAT(refusal_of(test::sample_uff(0), sample_named("uff").keys), HasSubstr("structure.mass"));
   EXPECT_THAT(refusal_of(test::sample_uff(2, false), sample_named("uff").keys),
               HasSubstr("modes of 25 kHz, 156 kHz at 6 nodes, but no positions"));
-  // What is no mode.
+  // These files hold no modes.
   EXPECT_THAT(edited("comsol", "w (m)", "acpr.p_t (Pa)"), HasSubstr("\"acpr.p_t (Pa) @ freq=25000\" is no displacement"));
   EXPECT_THAT(refusal_of("$SENE    \n      25     1.0000\n", {}), HasSubstr("(.pcs), no modes; they stand in the .rom"));
   EXPECT_THAT(refusal_of("time_s,main\n0,1\n", {}), HasSubstr("no known file of modes"));
-  // What contradicts itself.
+  // These files contradict themselves.
   EXPECT_THAT(edited("frd", " -1         7 2.0", " -1        7 2.0"),
               HasSubstr("the line of a node must have 49 columns, and has 48"));
   EXPECT_THAT(edited("frd", "MODAL", "XXXXX"), HasSubstr("accepted")) << "the kind of step is told by its number";

@@ -73,7 +73,7 @@ void truncate_everywhere(std::size_t most) {
   }
 }
 
-/// How many rows of either are left when the rows that they begin and end with alike are taken away.
+/// Counts the rows of either that are left when the rows that they begin and end with alike are taken away.
 std::pair<std::size_t, std::size_t> different_rows(const Recording& a, const Recording& b, bool with_time) {
   std::size_t begin = 0, end = 0;
   const std::size_t least = std::min(a.rows(), b.rows()), channels = a.channels.size();

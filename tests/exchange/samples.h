@@ -21,9 +21,9 @@ struct Sample {
   std::vector<std::string> channels;  ///< their names
   std::vector<std::string> units;
   std::vector<double> times;                ///< [s]
-  std::vector<std::vector<double>> values;  ///< of each channel, in its unit
+  std::vector<std::vector<double>> values;  ///< values of each channel, in its unit
   ReadKeys keys = {};
-  bool times_stand_in_it = true;  ///< rather than follow from an interval
+  bool times_stand_in_it = true;  ///< false if they follow from an interval
   bool times_add_up = false;      ///< a time is relative to that before
 };
 
@@ -242,7 +242,7 @@ inline std::vector<Sample> all_samples() {
                            });
   all.push_back(
       {"picoscope", pico, "PicoScope CSV", {"Channel A", "Channel B"}, {"V", "mV"}, times_of(n, -4, 1, 1e6), levels_of(n, 2)});
-  // As a computer with another language writes it.
+  // The same file from a computer with another language.
   std::string german = replaced(replaced(pico, ",", ";"), ".", ",");
   all.push_back({"picoscope_decimal_comma",
                  german,

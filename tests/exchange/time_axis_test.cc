@@ -31,7 +31,7 @@ void axis_refused(const std::string& text, const std::vector<std::string>& parts
 /// A source of a time axis as a header writes it, and one that contradicts it; the same interval, start or count otherwise.
 struct Contradiction {
   std::string written, contradicting;
-  std::vector<std::string> named;  ///< what the refusal says
+  std::vector<std::string> named;  ///< parts of the refusal's message
 };
 
 /// The sources that a sample of every format has in its header.

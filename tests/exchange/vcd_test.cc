@@ -28,7 +28,7 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 Recording read_dump(const std::string& text, const ReadKeys& keys = {}) { return parse_recording(text, "x.vcd", keys); }
 
-// As sigrok-cli writes a capture of two probes.
+// A capture of two probes as sigrok-cli writes it.
 const std::string of_analyser = R"($date Mon Nov 30 08:00:00 2026 $end
 $version libsigrok 0.5.2 $end
 $comment
@@ -48,7 +48,7 @@ $enddefinitions $end
 #9000
 )";
 
-// As a simulator writes a module in a module: a vector, an integer, a real number, an alias, unknown states.
+// A module in a module as a simulator writes it: a vector, an integer, a real number, an alias, unknown states.
 const std::string of_simulator = R"($comment a test $end
 $timescale
 	10ps

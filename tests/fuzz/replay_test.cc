@@ -27,7 +27,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 class Replay : public ::testing::TestWithParam<Target> {};
 
 TEST_P(Replay, NoKeptInputEndsOtherwiseThanTakenOrRefused) {
-  constexpr std::chrono::seconds longest{5};  // as run_fuzzers allows
+  constexpr std::chrono::seconds longest{5};  // the limit of run_fuzzers
   constexpr std::size_t fewest = 5;
   std::vector<fs::path> files = files_in(source / "tests/fuzz/corpus" / GetParam().name);
   EXPECT_GE(files.size(), fewest);

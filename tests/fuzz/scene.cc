@@ -7,7 +7,7 @@
 namespace softland::fuzz {
 namespace {
 
-/// What `make` gives, or nothing when it refuses.
+/// Returns the result of `make`, or nothing when it refuses.
 template <class Make>
 auto taken(const Make& make) {
   std::optional<decltype(make())> value;

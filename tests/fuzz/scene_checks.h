@@ -1,4 +1,4 @@
-// What must hold of every scene that was read, whatever it was read from.
+// Checks that hold of every scene that was read, whatever it was read from.
 #pragma once
 
 #include "config/scene.h"

@@ -1,5 +1,5 @@
-// Everything that reads text from outside, as functions of that text. libFuzzer calls them with texts of its own making
-// (libfuzzer.cc, run_fuzzers), and the test suite calls them with the kept ones (replay_test.cc).
+// The readers of text from outside, as functions of that text. libFuzzer calls them with texts of its own making (libfuzzer.cc,
+// run_fuzzers). The test suite calls them with the kept ones (replay_test.cc).
 //
 // A target refuses its input with InvalidInput, which it catches itself. Every other exception that leaves it is a find.
 #pragma once
@@ -31,7 +31,7 @@ struct Target {
 inline constexpr std::array targets{Target{"scene", scene},         Target{"set", set},
                                     Target{"units", units},         Target{"table", table},
                                     Target{"recording", recording}, Target{"modes", modes}};
-/// Of what softland writes for itself.
+/// Targets for files that softland writes for itself.
 inline constexpr std::array written_targets{Target{"result", result}, Target{"lines", lines}};
 
 /// Throws logic_error unless `holds`.
@@ -39,7 +39,7 @@ inline void check(bool holds, const std::string& what) {
   if (!holds) throw std::logic_error(what);
 }
 
-/// Whether `read` took its input. Refusing it, with a message, is the only other way out.
+/// Returns true if `read` took its input. Refusing it, with a message, is the only other way out.
 template <class Read>
 bool accepted(const Read& read) {
   try {

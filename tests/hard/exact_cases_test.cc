@@ -58,8 +58,8 @@ TEST(AHairAboveDynamicPullIn, TheClosingTimeGrowsLikeTheLogarithmOfTheHair) {
   double before = 0;
   for (const double hair : {1e-4, 1e-6, 1e-8}) {
     const double time = first_touch(device, dynamic * (1 + hair), 60 / omega);
-    // At the pass the springs win over the field as k does over m elsewhere: a hundredth of the hair is ln(100) / omega later.
-    constexpr double curvature = 5e-3;  // of the pass, where the larger hair still matters
+    // The springs win over the field at the pass as k does over m elsewhere: a hundredth of the hair is ln(100) / omega later.
+    constexpr double curvature = 5e-3;  // effect of the pass's curvature, where the larger hair still matters
     if (before > 0) {
       EXPECT_NEAR((time - before) * omega, std::log(100), curvature * std::log(100)) << hair;
     }
@@ -107,7 +107,7 @@ TEST(APlateWithoutLosses, BouncesBackToItsRestHundredsOfTimes) {
   EXPECT_EQ(c.violations, std::vector<std::string>{});
   ASSERT_GE(c.trajectory.touches.size(), 290u);
   const std::vector<Rebound> all = rebounds(c.trajectory);
-  constexpr double drift = 1e-6;  // of 300 closings at a tolerance of 1e-10
+  constexpr double drift = 1e-6;  // relative drift over 300 closings at a tolerance of 1e-10
   const double spacing = c.trajectory.touches[1].begin - c.trajectory.touches[0].begin;
   for (std::size_t i = 0; i + 1 < all.size(); ++i) {
     EXPECT_NEAR(all[i].height, 3_um, drift * 3_um) << i;
@@ -160,7 +160,7 @@ TEST(AFilmSoThickThatTheMotionCreeps, SlowsAllInProportion) {
     EXPECT_EQ(c.trajectory.status, Status::done) << c.trajectory.message;
     return c.metrics.initial_contact_time;
   };
-  constexpr double inertia = 5e-3;  // of what is left of it at the lower viscosity: it falls with the square
+  constexpr double inertia = 5e-3;  // effect of inertia at the lower viscosity: it falls with the square
   EXPECT_NEAR(closes(1e-2) / closes(3e-3), 10.0 / 3, inertia * 10 / 3);
 }
 
@@ -210,7 +210,7 @@ TEST(AFilmTooThickForAnExplicitMethod, IsLeftToAnImplicitOneOnTheWay) {
     constexpr double close = 2e-5;  // 3e-6 seen
     EXPECT_NEAR(test::landing(t).time, test::landing(expected).time, close * test::landing(expected).time);
     EXPECT_NEAR(test::landing(t).velocity, test::landing(expected).velocity, close * test::landing(expected).velocity);
-    // At its limit of stability the explicit method may part for a moment what creeps together: by less than can be seen.
+    // The explicit method at its limit of stability may part for a moment what creeps together: by less than can be seen.
     EXPECT_EQ(metrics(t, {.significant_rebound = 1e-6 * d.gap.contact}).bounce_count, 0);
     EXPECT_EQ(expected.touches.size(), 1U);
     EXPECT_NEAR(t.points.back().position, expected.points.back().position, close * d.gap.contact);

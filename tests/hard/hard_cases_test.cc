@@ -1,5 +1,5 @@
 // Hard cases, one table: each keeps the invariants of tests/support/invariants.h, and its landing is the same from two
-// integrators and from a run a hundred times tighter. What is known in closed form is in exact_cases_test.cc.
+// integrators and from a run a hundred times tighter. The cases with a closed form are in exact_cases_test.cc.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ struct Case {
   Device device;
   std::vector<Signal> drives;
   double duration = 0;    // [s]
-  std::string ends = {};  // what the message of a run that cannot end well says
+  std::string ends = {};  // part of the message of a run that cannot end well
 };
 
 constexpr char electrode[] = "of the electrode";
@@ -72,7 +72,7 @@ std::vector<Case> cases() {
     d.structure.modes = 12;
     all.push_back({"twelve modes", d, {Signal::constant(step_level)}, 60_us});
   }
-  for (const double dither : {6.0, 600.0}) {  // of the first mode, of which the fourth has 34 times the frequency
+  for (const double dither : {6.0, 600.0}) {  // multiples of the first mode's frequency; that of the fourth is 34 times higher
     const Device d = test::gold_cantilever();
     const double omega = Switch(d).basis().angular_frequencies()[0];
     all.push_back({fmt::format("dither at {:g} times the first mode's frequency", dither),
@@ -172,9 +172,9 @@ std::vector<Case> cases() {
   return all;
 }
 
-// What two runs of one case may differ by.
+// Bounds of the difference between two runs of one case.
 constexpr double close = 1e-4;    // t_i and v_i, relative
-constexpr double apart = 2e-3;    // height of the first rebound: what came before it magnifies what they differ by
+constexpr double apart = 2e-3;    // height of the first rebound: the motion before magnifies the difference
 constexpr double twelfth = 4e-4;  // v_i of twelve modes, the highest of which ring at impact
 
 TEST(HardCases, KeepTheInvariantsAndTheirLandingFromEveryIntegrator) {
@@ -207,7 +207,7 @@ TEST(HardCases, KeepTheInvariantsAndTheirLandingFromEveryIntegrator) {
 
 TEST(HardCases, AHairAboveOrBelowDynamicPullInABeamTouchesOrDoesNot) {
   const Switch device(test::gold_cantilever());  // its gas: without it a beam may also touch after many periods
-  const double pull_in = dynamic_pull_in(device, 0, static_pull_in(device, 0)).voltage;  // to 1e-7
+  const double pull_in = dynamic_pull_in(device, 0, static_pull_in(device, 0)).voltage;  // pull-in to 1e-7
   const auto run = [&](double volts, Integrator integrator) {
     const CheckedRun c = checked_run(device, std::vector<Signal>{Signal::constant(volts)},
                                      {.duration = 200_us, .tolerance = 1e-11, .integrator = integrator, .after_contact = 1_us});
@@ -227,7 +227,7 @@ TEST(HardCases, AHairAboveOrBelowDynamicPullInABeamTouchesOrDoesNot) {
   }
 }
 
-// What a tolerance delivers, three times the worst of the runs below: of t_i, v_i and the first rebound, and of the energy.
+// Errors at a tolerance, three times the worst of the runs below: of t_i, v_i and the first rebound, and of the energy.
 struct Delivered {
   double tolerance = 0, error = 0, energy = 0;
 };
@@ -242,7 +242,7 @@ TEST(HardCases, AreEitherRightOrRefusedAtEveryTolerance) {
     const auto run = [&](Integrator integrator, double tolerance) {
       return checked_run(device, std::vector<Signal>{Signal::constant(step_level)},
                          {.duration = 70_us, .tolerance = tolerance, .integrator = integrator, .max_steps = 100'000},
-                         0.2);  // what a run itself calls credible
+                         0.2);  // energy error that a run itself calls credible
     };
     const Landing best = test::landing(run(Integrator::lawson, 1e-12).trajectory);
     for (const Integrator integrator : {Integrator::lawson, Integrator::esdirk, Integrator::bdf}) {

@@ -53,14 +53,14 @@ TEST(EveryScene, ThatOnceBrokeAnInvariantKeepsItNow) {
   }
 }
 
-// A film in a gap that is all but closed: the explicit method took more than 100 000 steps. In the last scene it also creeps
+// A film in a gap that is all but closed: the explicit method took more than 100 000 steps. It also creeps in the last scene
 // into a contact with memory, which rounding took for 47 000 turns.
 TEST(EveryScene, ThatCreepsInAThickFilmIsClosedInBoundedWork) {
   for (const std::uint64_t index : {844U, 3916U, 4490U}) {
     SCOPED_TRACE(index);
     const PreparedScene p = prepare(test::random_scene(2, index));
     const auto run = [&](Integrator integrator, double tolerance) {
-      const test::CheckedRun c = closing(p, integrator, tolerance);  // within 20 000 steps
+      const test::CheckedRun c = closing(p, integrator, tolerance);  // it takes no more than 20 000 steps
       EXPECT_EQ(c.violations, std::vector<std::string>{});
       EXPECT_EQ(c.trajectory.status, Status::done) << c.trajectory.message;
       EXPECT_EQ(c.trajectory.work.integrator, Integrator::bdf);
@@ -89,7 +89,7 @@ TEST(EveryScene, KeepsBooksAsGoodAsItsMotion) {
   EXPECT_LT(error(1050, Integrator::esdirk), 1e-4);     // quintic through accelerations: 0.47, cubic: 7e-6
 }
 
-// With the default integrator of other scenes, as a study of accuracy runs them.
+// These runs use the default integrator of other scenes, as a study of accuracy runs them.
 TEST(EveryScene, KeepsTheBooksOfACompressibleFilm) {
   for (const std::uint64_t index : {37U, 42U}) {
     SCOPED_TRACE(index);

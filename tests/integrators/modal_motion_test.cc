@@ -44,7 +44,7 @@ struct Forced {
   double omega, a0, s, v0;
   [[nodiscard]] ModalMotion::Sample at(double t) const {
     const double w2 = omega * omega;
-    const double slope = -6 * s / (w2 * w2);  // of the particular solution at 0
+    const double slope = -6 * s / (w2 * w2);  // slope of the particular solution at 0
     const double c = -a0 / w2, d = (v0 - slope) / omega;
     return {a0 / w2 + s * (t * t * t - 6 * t / w2) / w2 + c * std::cos(omega * t) + d * std::sin(omega * t),
             s * (3 * t * t - 6 / w2) / w2 - omega * (c * std::sin(omega * t) - d * std::cos(omega * t)),

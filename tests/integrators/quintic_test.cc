@@ -68,7 +68,7 @@ TEST(SignChanges, AreFoundInOrderAndToRounding) {
   expect(sign_changes(std::array{1.0}), {});
   expect(sign_changes(std::array{-0.25, 1.0}), {0.25});
   expect(sign_changes(std::array{0.25, 1.0}), {});                      // outside
-  expect(sign_changes(std::array{0.0, 1.0}), {});                       // on the edge
+  expect(sign_changes(std::array{0.0, 1.0}), {});                       // root on the edge
   expect(sign_changes(std::array{0.25, -1.0, 1.0}), {});                // touches zero at 1/2
   expect(sign_changes(std::array{0.0625, -0.625, 1.0}), {0.125, 0.5});  // (s - 1/8) (s - 1/2)
   expect(sign_changes(std::array{-0.125, 0.75, -1.5, 1.0}), {0.5});     // (s - 1/2)^3, the slope does not change sign there

@@ -49,8 +49,8 @@ double clamped_clamped_number(int mode) {
 }
 
 /// Characteristic function of a uniform beam between two clamps under an axial force N, in units of EI/L^2 and w = omega L^2
-/// sqrt(mu/EI): with phi = combinations of cosh(a x), sinh(a x), cos(b x), sin(b x), a^2 - b^2 = N, a b = w, it is
-/// 2 a b (1 - cosh a cos b) + (a^2 - b^2) sinh a sin b, here over cosh a.
+/// sqrt(mu/EI). The solutions are combinations of cosh(a x), sinh(a x), cos(b x), sin(b x) with a^2 - b^2 = N, a b = w. The
+/// function is 2 a b (1 - cosh a cos b) + (a^2 - b^2) sinh a sin b, here over cosh a.
 double tension_characteristic(double force, double w) {
   const double root = std::sqrt(force * force / 4 + w * w);
   const double a = std::sqrt(root + force / 2), b = std::sqrt(root - force / 2);
@@ -155,7 +155,7 @@ TEST(BeamModes, AreOrthonormalInTheMassOfTheBeam) {
   const BeamModes beam(sections, modes);
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(modes, modes);
   for (const BeamSection& s : sections) {
-    constexpr int parts = 12;  // of thirty Gauss points each: far more than the shapes need
+    constexpr int parts = 12;  // number of parts, with thirty Gauss points each: far more than the shapes need
     using Rule = boost::math::quadrature::gauss<double, 30>;
     const double width = (s.end - s.begin) / parts;
     for (int p = 0; p < parts; ++p) {
@@ -240,7 +240,7 @@ TEST(BeamModes, OfASteppedBeamBetweenTwoClampsAreTheZerosOfTheTransferDeterminan
 }
 
 TEST(BeamModes, UnderAnAxialForceAreTheZerosOfTheCharacteristicFunction) {
-  // From nearly buckled to a string; force in units of EI/L^2.
+  // The forces range from nearly buckled to a string; in units of EI/L^2.
   for (const double force : {-39.0, -20.0, 5.0, 100.0, 3000.0}) {
     const double unit = uniform.rigidity / (uniform.end * uniform.end);
     const BeamModes beam({uniform}, 6, {.far_clamp = true, .axial_force = force * unit});
@@ -268,7 +268,7 @@ TEST(BeamModes, BucklesAtTheClosedFormLoad) {
   EXPECT_THROW((void)beam(1 + close), InvalidInput);
 }
 
-/// What vanishes at the modes of a cantilever under the axial force [EI/L^2], omega in units of sqrt(EI/(mu L^4)): its free end
+/// Vanishes at the modes of a cantilever under the axial force [EI/L^2], omega in units of sqrt(EI/(mu L^4)): its free end
 /// has no moment and the shear force times w'.
 double free_end_characteristic(double force, double omega) {
   const double half = force / 2, root = std::hypot(half, omega);

@@ -65,7 +65,7 @@ TEST(Closing, BeginsOnTheContactWhereItIsTold) {
       return simulate_closing(model, std::vector{drive},
                               {.duration = 100_us, .tolerance = 1e-9, .begins_closed = closed->coordinates()});
     };
-    // Under the voltage that holds it nothing moves.
+    // The beam is at rest under the voltage that holds it.
     const Trajectory held = run(Signal::constant(step_level));
     ASSERT_EQ(held.status, Status::done) << held.message;
     const double rests = held.points.front().position;
@@ -138,7 +138,7 @@ TEST(Closing, MissesNoTouchThatADenseRunSees) {
   EXPECT_GT(fine.work.steps, 5 * coarse.work.steps);
   ASSERT_EQ(coarse.touches.size(), fine.touches.size());
   for (std::size_t i = 0; i < fine.touches.size(); ++i) {
-    constexpr double drift = 0.1_ns;  // what the tolerance leaves after the last of these touches
+    constexpr double drift = 0.1_ns;  // effect of the tolerance after the last of these touches
     EXPECT_NEAR(coarse.touches[i].begin, fine.touches[i].begin, drift) << "touch " << i;
     if (std::isfinite(fine.touches[i].end)) {
       EXPECT_NEAR(coarse.touches[i].end, fine.touches[i].end, drift) << "touch " << i;
@@ -371,7 +371,7 @@ TEST(ContactMemory, TakesFromTheMotionWhatTheDentSays) {
     const double expected = dent(device.contact(), t.deepest_penetration).lost;
     EXPECT_LT(after, 0);
     EXPECT_NEAR(mass * (before * before - after * after) / 2, expected, 1e-6 * expected);
-    // On its way back the beam passes rest and, driven no more, returns as fast as it left.
+    // The beam passes rest on its way back and, driven no more, returns as fast as it left.
     EXPECT_NEAR(t.touches[1].impact_velocity, -after, 1e-6 * before);
     if (std::holds_alternative<HystereticSpring>(law)) {
       // The beam's own spring works beside the contact, by a share of the interference over the gap.

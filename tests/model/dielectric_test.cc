@@ -69,7 +69,7 @@ TEST(Dielectric, RoughnessIsAirThatIsLeft) {
                 "release");
 }
 
-// Where the beam does not land on it, a dielectric is a metal that lies deeper by t / eps.
+// A dielectric on which the beam does not land is a metal that lies deeper by t / eps.
 TEST(Dielectric, ABeamFeelsADeeperElectrode) {
   Device coated = test::gold_cantilever(), bare = coated;
   for (Device* d : {&coated, &bare}) {
@@ -166,7 +166,7 @@ struct ChargedPlate {
 constexpr double much_charge = 2e-3;  // C/m^2: 5.9 V
 
 TEST(DielectricCharge, ShiftsThePullInAndReleaseOfAPlate) {
-  const double pull_in = 46.73588788239068, release = 0.7910192125773502;  // without charge
+  const double pull_in = 46.73588788239068, release = 0.7910192125773502;  // values without charge
   for (const double charge : {much_charge, -much_charge}) {
     SCOPED_TRACE(charge);
     const ChargedPlate plate(charge);
@@ -211,7 +211,7 @@ TEST(DielectricCharge, ClosesTheSwitchByItselfWhereItIsTooMuch) {
 TEST(DielectricCharge, ActsAsAShiftOfTheVoltageInAllStatics) {
   Device bare = plate_over_nitride();
   bare.contacts = {Contact{.model = LinearSpring{.stiffness = 100}}};
-  bare.gap.contact = 1_um;  // before the fold
+  bare.gap.contact = 1_um;  // a gap before the fold
   Device charged = bare;
   charged.electrodes[0].dielectric->charge = -much_charge;
   const Switch plain(bare), shifted(charged);

@@ -50,7 +50,7 @@ std::vector<Signal> waveforms(int kind, double volts, bool layer) {
 
 void expect_balanced(bool layer, const Loss& loss, const Contact& contact, int kind) {
   constexpr double tolerance = 1e-9;
-  constexpr double balance = 1e-6;   // of the sources' work: what users may rely on
+  constexpr double balance = 1e-6;   // share of the sources' work: what users may rely on
   constexpr double measured = 1e-7;  // five times the worst seen
   Device d = layer ? test::gold_pzt_cantilever() : test::gold_cantilever();
   if (!loss.gas) d.gas.reset();
@@ -185,7 +185,7 @@ TEST(EnergyBalance, ClosesForThePlate) {
 }
 
 TEST(EnergyBalance, ClosesForEveryDispersionForceWhileItsFactorChanges) {
-  constexpr double balance = 1e-6;  // of the energy that bends the beam by the contact gap
+  constexpr double balance = 1e-6;  // share of the energy that bends the beam by the contact gap
   for (const DispersionModel law : {DispersionModel::casimir, DispersionModel::van_der_waals, DispersionModel::automatic}) {
     for (const Conductor conductor : {Conductor::ideal, Conductor::gold}) {
       for (const double edge : {0.0, 0.3}) {
@@ -231,7 +231,8 @@ TEST(Rest, IsWhereARunBegins) {
   ASSERT_TRUE(model.rest().has_value());
   const double tip = model.contact_deflection(model.rest()->data());
   EXPECT_GT(tip, 1_nm);
-  // Nominal force: it stays there. At rest the steps of an explicit method grow until what it moves reaches the tolerance.
+  // The tip stays there under the nominal force. The steps of an explicit method grow at rest until the motion that they cause
+  // reaches the tolerance.
   const std::vector<Signal> drives(1);
   const Trajectory t = simulate_closing(model, drives, {.duration = 1_us, .tolerance = 1e-9});
   EXPECT_EQ(t.status, Status::done);
@@ -389,7 +390,7 @@ TEST(LandingExcess, WaitsForTheHoldLevels) {
 }
 
 TEST(Contact, StoresNoMoreThanTheFieldHasGiven) {
-  // Without losses the contact's energy is at most the field's work so far, (C - C0) V^2 / 2: a tip that fell through a stiff
+  // The contact's energy without losses is at most the field's work so far, (C - C0) V^2 / 2: a tip that fell through a stiff
   // contact would store orders of magnitude more.
   for (const double stiffness : {1e5, 1e7, 1e9}) {
     Device d = test::gold_cantilever();

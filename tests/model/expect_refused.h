@@ -1,4 +1,4 @@
-// What a message about bad input must say, word for word.
+// Checks messages about bad input, word for word.
 #pragma once
 
 #include <gtest/gtest.h>

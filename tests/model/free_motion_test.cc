@@ -103,7 +103,7 @@ TEST(FreeMotion, IsLinearInTheStrengths) {
 }
 
 TEST(FreeMotion, CurvesAsDifferencesOfItsSlopesDo) {
-  constexpr double relative = 1e-6;  // of central differences
+  constexpr double relative = 1e-6;  // error of central differences
   for (const auto& [name, device] : devices()) {
     const Switch model(device);
     const Motion m = motion_of(model);

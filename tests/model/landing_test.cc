@@ -115,7 +115,7 @@ TEST(Landing, TouchesAndReleasesAsOtherModesSay) {
   }
 }
 
-// Under a wall the gap is never less than a small part of what the dielectric adds to it, at any voltage, and the capacitance of
+// The gap under a wall is at least a small part of what the dielectric adds to it, at any voltage, and the capacitance of
 // what lies on it is that of the dielectric.
 TEST(Landing, AWallLetsNothingThrough) {
   const Device device = capacitive_bridge({});
@@ -214,7 +214,7 @@ TEST(Landing, ABridgeOnAsperitiesKeepsItsEnergy) {
   EXPECT_GT(run_until(1).impact_energy, model.bending_energy()) << "the summits stored it";
 }
 
-// Beside the electrode a bridge that lands hard swings below the level of the face, where there is nothing to touch.
+// A bridge that lands hard swings beside the electrode below the level of the face, where there is nothing to touch.
 TEST(Landing, ABridgeMaySwingLowerBesideItsElectrode) {
   const Switch model = fine(capacitive_bridge({.stiffness = 1e18}), 6);
   const Trajectory run = simulate_closing(model, std::vector{Signal::constant(48)}, {.duration = 20e-6, .tolerance = 1e-9});
@@ -388,7 +388,7 @@ TEST(LandingBesideContacts, TheFaceMakesNoConnection) {
   EXPECT_NEAR(one.of_contacts[1].first->impact_velocity, other.first->impact_velocity, 1e-4 * other.first->impact_velocity);
 }
 
-// An undamped plate on a dimple and a face. Where it meets the face, what the source gave is in its springs and in its motion.
+// An undamped plate lands on a dimple and a face. The work of the source is in its springs and motion when it meets the face.
 TEST(LandingBesideContacts, APlateKeepsItsEnergy) {
   constexpr double mass = 1e-10, stiffness = 10, dimple = 200, gap = 4_um, dimple_gap = 3_um, volts = 60;
   constexpr double area = 100_um * 100_um, depth = 0.2_um / 7.6, bed = 1e17;

@@ -130,7 +130,7 @@ TYPED_TEST(FringingLawOfType, OnTheFarSideIsTheMirrorImage) {
 TYPED_TEST(FringingLawOfType, OnTheFarSideHasItsPotentialAndGoesOnAsATangent) {
   constexpr double differences = 1e-8, little = 1e-10;
   const auto far = above<TypeParam>();
-  const double floor = far.both_gaps - far.floor;  // in terms of the near gap
+  const double floor = far.both_gaps - far.floor;  // value of the floor in terms of the near gap
   for (const double h : {3.5_um, 8.3_um, 8.44_um, 8.48_um, 8.6_um}) {
     const double expected = derivative([&](double x) { return far.potential(x); }, h, 0.5_nm);
     EXPECT_NEAR(far.load(h, 0.0), expected, differences * std::abs(expected)) << "gap " << h;
@@ -217,7 +217,7 @@ using DispersionLaws =
     testing::Types<IdealCasimir, GoldCasimir, VanDerWaals, SmallerOfBoth<IdealCasimir>, SmallerOfBoth<GoldCasimir>>;
 TYPED_TEST_SUITE(DispersionLaw, DispersionLaws);
 
-// Between the knots of the gold table, at some of them, beyond its ends, and on both sides of the crossovers.
+// The gaps lie between the knots of the gold table, at some of them, beyond its ends, and on both sides of the crossovers.
 constexpr std::array dispersion_gaps{0.2_nm, 0.7_nm, 1.4_nm, 5_nm, 8_nm, 20_nm, 33_nm, 60_nm, 62_nm, 300_nm, 2_um, 4_um, 9_um};
 
 TYPED_TEST(DispersionLaw, PressureIsTheSlopeOfTheEnergyThatVanishesFarAway) {
@@ -228,7 +228,7 @@ TYPED_TEST(DispersionLaw, PressureIsTheSlopeOfTheEnergyThatVanishesFarAway) {
     EXPECT_NEAR(slope, law.pressure(h), differences * std::abs(slope)) << "gap " << h;
   };
   for (const double h : dispersion_gaps) expect_slope(h);
-  expect_slope(100_um);  // beyond what is tabulated of gold
+  expect_slope(100_um);  // a gap beyond the tabulated ones of gold
   EXPECT_LT(std::abs(law.energy(1.0)), 1e-15 * std::abs(law.energy(1_nm)));
 }
 
@@ -298,7 +298,7 @@ TEST(Casimir, OfGoldIsTheLifshitzIntegralAlsoBetweenTheKnots) {
 }
 
 TEST(Casimir, OfGoldFollowsTheLifshitzIntegralBeyondTheTable) {
-  constexpr double extrapolated = 0.01;  // of eta below the table, of 1 - eta above it: what the header claims
+  constexpr double extrapolated = 0.01;  // error of eta below the table, of 1 - eta above it: what the header claims
   for (const double h : {0.3_nm, 0.7_nm}) {
     EXPECT_NEAR(GoldCasimir{}.factor(h), lifshitz_factor(h), extrapolated * lifshitz_factor(h)) << h;
   }
@@ -502,7 +502,7 @@ const double viscosity_of_the_tables = 1.7894e-5 * std::pow(300.0 / 297, 0.77);
 
 TEST(GasLaw, HasTheTabulatedDampingPerLength) {
   // Computed independently: a = 123 um, b = 4 um, mean free path 65.45 nm; air as it was known there, near contact 1.98e-5 Pa s.
-  // As printed: the tolerance is half a unit of the last digit.
+  // The values are as printed: the tolerance is half a unit of the last digit.
   struct Row {
     double gap;
     const char *strip, *veijola, *gallis_torczynski, *near_contact, *guo_alexeenko;
@@ -593,7 +593,7 @@ std::vector<ContactLaw> remembering() {
   return {law_of(hysteretic), plastic_law(Plasticity::zmc), plastic_law(Plasticity::kogut_etsion)};
 }
 
-/// Under every law that acts in contact alone and has a force, with damping where it takes it.
+/// Lists every law that acts in contact alone and has a force, with damping where it takes it.
 std::vector<ContactLaw> every_contact_law() {
   std::vector<ContactLaw> laws;
   for_each_law<ContactModel>([&]<class Law>(std::type_identity<Law>) {
@@ -694,7 +694,7 @@ TEST(UniformAsperities, CarryTheHertzLawIntegratedOverTheirHeights) {
   boost::math::quadrature::tanh_sinh<double> integrator;
   for (const double d : interferences) {
     const double per_depth = 1e11 * beam_width * 5_um / 100_nm * 4.0 / 3 * 48e9 * std::sqrt(100_nm);
-    // In units of d: the integrator's absolute floor is not for metres.
+    // The values are in units of d: the integrator's absolute floor is not for metres.
     const double deepest = std::min(1.0, 100_nm / d);
     const double sum = integrator.integrate([](double s) { return std::pow(1 - s, 1.5); }, 0.0, deepest);
     const double expected = per_depth * std::pow(d, 2.5) * sum;
@@ -723,7 +723,7 @@ TEST(UniformAsperities, GoOnSmoothlyWhenTheLastSummitTouches) {
   const double curvature_below = (slope(hm) - slope(hm - 0.001 * hm)) / (0.001 * hm);
   const double curvature_above = (slope(hm + 1e-6 * hm) - slope(hm)) / (1e-6 * hm);
   EXPECT_NEAR(curvature_above, curvature_below, 0.01 * curvature_below);
-  // Beyond, all summits share the load: stiffer than linear, softer than while summits were still joining.
+  // All summits share the load beyond: stiffer than linear, softer than while summits were still joining.
   EXPECT_GT(law.force(2 * hm), 2 * law.force(hm));
   EXPECT_LT(law.force(2 * hm), std::pow(2, 2.5) * law.force(hm));
 }
@@ -937,7 +937,7 @@ double ke_asperity(double w, double radius, double hardness, double modulus, boo
 struct Yield {
   double (*load)(double w, double radius, double hardness, double modulus);
   double first;                // interference of first yield [m]
-  std::vector<double> limits;  // where the law of one asperity changes, in units of that
+  std::vector<double> limits;  // interferences at which the law of one asperity changes, in units of `first`
 };
 
 constexpr double hardness = 1_GPa, modulus = 48_GPa, radius = 100_nm;
@@ -1010,9 +1010,9 @@ TEST(ElasticPlastic, KogutEtsionIsScaledByWhatItsHeaderSays) {
   EXPECT_NEAR(jump(110), 1.079, printed);
 }
 
-/// What one asperity gives back as it unloads from u times the interference of first yield, over the work P w_c of its load
-/// there: the fits of Etsion, Kligerman and Kadin (2005, Int. J. Solids Struct. 42, 3716) to finite elements, whose summits are
-/// flattened.
+/// Returns the energy that one asperity gives back as it unloads from u times the interference of first yield, over the work P
+/// w_c of its load there: the fits of Etsion, Kligerman and Kadin (2005, Int. J. Solids Struct. 42, 3716) to finite elements,
+/// whose summits are flattened.
 double returned_by_flattened_summit(double u) {
   const double residual = u * (1 - std::pow(u, -0.28)) * (1 - std::pow(u, -0.69));
   const double exponent = 1.5 * std::pow(u, -0.0331);
@@ -1066,18 +1066,18 @@ double surface_pressure(double x) {
          1e3 * std::max(0.0, adhesion - x / nm);
 }
 
-// Above the plane, in the soft wall, around the onsets of adhesion and asperities (at 50.06 and 52.06 nm), deep inside.
+// Distances above the plane, in the soft wall, around the onsets of adhesion and asperities (50.06 and 52.06 nm), deep inside.
 constexpr std::array near_and_far{-830_nm, -300_nm, -40_nm, -1_nm, 10_nm, 49_nm, 51_nm, 53_nm, 60_nm, 100_nm, 150_nm};
 
 TEST(AdhesiveRepulsive, IsThePublishedPressureLessALine) {
   const AdhesiveRepulsiveContact law(SurfacePressure{}, beam_width * 5_um);
   EXPECT_NEAR(law.touch_distance(), 162.0596_nm, 1e-4 * 1_nm);
-  constexpr double digits = 1e-12;  // of the pressure itself and of its parts at the reach
+  constexpr double digits = 1e-12;  // error of the pressure itself and of its parts at the reach
   for (const double d : near_and_far) {
     const double expected = beam_width * 5_um * surface_pressure(law.touch_distance() - d);
     EXPECT_NEAR(law.force(d), expected, digits * (std::abs(expected) + beam_width * 5_um)) << "d = " << d;
   }
-  // What the line takes of the attraction where that is felt.
+  // The line takes this share of the attraction where that is felt.
   for (const double x : {150_nm, 112_nm}) {
     const double attraction = 0.215e-18 / (6 * pi * (std::pow(x, 3) + std::pow(30_nm, 3)));
     const double line = surface_pressure(x) + attraction - 0.5e9 * std::exp(-x / 8.5_nm);
@@ -1133,7 +1133,7 @@ TEST(AdhesiveRepulsive, SaysWhereItIsNotSmooth) {
   const double jump = slope(kinks[0] + 1e-15) - slope(kinks[0] - 1e-15);
   const double adhesion = beam_width * 5_um * SurfacePressure{}.adhesion_pressure / 1_nm;
   EXPECT_NEAR(jump, -adhesion, 1e-3 * adhesion) << "where adhesion begins";
-  // Where asperities meet the slope grows like a root.
+  // The slope grows like a root where asperities meet.
   const auto bend = [&](double at) { return slope(kinks[1] + at) - slope(kinks[1] - at); };
   EXPECT_NEAR(bend(1e-13) / bend(1e-15), 10, 0.1);
   EXPECT_TRUE(contact_kinks(contact_law(gold_pad, beam_width)).empty());
@@ -1197,7 +1197,7 @@ TEST(Dual, RootAtZeroHasNoInfiniteSlope) {
 
 // ---- a law along the beam
 
-// At most a lane of points, and idle ones that fill it.
+// Makes at most a lane of points, and idle ones that fill it.
 GapField field(const std::vector<double>& gap, double velocity) {
   constexpr double rest_gap = 3.5_um;
   GapField f{.gap = Eigen::ArrayXd::Constant(lanes, rest_gap), .velocity = Eigen::ArrayXd::Constant(lanes, velocity)};
@@ -1219,7 +1219,7 @@ void expect_tangent_below(const Law& physics, double floor, double velocity) {
   const DistributedLawOf<Law> law(physics, 0, 1, floor);
   const double value = physics.load(floor, velocity), slope = physics.load(Dual(floor, 1), Dual(velocity)).slope;
   EXPECT_DOUBLE_EQ(load_at(law, floor, velocity), value);
-  constexpr double close = 1e-6;  // of the floor: how near the two sides are compared
+  constexpr double close = 1e-6;  // distance of the two sides that are compared, as a share of the floor
   EXPECT_NEAR(load_at(law, floor * (1 - close), velocity), value, 10 * close * std::abs(value));
   for (const double below : {0.5 * floor, 0.0, -3 * floor}) {
     const double expected = value + slope * (below - floor);

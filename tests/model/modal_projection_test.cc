@@ -61,7 +61,7 @@ Beam beam() {
   return b;
 }
 
-/// What manufactured devices differ by.
+/// The quantities in which manufactured devices differ.
 template <class P>
 struct Sample {
   P thickness, width, gap, viscosity;

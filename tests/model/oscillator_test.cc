@@ -18,7 +18,7 @@ namespace {
 using namespace literals;
 
 constexpr double tight = 1e-10;        // integrator tolerance
-constexpr double shape_digits = 1e-7;  // of the largest deflection: what `tight` leaves after twenty periods
+constexpr double shape_digits = 1e-7;  // share of the largest deflection: error that `tight` leaves after twenty periods
 constexpr double window = 200_us;
 
 Device oscillator(double damping_ratio) {
@@ -96,7 +96,7 @@ TEST(LinearLimit, PulseIsASumOfSteps_optimized) {
 }
 
 TEST(LinearLimit, SineDrivesEveryModeBelowAndAboveItsResonance_optimized) {
-  for (const double frequency : {5e4, 3e5, 2.2e6}) {  // between the modes, rad/s
+  for (const double frequency : {5e4, 3e5, 2.2e6}) {  // frequencies between the modes [rad/s]
     constexpr double phase = 0.7;
     expect_response(0, signal(Harmonic{.amplitude = 0.3_V, .angular_frequency = frequency, .phase = phase}), 0.3,
                     [&](double w, double t) { return sine_response(w, frequency, phase, t); });
@@ -169,7 +169,7 @@ TEST(Touch, ThatGrazesThePlaneIsFoundAndItsNearMissIsNot) {
     if (touches) {
       const double early = std::acos(1 - 2 * margin) / w;  // half the time above the plane
       const Touch& touch = trajectory.touches[0];
-      constexpr double event_digits = 0.01;  // of that short time
+      constexpr double event_digits = 0.01;  // error as a share of that short time
       EXPECT_NEAR(touch.begin, pi / w - early, event_digits * early);
       EXPECT_NEAR(touch.end, pi / w + early, event_digits * early);
       EXPECT_NEAR(trajectory.deepest_penetration, margin * peak, event_digits * margin * peak);

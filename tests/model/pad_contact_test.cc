@@ -47,7 +47,7 @@ Eigen::VectorXd tilted(const Switch& model, double depth, double slope) {
   return q;
 }
 
-/// As in a closing: the contact point moves at about 0.1 m/s.
+/// Velocities as in a closing: the contact point moves at about 0.1 m/s.
 Eigen::VectorXd velocities(const Switch& model, std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   Eigen::VectorXd v(model.modes());
@@ -148,7 +148,7 @@ TEST(PadContact, IsTheLawIntegratedAlongTheBentBeam) {
 }
 
 TEST(PadContact, HasItsExactDerivativesAndEnergy) {
-  constexpr double differences = 1e-6;  // of the largest entry, of the contact alone
+  constexpr double differences = 1e-6;  // error as a share of the largest entry, of the contact alone
   constexpr double step = 0.2e-9;       // [m] at the free end
   std::mt19937_64 random(2);
   for (const Contact& contact : test::pad_contacts()) {

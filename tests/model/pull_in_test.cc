@@ -29,8 +29,8 @@ Switch contact_first() {
   return Switch(d);
 }
 
-/// Whether the contact point reaches the plane within a hundred periods of a step: the definition of dynamic pull-in, with none
-/// of its shortcuts.
+/// True if the contact reaches the plane within a hundred periods of a step: the definition of dynamic pull-in, without its
+/// shortcuts.
 bool reaches(const Switch& model, double volts) {
   const std::vector<Signal> drives{Signal::constant(volts)};
   const double window = 100 * 2 * pi / model.basis().angular_frequencies()[0];
@@ -114,7 +114,7 @@ TEST(StaticPullIn, IsTheContactWhereThatComesFirst) {
 TEST(StaticPullIn, AtTheContactIsWhatABiasLeavesOfTheBalance) {
   // k x = eps0 (A V^2 + B U^2) / (2 (g - x)^2) where the plate touches.
   Device d = test::full_plate();
-  d.gap.contact = 1_um;  // before the fold
+  d.gap.contact = 1_um;  // a gap before the fold
   for (Electrode& e : d.electrodes) e.fringing = Fringing::none;
   const double bias = 3, x = d.gap.contact, A = 70_um * 100_um, B = 30_um * 100_um;
   const double both = 2 * part_of<Plate>(d.structure).stiffness * x * std::pow(d.gap.electrode - x, 2) / vacuum_permittivity;
@@ -401,7 +401,7 @@ TEST(ClosedEquilibrium, IsOneForEveryContactLaw) {
     const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
     Eigen::VectorXd left(model.modes());
     model.accelerations(closed->q.data(), rest.data(), volts, true, work, left.data());
-    constexpr double digits = 1e-6;  // of the contact force
+    constexpr double digits = 1e-6;  // error as a share of the contact force
     EXPECT_LT(left.norm(), digits * closed->contact_force * model.basis().contact_shape().norm()) << name_of(contact.model);
     EXPECT_GT(release_voltage(model, 0), 0) << name_of(contact.model);
   }

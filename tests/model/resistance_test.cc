@@ -19,7 +19,7 @@ namespace {
 using namespace literals;
 
 constexpr Conduction gold_pair{.resistivity = 2.2e-8, .hardness = 1e9, .mean_free_path = 38e-9};
-constexpr double kept_to = 1e-6;  // of the values of the independent program
+constexpr double kept_to = 1e-6;  // error as a share of the values of the independent program
 constexpr double to_rounding = 1e-12;
 constexpr double any_depth = 1e-9;  // [m]
 
@@ -84,7 +84,7 @@ TEST(ContactResistance, OfNineSpotsAgreesWithAnIndependentProgram) {
   }
 }
 
-// As the abstract of Nikolic and Allen says of the exact formula.
+// The abstract of Nikolic and Allen says so of the exact formula.
 TEST(ContactResistance, StaysWithin11PercentOfThePlainSumOfItsLimits) {
   constexpr double path = 38e-9;  // [m]
   double most = 0;

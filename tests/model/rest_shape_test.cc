@@ -111,7 +111,7 @@ TEST(RestShapeTable, HasTheGapsOfTheCurveThatItSamples) {
   }
 }
 
-// By the table the gap is larger by two thirds of kappa h^2/8 in the mean, and V^2 grows with its cube.
+// The table makes the gap larger by two thirds of kappa h^2/8 in the mean, and V^2 grows with the gap's cube.
 TEST(RestShapeTable, HasThePullInAndTheFirstTouchOfTheCurveThatItSamples) {
   const double smooth = static_pull_in(Switch(curled(test::gold_cantilever())), 0).voltage;
   const auto error = [&](int steps) {

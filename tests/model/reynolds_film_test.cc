@@ -43,7 +43,7 @@ Complex response(double sigma) {
   const ReynoldsFilm f = film();
   const std::vector<double> rest(nodes, 0.0);
   const ReynoldsFilm::Derivatives d = f.derivatives(h, 0, rest.data());
-  const Complex rate(0, omega);  // of the gap: velocity = -rate
+  const Complex rate(0, omega);  // rate of the gap: velocity = -rate
   const Eigen::MatrixXcd system = rate * Eigen::MatrixXcd::Identity(nodes, nodes) - d.by_film.cast<Complex>();
   const Eigen::VectorXcd p = system.partialPivLu().solve(Eigen::VectorXcd(-rate * d.by_velocity.cast<Complex>()));
   const Complex load = f.load_by_film().cast<Complex>().dot(p);
@@ -61,7 +61,7 @@ TEST(ReynoldsFilm, OfASmallOscillationIsBlechsStrip) {
 }
 
 TEST(ReynoldsFilm, IsADamperBelowTheCutOffAndASpringAbove) {
-  // With the first mode across the width alone the two are equal at pi^2; the others move that by a few per cent.
+  // Both are equal at pi^2 with the first mode across the width alone; the others move that by a few per cent.
   EXPECT_GT(response(0.9 * pi * pi).imag(), response(0.9 * pi * pi).real());
   EXPECT_LT(response(1.15 * pi * pi).imag(), response(1.15 * pi * pi).real());
   // Slow: the incompressible film with slip.
@@ -88,7 +88,7 @@ GapField field_of(const Station& s) {
 }
 
 TEST(ReynoldsFilm, DerivativesAreThoseOfTheRates) {
-  constexpr double differences = 1e-7;  // of the largest entry of the column
+  constexpr double differences = 1e-7;  // error as a share of the largest entry of the column
   std::mt19937_64 random(1);
   const ReynoldsFilm f = film();
   for (int k = 0; k < 20; ++k) {
@@ -115,7 +115,7 @@ TEST(ReynoldsFilm, DerivativesAreThoseOfTheRates) {
 
 TEST(ReynoldsFilm, WorkOnItIsStoredOrDissipated) {
   // dU/dt + D = -f v, exactly, in any state.
-  constexpr double rounding = 1e-6;  // of the difference quotient
+  constexpr double rounding = 1e-6;  // error of the difference quotient
   std::mt19937_64 random(2);
   const ReynoldsFilm f = film();
   const Eigen::ArrayXd one = Eigen::ArrayXd::Ones(1);
@@ -148,7 +148,7 @@ std::vector<double> parabola(double amplitude) {
 }
 
 TEST(ReynoldsFilm, FlowsAsTheNonlinearEquationSays) {
-  // At rest, p = pa (1 + A (1 - x^2)), x = 2 z/a: h dp/dt = (h^3 + 6 lambda h^2)/(12 mu) (p^2/2)'' in closed form.
+  // The closed form at rest, p = pa (1 + A (1 - x^2)), x = 2 z/a, is h dp/dt = (h^3 + 6 lambda h^2)/(12 mu) (p^2/2)''.
   const double gap = 1.3_um, amplitude = 0.8;
   const std::vector<double> p = parabola(amplitude);
   std::array<double, nodes> rate{};
@@ -200,7 +200,7 @@ Device gold_with(const Gas& gas) {
 }
 
 TEST(Switch, WithAFilmOfItsOwnStatesHasTheExactJacobian) {
-  constexpr double differences = 1e-7;  // of the largest entry of the column
+  constexpr double differences = 1e-7;  // error as a share of the largest entry of the column
   for (Device d : {gold_with(air), test::gold_bridge(), test::full_plate()}) {
     d.gas = air;
     const Switch model(d);

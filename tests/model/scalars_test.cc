@@ -210,7 +210,7 @@ struct Yielding : AtContact<Yielding<Asperity>> {
     return PlasticAsperityLoading<Asperity, P>(p[0], p[1], p[2], p[3], p[4]);
   }
 };
-/// On the way back where the rate is negative, each device with its own dent.
+/// A law with memory, on its way back where the rate is negative; each device has its own dent.
 struct Remembering : AtContact<Remembering> {
   static constexpr std::array parameters{500.0, 900.0, 30e-9};
   template <class P>
@@ -270,7 +270,7 @@ struct Repulsive : AtContact<Repulsive> {
   }
 };
 
-/// Of two modes: the force on the second one, and the energy.
+/// Stretching of two modes: the force on the second one, or the energy.
 template <bool energy>
 struct Stretched {
   static constexpr std::array parameters{3e5, -2e4, 8e5, 40.0};

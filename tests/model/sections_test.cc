@@ -71,13 +71,13 @@ struct KeptCase {
   std::function<Device(int)> device;
   double volts;
   std::array<double, 4> frequencies;  // [Hz]
-  double vsp;                         // of all modes [V]
+  double vsp;                         // static pull-in voltage of all modes [V]
   std::vector<ByModes> by_modes;
-  Value bounce, penetration;  // with four modes: B_H, and the largest penetration of the run [m]
+  Value bounce, penetration;  // results of four modes: B_H, and the largest penetration of the run [m]
 };
 
 constexpr double none = 0;
-constexpr double run_window = 200e-6;  // of the independent program, in which bounces follow one another
+constexpr double run_window = 200e-6;  // window of the independent program, in which bounces follow one another
 const std::vector<KeptCase> cases{
     {"uniform",
      even_beam,
@@ -161,8 +161,8 @@ std::vector<BeamSection> tapered() {
           {.begin = 0.4, .end = 1, .rigidity = 1, .mass_per_length = 1.2, .taper = -0.8}};
 }
 
-/// What is left of the conditions at x = L for a beam that meets those at x = 0, vibrating with w [rad/s]: 0 at its frequencies.
-/// y' = t, EI t' = M, M' = V, V' = w^2 mu y by the classical Runge-Kutta method, which shares nothing with the elements.
+/// Returns the residual of the conditions at x = L for a beam that meets those at x = 0, vibrating with w [rad/s]: 0 at its
+/// frequencies. It integrates y' = t, EI t' = M, M' = V, V' = w^2 mu y by the classical Runge-Kutta method, which shares nothing
 double end_condition(const std::vector<BeamSection>& sections, const BeamSupport& support, double w) {
   using State = Eigen::Vector4d;
   std::array<State, 2> solutions;
@@ -343,8 +343,8 @@ TEST(Layers, BendAsAnIndependentProgramSays) {
   EXPECT_NEAR(plate.rigidity, 4.1657847673650004e-08, digits * 4.2e-8);
 }
 
-// The layer of the case on the first 60 um of a beam of 1 um: an arc, and straight on behind it. On the other face it turns the
-// beam the other way.
+// The layer of the case lies on the first 60 um of a beam of 1 um, which is an arc there and straight behind it. A layer
+// on the other face turns the beam the other way.
 TEST(Layers, CurlTheBeamWhereTheyLie) {
   Device d = even_beam();
   d.structure.thickness = 1_um;
@@ -408,7 +408,7 @@ TEST(Layers, OfPiezoPushAsOnAPlainBeam) {
   EXPECT_NEAR(layer_capacitance(parts), layer_capacitance(known), 1e-12 * layer_capacitance(known));
 }
 
-// Under a linear width the layer's moment is linear, too: many steps come near it.
+// The layer's moment under a linear width is linear, too: many steps come near it.
 TEST(Layers, OfPiezoPushOnATaper) {
   constexpr int steps = 100;
   Device smooth = test::gold_pzt_cantilever(), rough = smooth;
@@ -438,14 +438,14 @@ TEST(HolesInABeam, LeaveStiffnessAndMass) {
 
 constexpr double viscosity_of_air = 1.86e-5;  // [Pa s]
 
-// Where holes are few the gas leaves at the edges alone.
+// The gas leaves at the edges alone where holes are few.
 TEST(PerforatedFilm, IsTheStripFilmWhereHolesAreFew) {
   const StripSqueezeFilm strip{.viscosity = viscosity_of_air, .width = 20_um};
   const PerforatedStripFilm film(viscosity_of_air, 20_um, 2_um, {.pitch = 20_um, .size = 0.05_um});
   for (const double gap : {0.5_um, 2_um, 3.5_um}) EXPECT_NEAR(film.load(gap, 0.1) / strip.load(gap, 0.1), 1, 1e-3) << gap;
 }
 
-// Under a wide plate every cell lets its own gas out: the pressure is the same all over, but for its edges.
+// Every cell under a wide plate lets its own gas out: the pressure is the same all over, but for its edges.
 TEST(PerforatedFilm, OfAWidePlateIsThatOfItsCells) {
   const Holes holes{.pitch = 10_um, .size = 5_um};
   const double gap = 2_um, per_width = PerforatedStripFilm(viscosity_of_air, 1e-2, 2_um, holes).load(gap, 1.0) / 1e-2;
@@ -456,7 +456,7 @@ TEST(PerforatedFilm, OfAWidePlateIsThatOfItsCells) {
   const auto ring = [&](double r) {
     return 12 * viscosity_of_air / std::pow(gap, 3) * (cell * cell / 2 * std::log(r / hole) - (r * r - hole * hole) / 4);
   };
-  double mean = 0;  // of the pressure around the hole, over the cell
+  double mean = 0;  // mean pressure around the hole, over the cell
   constexpr int rings = 20000;
   for (int k = 0; k < rings; ++k) {
     const double r = hole + (cell - hole) * (k + 0.5) / rings;

@@ -25,7 +25,7 @@ Device device_of() {
           .contacts = {Contact{.model = LinearSpring::example(), .pad_length = 5e-6}}};
 }
 
-/// What a new kind must answer for: every test below runs on each.
+/// The properties that a new kind must have: every test below runs on each.
 template <class Kind>
 class KindOfStructure : public testing::Test {};
 using Kinds = testing::Types<Cantilever, Bridge, Plate, ModalStructure>;

@@ -35,7 +35,7 @@ double relative_rigidity(const Device& d) {
 }
 
 TEST(Surface, ChangesTheRigidityOfThinSiliconByThePublishedParts) {
-  constexpr double printed = 5e-5;  // of the rigidity: three digits
+  constexpr double printed = 5e-5;  // rounding of the rigidity to three digits
   EXPECT_NEAR(relative_rigidity(silicon(10_nm)), 1 - 0.0378, printed);
   EXPECT_NEAR(relative_rigidity(silicon(30_nm)), 1 - 0.0126, printed);
   EXPECT_NEAR(relative_rigidity(silicon(50_nm)), 1 - 0.0076, printed);

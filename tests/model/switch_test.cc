@@ -59,7 +59,7 @@ std::vector<Combination> combinations() {
   two.electrodes[0].end = 150_um;
   two.electrodes.push_back({.name = "second", .begin = 150_um, .end = 250_um, .fringing = Fringing::linear});
   all.push_back({"two electrodes", two});
-  Device pads = test::gold_cantilever();  // of one electrode
+  Device pads = test::gold_cantilever();  // a device of one electrode
   pads.electrodes[0].end = 100_um;
   pads.electrodes[0].further = {{.begin = 130_um, .end = 180_um}, {.begin = 200_um, .end = 250_um}};
   all.push_back({"three pads", pads});
@@ -145,7 +145,7 @@ State random_state(const Switch& device, bool in_contact, std::mt19937_64& rando
 constexpr int states_per_combination = 4;
 
 TEST(Switch, JacobianIsTheDerivativeOfTheAccelerations) {
-  constexpr double differences = 1e-7;  // of the largest entry in the column: rounding of the difference quotient
+  constexpr double differences = 1e-7;  // share of the largest entry in the column: rounding of the difference quotient
   std::mt19937_64 random(1);
   for (const Combination& c : combinations()) {
     const Switch device(c.device);
@@ -179,8 +179,9 @@ TEST(Switch, JacobianIsTheDerivativeOfTheAccelerations) {
   }
 }
 
-// Everything that a closing asks of a switch. In bits where both have the modes of one normalised beam; else to the rounding of
-// modes, and a beam pressed into its contact by a thousandth of the gap, or near its static fold, magnifies that.
+// Compares everything that a closing asks of a switch, in bits where both have the modes of one normalised beam. Otherwise it
+// compares to the rounding of modes, which a beam pressed into its contact by a thousandth of the gap, or near its static fold,
+// magnifies.
 void expect_same(const Switch& a, const Switch& b, bool in_bits) {
   const double rounding = in_bits ? 0 : 1e-11, magnified = in_bits ? 0 : 1e-8;
   const auto expect_close = [](const Eigen::VectorXd& x, const Eigen::VectorXd& y, double relative) {
@@ -432,7 +433,7 @@ TEST(Switch, PenetrationScaleCarriesTheForceThatBendsTheBeamByTheGap) {
 }
 
 TEST(Switch, InContactItVibratesAsTheBeamPinnedAtTheContact) {
-  // With a contact of growing stiffness and many modes the first frequency about contact tends to that of the pinned beam.
+  // The first frequency about contact tends to that of the pinned beam as the contact's stiffness and the modes grow.
   Device d = test::gold_cantilever();
   d.electrodes.clear();
   d.structure.modes = 20;
@@ -486,7 +487,7 @@ TEST(Switch, OfAPlateIsOneOscillator) {
   d.structure.modes = 4;  // a plate has one, whatever is said
   const Switch device(d);
   ASSERT_EQ(device.modes(), 1);
-  EXPECT_EQ(device.quadrature().points(), 3);  // where either electrode ends, and the rest
+  EXPECT_EQ(device.quadrature().points(), 3);  // points where either electrode ends, and the rest
   EXPECT_DOUBLE_EQ(device.basis().angular_frequencies()[0], std::sqrt(42 / 2.4e-9));
   const double x = 0.4_um, q = x / device.basis().contact_shape()[0];
   EXPECT_DOUBLE_EQ(device.contact_deflection(&q), x);

@@ -63,7 +63,7 @@ constexpr int table_places = 100;
 
 TEST(TabulatedModes, OfABeamAreItsModes) {
   constexpr int modes = 4;
-  constexpr double interpolated = 1e-6;  // of the tip: fourth order in the distance of the table_places
+  constexpr double interpolated = 1e-6;  // share of the tip: fourth order in the distance of the table_places
   const Device device = test::gold_cantilever();
   const BeamModes beam(beam_sections(device), modes);
   const TabulatedModes table(modal_table_of(device, modes, table_places), modes, 1);
@@ -151,7 +151,7 @@ TEST(TabulatedModes, BetweenTwoClampsPullInAndCloseAsTheBeamDoes) {
   const auto [coarse_volts, coarse_time] = errors(10);
   EXPECT_GT(coarse_volts, 10 * volts_error);
   EXPECT_GT(coarse_time, 10 * time_error);
-  // Without its axial stiffness it is another switch.
+  // It is another switch without its axial stiffness.
   Device straight = bridge_by_modes(device, table_places);
   part_of<ModalStructure>(straight.structure).axial_stiffness = not_given;
   EXPECT_LT(static_pull_in(Switch(straight), 0).voltage, 0.9 * volts);
@@ -181,7 +181,7 @@ TEST(TabulatedModes, OfAnotherTableAreNotTakenFromASwitch) {
 }
 
 TEST(ModeShapes, OfATableAreThoseOfItsBeam) {
-  constexpr double interpolated = 1e-6;  // of the tip
+  constexpr double interpolated = 1e-6;  // error as a share of the tip
   constexpr int places = 9;
   Device device = by_modes(test::gold_cantilever(), modal_table_of(test::gold_cantilever(), 5, table_places));
   device.structure.modes = 4;

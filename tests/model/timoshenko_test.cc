@@ -55,7 +55,7 @@ TEST(Timoshenko, FrequenciesAreZerosOfTheFrequencyEquations) {
         const double b = euler[i] * euler[i] / (1 + excess[i]);
         const double below = frequency_equation(far_clamp, b * (1 - close), thickness);
         const double above = frequency_equation(far_clamp, b * (1 + close), thickness);
-        if (!(b * b * thickness * thickness / 12 * thickness * thickness / 12 * 3.12 < 1)) continue;  // beyond its validity
+        if (!(b * b * thickness * thickness / 12 * thickness * thickness / 12 * 3.12 < 1)) continue;  // not valid beyond
         EXPECT_LT(below * above, 0) << "mode " << i + 1 << ", thickness " << thickness;
       }
     }
@@ -79,7 +79,7 @@ TEST(Timoshenko, FrequenciesAreThosePublished) {
 TEST(Timoshenko, ExcessOfSlenderBeamsGoesWithTheSquareOfThickness) {
   const auto last = [](double thickness) { return frequency_excess(beam(Cantilever{unit_beam}, thickness, 12)).back(); };
   const double beta = 11.5 * pi, first_order = (1 + 2 * (1 + poissons_ratio) / shear_coefficient) / 24;
-  constexpr double of_the_ends = 0.2;  // of it, at the twelfth mode
+  constexpr double of_the_ends = 0.2;  // effect of the ends at the twelfth mode, as a share of the first order
   EXPECT_NEAR(last(1e-3) / std::pow(beta * 1e-3, 2), first_order, of_the_ends * first_order);
   for (const double thickness : {1e-3, 1e-5, 1e-7}) {
     EXPECT_NEAR(last(thickness) / last(2 * thickness), 0.25, 1e-3) << thickness;

@@ -38,7 +38,7 @@ inline bool reached[highest + 1] = {};
   return chosen == mutant;
 }
 
-// Whether the mutant of this number, from 1, runs. None does where the compiler works out constants.
+// True if the mutant of this number, from 1, runs. None does where the compiler works out constants.
 [[gnu::always_inline]] constexpr bool is(int mutant) {
   if (__builtin_is_constant_evaluated()) {
     return false;

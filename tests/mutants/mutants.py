@@ -43,7 +43,7 @@ OPPOSITE |= {new: old for old, new in OPPOSITE.items()}
 NAMES = {each.value for each in (Kind.DECL_REF_EXPR, Kind.MEMBER_REF_EXPR, Kind.CALL_EXPR)}
 NUMBER = re.compile(r"(\d[\d']*\.?[\d']*(?:[eE][-+]?\d+)?)[fuUlLzZ]*$")
 
-# From start to end of a file, offsets in bytes: there `old`, which stands at `at`, becomes `new`. What an `if` asks is negated as a whole.
+# A place spans start to end of a file, offsets in bytes: there `old`, which stands at `at`, becomes `new`. A condition of an `if` is negated as a whole.
 Place = collections.namedtuple("Place", "file start end kind at old new")
 
 

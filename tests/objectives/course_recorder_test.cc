@@ -1,4 +1,4 @@
-// What is kept of a long closing, against all of it.
+// Compares the record of a long closing with the full course.
 #include "objectives/course_recorder.h"
 
 #include <gtest/gtest.h>

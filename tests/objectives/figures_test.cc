@@ -1,4 +1,4 @@
-// The one table of figures: it holds every figure once, reads each from its own member, and agrees with what people are told.
+// The one table of figures: it holds every figure once, reads each from its own member, and agrees with what people read.
 #include "objectives/figures.h"
 
 #include <gtest/gtest.h>

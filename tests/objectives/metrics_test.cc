@@ -268,7 +268,7 @@ TEST(Metrics, InterpolationOfASineIsOfSixthOrder) {
 }
 
 TEST(Metrics, ExcursionInsideOneIntervalIsFound) {
-  // Below the plane at both knots of a step and 5 nm above it in the middle, and the other way round.
+  // The motion is below the plane at both knots of a step and 5 nm above it in the middle, and the other way round.
   for (const double side : {1.0, -1.0}) {
     const auto motion = [&](double t) {
       const double s = t / 1_us;
@@ -315,7 +315,7 @@ TEST(Metrics, GrazingTouchCountsAndNearMissDoesNot) {
 }
 
 TEST(Metrics, MicroBouncesInsideAMacroBounceAreCountedByTheirOwnHeight) {
-  // After the flight of 500 nm the tip sinks in, and rings across the plane with an amplitude that crosses 1 nm.
+  // The tip sinks in after the flight of 500 nm, and rings across the plane with an amplitude that crosses 1 nm.
   const BouncingBall ball;
   Trajectory trajectory = ball.trajectory(1, 0, 4);
   const double begin = trajectory.points.back().time;

@@ -24,7 +24,7 @@ Trajectory ring_down(double end) {
   return t;
 }
 
-// Of the n-th turn, the larger the later.
+// Time of the n-th turn; it grows with n.
 double turn(int n) { return (n * std::acos(-1.0) - std::atan(decay / omega)) / omega; }
 double size_at(double time) { return amplitude * std::exp(-decay * time) * std::abs(std::cos(omega * time)); }
 

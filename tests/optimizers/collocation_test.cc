@@ -91,7 +91,7 @@ TEST(Collocation, PushesAMassFromRestToRestByBangAndBang) {
 }
 
 TEST(Collocation, FindsASwitchBetweenItsKnotsByRefiningThem) {
-  // From rest to x = 1, v = 1/2: full push to x_s, then full brake; v_s^2 = 2 x_s and 1/4 = 2 x_s - 2 (1 - x_s).
+  // The motion from rest to x = 1, v = 1/2: full push to x_s, then full brake; v_s^2 = 2 x_s and 1/4 = 2 x_s - 2 (1 - x_s).
   Mass mass;
   const VectorXd end = (VectorXd(2) << 1, 0.5).finished();
   const double x_s = 2.25 / 4, v_s = std::sqrt(2 * x_s), exact = v_s + (v_s - 0.5);
@@ -105,7 +105,7 @@ TEST(Collocation, FindsASwitchBetweenItsKnotsByRefiningThem) {
   }
   EXPECT_GT(coarse, 1e-4);                // the coarse knots are worse, as they must be
   EXPECT_NEAR(course.time, exact, 2e-5);  // a switch inside an interval costs its square
-  EXPECT_LT(problem.knots.size(), 40U);   // where nothing changes they stay
+  EXPECT_LT(problem.knots.size(), 40U);   // knots stay where nothing changes
 }
 
 TEST(Collocation, KeepsASlewLimit) {
@@ -166,7 +166,7 @@ TEST(Collocation, FindsTheBrachistochrone) {
   const ControlledCourse course = solve(problem, line(begin, end, 2, 0.6));
   ASSERT_TRUE(course.converged) << course.message;
   EXPECT_NEAR(course.time, M_PI * std::sqrt(radius), 2e-4);
-  EXPECT_LT(course.iterations, 60);  // with exact second derivatives
+  EXPECT_LT(course.iterations, 60);  // limit for exact second derivatives
 }
 
 TEST(Collocation, EndsBestWhereThatIsAsked) {

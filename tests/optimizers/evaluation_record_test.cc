@@ -1,4 +1,4 @@
-// What libraries are told.
+// Tests the values that libraries get.
 #include "optimizers/evaluation_record.h"
 
 #include <atomic>
@@ -39,7 +39,7 @@ TEST(Answers, RankInfeasiblePointsBelowEverythingSeen) {
       const Answer answer = budgeted(std::vector{static_cast<double>(k) / 1000});
       EXPECT_EQ(answer.feasible, k % 2 == 1);
       EXPECT_TRUE(std::isfinite(answer.value * answer.value)) << "libraries square";
-      EXPECT_GT(answer.value, worst) << k;  // of finite ones because the list ascends
+      EXPECT_GT(answer.value, worst) << k;  // holds for finite ones because the list ascends
       if (answer.feasible) worst = answer.value;
     }
   });

@@ -1,5 +1,5 @@
-// What objectives do to optimizers: NaN, infinities, exceptions, plateaus, steps. Each case is a failure seen in one of the
-// libraries.
+// Tests optimizers on failing objectives: NaN, infinities, exceptions, plateaus, steps. Each case is a failure seen in one of
+// the libraries.
 #include <cmath>
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-// What is peculiar to Ipopt.
+// Tests the peculiarities of Ipopt.
 #include <chrono>
 #include <filesystem>
 #include <fstream>

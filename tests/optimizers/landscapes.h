@@ -173,7 +173,7 @@ inline Landing land(std::span<const double> levels, std::span<const double> dura
 
 /// Impact energy and rebound relative to those of a step, with a charge on slowness; 2 or more when the contact is never touched.
 inline double landing_cost(const Landing& landing) {
-  constexpr double kStepSpeed = 0.43;  // of a step to 0.5
+  constexpr double kStepSpeed = 0.43;  // impact speed of a step to 0.5
   constexpr double kPatience = 4.5;
   if (landing.missed_by > 0) return 2 + landing.missed_by;
   const double speed = landing.impact_speed / kStepSpeed;
@@ -186,7 +186,7 @@ inline double landing_4(std::span<const double> x) {
   return landing_cost(land(std::array{x[0], x[1]}, std::array{x[2], x[3]}, 0.5));
 }
 
-/// Three levels, three durations, and the hold level.
+/// Three levels, three durations, and the hold voltage.
 inline double landing_7(std::span<const double> x) {
   return landing_cost(land(std::array{x[0], x[1], x[2]}, std::array{x[3], x[4], x[5]}, x[6]));
 }

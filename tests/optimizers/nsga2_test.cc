@@ -53,7 +53,7 @@ ParetoResult solved(const ParetoProblem& problem, long evaluations) {
   return result;
 }
 
-/// What lies above the true front f2 = shape(f1) in the square below (1.1, 1.1): the area that no front can exceed.
+/// Area above the true front f2 = shape(f1) in the square below (1.1, 1.1): no front can exceed it.
 double area_above(double (*shape)(double, double)) {
   constexpr int kSteps = 200'000;
   double area = 0, lowest = 1.1;
@@ -113,7 +113,7 @@ TEST(Nsga2, FindsAnEighthOfASphere) {
   }
 }
 
-/// T. T. Binh & U. Korn, MENDEL 1997. On the front x_2 = x_1 up to 3, and then x_2 = 3.
+/// T. T. Binh & U. Korn, MENDEL 1997. The front has x_2 = x_1 up to 3, and then x_2 = 3.
 TEST(Nsga2, KeepsTheConstraintsOfBinhAndKorn) {
   const ParetoProblem bnh{.variables = {{"x1", 0, 5}, {"x2", 0, 3}}, .objectives = 2, .evaluate = [](std::span<const double> x) {
                             const double inside = (x[0] - 5) * (x[0] - 5) + x[1] * x[1] - 25;

@@ -25,7 +25,7 @@ std::vector<Objectives> lattice_points(std::size_t count, std::size_t objectives
   return points;
 }
 
-/// By the definition: every point against every other.
+/// Finds the front by its definition: every point against every other.
 std::vector<std::size_t> front_by_definition(const std::vector<Objectives>& points) {
   std::vector<std::size_t> front;
   for (std::size_t k = 0; k < points.size(); ++k) {

@@ -1,5 +1,5 @@
-// How well the optimizers search. Rates were measured over 20 seeds (bench/optimizers prints the table); the thresholds leave
-// room of two or three runs in ten for a change of compiler to fall on other points.
+// Tests how well the optimizers search. Rates were measured over 20 seeds (bench/optimizers prints the table); the thresholds
+// leave room of two or three runs in ten for a change of compiler to fall on other points.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -24,7 +24,7 @@ using Quality = EveryOptimizer;
 INSTANTIATE_TEST_SUITE_P(Optimizers, Quality, testing::ValuesIn(every_name()), case_name);
 
 TEST_P(Quality, ATurnedBowlIsSolved) {
-  // What each reaches in 500 evaluations. The evolution strategies and the divider of rectangles are slow near a minimum, and the
+  // Accuracy of each in 500 evaluations. The evolution strategies and the divider of rectangles are slow near a minimum. The
   // separable models of mma and ccsaq do not know that the bowl is turned.
   const std::map<std::string, double> coarse = {{"isres", 0.1}, {"esch", 0.1}, {"direct-l", 1e-3},
                                                 {"crs2", 1e-4}, {"mma", 1e-3}, {"ccsaq", 1e-3}};
@@ -164,7 +164,7 @@ TEST(Auto, SolvesTheLandscapesAsOftenAsMeasured_slow) {
   }
 }
 
-// Of 400 searches over 200 seeds auto lands in 177, bobyqa from one start after the other in 92.
+// The counts of 400 searches over 200 seeds: auto lands in 177, bobyqa from one start after the other in 92.
 TEST(Auto, LandsMoreOftenThanItsPolisherAlone_slow) {
   int by_auto = 0, by_bobyqa = 0;
   for (const std::size_t pulses : {2u, 3u}) {
@@ -193,7 +193,7 @@ TEST(CmaEs, OfALargerGenerationFindsTheLeastOfManyMinimaMoreOften) {
                                     return sum;
                                   },
                               .starts = {{3, 3, 3}}};
-      // As many as one search takes: what is left of them is no second one.
+      // The budget is that of one search: the rest of it does not suffice for a second one.
       const OptimizerResult result = minimize(
           rastrigin,
           {.optimizer = "cma-es", .max_evaluations = population > 1 ? 3000 : 600, .seed = seed, .population = population});

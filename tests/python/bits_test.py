@@ -11,7 +11,7 @@ import softland
 
 SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes"
 PROGRAM = os.environ["SOFTLAND_PROGRAM"]
-# What says when, how fast and by what it was made.
+# Keys that say when, how fast and by what the result was made.
 OF_THE_RUN = ("command", "made_with", "reproduce", "version")
 
 
@@ -52,7 +52,7 @@ class Bits(unittest.TestCase):
         ours, theirs = figures(found.to_json()), figures(theirs)
         for drive in (*ours["drives"], *theirs["drives"]):
             drive.pop("name", None)
-        # What comes out of linear algebra, as the equilibrium that steady_force_time is held against and exact derivatives, is compiled into program
+        # Figures from linear algebra, as the equilibrium that steady_force_time is held against and exact derivatives, are compiled into program
         # and module from different copies of the same templates: the last digits differ. All other figures of all devices have the same bits.
         _nearly(self, ours, theirs)
         own, other = ([line.split(",") for line in text.splitlines()] for text in (found.file("devices.csv"), devices))
@@ -91,7 +91,7 @@ class Bits(unittest.TestCase):
     def test_effects(self):
         path = SCENES / "mem-gold.toml"
         ours, theirs = (one["effects"] for one in (softland.load(path).effects().to_json(), said_by_program("effects", path)))
-        # How long a law takes is of the machine, and after many rebounds the last digits of a compressible film are all there is.
+        # The time of a law depends on the machine. Differences of the last digits decide other figures of a compressible film after many rebounds.
         sound = ("initial_contact_time_s", "impact_velocity_m_s", "peak_contact_force_N")
         for one, other in zip(ours, theirs, strict=True):
             self.assertEqual(one["choice"], other["choice"])

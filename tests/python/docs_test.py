@@ -11,7 +11,7 @@ import softland
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "python.md"
-# What would take minutes, or a laboratory, and what is done instead.
+# Calls that would take minutes, or a laboratory, with their replacements.
 SHORTER = {"scene.tune(fire, ": "scene.tune(fire, closings=1, effort=0.05, "}
 
 
@@ -48,7 +48,7 @@ class Page(unittest.TestCase):
             finally:
                 os.chdir(before)
         self.assertEqual(names["y"].shape, (10_000, 2))
-        # The device of the record is that of the drawing.
+        # The device of the record is that of the nominal design.
         self.assertLess(abs(names["found"].unknowns[0]["value"] - 1), 0.005)
 
 

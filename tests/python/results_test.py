@@ -82,7 +82,7 @@ class Results(unittest.TestCase):
         self.assertEqual(mine.columns, theirs.columns)
         for name in mine.columns:
             np.testing.assert_array_equal(mine.rows()[name], theirs.rows()[name])
-        # What is there is not computed again, and a longer plan begins with it.
+        # Existing rows are not computed again, and a longer plan begins with them.
         vary["gap.contact"] = "1.8 um:2.2 um:5"
         self.assertEqual(len(softland.load(GOLD).explore(vary, self.folder / "mine.sqlite", resume=True)), 10)
 

@@ -48,9 +48,9 @@ class Searches(unittest.TestCase):
     def test_an_own_waveform_is_run_and_searched_like_in_cpp(self):
         scene = softland.load(GOLD)
         hold = scene.waveforms["main"].hold_level
-        own = swell(hold, 1.2 * hold)  # the driver of the scene: 1.5 Vdp at a hold level of 1.25
+        own = swell(hold, 1.2 * hold)  # the driver of the scene: 1.5 Vdp at a hold voltage of 1.25
         as_it_stands = scene.simulate(errors=False, waveforms={"main": own})
-        # What the C++ example prints: 51.86 us, 51.45 mm/s.
+        # The C++ example prints 51.86 us, 51.45 mm/s.
         self.assertAlmostEqual(as_it_stands.initial_contact_time * 1e6, 51.86, places=2)
         self.assertAlmostEqual(as_it_stands.impact_velocity * 1e3, 51.45, places=2)
         found = scene.optimize(robust="none", own_waveforms=[own], waveform="swell", budget=300)

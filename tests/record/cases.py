@@ -79,7 +79,7 @@ def quick(scene):
     return words
 
 
-# Where a closing is long, and every setting of `accuracy` takes its time: what it cuts depends on the clock, so nothing may be cut.
+# These closings are long, and every setting of `accuracy` takes its time: what it cuts depends on the clock, so nothing may be cut.
 SHORTER = {"mem-gold": "60 us", "mem-gold-pzt": "60 us", "nem-tin": "8 ns", "nem-casimir": "2 us", "two-electrodes": "60 us",
            "gap-closing-actuator": "80 us"}
 

@@ -13,7 +13,7 @@ JSON_MASKS = [(kind, re.compile(path)) for kind, path in [
     ("", r"(.+\.)?made_with"),
     ("", r"(.+\.)?work\.(wall_s|store_s)"),
     ("effects", r"(.+\.)?rhs_s"),
-    # How often a setting is run, and which is the quickest, is what the clock says; its page is drawn over time.
+    # The clock decides how often a setting is run, and which is the quickest; its page is drawn over time.
     ("accuracy", r"(rows|modes|without_restart_at_contact)\[\]\.(cpu_s|runs)|reference\.(cpu_s|runs)"),
     ("accuracy", r"recommendations\[\]\.(setting|words)"),
     ("accuracy page", r"charts\[\]\.(marks|x\.(home|whole))|tables\..*"),
@@ -45,7 +45,7 @@ TEXT_MASKS = [(verb, file, re.compile(expression, re.M)) for verb, file, express
     ("", ".html", r"(<p class=\"below\">Computed by ).*(\.</p>)"),
 ]]
 
-# Progress, which is told after five seconds, and every ten from then on: whole lines.
+# Progress is reported after five seconds, and every ten from then on: whole lines.
 PROGRESS = re.compile(r"^softland: .*, \d+ s(, about \d+ s left)?(, cost .* \(plain step .*\)|, no feasible waveform yet)?$")
 
 # Columns of tables on standard output that hold times, by verb and heading.

@@ -36,8 +36,8 @@ WORK = pathlib.Path("/tmp/softland-record")
 MOST_SECONDS = 900  # of one step
 MOST_MEMORY = 4 << 30  # address space of one step [bytes]: a fault in one case does not take the machine down
 
-# What decides the bits of a result, beside the program: the C library takes its sin, exp and pow by the processor unless it is told
-# which instructions not to use (names of glibc 2.33 and later, then of earlier ones), and lanes of devices, where there are several.
+# These decide the bits of a result, beside the program. The C library takes its sin, exp and pow by the processor unless it is told
+# which instructions not to use (names of glibc 2.33 and later, then of earlier ones). Lanes of devices decide, where there are several.
 FIXED = {
     "LC_ALL": "C", "TZ": "UTC", "COLUMNS": "100", "PATH": "/usr/bin:/bin",
     "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX2_Usable,-FMA_Usable,-FMA4_Usable",
@@ -62,7 +62,7 @@ def dump(path):
             cursor = store.execute(f'SELECT * FROM "{name}"')
             columns = [column[0] for column in cursor.description]
             rows = [{c: v.hex() if isinstance(v, bytes) else v for c, v in zip(columns, row)} for row in cursor]
-            # By what they are, never by what the clock put into them.
+            # Sort rows by what they are, never by what the clock put into them.
             order = [c for c in ("plan", "session", "position", "point", "status") if c in columns]
             rows.sort(key=lambda row: [(str(type(row[c])), row[c]) for c in order])
             lines += [f"{name} {json.dumps(row, ensure_ascii=False)}" for row in rows]

@@ -132,8 +132,8 @@ TEST(GoldCantilever, OneModeKnowsNoMicroBounces) {
 }
 
 TEST(GoldCantilever, SettlingIsAPropertyOfACloudOfRuns) {
-  // Past the first macro-bounce the closing is chaotic. Over 60 tolerances each of three integrators t_p lies between 266 and
-  // 346 us, half of it below 315 to 320 us, with 37 to 69 rebounds, without a trend: the bounds leave room for other members of
+  // The closing is chaotic past the first macro-bounce. Over 60 tolerances each of three integrators t_p lies between 266 and
+  // 346 us, half of it below 315 to 320 us, with 37 to 69 rebounds, without a trend. The bounds leave room for other members of
   // the same cloud, not for another median.
   const Switch device(test::gold_cantilever());
   std::vector<double> ends;

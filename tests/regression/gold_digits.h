@@ -1,4 +1,4 @@
-// How near the figures of the two gold cantilevers are to those of independent programs.
+// Errors of the figures of the two gold cantilevers against independent programs.
 #pragma once
 
 namespace softland::test {

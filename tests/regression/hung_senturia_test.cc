@@ -1,9 +1,9 @@
 // scenes/hung-senturia.toml: pull-in times of the clamped-clamped beam on its compressible gas film, against an independent
-// program that solves the two-dimensional slip Reynolds equation and the beam by finite differences (19 points along, 6 across;
+// program. It solves the two-dimensional slip Reynolds equation and the beam by finite differences (19 points along, 6 across;
 // 29 by 9 move its time at 10.25 V by 1.7 %).
 //
 // Nineteen points make that beam too soft: its own static pull-in, by the same differences, is 8.7326 V instead of 8.8629 V, and
-// near pull-in a time is a matter of the distance from it. So the two are compared at the same V/Vsp. What is left, 2 to 3 %, is
+// near pull-in a time is a matter of the distance from it. So the two are compared at the same V/Vsp. The rest, 2 to 3 %, is
 // flow along the beam, which strips leave out, and the coarse grid across it.
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ TEST(HungSenturia, PullInTimesInAirAreTheReference) {
 }
 
 TEST(HungSenturia, PullInTimesInThinAirAreTheReference) {
-  // Where compressibility and slip decide: the incompressible strip film is ten times too slow at a hundredth of an atmosphere.
+  // Compressibility and slip decide here: the incompressible strip film is ten times too slow at a hundredth of an atmosphere.
   constexpr double strips_and_grid = 0.04;  // relative
   struct Row {
     double atmospheres, volts, time;

@@ -11,11 +11,11 @@
 namespace softland {
 namespace {
 
-// What a lumped model with rigid fingers can do; results/measured-actuators.md lists every deviation. Short fingers pull in
+// Bounds for a lumped model with rigid fingers; results/measured-actuators.md lists every deviation. Short fingers pull in
 // earlier than simulated: their overlap is known to 0.4 um in 15 only, and ends and roots add force.
 constexpr double voltage_error = 0.10;  // relative
 constexpr double shortest = 38e-6;      // [m] overlap from which the voltages are held to it
-constexpr double time_error = 0.10;     // from one and a half times the pull-in voltage on
+constexpr double time_error = 0.10;     // relative error from one and a half times the pull-in voltage on
 constexpr double well_above = 1.5;
 
 double pull_in(const Device& d) { return static_pull_in(Switch(d), 0).voltage; }

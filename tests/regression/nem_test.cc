@@ -69,7 +69,7 @@ TEST(NemCasimir, HangsFreeAndClosesWhenTheForceGrowsByAQuarter) {
   EXPECT_EQ(fold.kind, StaticKind::fold);
   const DynamicPullIn dynamic = dynamic_pull_in(model, 0, fold);
   ASSERT_EQ(dynamic.status, Status::done);
-  // From rest a step overshoots, so it needs less than the fold; both lie between the nominal force and a quarter more.
+  // A step from rest overshoots, so it needs less than the fold; both lie between the nominal force and a quarter more.
   EXPECT_GT(dynamic.voltage, 0.02);
   EXPECT_LT(dynamic.voltage, fold.voltage);
   EXPECT_LT(fold.voltage, 0.22);

@@ -1,4 +1,4 @@
-// What the user reads of an accuracy study, made here of round numbers.
+// Tests the report of an accuracy study, made here of round numbers.
 #include "reports/accuracy_report.h"
 
 #include <gmock/gmock.h>

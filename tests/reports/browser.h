@@ -33,7 +33,7 @@ inline std::string browser() {
 
 struct Visit {
   std::string dom;
-  std::string console;  ///< what the page wrote to the console, and errors it did not catch
+  std::string console;  ///< text that the page wrote to the console, and errors it did not catch
 };
 
 inline Visit visit(const std::string& program, const std::string& page) {

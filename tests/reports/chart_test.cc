@@ -39,7 +39,7 @@ TEST(Charts, FollowTheParts) {
             (std::vector<std::string>{"gap", "landing", "drive-0", "drive-1", "velocity", "force", "search"}));
   result.erase("search");
   result["curves"]["best"].erase("contact_force_N");
-  result["curves"]["baseline"]["contact_force_N"] = {1, 2, 3};  // of another length than its times
+  result["curves"]["baseline"]["contact_force_N"] = {1, 2, 3};  // a course of another length than its times
   EXPECT_EQ(ids(picture(read_closing(result))), (std::vector<std::string>{"gap", "landing", "drive-0", "drive-1", "velocity"}));
   EXPECT_TRUE(picture(read_closing(json::object())).charts.empty());
 }
@@ -160,7 +160,7 @@ TEST(Charts, SurvivePackingToOnePartInTenMillion) {
   const std::vector<double>& gap = drawn.tables.at("best").at("tip_gap_m");
   const std::vector<double> back = unpacked(packed.at("tables").at("best").at("tip_gap_m"));
   ASSERT_EQ(back.size(), gap.size());
-  constexpr double resolution = 1e-7 * 2e-6;  // of the largest gap; integer steps do not accumulate error
+  constexpr double resolution = 1e-7 * 2e-6;  // share of the largest gap; integer steps do not accumulate error
   for (std::size_t row = 0; row < gap.size(); ++row) ASSERT_LE(std::abs(back[row] - gap[row]), resolution) << row;
 }
 

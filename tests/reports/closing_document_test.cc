@@ -29,7 +29,7 @@ std::size_t occurrences(const std::string& text, std::string_view what) {
   return count;
 }
 
-/// What a browser would load: values of src and href, url(...) and @import, other than fragments of the page itself.
+/// The resources that a browser would load: values of src and href, url(...) and @import, except fragments of the page itself.
 std::vector<std::string> loads(const std::string& page) {
   static const std::regex pattern(R"re((?:\b(?:src|href|srcset)\s*=\s*["']?|url\(\s*["']?|@import\s+["']?)([^"'\s)>]+))re");
   std::vector<std::string> out;
@@ -159,9 +159,9 @@ TEST(HtmlReport, DrawsTheSwitchAndWhatEveryDriveDemands) {
   EXPECT_THAT(page_html(closing_document(read_closing(result))), HasSubstr("± certified"));
 }
 
-// By the width of letters that no sans serif exceeds on the average.
+// The width of letters is one that no sans serif exceeds on the average.
 TEST(Sketch, HoldsAllOfItsWords) {
-  constexpr double letter = 7.5;  // at 12.5 px
+  constexpr double letter = 7.5;  // width of a letter at 12.5 px
   for (const char* structure : {"cantilever", "clamped-clamped", "plate"}) {
     const std::string drawing = internal::sketch({.structure = side_of_structure(structure),
                                                   .length = 612.5e-6,

@@ -167,7 +167,7 @@ TEST(ContactStatesFile, IsReadByGtkWave_optimized) {
   }
 }
 
-// Of a long file few rows are drawn, and a step of one variable among many changes of another is upright.
+// Few rows of a long file are drawn, and a step of one variable among many changes of another is upright.
 TEST(ContactStatesFile, IsDrawnAsSteps) {
   StateRecord record{.end = 1e-3, .channels = {{.spans = {}}, {.contact = "left", .spans = {{0.123456e-3}}}}};
   for (int k = 1; k < 20'000; ++k) record.channels[0].spans.push_back({2e-8 * k, 2e-8 * k + 1e-8});

@@ -1,4 +1,4 @@
-// What is said of a search for devices, on figures that are made up.
+// Tests the report of a search for devices, on figures that are made up.
 #include "reports/devices_report.h"
 
 #include <gmock/gmock.h>

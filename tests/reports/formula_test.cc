@@ -105,7 +105,7 @@ class Evaluator {
   std::size_t at_ = 0;
 };
 
-// That a function of gap and velocity leaves a formula which has its value.
+// Expects that a function of gap and velocity leaves a formula which has its value.
 template <class F>
 void expect_same(F f, const std::vector<double>& gaps) {
   const Formula made = f(Formula::named("h"), Formula::named("v"));

@@ -52,7 +52,7 @@ TEST(ContourLines, OfAPlaneAreOneStraightLine) {
   const auto lines = contour_lines(tabulated(9, 6, [](double i, double j) { return 2 * i + j; }), 9, 8.5);
   ASSERT_EQ(lines.size(), 1u);
   for (const auto& [i, j] : lines[0]) EXPECT_NEAR(2 * i + j, 8.5, 1e-12);
-  // From the lower edge of the map to the upper one.
+  // The line goes from the lower edge of the map to the upper one.
   EXPECT_NEAR(length_of(lines[0]), std::hypot(2.5, 5), 1e-12);
 }
 

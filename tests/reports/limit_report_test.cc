@@ -1,4 +1,4 @@
-// What the user sees of a limit: of a plate, which takes a second.
+// Tests the report of a limit: that of a plate, which takes a second.
 #include "reports/limit_report.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What a user reads of measurements, made here of numbers that are easy to find again.
+// Tests the report of measurements, made here of numbers that are easy to find again.
 #include "reports/measurement_report.h"
 
 #include <gmock/gmock.h>

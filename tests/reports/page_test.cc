@@ -62,7 +62,7 @@ TEST_F(PageInBrowser, RunsNoScriptOfAHostileTitle_browser) {
   EXPECT_THAT(seen.dom, HasSubstr("class=\"drawn\""));
 }
 
-/// A search of the scene with the sketch, the limits and the drawing of its parameters.
+/// A search of the scene with the sketch, the limits and the picture of its parameters.
 json searched() {
   json result = test::sample_optimize_result(3000);
   result["scene"]["structure"] = {{"kind", "cantilever"}, {"length", "250 um"}};

@@ -71,8 +71,8 @@ TEST(Quantity, IsRoundedToItsError) {
 /// A printed quantity read back.
 struct Printed {
   double value = 0;
-  double last_place = 0;  ///< what one more in the last digit would be worth; zeros before the unit are taken for no digits
-  int digits = 0;         ///< from the first that is not 0
+  double last_place = 0;  ///< value of one more in the last digit; zeros before the unit are taken for no digits
+  int digits = 0;         ///< digits from the first that is not 0
   bool bound = false;     ///< "< 1 pm"
 };
 
@@ -124,7 +124,7 @@ TEST(Quantity, OfAFastSlewIsInVoltsPerMicrosecond) {
 TEST(Quantity, NeverSaysMoreThanIsKnownNorLessThanIsAskedFor) {
   std::mt19937_64 generator(1);
   const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(generator); };
-  constexpr double slack = 1 + 1e-9;  // of numbers read back
+  constexpr double slack = 1 + 1e-9;  // factor for the rounding of numbers read back
   constexpr int runs = 20000;
   for (int run = 0; run < runs; ++run) {
     const std::vector<std::string> units{"m", "s", "m/s", "N", "J", "V", "V/s", "Hz", "N s/m^2"};
@@ -171,7 +171,7 @@ TEST(ErrorOf, HasTwoDigitsAndIsABoundWhereTheValueHidesIt) {
       EXPECT_LT(error, e->value) << shown << " ± " << text;
     } else {
       EXPECT_GE(e->value / error, 1 - 1e-8) << shown << " ± " << text << " of " << error;
-      EXPECT_LE(e->value / error, 2.001) << shown << " ± " << text << " of " << error;  // what is half of the last digit is one
+      EXPECT_LE(e->value / error, 2.001) << shown << " ± " << text << " of " << error;  // half of the last digit rounds up
     }
   }
 }

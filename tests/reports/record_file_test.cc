@@ -22,7 +22,7 @@ TEST(ParseClosing, ReadsWhatTheVerbsWrite) {
   EXPECT_EQ(parse_closing(result.dump(), "x.json"), result);
 }
 
-// As scenes may write them: by a percentage of the length, up to the tip, and of several pads.
+// Pads are as scenes may write them: by a percentage of the length, up to the tip, and several.
 TEST(ReadClosing, KnowsWherePadsLie) {
   nlohmann::json result = test::sample_simulate_result(11);
   nlohmann::json& scene = result["scene"];

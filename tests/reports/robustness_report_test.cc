@@ -1,4 +1,4 @@
-// What the user reads of devices that differ, made here of outcomes that are easy to count.
+// Tests the report of varied devices, made here of outcomes that are easy to count.
 #include "reports/robustness_report.h"
 
 #include <fmt/format.h>
@@ -361,7 +361,7 @@ TEST(RobustnessReport, SaysWhatIsMissingForShares) {
   EXPECT_THAT(terminal_text(robustness_document(s.report())), Not(HasSubstr("too many"))) << "all devices of the sample close";
 }
 
-// What is first order says nothing of devices whose spread is another one.
+// Derivatives of first order say nothing of devices whose spread is another one.
 TEST(RobustnessReport, ShowsNoDerivativesThatTheDevicesContradict) {
   Study s = study();
   EXPECT_THAT(terminal_text(robustness_document(s.report())), HasSubstr(" %/%"));

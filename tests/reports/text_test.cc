@@ -32,7 +32,7 @@ TEST(Wrapped, BreaksAtBlanksOnly) {
   EXPECT_EQ(wrapped("µµ µµ µ", 5), "µµ µµ\nµ") << "columns, not bytes";
 }
 
-/// What a reader of the page sees as text: without scripts, pictures, the listed scene and tags.
+/// The text that a reader of the page sees: without scripts, pictures, the listed scene and tags.
 std::string read_aloud(const std::string& page) {
   std::string text;
   for (std::size_t at = page.find("<main>"); at < page.size();) {
@@ -77,7 +77,7 @@ void damage(json& value, double absurd, int period, int& turn) {
   }
 }
 
-/// What in a report is no number that people read; empty when all is well.
+/// The first number in a report that people cannot read; empty when all is well.
 std::string misshapen(const std::string& report) {
   static const std::regex none(".{0,40}\\b(nan|inf)\\b"), long_number(".{0,40}[0-9]{26}");
   std::string text = report;

@@ -163,7 +163,7 @@ TEST(TuningReport, BringsNothingIntoItsPageButText) {
   for (const char* part :
        {"id=\"records\"", "id=\"belief\"", "id=\"waveforms\"", "id=\"reproduce\"", "kept so far", "proposed next"})
     EXPECT_THAT(page, HasSubstr(part));
-  // Of the first record three intervals closed, under the prediction.
+  // Three intervals of the first record are closed, under the prediction.
   const std::size_t first = page.find("aria-label=\"closing 1 touched");
   const std::string strip = page.substr(first, page.find("</svg>", first) - first);
   std::size_t seen = 0;

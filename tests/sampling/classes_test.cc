@@ -24,7 +24,7 @@ std::vector<SpacePoint> normal_points(std::size_t count) {
 }
 
 struct Published {
-  std::vector<double> centres;  // above 0
+  std::vector<double> centres;  // centres above 0
   double mean_square;           // distance
 };
 

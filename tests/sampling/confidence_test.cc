@@ -66,7 +66,7 @@ TEST(WilsonInterval, StaysInsideTheUnitInterval) {
 }
 
 TEST(WilsonInterval, CoversTheYieldAsOftenAsItSays) {
-  // How often it covers at n = 200: the sum of the binomial probabilities of the counts whose interval holds the yield.
+  // The coverage at n = 200 is the sum of the binomial probabilities of the counts whose interval holds the yield.
   for (const auto& [yield, expected] : {std::pair{0.35, 0.9121}, {0.8, 0.9076}}) {
     const double share = coverage([truth = yield](int repetition) {
       std::size_t successes = 0;
@@ -109,7 +109,7 @@ TEST(QuantileInterval, EndsAtAFailureWhereItsOrderStatisticIsOne) {
 }
 
 TEST(QuantileInterval, CoversTheQuantileAtLeastAsOftenAsItSays) {
-  // At n = 150: P(65 <= B < 86) for the median, and P(129 <= B < 142).
+  // The values at n = 150 are P(65 <= B < 86) for the median, and P(129 <= B < 142).
   for (const auto& [p, expected] : {std::pair{0.5, 0.9139}, {0.9, 0.9253}}) {
     const double truth = -std::log1p(-p);
     const double share = coverage(
@@ -124,7 +124,7 @@ TEST(BootstrapInterval, CoversAMeanNearlyAsOftenAsItSays_long) {
                               {.confidence = confidence, .repetitions = 300, .seed = static_cast<std::uint64_t>(repetition)})
         .holds(1);
   });
-  // For a skewed distribution it misses a few thousandths at n = 100 (Efron & Tibshirani, section 13.7).
+  // The interval misses a few thousandths at n = 100 for a skewed distribution (Efron & Tibshirani, section 13.7).
   EXPECT_NEAR(share, confidence, four_deviations + 0.01);
 }
 
@@ -132,7 +132,8 @@ TEST(BootstrapInterval, IsThatOfTheNormalApproximationForAMean) {
   const std::vector<double> sample = exponential_sample(1, 2000);
   const Interval interval = bootstrap_interval(sample, sample_mean, {.confidence = 0.95, .repetitions = 4000});
   const double half = 1.959964 * sample_standard_deviation(sample) / std::sqrt(2000.0), mean = sample_mean(sample);
-  constexpr double of_4000_repetitions = 0.1;  // of the half width: an outer quantile of 4000 is known to 4 %; skewness adds 2 %
+  // Share of the half width: an outer quantile of 4000 is known to 4 %; skewness adds 2 %.
+  constexpr double of_4000_repetitions = 0.1;
   EXPECT_NEAR(interval.low, mean - half, of_4000_repetitions * half);
   EXPECT_NEAR(interval.high, mean + half, of_4000_repetitions * half);
 }

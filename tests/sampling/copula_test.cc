@@ -53,7 +53,7 @@ double rank_correlation_of(const std::vector<double>& a, const std::vector<doubl
 TEST(GaussianCopula, GivesTheRankCorrelationsOfItsNormals_long) {
   constexpr std::uint64_t count = 100'000;
   const auto columns = correlated_columns(GaussianCopula(of_three(0.8, -0.5, 0.05)), count);
-  const double five_deviations = 5 / std::sqrt(static_cast<double>(count));  // where independent; less where correlated
+  const double five_deviations = 5 / std::sqrt(static_cast<double>(count));  // bound for independent columns, safe for others
   EXPECT_NEAR(rank_correlation_of(columns[0], columns[1]), 6 / std::numbers::pi * std::asin(0.4), five_deviations);
   EXPECT_NEAR(rank_correlation_of(columns[0], columns[2]), 6 / std::numbers::pi * std::asin(-0.25), five_deviations);
   EXPECT_NEAR(rank_correlation_of(columns[1], columns[2]), 6 / std::numbers::pi * std::asin(0.025), five_deviations);

@@ -72,7 +72,7 @@ TEST(Distribution, MomentsAreThoseOfItsQuantiles_long) {
       squares += x * x;
     }
     const double mean = sum / points, deviation = std::sqrt(squares / points - mean * mean);
-    // What lies beyond the outermost of so many points adds a few times 1 / points of the variance to the tail of a lognormal.
+    // The part beyond the outermost of so many points adds a few times 1 / points of the variance to the tail of a lognormal.
     const double tolerance = c.name.starts_with("lognormal") ? 2e-4 : 2e-5;
     EXPECT_TRUE(std::abs(c.distribution.mean() - (mean + 2)) <= tolerance)
         << c.name << ": " << c.distribution.mean() << " " << mean + 2;
@@ -143,7 +143,7 @@ TEST(Distribution, NeverLeavesItsSupport) {
 }
 
 TEST(Distribution, NeverLeavesItsSupportByRounding) {
-  // Below the probability 1 by less than half a rounding: the quantile of 1 would be infinite.
+  // The probability is below 1 by less than half a rounding: the quantile of 1 would be infinite.
   EXPECT_LT(Distribution(Normal{.mean = 0, .standard_deviation = 1}, {.low = 1}).quantile(1 - 0x1p-53), 9);
   for (int i = 1; i < 100; ++i) {
     const double low = 0.1 + 0.006 * i;

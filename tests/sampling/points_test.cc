@@ -158,7 +158,7 @@ TEST(LatinHypercube, HasStrataThatAreUncorrelatedBetweenDimensionsAndInOrder) {
     for (std::size_t k = 0; k < size; ++k) sum += (first(k) - 0.5) * (second(k) - 0.5) * 12 / size;
     return sum;
   };
-  constexpr double five_deviations = 5 / 100.0;  // of the correlation of 10000 independent pairs
+  constexpr double five_deviations = 5 / 100.0;  // deviation of the correlation of 10000 independent pairs
   const auto of = [&](std::size_t i) { return [&points, i](std::size_t k) { return points[k][i]; }; };
   const auto next = [&](std::size_t k) { return points[(k + 1) % size][0]; };
   const auto number = [](std::size_t k) { return static_cast<double>(k) / size; };
@@ -189,7 +189,7 @@ TEST_P(EveryPointSet, GivesAPointWhateverWasAskedBefore) {
 }
 
 TEST_P(EveryPointSet, HasTheSamePointsInALargerSet) {
-  if (GetParam() == PointSet::latin_hypercube) return;  // whose strata are those of its size
+  if (GetParam() == PointSet::latin_hypercube) return;  // its strata are those of its size
   const SamplePoints small(GetParam(), 5, 6, Stream::spread, 100),
       large(GetParam(), 5, 6, Stream::spread, SamplePoints::largest_size);
   for (std::uint64_t k = 0; k < 100; ++k) EXPECT_EQ(point_of(small, k), point_of(large, k));

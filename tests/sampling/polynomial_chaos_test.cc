@@ -51,7 +51,7 @@ double polynomial(const std::vector<double>& u) {
   return 3 + 2 * x + x * z + z * z * w;
 }
 const std::vector<Germ> mixed{Germ::uniform, Germ::normal, Germ::normal};
-constexpr double rounding = 1e-11;  // of a hundred equations of condition below 100, where Hermite polynomials reach 10
+constexpr double rounding = 1e-11;  // error of a hundred equations of condition below 100, where Hermite polynomials reach 10
 
 TEST(PolynomialChaos, ReproducesAPolynomial) {
   const Eigen::MatrixXd points = sobol_points(3, 100);
@@ -164,7 +164,7 @@ TEST(PolynomialChaos, TakesNoMoreTermsThanTheFiguresBear) {
   const Eigen::MatrixXd line = sobol_points(1, 20);
   const auto steep = [](const std::vector<double>& u) { return std::pow(2 * u[0], 12); };
   EXPECT_LE(PolynomialChaos({Germ::uniform}, line, figures_at(line, steep), 12).terms(), 10u);
-  // In eight variables there are 165 terms of degree 3, and 495 of degree 4: more than ten times the figures.
+  // There are 165 terms of degree 3 in eight variables, and 495 of degree 4: more than ten times the figures.
   const Eigen::MatrixXd points = sobol_points(8, 20);
   const auto fifth = [](const std::vector<double>& u) {
     const double x = 2 * u[0] - 1;

@@ -1,4 +1,4 @@
-// What a refusal must say: which parameter, its value, the rule.
+// Checks that a refusal names the parameter, its value and the rule.
 #pragma once
 
 #include <gmock/gmock.h>

@@ -148,7 +148,7 @@ TEST(SobolIndices, AreRefusedWhereMoreThanOneInAHundredFailed) {
 }
 
 TEST(SobolIndices, OfAConstantAreNotKnown) {
-  for (std::size_t rows = 2; rows < 20; ++rows) {  // of some the mean rounds to another value
+  for (std::size_t rows = 2; rows < 20; ++rows) {  // for some of these the mean rounds to another value
     const SobolEstimate made = sobol_indices(2, std::vector<double>(4 * rows, 1.0 / 7), quick);
     ASSERT_TRUE(made.indices);
     EXPECT_NEAR(made.indices->mean, 1.0 / 7, 1e-15);

@@ -38,8 +38,8 @@ TEST(SampleFigures, AreInfiniteWhereASwitchFailed) {
   EXPECT_TRUE(std::isnan(sample_skewness(sample)));
   EXPECT_EQ(sample_quantile(sample, 0.25), 2);
   EXPECT_EQ(sample_quantile(sample, 0.5), 3);          // its own order statistic alone
-  EXPECT_EQ(sample_quantile(sample, 0.51), infinity);  // between 3 and infinity
-  EXPECT_EQ(sample_quantile(sample, 0.9), infinity);   // between two infinite ones
+  EXPECT_EQ(sample_quantile(sample, 0.51), infinity);  // lies between 3 and infinity
+  EXPECT_EQ(sample_quantile(sample, 0.9), infinity);   // lies between two infinite ones
   EXPECT_EQ(sample_quantile(sample, 1), infinity);
   EXPECT_EQ(conditional_value_at_risk(sample, 0.5), infinity);
 }

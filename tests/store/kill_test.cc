@@ -23,7 +23,7 @@ using Kill = WithStore;
 
 constexpr std::int64_t points = 60'000;
 
-// What the writer tells of itself, in memory that outlives it.
+// The writer's report on itself, in memory that outlives it.
 struct Told {
   std::atomic<bool> writes = false;  ///< the store is open
   std::atomic<std::int64_t> taken = 0;
@@ -31,7 +31,7 @@ struct Told {
 };
 
 struct Pace {
-  int rows;                        ///< between two rests
+  int rows;                        ///< rows between two rests
   std::chrono::microseconds rest;  ///< so long that no machine is done before it is killed
 };
 
@@ -59,12 +59,12 @@ class Writer {
     child_ = ::fork();
     if (child_ == 0) write_on(file, told, pace);
   }
-  // Until it has the store open, for a minute.
+  // Wait until it has the store open, for a minute at most.
   void await() const {
     for (int i = 0; i < 60'000 && !told_.writes; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ASSERT_TRUE(told_.writes);
   }
-  // Whether it was still at work.
+  // Returns true if it was still at work.
   bool kill() const {
     ::kill(child_, SIGKILL);
     int status = 0;

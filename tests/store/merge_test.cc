@@ -69,7 +69,7 @@ TEST_F(Merge, OfMergedPartsIsTheSame) {
   const std::vector<fs::path> parts = parts_of(100, 4);
   static_cast<void>(merge_studies({parts[0], parts[1]}, path("a"), origin()));
   static_cast<void>(merge_studies({parts[1], parts[2], parts[3]}, path("b"), origin()));
-  EXPECT_THAT(merge_studies({path("b"), path("a")}, file, origin()).notes, IsEmpty());  // what both hold has the same bits
+  EXPECT_THAT(merge_studies({path("b"), path("a")}, file, origin()).notes, IsEmpty());  // rows in both have the same bits
   EXPECT_EQ(rows_in(file).size(), 100u);
 }
 

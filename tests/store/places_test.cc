@@ -1,4 +1,4 @@
-// What may stand where a store is or should be, and what each of it is answered.
+// Tests what may stand where a store is or should be, and the answer to each.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -314,7 +314,7 @@ TEST_F(Place, UnderTwoNamesIsNotWritten) {
 TEST_F(Place, ThatCannotBeWrittenToIsReadWithoutLitter) {
   make_store(file, 100);
   make_store(path("logged"), 100);
-  // As a writer leaves it whose last reader went after it: no log, but the header says that there may be one.
+  // A writer leaves the store so if its last reader went after it: no log, but the header says that there may be one.
   run_sql(path("logged"), "PRAGMA journal_mode = WAL");
   fs::remove(path("logged-wal"));
   fs::remove(path("logged-shm"));

@@ -1,4 +1,4 @@
-// What goes into a store comes out of it, whoever goes on with it.
+// Tests that a store gives back what went into it, whoever goes on with it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -202,7 +202,7 @@ TEST_F(Store, TakesARowOnceAndRefusesOtherBits) {
   StoredRow other = row_of(1);
   other.values[1] = std::nextafter(other.values[1], 1);
   store.add(other);
-  store.add(row_of(2));  // of the same batch: is kept
+  store.add(row_of(2));  // a row of the same batch: it is kept
   EXPECT_THAT([&] { store.flush(); },
               ThrowsMessage<InvalidInput>(HasSubstr("point 1 is there already, with other bits: impact_velocity_m_s")));
   store.close();
@@ -216,7 +216,7 @@ TEST_F(Store, RefusesRowsThatDoNotBelongToThePlan) {
   StudyStore store(file, plan_of(10, {.index = 2, .count = 2}), origin(), Opening::fresh);
   EXPECT_THROW(store.add(row_of(-1)), InvalidInput);
   EXPECT_THROW(store.add(row_of(11)), InvalidInput);
-  EXPECT_THROW(store.add(row_of(4)), InvalidInput);  // of the other part
+  EXPECT_THROW(store.add(row_of(4)), InvalidInput);  // a row of the other part
   StoredRow short_one = row_of(1);
   short_one.values.pop_back();
   EXPECT_THROW(store.add(short_one), InvalidInput);
@@ -253,7 +253,7 @@ TEST_F(Store, IsReadWhileItIsWritten) {
   seen = 0;
   reader.read([&](const StoredRow&) { ++seen; });
   EXPECT_EQ(seen, 3000u);
-  store.close();  // with a reader there
+  store.close();  // there is still a reader
   EXPECT_EQ(rows_in(file).size(), 3000u);
 }
 

@@ -1,4 +1,4 @@
-// What accuracy costs: the study of a small scene.
+// Tests the study of accuracy against cost, on a small scene.
 #include "studies/closing/accuracy.h"
 
 #include <fmt/format.h>

@@ -15,7 +15,7 @@ namespace softland {
 namespace {
 
 TEST(BangBang, OfAConstantForceOnASpringFollowsTheCosine) {
-  // From rest under F: x = F / k (1 - cos w t) to x_s = k c^2 / (2 F); from there to rest at c: x = c cos(w (t - t_c)).
+  // It moves from rest under F, x = F / k (1 - cos w t) to x_s = k c^2 / (2 F), then to rest at c, x = c cos(w (t - t_c)).
   constexpr double k = 3, m = 0.7, c = 1.2;
   const double w = std::sqrt(k / m);
   for (const double force : {2.0, 3.0, 10.0}) {

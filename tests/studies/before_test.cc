@@ -1,4 +1,4 @@
-// What drives stand at before a run, which starts at rest under it.
+// Tests the voltages of drives before a run, which starts at rest under them.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What records tell of a device.
+// Tests what records tell of a device.
 #include "studies/tuning/belief.h"
 
 #include <gmock/gmock.h>
@@ -93,7 +93,7 @@ TEST_F(Beliefs, ADeviceIsFoundBackFromItsRecords_optimized) {
   const Belief prior = Belief::prior(scene_.size(), draws);
   const Belief belief = learned(scene_, shots, prior, draws);
   EXPECT_NEAR(std::accumulate(belief.weights.begin(), belief.weights.end(), 0.0), 1, 1e-12);
-  // What a landing depends on is known: the touch time of a waveform that was not shot.
+  // The belief knows what a landing depends on: here the touch time of a waveform that was not shot.
   const std::vector<Waveform> other = step(0.95);
   const auto touches = [&](const std::vector<VectorXd>& points) {
     const std::vector<ImaginedDevice> devices = scene_.devices(points);
@@ -159,7 +159,7 @@ class Misfits : public Beliefs {
   [[nodiscard]] TouchMisfit misfit(const std::vector<LearnedShot>& shots, Draws& draws) const {
     return touch_misfit(scene_, shots, Belief::prior(scene_.size(), draws), draws);
   }
-  // How many of so many right devices are called wrong, every tenth of which is three deviations away or further.
+  // Counts how many of so many right devices are called wrong, every tenth of which is three deviations away or further.
   [[nodiscard]] int wrongly_called(int devices) const {
     Draws draws(11, 0);
     int wrong = 0;

@@ -1,4 +1,4 @@
-// What the other drives stand at while a pull-in voltage is asked for.
+// Tests the bias of the other drives while a pull-in voltage is computed.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

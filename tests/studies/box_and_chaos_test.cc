@@ -62,7 +62,7 @@ TEST(Box, HasTheLatestAndTheEarliestFirstContactInItsCorners) {
   for (const double side : {-1.0, 1.0}) {
     const BoxDevice& end = side > 0 ? first_contact.most : first_contact.least;
     ASSERT_EQ(end.values.size(), 2U);
-    constexpr double rounding = 1e-12;  // of the normal distribution there and back
+    constexpr double rounding = 1e-12;  // rounding of the normal distribution and its inverse
     EXPECT_NEAR(end.values[0], 1 + side * b * 0.02, rounding);
     EXPECT_NEAR(end.values[1], 1 + side * b * 0.03, rounding);
     SceneFile corner = without(gold_at_17_volts(), "spread");
@@ -94,12 +94,12 @@ TEST(Box, GivesTheSceneOfItsDevices) {
     }
   };
   check(gold(), gold_ways());
-  // Of calibrated devices in their own units, with the measurements exact.
+  // These devices are calibrated in their own units, with the measurements exact.
   const Judged measured = judged(gold_at_17_volts({two_normal, "waveform.main.rise_time=20 us"}), 8,
                                  {.pull_in_error = 0.02, .frequency_error = 0.02});
   const BoxAndChaos ways = measured.ways({.closings_per_search = 30});
   check(measured, ways);
-  // In its own units every device touches after as many of its own periods: t_i times thickness times root of modulus.
+  // Every device touches after as many of its own periods: t_i times thickness times root of modulus.
   const auto in_periods = [](const BoxDevice& device) { return device.figure * device.values[0] * std::sqrt(device.values[1]); };
   const FigureRange& first_contact = ways.ranges[0];
   constexpr double damped_by_gas = 0.01;

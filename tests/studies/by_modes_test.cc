@@ -1,5 +1,5 @@
-// What more modes say of voltages and of closed states: against finite differences of the whole beam, and against scenes with as
-// many modes.
+// Tests what more modes say of voltages and of closed states, against finite differences of the whole beam, and against scenes
+// with as many modes.
 #include "studies/closing/by_modes.h"
 
 #include <gmock/gmock.h>
@@ -166,7 +166,7 @@ TEST(ByModes, AreWithinTheToleranceOfAutomaticModes) {
   EXPECT_LE(static_pull_in(p.model, 0).voltage, (1 + auto_modes_tolerance + 2e-3) * true_pull_in(p.scene.device));
 }
 
-// A bridge whose contact in the middle of a long electrode is pulled through on one side, at a voltage that falls with its modes.
+// A bridge whose contact in the middle of a long electrode collapses onto it on one side, at a voltage falling with the modes.
 SceneFile held_in_the_middle(double volts, int modes) {
   SceneFile file = SceneFile::parse(R"(
 [structure]
@@ -202,7 +202,7 @@ max_voltage = "200 V"
 // The verdicts of a scene with its modes, and with two and four times as many written into it, as far as a scene may have them:
 // told as they are, and no success where they differ. Returns whether they do.
 bool expect_told(const SceneFile& file) {
-  constexpr double same = 1e-4;  // of an eigenvalue: other quadrature points
+  constexpr double same = 1e-4;  // error of an eigenvalue by other quadrature points
   const PreparedScene p = prepare(file);
   const std::vector<double> volts = hold_levels(p.signals());
   const ClosedState state = closed_state(p, p.signals());

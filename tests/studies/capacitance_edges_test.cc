@@ -63,7 +63,7 @@ TEST(CapacitanceEdges, FallWhileThePlateBouncesBeyondTheThreshold) {
   const ClosingPlate closing(plate());
   const Trajectory contact_alone = closing.contact();
   ASSERT_GT(contact_alone.touches.size(), 2U);
-  constexpr double nearly = 1e-4;  // of the gap that the contact leaves
+  constexpr double nearly = 1e-4;  // share of the gap that the contact leaves
   const std::vector<CapacitanceRise> rises = closing.rises(capacitance_at((rest - contact) * (1 + nearly)));
   ASSERT_GT(rises.size(), 2U);
   for (std::size_t k = 0; k < 2; ++k) {

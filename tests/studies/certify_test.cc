@@ -109,7 +109,7 @@ TEST(Certify, CoversTheTrueErrorsOfRandomScenes) {
     missed += no;
   }
   EXPECT_GE(covered, 20);
-  EXPECT_LE(missed, 2);  // of a bound for 95 %: of 25 three or more would have a chance of 13 %
+  EXPECT_LE(missed, 2);  // the bound is for 95 %: of 25 three or more would have a chance of 13 %
 }
 
 TEST(Certify, NoErrorOfADriveEnergyIsBelowTheResidualOfTheEnergies) {
@@ -258,7 +258,7 @@ TEST(Simulate, IsNeverItsOwnJudge_optimized) {
   }
   const Closing asked = simulate(far_electrode("simulate.accuracy=1e-12"), true);
   EXPECT_THAT(asked.warnings, Contains(testing::HasSubstr("accuracy 1e-12 is not reached")));
-  // What is known is another number than what was asked for, in as many digits as that takes.
+  // The known accuracy is shown as another number than the one asked for, in as many digits as that takes.
   for (const char* setting : {"simulate.accuracy=1e-12", "simulate.accuracy=1e-11", "simulate.accuracy=1e-10"}) {
     const std::string asked_for = std::string(setting).substr(18);
     for (const std::string& warning : simulate(far_electrode(setting), true).warnings)

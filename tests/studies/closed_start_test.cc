@@ -92,7 +92,7 @@ TEST(ClosedStart, BeginsInTheClosedEquilibriumAndIsDoneWhereItEndsOpenAndAtRest)
   EXPECT_TRUE(c.metrics.settled);
   // Released from the contact plane at rest the plate is a damped oscillator with Q = 0.7: it overshoots by exp(-pi zeta / root).
   const double zeta = 1 / (2 * 0.7), root = std::sqrt(1 - zeta * zeta);
-  constexpr double pressed = 1e-3;  // of the travel: what the contact, 11.7 nm deep, adds
+  constexpr double pressed = 1e-3;  // share of the travel that the contact, 11.7 nm deep, adds
   EXPECT_NEAR(c.metrics.overshoot, 3e-6 * std::exp(-3.14159265358979 * zeta / root), pressed * 3e-6);
 }
 

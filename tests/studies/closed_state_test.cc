@@ -1,4 +1,5 @@
-// Whether a closed switch stays closed: by the tangent of its closed equilibrium, against closings that are followed long enough.
+// Tests if a closed switch stays closed: by the tangent of its closed equilibrium, against closings that are followed long
+// enough.
 #include "studies/closing/closed_state.h"
 
 #include <fmt/format.h>
@@ -70,7 +71,7 @@ double pulled_through() {
 
 std::string level(double volts) { return fmt::format("waveform.main.level={:.9g} V", volts); }
 
-// Of a plate in closed form, and up to there it is held: k d + K (d - c) = eps A V^2 / (2 (g - d)^2) has its fold where the left
+// A plate is held up to its fold, in closed form: k d + K (d - c) = eps A V^2 / (2 (g - d)^2) has its fold where the left
 // side times (g - d)^2 is most.
 TEST(ClosedState, OfAPlateEndsAtItsFold) {
   const double k = 42, contact = 312.4, gap = 3.8e-6, plane = 2.6e-6, area = 1e-8;
@@ -99,7 +100,7 @@ TEST(ClosedState, SmallestEigenvalueIsThatOfDifferences) {
     const Eigen::Index n = p.model.modes();
     const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
     Switch::Workspace work = p.model.workspace();
-    // By accelerations, in the directions of the modes, which are differences in both senses.
+    // Differences of the accelerations in both senses, along the modes, give the tangent.
     Eigen::MatrixXd tangent(n, n);
     for (Eigen::Index k = 0; k < n; ++k) {
       const double step = 1e-6 * p.scene.device.gap.contact / p.model.basis().contact_shape().cwiseAbs().maxCoeff();
@@ -190,7 +191,7 @@ TEST(ClosedState, TellsWhatTheFaceOfADielectricCarriesBesideItsContact) {
 }
 
 TEST(ClosedState, ThatIsUnstableHasNotSettledAndHoldsNothing) {
-  const PreparedScene stable = prepare(bridge({level(0.93 * pulled_through())}));  // with more modes, too
+  const PreparedScene stable = prepare(bridge({level(0.93 * pulled_through())}));  // stable with more modes, too
   const Closing stays = simulate(stable, true);
   EXPECT_TRUE(stays.metrics.settled);
   EXPECT_GT(stays.metrics.hold_force, 0);
@@ -217,7 +218,7 @@ TEST(ClosedState, OfOneModeBetweenTwoClampsIsJudgedByMore) {
 }
 
 TEST(ClosedState, DevicesThatAreNotHeldHaveNotSettled) {
-  // Softer devices are pulled through at a lower voltage.
+  // Softer devices collapse onto the electrode at a lower voltage.
   SceneFile file = bridge({level(0.99 * pulled_through())});
   file.set("spread.\"structure.residual_stress\"={ distribution = \"normal\", standard_deviation = \"5 MPa\" }");
   const PreparedScene p = prepare(file);
@@ -240,11 +241,12 @@ TEST(ClosedState, DevicesThatAreNotHeldHaveNotSettled) {
   EXPECT_GT(left, 0U);
 }
 
-// Of the devices of a scene, from the closed equilibrium of the nominal one: the same as by the walk from the contact plane.
+// Starts the devices of a scene from the closed equilibrium of the nominal one: the result is that of the walk from the contact
+// plane.
 void expect_the_same_near(const PreparedScene& p, const std::vector<double>& volts, std::uint64_t devices) {
   const auto nominal = closed_equilibrium(p.model, volts);
   if (!nominal) return;
-  constexpr double same = 1e-9;  // of the contact force: both are solved to rounding
+  constexpr double same = 1e-9;  // difference as a share of the contact force: both are solved to rounding
   const Ensemble ensemble(p, devices, 5);
   DeviceBuilder builder(ensemble);
   for (std::uint64_t k = 0; k < devices; ++k) {
@@ -331,7 +333,7 @@ duration = "1 ms"
     const Closing c = simulate(p, false);
     EXPECT_EQ(c.metrics.status, volts > 17.1 ? Status::no_contact : Status::open);
     const auto warned = testing::Contains(HasSubstr("unstable equilibrium"));
-    // By hand: two plates pull by eps A V^2 x 2 / g^3 per displacement x, the spring by k: unstable from 17.1 V on.
+    // The plates pull by eps A V^2 x 2 / g^3 per displacement x, the spring by k: unstable from 17.1 V on, by hand.
     if (volts > 17.1) {
       EXPECT_THAT(c.warnings, warned);
     } else {
@@ -364,13 +366,13 @@ TEST(PullThrough, IsFoundHoweverNarrowTheWindowAboveTheReleaseVoltage) {
     const SceneFile file = spring_plate({fmt::format("contact.stiffness={} N/m", kc)});
     const Switch model(read_scene(file).device);
     const ClosedRange range = closed_range(model, 0, {0});
-    constexpr double precision = 2e-6;  // that of pull_through_voltage(), and as much again
+    constexpr double precision = 2e-6;  // precision of pull_through_voltage(), and as much again
     EXPECT_NEAR(range.pulled_through, end, precision * end) << kc;
-    constexpr double step = 0.02;  // of the distance to the release voltage, in the scan
+    constexpr double step = 0.02;  // share of the distance to the release voltage, in the scan
     const double scanned = last_held(model, range.release);
     EXPECT_GE(range.pulled_through, scanned * (1 - precision)) << kc;
     EXPECT_LE(range.pulled_through, (range.release + (scanned - range.release) * (1 + step)) * (1 + precision)) << kc;
-    // A hold level beyond the window leads there, too.
+    // A hold voltage beyond the window leads there, too.
     const std::vector<double> beyond{1.2 * end};
     EXPECT_NEAR(pull_through_voltage(model, 0, beyond), end, precision * end) << kc;
   }

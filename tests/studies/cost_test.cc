@@ -1,4 +1,5 @@
-// What a search minimises, on trajectories made by hand. No weight is repeated here: only what must hold whatever they are.
+// Tests the cost that a search minimises, on trajectories made by hand. No weight is repeated here: only rules that
+// hold whatever they are.
 #include "objectives/cost.h"
 
 #include <fmt/format.h>

@@ -67,7 +67,7 @@ TEST(Cycling, BeginsLikeTheClosingAloneAndSharesTheEnergyOfTheRun) {
   EXPECT_EQ(found.cycles[0].metrics.impact_velocity, alone.impact_velocity);
   double sum = 0;
   for (const CycleFigures& one : found.cycles) sum += one.metrics.drive_energy;
-  // What is stored at the end is the energy of the plate that still swings: the rest was lost on the way.
+  // The stored energy at the end is that of the plate, which still swings: the rest was lost on the way.
   const Cycles first = cycled.run({.period = 80e-6, .on_time = 40e-6, .cycles = 1}, false);
   EXPECT_NEAR(found.cycles[0].metrics.drive_energy, first.cycles[0].metrics.drive_energy,
               1e-6 * first.cycles[0].metrics.drive_energy);
@@ -79,7 +79,7 @@ TEST(Cycling, BeginsLikeTheClosingAloneAndSharesTheEnergyOfTheRun) {
   }
 }
 
-// Without an electrical rule the switch is electrically closed while it is in touch.
+// The switch is electrically closed while it is in touch if there is no electrical rule.
 TEST(Cycling, IsElectricallyClosedWhileItIsInTouch) {
   const PreparedScene p = prepare(plate("simulate = { duration = \"40 us\", tolerance = 1e-9 }\n"));
   const CycleWaveforms waveforms = ramps();
@@ -119,7 +119,7 @@ TEST(Cycling, KeepsTheWaveformOfEveryCycle) {
   EXPECT_EQ(all.hold_level(), 0);
 }
 
-// With a duty of a half a plate that needs long to come to rest is steady up to where it does not any more.
+// A plate that needs long to come to rest is steady up to the rate at which it no longer does; here with a duty of a half.
 TEST(Cycling, FindsTheLargestRateThatIsSteady) {
   const PreparedScene p = prepare(plate("simulate.duration = \"60 us\"\n"));
   const CycleWaveforms waveforms = ramps();
@@ -131,7 +131,7 @@ TEST(Cycling, FindsTheLargestRateThatIsSteady) {
   EXPECT_TRUE(scan.rates.front().is_steady) << "it comes to rest there";
   bool below = true;
   for (const RateScan::Rate& one : scan.rates) {
-    // By the figures of all cycles, whatever the scan has looked at.
+    // The verdict follows from the figures of all cycles, whatever the scan has looked at.
     const Cycles all = cycled.run({.period = 1 / one.rate, .on_time = 0.5 / one.rate, .cycles = 4}, false);
     bool steady = all.cycles.size() == 4;
     for (const CycleFigures& c : all.cycles) {

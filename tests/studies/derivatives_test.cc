@@ -19,20 +19,19 @@
 namespace softland::derivatives_test {
 namespace {
 
-constexpr double bound = 1e-5;   // of the error, over the largest derivative of the figure by any factor
-constexpr double tight = 1e-11;  // tolerance of the closings
-constexpr double agreement =
-    1e-6;  // of extrapolations from differences of two widths: where they differ by more, they say nothing
-constexpr double half_width = 1e-5;  // of the narrowest difference
+constexpr double bound = 1e-5;       // error over the largest derivative of the figure by any factor
+constexpr double tight = 1e-11;      // tolerance of the closings
+constexpr double agreement = 1e-6;   // tolerance of extrapolations from two widths, which say nothing if they differ by more
+constexpr double half_width = 1e-5;  // half width of the narrowest difference
 
 struct Scenes {
   const char* scene;
   Actuator actuator;
   const char* family;
   std::vector<std::string> changes;
-  std::vector<std::string> keys;  // that vary, each by a factor
+  std::vector<std::string> keys;  // varied keys, each by a factor
   std::string calibration = {};
-  int arcs = 16;  // of a step
+  int arcs = 16;  // arcs of a step
 };
 
 std::string spread_of(const std::vector<std::string>& keys) {
@@ -83,7 +82,7 @@ class Devices {
     for (const Figure& figure : device_figures) all.push_back(outcome.of(figure));
     return all;
   }
-  // Of the figures, by value k.
+  // Differences of the figures by value k.
   std::vector<double> difference(std::vector<double> values, std::size_t k, double width) {
     const double middle = values[k];
     values[k] = middle + width;
@@ -108,7 +107,7 @@ struct Compared {
   double worst = 0;  // over the bound
 };
 
-// Among device_figures.
+// Index among device_figures.
 std::size_t place_of(std::string_view key) {
   return static_cast<std::size_t>(std::ranges::find(device_figures, key, &Figure::key) - device_figures.begin());
 }
@@ -179,7 +178,7 @@ void expect_agreement(const Scenes& of, int switches) {
   const Compared all = compare_random(of, switches, 1);
   EXPECT_EQ(all.cases, switches * static_cast<int>(of.keys.size()));
   EXPECT_GE(all.derivatives, 4 * all.cases);
-  EXPECT_LE(2 * all.undecided, all.derivatives);  // without fused multiplications 12 of 42 of one kind, with them 9
+  EXPECT_LE(2 * all.undecided, all.derivatives);  // measured: 12 of 42 of one kind, 9 with fused multiplications
 }
 
 const std::vector<std::string> beam{"structure.length",  "structure.width", "structure.thickness", "structure.youngs_modulus",
@@ -326,7 +325,7 @@ TEST(Derivatives, OfAContactAlongThePad_optimized) {
                    1);
 }
 
-// Where a run starts moves with the device.
+// The start of a run moves with the device.
 TEST(Derivatives, FromRestUnderWhatDrivesStandAt_optimized) {
   expect_agreement({"mem-gold-pzt.toml",
                     Actuator::electrostatic,
@@ -347,7 +346,7 @@ const FigureDerivatives& figure(const Derivatives& of, std::string_view key) {
   return *std::find_if(of.figures.begin(), of.figures.end(), [&](const FigureDerivatives& f) { return f.key == key; });
 }
 
-// Without gas only inertia knows of time: a step closes a switch of c times the density in the root of c times the time.
+// Only inertia knows of time without gas: a step closes a switch of c times the density in the root of c times the time.
 TEST(Derivatives, TimesGrowWithTheRootOfTheDensity_optimized) {
   SceneFile file = gold_at_17_volts({spread_of({"structure.density"})});
   file.erase("gas");
@@ -422,7 +421,7 @@ TEST(Derivatives, ForwardAreThoseBackward_optimized) {
   }
 }
 
-// In the whole window the reference closing is chaotic: its permanent contact is decided by changes that no one sees.
+// The reference closing is chaotic in the whole window: its permanent contact is decided by changes that no one sees.
 TEST(Derivatives, TellWhatIsIllConditioned_optimized) {
   const PreparedScene p = prepare(gold());
   const Derivatives found = derivatives(p, own_drive(p));

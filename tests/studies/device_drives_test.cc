@@ -61,7 +61,7 @@ TEST(DeviceDrives, AGainMultipliesTheLevels) {
 
 // Sources that differ by a gain alone share what their samples and filters make of a waveform.
 TEST(DeviceDrives, ThatDifferByAGainAreFactorsOfOneSignal) {
-  constexpr double rounding = 1e-12;  // of the largest voltage
+  constexpr double rounding = 1e-12;  // error as a share of the largest voltage
   for (const char* source : {"driver.main={max_voltage=\"25 V\", sample_rate=\"5 MHz\", bits=12, bandwidth=\"1 MHz\"}",
                              "driver.main={max_voltage=\"25 V\", bandwidth=\"300 kHz\", delay=\"1 us\"}"}) {
     SCOPED_TRACE(source);

@@ -1,4 +1,4 @@
-// What a scene could do without, and effects = "auto".
+// Tests the effects that a scene could do without, and effects = "auto".
 #include "studies/closing/effect_ablation.h"
 
 #include <fmt/format.h>
@@ -286,7 +286,7 @@ TEST(AutomaticEffects, LeaveOutWhatChangesNothing) {
   EXPECT_THAT(p.scene.warnings.back(), HasSubstr("effects = \"auto\" leaves out "));
   EXPECT_THAT(p.scene.warnings.back(), HasSubstr("dispersion ("));
   EXPECT_EQ(own(p).initial_contact_time, own(prepare(gold_at_17_volts())).initial_contact_time);
-  // What is written runs to the same figures without choosing again.
+  // The written scene runs to the same figures without choosing again.
   const PreparedScene again = prepare(p.resolved());
   EXPECT_FALSE(again.effects);
   EXPECT_EQ(own(again).major_bounce_height, own(p).major_bounce_height);

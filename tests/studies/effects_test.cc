@@ -51,7 +51,7 @@ TEST(Effects, CompareEveryGasLawWithTheScenesOwn) {
     EXPECT_GT(e.rhs_seconds, 0) << e.choice;
     EXPECT_GT(e.metrics.initial_contact_time, 0) << e.choice;
   }
-  // At the closed gap of 1.5 um: mu (a/h)^3 and the mean free path of this viscosity.
+  // These are values at the closed gap of 1.5 um: mu (a/h)^3 and the mean free path of this viscosity.
   EXPECT_NEAR(own.magnitude.value, 1.86e-5 * std::pow(20 / 1.5, 3), 1e-12);
   EXPECT_NEAR(own.group.value, mean_free_path({.viscosity = 1.86e-5}) / 1.5e-6, 1e-12);
   EXPECT_EQ(find(effects, "none").magnitude.value, 0);
@@ -107,7 +107,7 @@ TEST(Effects, OfEverySceneNameTheLawsThatItCannotHave) {
   EXPECT_THAT(not_compared(rigid), ElementsAre("guo-alexeenko", "reynolds"));
 }
 
-// What a law is compared with is a scene of its own, which the scene's reader accepts and says the same of.
+// A law is compared with a scene of its own, which the scene's reader accepts and says the same of.
 TEST(Effects, GiveEveryLawWhatASceneMayGiveIt) {
   for (const std::string& name : shipped_scenes()) {
     const Device own = read_scene(scene(name.c_str())).device;

@@ -1,4 +1,4 @@
-// Contact resistance and electrical closing in studies: at the hold level, along a run, on devices, and in conditions.
+// Contact resistance and electrical closing in studies: at the hold voltage, along a run, on devices, and in conditions.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -71,7 +71,7 @@ TEST(ElectricalStudies, AContactUnderASectionHasItsWidth) {
     }
     const PreparedScene p = prepare(file);
     const Closing closing = simulate(p, false);
-    const double soon = closing.metrics.electrical_contact + 50e-9;  // in the first touch
+    const double soon = closing.metrics.electrical_contact + 50e-9;  // an instant in the first touch
     const std::vector<double> course = resistance_course(p.scene.device, closing.trajectory, std::vector<double>{soon});
     return std::tuple(closing.metrics.resistance, closing.metrics.electrical_contact, course.front());
   };
@@ -113,7 +113,7 @@ TEST(ElectricalStudies, TheCourseOfARunIsThatOfItsKnots) {
   std::size_t closed = 0, k = 0;
   for (std::size_t i = 0; i < run.points.size(); ++i) {
     const TrajectoryPoint& point = run.points[i];
-    if (i + 1 < run.points.size() && run.points[i + 1].time == point.time) continue;  // of a jump the later one
+    if (i + 1 < run.points.size() && run.points[i + 1].time == point.time) continue;  // keep the later point of a jump
     const double right = contact.resistance(point.position - run.contact_gap, point.contact_force);
     ASSERT_EQ(times[k], point.time);
     if (std::isnan(right)) {

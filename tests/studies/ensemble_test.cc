@@ -164,7 +164,7 @@ TEST(Calibration, ErrsAsMuchAsItsMeasurements) {
   EXPECT_NEAR(sum / devices, 0, 4 * 0.01 / std::sqrt(devices));
   EXPECT_NEAR(std::sqrt(squares / devices), 0.01, 4 * 0.01 / std::sqrt(2.0 * devices));
   EXPECT_NEAR(product / devices, 0, 4 * 0.01 * 0.005 / std::sqrt(devices)) << "the two measurements err apart";
-  // What is not measured is taken for that of the nominal device.
+  // A quantity that is not measured counts as that of the nominal device.
   EXPECT_EQ(DeviceMeter::measured(exact, {.pull_in_error = 0, .frequency_error = {}}, 1, 5).time, 1);
   EXPECT_EQ(DeviceMeter::measured(exact, {.pull_in_error = 0, .frequency_error = {}}, 1, 5).volts, exact.volts);
 }
@@ -205,7 +205,7 @@ TEST(Calibration, ByATimeErrsAsMuchAsTheClock) {
   EXPECT_NEAR(std::sqrt(squares / devices), 1e-3, 4 * 1e-3 / std::sqrt(2.0 * devices));
 }
 
-// What a volt does is a static deflection: under 1 mV, and -1 mV, from rest.
+// The unit of a piezo is the static deflection per volt, here by 1 mV and -1 mV from rest.
 TEST(Calibration, OfAPiezoIsByWhatAVoltDeflects) {
   const PreparedScene nominal = prepare(gold_pzt());
   const DeviceMeter meter(nominal, {.piezo = true});
@@ -383,7 +383,7 @@ TEST(Robustness, SaysWhatEachMeasurementIsWorth_optimized) {
   for (std::size_t i = 1; i < names.size(); ++i)
     EXPECT_FALSE(std::equal(fixed.begin(), fixed.end(), found.by_knowledge[i].outcomes.begin(), same))
         << found.by_knowledge[i].name;
-  // In its own units every device closes nearly alike: at the same time in its own periods.
+  // Every device closes nearly alike in its own units: at the same time in its own periods.
   const Ensemble ensemble(nominal, options.samples);
   DeviceBuilder builder(ensemble);
   const auto spread_of_first_contact = [&](const DriveRobustness& d) {
@@ -471,7 +471,7 @@ TEST(Robustness, FollowsTheGapsOfTheFirstDevices) {
     const auto touch = static_cast<double>(std::ranges::find_if(gap, [](double g) { return g <= 0; }) - gap.begin());
     const Metrics& m = step.outcomes[k].metrics;
     EXPECT_NEAR(touch * interval, m.initial_contact_time, 1.01 * interval);
-    // Between two instants a quadratic through three is as near as the largest acceleration allows.
+    // A quadratic through three points is as near between two instants as the largest acceleration allows.
     const auto at = static_cast<std::size_t>(touch) - 3;
     EXPECT_NEAR(gap[at], (gap[at - 1] + gap[at + 1]) / 2, 1e-3 * gap[at]);
     const double speed = (gap[at] - gap[at + 1]) / interval;

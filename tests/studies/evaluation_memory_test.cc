@@ -138,7 +138,7 @@ TEST(StartingWaveforms, AreCandidatesThatStayTheBestUntilABetterOneIsFound) {
   options.starts = {{.name = "earlier", .waveforms = long_search.result->best_scene->drives.waveforms()}};
   const Found refined = searched(options, nullptr);
   EXPECT_LT(long_search.result->best_cost, short_search.result->best_cost);
-  constexpr double rounding = 1e-6;  // of the parameters, which a scene writes
+  constexpr double rounding = 1e-6;  // rounding of the parameters, which a scene writes
   EXPECT_LE(refined.result->best_cost, long_search.result->best_cost * (1 + rounding));
   EXPECT_LE(refined.evaluations.begin()->second.value, long_search.result->best_cost * (1 + rounding))
       << "the search begins with them";

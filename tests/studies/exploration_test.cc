@@ -186,7 +186,7 @@ TEST(Exploration, OfSearchesKeepsWinnersThatSimulateRunsToTheirFigures_optimized
   ASSERT_FALSE(row.scene.empty());
   EXPECT_LE(row.figures[index_of(e, "evaluations")], 120) << "gradients count too";
   EXPECT_GE(row.figures[index_of(e, "evaluations")], 60);
-  int families = 0;  // that the winner is of
+  int families = 0;  // number of families that the winner belongs to
   for (const char* family : {"knots", "dual-pulse", "staircase:5"})
     families += std::isfinite(row.figures[index_of(e, fmt::format("{}.main.level_1", family))]) ? 1 : 0;
   EXPECT_EQ(families, 1);
@@ -237,7 +237,7 @@ TEST(Exploration, KnowsEqualContentByItsText) {
   const auto content = [](Exploration& e, std::uint64_t k) { return e.content(e.plan().scene(e.plan().values(k))); };
   EXPECT_EQ(content(coarse, 1), content(fine, 2));
   EXPECT_NE(content(coarse, 1), content(fine, 1));
-  // What only a search or devices depend on.
+  // Some options matter to searches or devices alone.
   PlanRequest asked = request("simulate", {"gap.contact=1.8 um:2.2 um:3"});
   asked.seed = 2;
   Exploration seeded = exploration(asked);

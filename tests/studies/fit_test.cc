@@ -28,7 +28,7 @@ SceneFile plate(std::initializer_list<std::string_view> changes = {}) {
   return file;
 }
 
-// Of a plate of other numbers.
+// Numbers of another plate.
 struct Truth {
   double stiffness = 1.03, mass = 0.98, gaps = 1.015;
 };
@@ -78,7 +78,7 @@ const FittedUnknown& unknown(const Fit& fit, const std::string& name) {
 TEST(Fit, FindsTheDeviceThatWasMeasured) {
   SKIP_WITHOUT_CERES();
   const Truth truth;
-  // Without noise, and so well known that the prior does not pull.
+  // The data has no noise, and it is so precise that the prior does not pull.
   std::vector<Measured> sharp = all_kinds;
   for (Measured& m : sharp) m.error *= 1e-4;
   const Fit found = fit(plate(), bench_of(sharp, truth), {.starts = 4});
@@ -237,7 +237,7 @@ TEST(Fit, SaysWhatTheDataCannotTellApart) {
   const Fit found = fit(plate(), bench_of(times, {}), {.starts = 1});
   ASSERT_FALSE(found.estimate.weak.empty());
   EXPECT_GT(found.estimate.weak.front().unknowns.size(), 1U);
-  // What would tell more is ranked, and does.
+  // The fit ranks the measurements that would tell more, and they do.
   ASSERT_FALSE(found.next.empty());
   EXPECT_GT(found.next.front().reduction, 0.05);
   for (std::size_t i = 1; i < found.next.size(); ++i) EXPECT_LE(found.next[i].reduction, found.next[i - 1].reduction);
@@ -258,7 +258,7 @@ TEST(Fit, SaysThatVoltagesAndTimesOfAPlateShowNoGap) {
     change[i] *= u.scale / u.nominal;
   }
   const double gaps = change[0], mass = change[1], stiffness = change[2];
-  constexpr double by_the_contact = 0.1;  // whose stiffness is finite: the release voltage sees a little of the gap
+  constexpr double by_the_contact = 0.1;  // the contact's stiffness is finite: the release voltage sees a little of the gap
   EXPECT_NEAR(stiffness / gaps, -3, by_the_contact);
   EXPECT_NEAR(mass / stiffness, 1, by_the_contact);
   EXPECT_LT(weak.seen, 0.1);
@@ -400,13 +400,13 @@ TEST(Fit, OfManyDevicesFindsTheSpreadThatTheyCameFrom) {
   ASSERT_TRUE(found.population.has_value());
   const FittedPopulation& all = *found.population;
   ASSERT_EQ(all.names, (std::vector<std::string>{"gaps", "structure.stiffness"}));
-  // Of so many devices: what a sample of them leaves open, three standard errors.
+  // A sample of so many devices leaves this open, three standard errors.
   const double open = 3 / std::sqrt(2.0 * devices);
   EXPECT_NEAR(all.deviation[0] / gaps, 1, open);
   EXPECT_NEAR(all.deviation[1] / stiffness, 1, open);
   EXPECT_NEAR(all.mean[1], 1.02, 3 * stiffness / std::sqrt(1.0 * devices));
   EXPECT_NEAR(all.correlation(0, 1), correlation, 3 * (1 - correlation * correlation) / std::sqrt(1.0 * devices));
-  // As a scene that robustness and tune read.
+  // Write the population as a scene that robustness and tune read.
   SceneFile file = plate();
   set_spread(file, found);
   const DeviceSpread written = read_scene(file).spread;
@@ -453,7 +453,7 @@ TEST(Estimate, OfAPopulationFindsItsMomentsFromExactDevices) {
   const Population found = population_of(all, {.mean = Eigen::Vector2d::Zero(), .covariance = Eigen::Matrix2d::Identity()});
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   for (const Eigen::Vector2d& one : drawn) covariance += (one - sum / devices) * (one - sum / devices).transpose() / devices;
-  constexpr double of_errors = 1e-3;  // what is known of each device is not quite exact
+  constexpr double of_errors = 1e-3;  // error from the knowledge of each device, which is not quite exact
   EXPECT_LE((found.mean - sum / devices).norm(), of_errors);
   EXPECT_LE((found.covariance - covariance).norm(), of_errors);
 }

@@ -38,7 +38,7 @@ class Asked final : public EvaluationMemory {
   }
   void note(const EvaluationKey&, const EvaluationValues&) noexcept override {}
 
-  FamilyColumns columns;  // that the search told
+  FamilyColumns columns;  // columns that the search told
   std::set<std::size_t> on_drawing, on_devices;
   bool alike = true;  // all points have as many parameters as the columns of their family
 
@@ -68,7 +68,7 @@ TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
   EXPECT_LT(cost_of(found, "for the devices"), 0.7 * cost_of(found, "plain step"));
   EXPECT_LE(cost_of(found, "for the devices"), cost_of(found, "for the drawing"));
   EXPECT_LT(cost_of(found, "Vdp to 1 %"), cost_of(found, "for the devices"));
-  // best.toml simulates to the figures that are told.
+  // best.toml simulates to the reported figures.
   const Closing again =
       simulate(prepare_and_choose(SceneFile::parse(found.best.best_scene->scene.file.text(), "best.toml")), true);
   EXPECT_EQ(again.metrics.initial_contact_time, found.best.best->metrics.initial_contact_time);
@@ -81,15 +81,15 @@ TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
   const bool by_time = found.findings.measured == "closing time to 50 ns";
   EXPECT_EQ(found.calibrated->written(by_time ? "calibration.time.error" : "calibration.Vdp.error"), by_time ? "50 ns" : "1 %");
   EXPECT_LT(cost_of(found, "closing time to 50 ns"), cost_of(found, "for the devices"));
-  // Who knows more of the devices drives them no worse.
+  // Knowing more of the devices drives them no worse.
   const auto speed = [&](std::string_view row) { return cost_of(found, row); };
   for (const char* measured : {"Vdp to 1 %", "Vdp and period to 1 %", "Vdp and period to 0.2 %", "closing time to 50 ns"})
     EXPECT_LE(speed(measured), speed("for the devices")) << measured;
   EXPECT_LE(speed("Vdp and period to 1 %"), speed("Vdp to 1 %"));
   EXPECT_LE(speed("Vdp and period to 0.2 %"), speed("Vdp and period to 1 %"));
   for (const KnownVdp& known : found.findings.by_error) EXPECT_LE(known.impact_speed, 1.15 * speed("for the devices"));
-  // In stores the families of the race stand behind that of the drawing.
-  // Those of the race within the usual limit stand last: such a short one is all there is.
+  // Stores hold the families of the race behind that of the nominal design.
+  // Those of the race within the usual limit stand last: only that short race runs here.
   ASSERT_EQ(memory.columns.families.size(), 5U);
   EXPECT_EQ(memory.columns.families[1].front().substr(0, 14), "devices.catch.");
   EXPECT_TRUE(memory.alike);

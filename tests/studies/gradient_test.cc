@@ -29,7 +29,7 @@ Metrics figures_at(const SearchSetting& s, std::span<const double> x) {
   return observer.metrics(observe_closing(s.given.model, signals, run, observer));
 }
 
-constexpr double bound = 1e-5;  // of the error, over the largest slope
+constexpr double bound = 1e-5;  // error over the largest slope
 constexpr std::array compared{&Metrics::initial_contact_time, &Metrics::largest_impact_velocity, &Metrics::major_bounce_height,
                               &Metrics::last_rebound_end,     &Metrics::impact_energy,           &Metrics::landing_excess,
                               &Metrics::peak_contact_force};
@@ -40,8 +40,8 @@ struct Compared {
 };
 
 // The energy of a landing is measured at the end of an integrator's step, whose length no derivative knows: gas takes a
-// thousandth of it in a step. Slopes of all figures at random points of a search's box against central differences. A case in
-// which a touch grazes, or comes or goes between the two points of a difference, is none.
+// thousandth of it in a step. Compares slopes of all figures at random points of a search's box to central differences. A case
+// does not count if a touch grazes in it, or comes or goes between the two points of a difference.
 void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& all) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(0.05, 0.95);
@@ -86,13 +86,13 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
       for (std::size_t f = 0; f < compared.size(); ++f) {
         if (!slopes.why_none[compared[f]].empty()) continue;
         if (compared[f] == &Metrics::last_rebound_end && slopes.ends_above) continue;
-        double scale = 0;  // of the gradient, by this parameter's range
+        double scale = 0;  // scale of the gradient, by this parameter's range
         for (std::size_t i = 0; i < x.size(); ++i) {
           const double whole =
               std::abs(backward(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(i))) * (upper[i] - lower[i]);
           scale = std::max(scale, whole / (upper[k] - lower[k]));
         }
-        // Where differences of two widths differ, they say nothing: another touch is the fastest, another rebound the highest.
+        // Differences of two widths that differ say nothing: another touch is the fastest, another rebound the highest.
         if (!(std::abs(coarse[f] - fine[f]) <= 1e-6 * scale)) continue;
         ++all.slopes;
         const double slope = backward(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k));
@@ -169,7 +169,7 @@ TEST(Gradient, ByTheTimesOfJumps) {
   }
 }
 
-// What follows the last moment that a figure depends on is not linearised, and changes nothing.
+// The motion after the last moment that a figure depends on is not linearised, and changes nothing.
 TEST(Gradient, OfOneFigureIsThatOfAll) {
   const SearchSetting s = setting_of("mem-gold.toml", Actuator::electrostatic, "pulse");
   std::vector<double> x;

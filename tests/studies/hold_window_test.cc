@@ -41,9 +41,9 @@ TEST(HoldWindow, IsOpenWhereNoneIsPulledThroughAndNoneWhereTooManyCannotBeHeld) 
   EXPECT_TRUE(std::isnan(hold_window({}).lower));
 }
 
-// Of what pull-in gives for each of the devices, read from their scenes.
+// The oracle is the pull-in study of each of the devices, read from their scenes.
 TEST(HoldWindow, OfDevicesIsThatOfEachByItself) {
-  constexpr double precision = 1e-4;  // of a pull-through, that the window is found to
+  constexpr double precision = 1e-4;  // precision of the window's search, as a share of a pull-through
   const PreparedScene nominal = prepare(gold({"structure.modes=2", "simulate.duration=100 us"}));
   const RobustnessOptions options{.samples = 12, .seed = 5, .jobs = 2};
   const HoldWindows found = hold_windows(nominal, options);

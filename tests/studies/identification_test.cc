@@ -1,4 +1,4 @@
-// What is told of a device by what is measured on it.
+// Tests what measurements tell of a device.
 #include "studies/search/identification.h"
 
 #include <gtest/gtest.h>

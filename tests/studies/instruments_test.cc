@@ -1,5 +1,5 @@
-// What instruments read of devices: against the functions of the model, and their slopes against differences of devices built
-// anew.
+// Tests the readings of devices by instruments, against the functions of the model, and their slopes against differences of
+// devices built anew.
 #include "studies/devices/instruments.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 namespace softland::instruments_test {
 namespace {
 
-// Of a slope, over the largest by any quantity that varies by a factor: what differences of this width leave open.
+// Agreement of a slope, over the largest by any quantity that varies by a factor: what differences of this width leave open.
 constexpr double half_width = 1e-4, agreement = 2e-5;
 
 PreparedScene prepared(SceneFile file, const std::vector<std::string>& keys) {
@@ -40,7 +40,7 @@ Eigen::VectorXd read_at(DeviceReader& reader, const std::vector<double>& values,
   return reader.read(instrument, false).values;
 }
 
-// By Richardson's extrapolation from differences of two widths.
+// Checks slopes by Richardson's extrapolation from differences of two widths.
 void expect_slopes(const PreparedScene& p, const Instrument& instrument, double within = agreement) {
   DeviceReader reader(p);
   std::vector<double> values = nominal_values(p);
@@ -132,7 +132,7 @@ TEST(Instruments, HaveExactSlopesOfClosingTimes) {
 }
 TEST(Instruments, HaveSlopesOfMotionsAndContactRecords) {
   const PreparedScene p = prepared(gold({"structure.modes=2"}), {"structure.thickness", "gap.electrode", "driver.main.gain"});
-  constexpr double of_differences = 1e-3;  // of differences of closings a hundredth as wide
+  constexpr double of_differences = 1e-3;  // error of differences of closings a hundredth as wide
   expect_slopes(p, {.what = Measurable::position, .level = 20, .times = {5e-6, 12e-6, 20e-6}}, of_differences);
   expect_slopes(p, {.what = Measurable::velocity, .level = 20, .times = {5e-6, 12e-6, 20e-6}}, of_differences);
   expect_slopes(p, {.what = Measurable::contact, .level = 20, .edges = 3}, of_differences);

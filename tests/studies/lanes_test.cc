@@ -53,7 +53,7 @@ struct Fleet {
     return close_devices(closings, nominal.scene.metrics, vectors);
   }
 
-  /// How many closings lanes follow to their end.
+  /// Counts the closings that lanes follow to their end.
   [[nodiscard]] std::size_t followed(const std::vector<Signal>& signals, Vectors vectors, double tolerance) const {
     struct : LandingObserver {
       void touch(const Touch&) override {}
@@ -81,9 +81,9 @@ std::vector<std::string> digits(const std::vector<DeviceOutcome>& all) {
 
 double off(double value, double expected) { return std::abs(value - expected) / std::abs(expected); }
 
-// What both paths may differ by: the tolerance, and in what follows the first touches what bouncing makes of it.
-// Lanes step over the samples of a filtered signal, whose ripple then counts as an error of some hundredths of it, `looser` times
-// what steps that end on each sample leave.
+// Both paths may differ by the tolerance, and behind the first touches by what bouncing makes of it.
+// Lanes step over the samples of a filtered signal, whose ripple then counts as an error of some hundredths of it. It leaves
+// `looser` times what steps that end on each sample leave.
 void expect_alike(const std::vector<DeviceOutcome>& lanes, const std::vector<DeviceOutcome>& one_by_one, double looser = 1) {
   ASSERT_EQ(lanes.size(), one_by_one.size());
   std::vector<double> heights, forces, energies;
@@ -120,11 +120,11 @@ void expect_alike(const std::vector<DeviceOutcome>& lanes, const std::vector<Dev
 struct Case {
   std::string name;
   SceneFile file;
-  double looser = 1;  // as expect_alike() takes it
+  double looser = 1;  // factor for expect_alike()
 };
 constexpr double over_samples = 5;
 
-/// Of nickel, clamped at both ends.
+/// A bridge of nickel, clamped at both ends.
 SceneFile bridge() {
   return SceneFile::parse(std::string(test::nickel_bridge) + R"([spread]
 "structure.thickness" = { distribution = "normal", cov = "3 %" }
@@ -152,7 +152,7 @@ SceneFile gold_with_contacts(const std::vector<std::string>& contacts, std::init
   return file;
 }
 
-// At the tip; 15 um from there and a little nearer to its plane; beside the electrode's middle; and on the far side.
+// The contacts are at the tip; 15 um from it and a little nearer to its plane; beside the electrode's middle; on the far side.
 const std::string left =
     "contact.left={model=\"asperity-uniform\", gap=\"2 um\", pad_length=\"5 um\", asperity_radius=\"100 nm\", "
     "asperity_density=\"1e11 1/m^2\", "
@@ -324,7 +324,7 @@ TEST(Lanes, MeasureTheDriveEnergyAsOneAtATimeDoes) {
   }
 }
 
-// In a window that ends before chaos sets in.
+// The window ends before chaos sets in.
 TEST(Lanes, MeasureTheForceAsOneAtATimeDoes) {
   const std::string soft =
       "waveform.main={family=\"pulse\", levels=[\"21 V\", \"0 V\", \"14.5 V\"], times=[\"20 us\", \"33 us\"], edge=\"0.5 us\"}";
@@ -390,7 +390,7 @@ TEST(Lanes, GiveTheSameBitsWhateverTheirNumberAndCompany) {
       EXPECT_EQ(back, together);
       all.push_back(together);
     }
-#ifndef __clang__  // which the launcher does not use: its two differ in the eleventh digit
+#ifndef __clang__  // the launcher does not use clang, whose two programs differ in the eleventh digit
     if (all.size() == 2) {
       EXPECT_EQ(all[0], all[1]) << "AVX2 and AVX-512";
     }
@@ -428,7 +428,7 @@ TEST(LaneDrives, SmoothRunsOfSamplesAndKeepTheirIntegral) {
   EXPECT_LT(std::abs(difference), 1e-5 * ripple * end) << "but for the sum over points";
 }
 
-// Factors of two round nothing: drives that are told half as much and have a gain of two are those that are told all of it.
+// Factors of two round nothing: drives with half the commanded voltage and a gain of two are those with the full one.
 TEST(Lanes, GiveDrivesWithAGainTheBitsOfTheirOwnSignals) {
   for (const auto& [name, file, looser] : cases()) {
     SCOPED_TRACE(name);
@@ -510,7 +510,7 @@ TEST(Lanes, FollowABackStopThatIsTouched) {
   }
 }
 
-// What lanes cannot follow, one at a time does: other laws, other points, devices that no switch is, and those in trouble.
+// The path of one at a time does what lanes cannot: other laws, other points, devices that no switch is, and those in trouble.
 TEST(Lanes, LeaveTheRestToOneAtATime) {
   constexpr const char* other_contact = "a contact other than linear, hysteretic or asperity-uniform at the contact point";
   const std::vector<std::pair<SceneFile, const char*>> others{

@@ -132,7 +132,7 @@ TEST(LeastTime, OfASwitchThatOnePullDoesNotCloseIsFoundFromASwingThatDoes) {
   EXPECT_LE(found.time, known * (1 + 1e-4));
   EXPECT_GT(found.time, 0.97 * known);
   EXPECT_NEAR(found.simulated_time / found.time, 1, 1e-4);
-  // Where one swing is quicker it stays the answer.
+  // A single swing that is quicker stays the answer.
   const PreparedScene strong = prepare_and_choose(spring_plate(), true);
   const LeastTime quick = least_time(strong, {.impact_velocity = 0.01}),
                   both = least_time(strong, {.impact_velocity = 0.01, .start = {{"main", swing}}});
@@ -319,7 +319,7 @@ TEST(Limit, LandsTheGoldCantileverWithoutAReboundInTheLeastTime_slow) {
   EXPECT_GT(found.rest.time, found.touch.time);
 }
 
-// By an independent calculation: 0 V until just after the touch, full pull until 75 us.
+// An independent calculation gave 0 V until just after the touch, full pull until 75 us.
 TEST(Limit, LandsTheGoldCantileverByACatchThatBeginsLater_slow) {
   const Limit found = limit(gold(), {.impact_velocity = 10e-3, .curves = false});
   ASSERT_TRUE(found.landing.has_value());

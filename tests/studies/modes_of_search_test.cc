@@ -42,8 +42,8 @@ std::vector<double> somewhere(const SearchSpace& space, std::uint64_t number) {
   return x;
 }
 
-// Of every family: what a search may try crosses its range in no less than a period of the highest mode, within the driver's own
-// limits.
+// A waveform of any family that a search may try crosses its range in no less than a period of the highest mode, within the
+// driver's own limits.
 TEST(GentleEdges, AreThoseOfEveryWaveformOfEveryFamily) {
   const std::vector<SearchSetting> steep = search_settings(gold_pzt(), Target::bounce, Actuator::both, families_with_slew, {});
   const std::vector<SearchSetting> gentle = with_gentle_edges(steep, Actuator::both, families_with_slew);
@@ -109,7 +109,7 @@ TEST(GentleEdges, AreWhereSearchesOfAPiezoBeginUnlessTheyBeginSteeper) {
   EXPECT_FALSE(begin(gold_pzt(), Actuator::pzt, {{.name = "steep", .waveforms = {{"piezo", pulse(0.1e-6)}}}}));
 }
 
-// Against the same search of a scene with more modes, with the touch speeds of its closings.
+// The oracle is the same search of a scene with more modes, with the touch speeds of its closings.
 TEST(WorstOfModes, IsTheHighestOfTheCostsOfEveryBeam) {
   const SceneFile file = landed_with_four_modes();
   const SearchSetting plain = search_setting(file, Target::bounce, Actuator::pzt, "bspline:16", {});
@@ -176,8 +176,8 @@ double least_time_at_rest(const SceneFile& file) {
   return rest.time;
 }
 
-// What a search for the drawing of the first command promises, of three seeds and lengths: soft with six, eight and ten modes as
-// with four.
+// A search for the nominal design by the first command promises, for three seeds and lengths, a landing as soft with six, eight
+// and ten modes as with four.
 TEST(WorstOfModes, LandsThePiezoSwitchWithAnyNumberOfModes_slow) {
   const double latest = late * least_time_at_rest(gold_pzt());
   for (const auto& [seed, length] : {std::pair(1U, "250 um"), {2U, "250.000001 um"}, {3U, "250.000003 um"}}) {

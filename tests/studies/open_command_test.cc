@@ -104,7 +104,7 @@ simulate.duration = "40 us"
   // It comes back without loss, strikes the contact again and again, and has a break after each.
   EXPECT_GT(m.release_bounces, 0);
   EXPECT_GT(m.release_bounce_height, dt);
-  // Until it has come back once the only break is the one of the closed form.
+  // The only break before it has come back once is that of the closed form.
   const PreparedScene once = prepare(plate(R"(
 waveform.main = { family = "step", before = "40 V", before_state = "closed", level = "0 V" }
 simulate.duration = "10 us"
@@ -250,7 +250,7 @@ simulate.duration = "400 us"
   EXPECT_NEAR(m.closed_time, m.open_command + m.opening_time - m.initial_contact_time - m.separated, 1e-15);
 }
 
-// Within such a window the drives hold the switch.
+// The drives hold the switch within such a window.
 TEST(OpenCommand, AfterTheWindowLeavesAClosingThatIsDone) {
   const std::string_view rest = R"(
 waveform.main = { family = "pulse", levels = ["60 V", "0 V"], times = ["500 us"] }

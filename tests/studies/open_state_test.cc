@@ -29,7 +29,7 @@ TEST(OpenState, IsThatOfADampedOscillator) {
   const Closing c = closing_of(small_step());
   ASSERT_EQ(c.metrics.status, Status::open);
   constexpr double stiffness = 42, area = 1e-8, gap = 3.8e-6, zeta = 0.2, eps0 = 8.8541878128e-12, volts = 2;
-  // To first order of a small deflection: k y = eps0 A V^2 / (2 (d - y)^2).
+  // A small deflection has to first order: k y = eps0 A V^2 / (2 (d - y)^2).
   const double first = eps0 * area * volts * volts / (2 * gap * gap * stiffness), y = first / (1 - 2 * first / gap);
   constexpr double small = 1e-3;  // deflection over gap
   EXPECT_NEAR(c.metrics.static_deflection, y, small * y);

@@ -20,7 +20,7 @@ namespace {
 // The plate on its spring, let go at t = 0: it leaves its contact, swings on its spring, and is pulled from x_1 to rest at 0.
 struct ExactOpening {
   double leaves = 0, brakes = 0, rests = 0;  // [s]
-  double swing = 0;                          // where it would swing to, unbraked [m]
+  double swing = 0;                          // place to which it would swing, unbraked [m]
 };
 
 ExactOpening exact_opening(const Structure& s, const Gap& gap, double contact_stiffness, double volts) {
@@ -29,13 +29,13 @@ ExactOpening exact_opening(const Structure& s, const Gap& gap, double contact_st
   const double g = gap.contact, d = gap.electrode, both = k + contact_stiffness;
   double x0 = g;  // k x + k_c (x - g) = F / (d - x)^2
   for (int i = 0; i < 100; ++i) x0 = (force / ((d - x0) * (d - x0)) + contact_stiffness * g) / both;
-  // In contact about x_c, then about 0.
+  // The motion is about x_c in contact, then about 0.
   const double x_c = contact_stiffness * g / both, fast = std::sqrt(both / m), omega = std::sqrt(k / m);
   ExactOpening o{.leaves = std::acos((g - x_c) / (x0 - x_c)) / fast};
   const double speed = (x0 - x_c) * fast * std::sin(fast * o.leaves);
   o.swing = std::hypot(g, speed / omega);
   const double energy = k * o.swing * o.swing / 2;
-  const double x1 = d - 1 / (energy / force + 1 / d);  // from here on the pull takes all of it
+  const double x1 = d - 1 / (energy / force + 1 / d);  // the pull takes all of the energy from here on
   o.brakes = o.leaves + (std::acos(x1 / o.swing) - std::acos(g / o.swing)) / omega;
   const GaussRule rule = gauss_rule(60);
   o.rests = o.brakes;

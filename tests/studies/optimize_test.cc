@@ -29,7 +29,7 @@ Log search(const SceneFile& file, OptimizeOptions options, long budget = 60) {
   return {std::move(seen), std::move(result)};
 }
 
-// In a window that holds every landing a search may choose, a quarter of the scene's own.
+// The window holds every landing a search may choose, and is a quarter of the scene's own.
 SceneFile quick() { return gold({"simulate.duration=150 us"}); }
 
 const Log& reference() {
@@ -128,8 +128,8 @@ TEST(Optimize, MinimisesASumByTheMeanOfItsFigures) {
   const Aim sum({{Target::settling, 1}, {Target::energy, 2}});
   const Log log = search(quick(), {.target = sum}, 90);
   EXPECT_EQ(log.result.search.termination, Termination::evaluation_budget);
-  EXPECT_GT(log.evaluations.size(), 60U);  // of the second stage, by the sum, as well
-  EXPECT_LE(log.evaluations.size(), 90U);  // with what its gradients count for
+  EXPECT_GT(log.evaluations.size(), 60U);  // evaluations of the second stage, by the sum, as well
+  EXPECT_LE(log.evaluations.size(), 90U);  // evaluations with what its gradients count for
   Metrics step;
   step.settled = true;
   step.bounce_count = 5;
@@ -178,7 +178,7 @@ TEST(Optimize, VerifiesItsWinnerAsSimulateWill) {
   EXPECT_EQ(r.checks.size(), 6U);
 }
 
-// With a pulse that lands without a rebound, found by a search.
+// Sets a pulse that lands without a rebound, found by a search.
 SceneFile landed() {
   SceneFile file = quick();
   file.set_waveform("main", Pulse{.levels = {20.8719639809752, 1.6808343557489793, 17.767260288595256},

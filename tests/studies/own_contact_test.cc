@@ -14,7 +14,7 @@
 namespace softland {
 namespace {
 
-constexpr double same_formula = 1e-9;  // after a spread, a search and hundreds of steps of an integrator
+constexpr double same_formula = 1e-9;  // error after a spread, a search and hundreds of steps of an integrator
 
 SceneFile own_gold() {
   SceneFile file = gold_at_17_volts();

@@ -292,7 +292,7 @@ TEST(OwnWaveform, IsSearchedAsTheFamilyOfItsVoltages_long) {
   ASSERT_TRUE(own.best);
   EXPECT_EQ(own.family, "own-ramp");
   EXPECT_FALSE(is_written);
-  constexpr double near = 1e-6;  // what it is verified with is read back from text, and an own one is not
+  constexpr double near = 1e-6;  // the built-in waveform is read back from text for its verification, the own one is not
   const double rise = own.parameters.at("main.rise_time_s");
   EXPECT_NEAR(rise, built_in.parameters.at("main.rise_time_s"), near * rise);
   EXPECT_NEAR(own.best_cost, built_in.best_cost, near * built_in.best_cost);

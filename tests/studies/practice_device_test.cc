@@ -54,7 +54,7 @@ TEST(PracticeDevice, DependsOnItsSeedAndTheNumberOfTheShotAlone) {
   EXPECT_NE(other.device().values, one.device().values);
 }
 
-// What a search or a belief has learned of one, it knows of no device to practise on: not even one number is the same.
+// A device to practise on is unknown to every search and belief: it shares not even one number with the devices of an ensemble.
 TEST(PracticeDevice, IsNoneOfAnyEnsemble) {
   constexpr std::size_t many = 2000;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -83,7 +83,7 @@ TEST(PracticeDevice, HasErrorsOfTheSizesThatWereAskedFor) {
     const double error = device.close(static_cast<std::uint64_t>(n), plain_step(), 40e-6).record.edges.front().time - exact;
     sum += error, squares += error * error;
   }
-  // Of 100 draws the deviation is known to 7 %, the mean to a tenth of it: four times these.
+  // The deviation of 100 draws is known to 7 %, the mean to a tenth of it: four times these.
   EXPECT_NEAR(std::sqrt(squares / shots), 50e-9, 0.28 * 50e-9);
   EXPECT_NEAR(sum / shots, 0, 0.4 * 50e-9);
 }

@@ -69,7 +69,7 @@ waveform.main = { family = "step", level = "1.2 Vsp" }
   EXPECT_DOUBLE_EQ(p.drives.at("main").limits.value().max_voltage, 1.5 * own.statically.voltage);
 }
 
-// Under the piezo the switch has no open state, and the limits of the electrode are those of its source all the same.
+// The switch has no open state under the piezo, and the limits of the electrode are those of its source all the same.
 TEST(Prepare, LimitsInPullInVoltagesDoNotDependOnOtherDrives) {
   constexpr std::string_view closed =
       "waveform.piezo={family = \"table\", times = [\"0 s\", \"1 us\"], voltages = [\"0 V\", \"-1 V\"]}";
@@ -130,7 +130,7 @@ TEST(Prepare, WaitsForASlowClosingWhereNoOtherEndIsPossible) {
 }
 
 TEST(Prepare, LoadsASourceWithTheCapacitanceOfTheOpenSwitch) {
-  // Of two plates without fringing: eps A / d.
+  // The capacitance of two plates without fringing is eps A / d.
   const SceneFile file = gold({"waveform.main.level=30 V", "driver.main.max_voltage=90 V",
                                "driver.main.source_resistance=10 Mohm", "electrode.main.fringing=none"});
   const PreparedScene p = prepare(file);
@@ -155,7 +155,7 @@ TEST(Prepare, RefusesMoreSamplesThanARunCanFollow) {
             "most 166 MHz, a simulate.duration of at most 100 us, or no sample_rate");
 }
 
-// A bridge at its hold level of 30 V, and at 40 V, the limit of its driver.
+// A bridge at its hold voltage of 30 V, and at 40 V, the limit of its driver.
 TEST(Prepare, RefusesAFaceThroughWhichTheFieldPullsTheBeam) {
   const auto with = [](std::string_view landing, std::string_view limit) {
     SceneFile file = scene("new/capacitive-bridge.toml", {"waveform.main.level=30 V"});
@@ -233,7 +233,7 @@ TEST(Prepare, NamesTheElectrodeWhosePullInCannotBeFound) {
   EXPECT_EQ(refusal([] { (void)prepare(gold({"electrode.main.span=[\"249.99999999 um\", \"250 um\"]"})); }),
             "--set electrode.main.span=[\"249.99999999 um\", \"250 um\"]: its pull-in voltage is needed for the unit Vsp or Vdp, "
             "but none could be found");
-  // Under what the other drives stand at: a piezo that pulls the beam down to its contact leaves no open state.
+  // A piezo at its bias that pulls the beam down to its contact leaves no open state.
   EXPECT_THAT(refusal([] {
                 (void)prepare(gold_pzt({"waveform.piezo={family=\"step\",level=\"-5 V\"}", "driver.piezo.min_voltage=-9 V",
                                         "simulate.accuracy=1e-4"}));

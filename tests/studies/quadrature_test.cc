@@ -48,7 +48,7 @@ double largest_error(const Metrics& m, const FirstTouch& right) {
   return std::max(std::abs(m.initial_contact_time / right.time - 1), std::abs(m.impact_velocity / right.velocity - 1));
 }
 
-constexpr double bridge_release = 6.59556, bridge_impact = 13.04662;  // of another program, to its last digit [V], [m/s]
+constexpr double bridge_release = 6.59556, bridge_impact = 13.04662;  // results of another program, to its last digit [V], [m/s]
 
 TEST(Quadrature, ReleaseNextToTheElectrodeIsThatOfAnotherProgram) {
   constexpr double digit = 3e-6;

@@ -87,7 +87,7 @@ TEST(StableApproach, IsThatOfAnElectrodeBeforeItsFold) {
   EXPECT_FALSE(stable_approach(prepare(gold(), true), Actuator::electrostatic));
 }
 
-// Of a rise by these lines, how much of a mode rings on whose frequency is `ratio` times the one that it was made for.
+// Amplitude of a mode after a rise by these lines, if its frequency is `ratio` times the one that the rise was made for.
 double ringing(const Table& rise, double period, double ratio) {
   std::complex<double> sum = 0;
   constexpr int parts = 4000;

@@ -41,7 +41,7 @@ class Race : public testing::Test {
   RobustCost cost_;
 };
 
-// What a memory was told, by the text of its key.
+// The evaluations that a memory was given, by the text of their key.
 class Remembered final : public EvaluationMemory {
  public:
   std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override {
@@ -58,7 +58,7 @@ class Remembered final : public EvaluationMemory {
     known_.emplace(text(key), values);
   }
   std::size_t recalled = 0, noted = 0;
-  std::map<std::size_t, std::size_t> sizes;  // of points, by family
+  std::map<std::size_t, std::size_t> sizes;  // number of parameters of points, by family
 
  private:
   static std::string text(const EvaluationKey& key) {

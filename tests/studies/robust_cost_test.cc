@@ -1,4 +1,4 @@
-// What a device costs in a robust search: every figure over that of the plain step on the nominal device.
+// Tests the cost of a device in a robust search: every figure over that of the plain step on the nominal device.
 #include "studies/search/robust_cost.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace softland {
 namespace {
 
-// Of a device whose figures are given, for one target.
+// The score of a device whose figures are given, for one target.
 class Score {
  public:
   explicit Score(Target target)
@@ -126,7 +126,7 @@ TEST(RobustCost, OfFewerDevicesThatFailIsLess) {
   EXPECT_FALSE(RobustCost(setting, yield, {}).is_told(with(0))) << "all of these rebound";
 }
 
-// Under every measure: a search has figures to go by, whatever closes several devices at once leaves out.
+// A search has figures to go by under every measure, whatever closes several devices at once leaves out.
 TEST(RobustCost, OfEveryTargetIsKnownOnEveryScene_optimized) {
   int scenes = 0;
   for (const std::string& name : shipped_scenes()) {
@@ -146,7 +146,7 @@ TEST(RobustCost, OfEveryTargetIsKnownOnEveryScene_optimized) {
           if (target == Target::drive && o.closed()) {
             EXPECT_TRUE(std::isfinite(o.metrics.drive_energy)) << name;
           }
-          // What lands without a rebound, and stays, has its force at some time.
+          // A device that lands without a rebound, and stays, has its force at some time.
           if (target == Target::steady && is_bounce_free(o) && o.metrics.least_force_after_touch > 0) {
             EXPECT_TRUE(std::isfinite(o.metrics.steady_force_time)) << name;
           }
@@ -157,7 +157,7 @@ TEST(RobustCost, OfEveryTargetIsKnownOnEveryScene_optimized) {
   EXPECT_GE(scenes, 5);
 }
 
-// How long devices wait is priced beyond what is free, and never by more than the median of first touch is.
+// The waiting of devices is priced beyond what is free, and never by more than the median of first touch is.
 TEST(RobustCost, PricesTheTimeFromWhichTheContactIsSteady) {
   const SearchSetting setting = search_setting(gold({"simulate.duration=150 us", "structure.modes=2"}), Target::bounce,
                                                Actuator::electrostatic, "pulse", {});

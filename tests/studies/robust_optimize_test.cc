@@ -1,4 +1,4 @@
-// A search over devices that differ, on small budgets: what it promises whoever wins.
+// A search over varied devices, on small budgets: what it promises whoever wins.
 #include "studies/search/robust_optimize.h"
 
 #include <gtest/gtest.h>

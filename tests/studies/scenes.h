@@ -102,7 +102,7 @@ inline SceneFile without(const SceneFile& file, std::string_view section) {
   return SceneFile::parse(text, "changed.toml");
 }
 
-/// What `action` says when it refuses its input; empty when it does not.
+/// The message with which `action` refuses its input; empty when it does not.
 template <class Action>
 std::string refusal(Action&& action) {
   try {

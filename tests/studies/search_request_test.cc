@@ -123,7 +123,7 @@ TEST(SearchRequest, SharesItsConditionsBetweenDrawingAndDevices) {
 
 struct Refused {
   SearchRequest request;
-  std::string words;  // as a command line has them
+  std::string words;  // wording of a command line
 };
 
 class RefusedSearch : public testing::TestWithParam<Refused> {};

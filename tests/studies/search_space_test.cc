@@ -1,4 +1,4 @@
-// What a search may vary, and that nothing it can reach leaves the driver's limits.
+// Tests what a search may vary, and that nothing it can reach leaves the driver's limits.
 #include "studies/search/search_space.h"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ namespace {
 using testing::ElementsAre;
 
 constexpr double first_touch = 25e-6;
-/// Where there is a choice of number, also with the fewest and the most.
+/// Families with a choice of number come with the fewest and the most, too.
 std::vector<std::string> all_families() {
   std::vector<std::string> all;
   for (const SearchedFamily& family : searched_families()) {
@@ -38,7 +38,7 @@ std::vector<std::string> all_families() {
   return all;
 }
 const std::vector<std::string> every_family = all_families();
-/// The hold level of an electrode can be so near its limit that a dither cannot be slewed.
+/// The hold voltage of an electrode can be so near its limit that a dither cannot be slewed.
 bool is_dither(const std::string& family) { return family == "harmonic" || family == "dither" || family == "chirp"; }
 
 std::vector<std::string> names(const SearchSpace& space) {
@@ -82,7 +82,7 @@ void expect_within_limits(const PreparedScene& prepared, Actuator actuator, cons
   }
 }
 
-// At random points of every family, some of them on bounds: parameters that share differences give what each gives by itself.
+// Parameters that share differences give what each gives by itself, at random points of every family, some of them on bounds.
 // Returns how often they shared.
 int expect_shared_slopes(const PreparedScene& prepared, const std::string& family) {
   const SearchSpace space(prepared, Actuator::both, family, first_touch);

@@ -83,7 +83,7 @@ TEST(SearchWork, OfASlowSceneStaysWithinThatOfAUsualOne_optimized) {
   }
 }
 
-// What a search over devices of a slow scene is told to take; it ends there.
+// Returns the estimate that a search over devices of a slow scene reports; the search ends there.
 SearchEstimate estimate_over_devices(const SceneFile& file) {
   struct Enough {};
   SearchEstimate told;

@@ -28,7 +28,7 @@ TEST(TunedScenes, TheOriginIsTheNominalDevice) {
   const Device& nominal = scene.nominal().scene.device;
   EXPECT_DOUBLE_EQ(own.structure.thickness, nominal.structure.thickness);
   EXPECT_DOUBLE_EQ(own.gap.contact, nominal.gap.contact);
-  constexpr double median_of_lognormal = 0.006;  // below its mean, of a deviation of 10 %
+  constexpr double median_of_lognormal = 0.006;  // distance below its mean, of a deviation of 10 %
   EXPECT_NEAR(number_of(own.contacts.front().model, "effective_modulus", 0) /
                   number_of(nominal.contacts.front().model, "effective_modulus", 0),
               1, median_of_lognormal);

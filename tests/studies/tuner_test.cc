@@ -95,7 +95,7 @@ TEST(Tuners, RecipesThatAreKnownAreNotSearchedAgain_optimized) {
 
 // Drifting sources make yesterday's volts wrong: what is kept is what landed last.
 TEST(Tuners, OfShotsThatAreRepeatedTheLastIsKept_optimized) {
-  constexpr double drift = 1e-5;  // of the volts, from shot to shot
+  constexpr double drift = 1e-5;  // relative drift of the volts, from shot to shot
   const PracticeDevice device(gold_with_two_modes(), {.seed = 5, .drift = drift});
   Tuner tuner(gold_with_two_modes(), {.effort = 0.2});
   std::vector<Waveform> fired_last;
@@ -152,7 +152,7 @@ TEST(Tuners, OptionsOutOfRangeAreRefused) {
   EXPECT_THROW(Tuner(gold_with_two_modes(), {.actuator = Actuator::pzt}), InvalidInput);
 }
 
-// What one touch tells may be told by a rare device, too: two records are a proof.
+// A rare device may explain one touch, too: two records are a proof.
 TEST(Tuners, ADeviceUnlikeTheSceneIsCalledSo_optimized) {
   constexpr int closings = 2;
   const Tuner fresh(gold_with_two_modes(), cheap());
@@ -208,7 +208,7 @@ TEST(Tuners, ALateTriggerIsNoOtherDevice_slow) {
   }
 }
 
-// What landed some closings ago need not land under volts that drift: it is fired again, and counts as it lands then.
+// A waveform that landed some closings ago need not land under drifting volts. It is fired again, and counts as it lands then.
 TEST(Tuners, TheWaveformKeptIsFiredAgainAndCountsAsItLandsThen_optimized) {
   constexpr int most = 8;
   const PracticeDevice device(gold_with_two_modes(), {.seed = 5});
@@ -334,11 +334,11 @@ TEST(Tuners, LaterDevicesOfAWaferNeedFewerClosings_slow) {
   struct Tuned {
     TunedBelief belief;
     int closings = 0;
-    double first_rebound = 0;  // of the first shot [m]
+    double first_rebound = 0;  // rebound of the first shot [m]
   };
   const auto tuned = [&](const TunerOptions& options, std::uint64_t seed) {
     constexpr int most = 8;
-    const PracticeDevice device(wafer, {.seed = seed, .laboratory = {.gain_error = 0}});  // of the same laboratory
+    const PracticeDevice device(wafer, {.seed = seed, .laboratory = {.gain_error = 0}});  // device of the same laboratory
     Tuner tuner(gold_with_two_modes(), options);
     Tuned one;
     while (tuner.closings() < most && tuner.bounce_free_in_a_row() < 2) {
@@ -385,7 +385,7 @@ TEST(Tuners, DevicesThatNoBeliefHasSeenLandWithinThreeClosings_slow) {
 }
 
 TEST(Tuners, RepeatedShotsFollowADrift_slow) {
-  constexpr double drift = 1e-5;  // of all volts, from closing to closing
+  constexpr double drift = 1e-5;  // relative drift of all volts, from closing to closing
   constexpr int first = 20, last = 100;
   Tuner tuner(gold(), {.jobs = 2});
   const PracticeDevice device(gold(), {.seed = 4001, .drift = drift, .model = {.more_modes = 1}});
@@ -397,7 +397,7 @@ TEST(Tuners, RepeatedShotsFollowADrift_slow) {
   }
   EXPECT_TRUE(tuner.is_done());
   const double followed = signal(tuner.next().waveforms[0]).peak() / volts, due = (1 + drift * first) / (1 + drift * last);
-  constexpr double scatter = 4e-4;  // of touch times, and what steering lags behind
+  constexpr double scatter = 4e-4;  // scatter of touch times, and lag of the steering
   EXPECT_FALSE(!(std::abs(followed - due) <= scatter)) << followed << " " << due;
 
   const std::size_t before = tuner.surprises().size();

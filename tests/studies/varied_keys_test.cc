@@ -1,5 +1,5 @@
 // Every number of a device that the schema knows, in a scene that has it: [spread], `explore --vary` and `fit` take it, and the
-// device is that of the scene with this value. What is refused instead, and why, is a table. The list of keys is the schema.
+// device is that of the scene with this value. A table has what is refused instead, and why. The list of keys is the schema.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -285,7 +285,7 @@ std::vector<Number> numbers_of_scene(const SceneFile& file) {
   return all;
 }
 
-/// What a device answers: where it is, what acts on it open and closed, and how its contacts conduct.
+/// The answers of a device: its position, the forces on it open and closed, and the conduction of its contacts.
 std::vector<double> fingerprint(const Switch& model) {
   const Eigen::VectorXd& omega = model.basis().angular_frequencies();
   std::vector<double> all(omega.begin(), omega.end());
@@ -380,11 +380,11 @@ std::string refusal(const auto& action) {
   return {};
 }
 
-constexpr double more = 1.01;  // what a number becomes, over that of the scene
+constexpr double more = 1.01;  // factor of a number over that of the scene
 
 /// Says how a device gets the number by each of the ways.
 void expect_varied(const SceneFile& file, const Number& number, const std::vector<double>& nominal) {
-  // Of what the number does, and of all: a device keeps the points of quadrature of the nominal one, good to so much.
+  // Tolerances of the number's effect, and of all: a device keeps the points of quadrature of the nominal one, good to so much.
   constexpr double same = 1e-3, quadrature = 1e-4;
   SceneFile written = file, spread = file;
   written.assign(number.list, Quantity{.value = more * number.value.value, .dimension = number.value.dimension}, number.element);

@@ -1,4 +1,4 @@
-// What tuned devices tell of the next of their wafer, of beliefs that are easy to see through.
+// Tests what tuned devices tell of the next of their wafer, with simple beliefs.
 #include "studies/tuning/wafer.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST(Wafer, OfOneDeviceIsBelievedAsFarAsWafersAreAlike) {
   EXPECT_NEAR(wafer.next.mean[0], wafer.share, 1e-3);
 }
 
-// What was known before its first closing is not told by its records.
+// A device's records do not tell what was known before its first closing.
 TEST(Wafer, DoesNotCountAPriorTwice) {
   const WaferBelief first = believed_of_wafer(std::vector(1, known(1.0)), size);
   const TunedBelief second = known(1.2, first.next);

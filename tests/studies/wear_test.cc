@@ -1,4 +1,5 @@
-// What wears a contact, as figures of a run. Oracles: quadrature of the kept course in small steps, and Hertz for one summit.
+// Tests the wear of a contact as figures of a run. Oracles: quadrature of the kept course in small steps, and Hertz for one
+// summit.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Whether a drive is worse than the plain step, on outcomes that are made up.
+// Tests if a drive is worse than the plain step, on outcomes that are made up.
 #include "studies/search/worse_than_step.h"
 
 #include <gmock/gmock.h>

@@ -18,7 +18,7 @@
 
 namespace softland::test {
 
-/// Whether the calling thread, and every program that it starts, obeys access rights from now on.
+/// Returns true if the calling thread, and every program that it starts, obeys access rights from now on.
 inline bool give_up_ignoring_access_rights() {
   __user_cap_header_struct header{.version = _LINUX_CAPABILITY_VERSION_3, .pid = 0};
   std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> sets{};

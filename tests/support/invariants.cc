@@ -35,7 +35,7 @@ class Energy {
     }
     const double d = device_.contact_deflection(q) - device_.contact_gap();
     const double open = device_.potential(q, volts_, false, work_), kinetic = device_.basis().kinetic_energy(v);
-    // What a contact with memory stores is positive, and the least that it can be is enough.
+    // The stored energy of a contact with memory is positive, and its lower bound is enough.
     double contact = 0;
     if (device_.has_contact() && !has_memory(device_.contact()) && (d > 0 || device_.untouched(q).active)) {
       contact = device_.contact_stored(q, true);
@@ -46,9 +46,11 @@ class Energy {
     available_ = std::max(available_, brought - open + (d <= 0 ? device_.elastic_energy(q) : 0.0));
   }
 
-  [[nodiscard]] double surplus() const { return surplus_; }      // [J]
-  [[nodiscard]] double available() const { return available_; }  // for a contact: before it with the beam straight [J]
-  [[nodiscard]] double moved() const { return moved_; }          // by the drives, to and fro [J]
+  [[nodiscard]] double surplus() const { return surplus_; }  // [J]
+  [[nodiscard]] double available() const {
+    return available_;
+  }                                                      // energy for a contact: that before it, with the beam straight [J]
+  [[nodiscard]] double moved() const { return moved_; }  // energy moved by the drives, to and fro [J]
 
  private:
   // Derivative of the potential by each drive's strength; by the voltage of a piezo.
@@ -86,7 +88,7 @@ class Energy {
 double takes_up(const ContactLaw& law, double energy, double gap) {
   double high = 1e-18 * gap;
   while (contact_energy(law, high) <= energy && high < 1e6 * gap) high *= 2;
-  // Beyond the last place where the law pulls energy only grows.
+  // The energy only grows beyond the last place where the law pulls.
   for (double d = high; d < 1e3 * gap; d *= 1.1) {
     if (contact_energy(law, d) <= energy) high = 1.1 * d;
   }
@@ -106,7 +108,7 @@ class Findings {
 // `off` is how far the motion may be on the wrong side of the plane [m].
 void check_knots(const Trajectory& t, const Metrics& m, bool rigid, double off, Findings& found) {
   std::size_t touch = 0;  // the one under way or next
-  double highest = 0;     // after first touch
+  double highest = 0;     // highest place after first touch
   for (std::size_t i = 0; i < t.points.size(); ++i) {
     const TrajectoryPoint& p = t.points[i];
     found.expect(std::isfinite(p.time + p.position + p.velocity + p.acceleration + p.contact_force), "knot {} is not finite", i);
@@ -191,7 +193,7 @@ CheckedRun checked_run(const Switch& model, std::span<const Signal> drives, cons
   run.surplus = energies.surplus() / model.bending_energy();
   Findings found;
   const bool rigid = model.rigid_contact() != nullptr, completed = t.status == Status::done;
-  // Where a run fails its steps need not fit together.
+  // The steps of a run that fails need not fit together.
   const double off = completed ? options.tolerance * t.contact_gap : std::numeric_limits<double>::infinity();
   check_knots(t, run.metrics, rigid, off, found);
   found.expect(rebounds(t).size() <= t.touches.size() || !completed, "{} rebounds after {} touches", rebounds(t).size(),
@@ -202,7 +204,7 @@ CheckedRun checked_run(const Switch& model, std::span<const Signal> drives, cons
                  "the energy balance is off by {:.3g} of the bending energy", run.surplus);
     found.expect(t.smallest_gap > 0, "smallest gap {} m", t.smallest_gap);
     if (model.has_contact() && !model.has_spread_contact()) {
-      constexpr double margin = 1.05;  // for what steps leave between them
+      constexpr double margin = 1.05;  // factor for the energy that rises between steps
       run.largest_penetration =
           rigid ? 1e-9 * t.contact_gap : takes_up(model.contact(), margin * energies.available(), t.contact_gap);
       found.expect(t.deepest_penetration <= run.largest_penetration,
@@ -219,7 +221,7 @@ CheckedRun checked_run(const Switch& model, std::span<const Signal> drives, cons
 }
 
 Landing landing(const Trajectory& trajectory) {
-  constexpr double low = 0.01;  // of the contact gap
+  constexpr double low = 0.01;  // share of the contact gap
   if (trajectory.touches.empty()) return {};
   const std::vector<Rebound> all = rebounds(trajectory);
   const auto high =
@@ -230,8 +232,8 @@ Landing landing(const Trajectory& trajectory) {
 }
 
 std::string missed_touch(const Trajectory& run, const Trajectory& tighter) {
-  constexpr double least = 1e-7;   // that they are thought to differ by
-  constexpr double parted = 1e-4;  // of what they differ by then
+  constexpr double least = 1e-7;   // assumed first difference of both runs
+  constexpr double parted = 1e-4;  // difference at which the comparison ends
   constexpr double growth =
       10;  // times the root; 0.74 at the most in 12 000 touches of 1200 random scenes, 4 after long hovering
   double apart = least, fastest = 0;

@@ -1,4 +1,4 @@
-// What every run must keep, however hard the case: checked from outside, with an energy balance of its own.
+// Invariants of every run, however hard the case: checked from outside, with an energy balance of its own.
 #pragma once
 
 #include <span>
@@ -35,7 +35,7 @@ struct CheckedRun {
                                      double energy = 1e-3, const MetricsOptions& metrics = {});
 
 /// The well-conditioned figures of a closing: its landing and its first rebound higher than a hundredth of the contact gap, 0
-/// where there is none.
+/// without such a rebound.
 struct Landing {
   double time = 0;      ///< t_i [s]
   double velocity = 0;  ///< v_i [m/s]
@@ -43,12 +43,12 @@ struct Landing {
 };
 [[nodiscard]] Landing landing(const Trajectory& trajectory);
 
-/// What a run of a closing and a tighter one say of an event that one of them has missed; empty where they agree. They are
-/// followed touch by touch. Lengths over the contact gap and velocities over the contact point's largest, a touch of speed u
-/// makes of a difference e one of about e / u, and one gentler than the root of e may be had by one run alone: so from touch to
-/// touch the difference grows to ten times its root at the most, while a touch that is missed differs by u at once. What the ends
-/// of touches differ by counts as well: in its dent a contact with memory rattles. Follows them until they differ by 1e-4: what a
-/// closing has magnified by a thousand and more, the rattle of a soft landing too, says nothing of its events.
+/// Describes an event that a run of a closing or a tighter run has missed; empty where they agree. The runs are compared touch
+/// by touch, lengths over the contact gap and velocities over the contact point's largest. A touch of speed u makes of a
+/// difference e one of about e / u. One run alone may have a touch gentler than the root of e. The difference thus grows from
+/// touch to touch to ten times its root at the most, while a missed touch differs by u at once. Differences of the ends of
+/// touches count as well: a contact with memory rattles in its dent. The comparison ends at a difference of 1e-4. A closing has
+/// magnified it by a thousand and more by then, the rattle of a soft landing too, which says nothing of its events.
 [[nodiscard]] std::string missed_touch(const Trajectory& run, const Trajectory& tighter);
 
 }  // namespace softland::test

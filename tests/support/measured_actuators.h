@@ -11,10 +11,10 @@
 
 namespace softland::test {
 
-/// What the published etch and the textbook say: how much the etch takes off every edge [m], and Young's modulus [Pa].
+/// Values of the published etch and the textbook: how much the etch takes off every edge [m], and Young's modulus [Pa].
 inline constexpr double published_undercut = 0.4e-6, textbook_modulus = 169e9;
 
-/// Fingers that overlap by `overlap` as drawn [m], springs `spring_width` wide as drawn [m].
+/// Fingers overlap by `overlap` in the nominal design [m], springs are `spring_width` wide in it [m].
 [[nodiscard]] inline Device gap_closing_actuator(double overlap, double spring_width = 3e-6, double undercut = published_undercut,
                                                  double youngs_modulus = textbook_modulus) {
   using namespace literals;
@@ -63,7 +63,7 @@ inline constexpr std::array<MeasuredPullIn, 9> measured_pull_in{{{15.3e-6, {35.3
 
 /// The springs' width varied at an overlap of 76.5 um.
 struct MeasuredSprings {
-  double width;  ///< as drawn [m]
+  double width;  ///< nominal width [m]
   double pull_in, pull_out;
 };
 inline constexpr std::array<MeasuredSprings, 8> measured_springs{{{2e-6, 6.3, 2.4},
@@ -75,7 +75,7 @@ inline constexpr std::array<MeasuredSprings, 8> measured_springs{{{2e-6, 6.3, 2.
                                                                   {5e-6, 44.0, 21.1},
                                                                   {5.5e-6, 51.5, 24.6}}};
 
-/// From the step to the stop, mean of three or four closings.
+/// Time from the step to the stop, mean of three or four closings.
 struct MeasuredTime {
   double volts;
   double time;  ///< [s]

@@ -30,7 +30,7 @@ class OwnAsperities : public OwnContactLaw {
   double strength_, height_, damping_;
 };
 
-/// Of the gold cantilever: 20 um wide, with a pad of 5 um.
+/// The contact of the gold cantilever: 20 um wide, with a pad of 5 um.
 [[nodiscard]] inline Contact own_contact(const UniformAsperities& law = UniformAsperities::example()) {
   constexpr ContactPad pad{.width = 20e-6, .length = 5e-6};
   return {.model = OwnContact{std::make_shared<const OwnAsperities>(law, pad)}, .pad_length = pad.length};

@@ -1,4 +1,4 @@
-// What no number that people read may look like.
+// Finds numbers that people cannot read.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 namespace softland {
 
 /// The first number in `text` that says more than anybody knows or is not written as people write it, with what is wrong with it;
-/// empty when there is none. Paths and quoted text are the caller's to leave out.
+/// empty when all are fine. Paths and quoted text are the caller's to leave out.
 inline std::string absurd_number(const std::string& text) {
   static const std::array<std::pair<std::regex, const char*>, 6> rules{{
       {std::regex("[0-9](\u00a0| )[fazy]m\\b"), "a length below 1 pm"},

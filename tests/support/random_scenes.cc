@@ -73,7 +73,7 @@ void vary_structure(SceneFile& file, Dice& dice) {
   }
   const Device d = device_of(file);
   if (d.structure.is_rigid()) {
-    // What gas, fringing fields and asperities need.
+    // Gas, fringing fields and asperities need these.
     const double area = d.structure.length * d.structure.width;
     if (!has_width(file)) put(file, "structure.width", std::sqrt(area), "m");
     if (!(d.structure.thickness > 0)) put(file, "structure.thickness", 0.03 * std::sqrt(area), "m");
@@ -323,15 +323,15 @@ Waveform waveform(Dice& dice, double level, double period) {
   }
 }
 
-/// From 0.8 to twice the static pull-in, less on an electrode that pulls away from the contact; the piezo bends the beam by up to
-/// a third of the gap.
+/// Levels lie from 0.8 to twice the static pull-in, less on an electrode that pulls away from the contact; the piezo bends the
+/// beam by up to a third of the gap.
 void put_waveforms(SceneFile& file, Dice& dice) {
   file.erase("waveform");
   file.erase("driver");
   const Scene scene = read_scene(file);
   const Switch model(scene.device);
   const double period = 2 * pi / model.basis().angular_frequencies()[0];
-  double volts = 0;  // that the electrodes before pull in at
+  double volts = 0;  // voltage at which the electrodes before pull in
   for (std::size_t k = 0; k < model.drives(); ++k) {
     const DriveKind kind = model.drive_kind(k);
     if (kind == DriveKind::piezo) {
@@ -383,7 +383,7 @@ SceneFile random_scene(std::uint64_t seed, std::uint64_t index) {
       vary_rest_shape(file, Dice(seed, index, most_draws + 1 + static_cast<std::uint64_t>(draw)));
       put_waveforms(file, dice);
       const bool stands_open = prepare(file).model.rest().has_value();
-      if (stands_open || dice.chance(0.1)) return file;  // of those that collapse at rest a few are enough
+      if (stands_open || dice.chance(0.1)) return file;  // a few scenes that collapse at rest are enough
     } catch (const InvalidInput&) {
     }
   }

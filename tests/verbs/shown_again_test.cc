@@ -1,4 +1,4 @@
-// What `softland report` makes of the JSON of a study: of every one in the list, so that a new study needs no test of its own.
+// Compares what `softland report` makes of a study's JSON, for every one in the list: a new study needs no test of its own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -82,7 +82,7 @@ json left_by(const Outcome& outcome) {
 }
 
 // Files that are not made again are scenes and tables, which the JSON does not hold, the page of all devices,
-// and the drawing of the scene that check makes.
+// and the sketch of the scene that check makes.
 void expect_same_files(const Outcome& again, const Outcome& found) {
   std::map<std::string, std::string> made;
   for (const Outcome::File& file : again.files) made[file.name] = file.text();

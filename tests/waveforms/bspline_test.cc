@@ -16,9 +16,9 @@ namespace {
 using namespace literals;
 using test::expect_invalid;
 
-constexpr double kBsplineRounding = 1e-13;  // of a few sums of numbers of order ten
+constexpr double kBsplineRounding = 1e-13;  // rounding of a few sums of numbers of order ten
 
-/// By de Boor's algorithm: means of neighbouring levels, three times.
+/// Evaluates a spline by de Boor's algorithm: means of neighbouring levels, three times.
 double de_boor(const std::vector<double>& levels, double u) {
   const std::size_t n = levels.size();
   std::size_t k = 3;

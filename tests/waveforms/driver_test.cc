@@ -31,7 +31,7 @@ using namespace literals;
 
 const DriverLimits limits{.min_voltage = -10, .max_voltage = 50};
 constexpr double kDriverRounding = 1e-12;  // relative to the voltages
-constexpr double tau = 2e-6;               // of the filters below [s]
+constexpr double tau = 2e-6;               // time constant of the filters below [s]
 
 DriverModel of_time_constant(double seconds) { return {.bandwidth = 1 / (2 * std::numbers::pi * seconds)}; }
 
@@ -258,7 +258,7 @@ TEST(Driver, GivesWhatItIsToldBeforeItBegins) {
   EXPECT_NEAR(driven(rises, sampled, slow, 1).voltage(10e-6), 30_V, 1e-9) << "at 1 V/us from where it stood";
 }
 
-// The converter samples what it is told; what amplifies its output, and is late, comes after it and before the filters.
+// The converter samples the commanded voltage; what amplifies its output, and is late, comes after it and before the filters.
 TEST(Driver, ErrsAfterItsConverterAndBeforeItsFilters) {
   const Signal told = signal(Step{.level = 40_V, .rise_time = 10_us});
   DriverModel model = of_time_constant(tau);
@@ -296,7 +296,7 @@ std::vector<DriverModel> converters() {
   return {{.sample_rate = 25e6}, {.sample_rate = 25e6, .bits = 14}, {.sample_rate = 1e6 / 3, .bits = 3}, all};
 }
 
-// What is written for a generator and read back is sampled to the same values.
+// A signal that is written for a generator and read back is sampled to the same values.
 TEST(Driver, SamplesItsOwnSamplesToTheSameBits) {
   const double end = 100_us;
   for (const auto& [name, waveform] : of_every_family()) {
@@ -331,7 +331,7 @@ TEST(Driver, SamplesItsOwnSamplesToTheSameBits) {
         ASSERT_LT(row, again.voltage.size());
         EXPECT_GE(code, 0);
         EXPECT_LE(code, most);
-        // What it stands at before it begins is not rounded.
+        // The level before it begins is not rounded.
         const bool stands = again.voltage[row] == 0 && (row == 0 || again.voltage[row - 1] == 0);
         EXPECT_NEAR(limits.min_voltage + step * static_cast<double>(code), again.voltage[row], stands ? step / 2 : 1e-12);
       }

@@ -1,4 +1,4 @@
-// What a message about bad input must hold: the parameter, its value, the rule.
+// Checks that a message about bad input holds the parameter, its value and the rule.
 #pragma once
 
 #include <gmock/gmock.h>

@@ -57,7 +57,7 @@ TEST(Harmonic, FollowsItsFormula) {
 TEST(Harmonic, RisesToItsBaseWhereverTheSineBegins) {
   const Harmonic faded{
       .base = 40_V, .amplitude = 6_V, .angular_frequency = 1e6_rad_s, .phase = 0.4, .start = 11_us, .end = 83_us, .fade = 17_us};
-  // Before the sine, up to its start, inside each of its parts, up to its end, after it.
+  // The times are before the sine, up to its start, inside each of its parts, up to its end, after it.
   for (const double rise : {5_us, 11_us, 19_us, 40_us, 70_us, 83_us, 95_us}) {
     Harmonic risen = faded;
     risen.rise_time = rise;

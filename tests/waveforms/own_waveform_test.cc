@@ -19,7 +19,7 @@ namespace {
 using namespace literals;
 using test::expect_invalid;
 
-/// By functions, as a test wants it.
+/// A waveform made of functions, as a test wants it.
 class Made final : public OwnWaveform {
  public:
   std::function<double(double)> at;

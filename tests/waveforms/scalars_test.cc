@@ -51,7 +51,7 @@ struct Sloped {
   friend bool operator>(const Sloped& a, const Sloped& b) { return a.value > b.value; }
 };
 
-/// Of the piece that holds at this time in every device.
+/// Voltage of the piece that holds at this time in every device.
 template <class P>
 P voltage(const Pieces<P>& pieces, double time) {
   std::size_t k = 0;
@@ -110,7 +110,7 @@ struct ASilentHarmonic {
   }
 };
 
-/// With a jump: two rows of the same time.
+/// A table with a jump: two rows of the same time.
 struct ATable {
   static constexpr std::array parameters{5.0, 40.0, 10.0, 30.0, 10e-6, 25e-6, 50e-6};
   template <class P>

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t spline_levels = 60;
 constexpr double spline_duration = 50e-6;  // [s]
 
-// Of splines of so many levels and a duration, the parameters; `calls` counts them.
+// A spline of so many levels, with the levels and the duration as parameters; `calls` counts them.
 struct ManySplines {
   std::vector<double> x, lower, upper;
   mutable int calls = 0;
@@ -89,7 +89,7 @@ TEST(SignalSlopes, OfSinesByAnAmplitudeAreItsSine) {
 }
 
 TEST(SignalSlopes, OfASplineByItsDurationAreThoseOfScaledTime) {
-  constexpr double differences = 1e-8;  // of 20 V over a span: rounding of its times over a step of a millionth
+  constexpr double differences = 1e-8;  // share of 20 V over a span: rounding of its times over a step of a millionth
   const ManySplines splines;
   const SignalSlopes slopes = splines.slopes();
   const Signal spline = signal(BSpline{.levels = {splines.x.begin(), splines.x.end() - 1}, .duration = spline_duration});

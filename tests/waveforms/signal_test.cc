@@ -17,7 +17,7 @@ using test::expect_invalid;
 
 // A handful of roundings of the formula at arguments of order one.
 constexpr double kRounding = 1e-14;
-// What signal.h promises for the extrema of sines, relative to their amplitude.
+// The error that signal.h promises for the extrema of sines, relative to their amplitude.
 constexpr double kPromisedExtremum = 1e-9;
 
 Signal of(std::vector<SignalPiece> pieces) { return Signal(std::move(pieces)); }

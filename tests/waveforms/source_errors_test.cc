@@ -1,4 +1,4 @@
-// What a source with errors makes of a signal.
+// Tests how a source with errors changes a signal.
 #include "waveforms/source_errors.h"
 
 #include <gtest/gtest.h>
@@ -103,7 +103,7 @@ TEST(SourceErrors, AJumpARampAndACornerAreEdges) {
 TEST(SourceErrors, EveryEdgeMovesByATimeOfItsOwn) {
   const Signal given = signal(throw_and_catch);
   const Signal moved = with_errors(given, {.edges = {0.1e-6, -0.2e-6, 0.3e-6}});
-  // From 0 V on [0.1, 1.1], to 5 V on [21.8, 22.8], to 17 V on [30.3, 31.3] us.
+  // The edges are from 0 V on [0.1, 1.1], to 5 V on [21.8, 22.8], to 17 V on [30.3, 31.3] us.
   const std::vector<std::pair<double, double>> points{{0, 0},       {0.1e-6, 0},  {1.1e-6, 20}, {21.8e-6, 20},
                                                       {22.8e-6, 5}, {30.3e-6, 5}, {31.3e-6, 17}};
   const Signal expected = Signal::piecewise_linear(points);
@@ -158,7 +158,7 @@ TEST(SourceErrors, ACarrierKeepsItsPhaseWhereItsEndsMove) {
   };
   EXPECT_NEAR(envelope(moved, 22e-6), 0.5, 1e-9);
   EXPECT_NEAR(envelope(moved, 77e-6), 0.5, 1e-9);
-  // Where fades meet, their corner is an edge, and both go on to meet there.
+  // The corner where fades meet is an edge, and both go on to meet there.
   Harmonic tent = dither;
   tent.fade = 40e-6;
   const Signal leaning = with_errors(signal(tent), {.edges = {0, 0, 4e-6}});

@@ -18,7 +18,7 @@ namespace {
 
 using test::expect_invalid;
 
-// What signal.h promises for the extrema of terms, relative to their size.
+// The error that signal.h promises for the extrema of terms, relative to their size.
 constexpr double kPromisedTermExtremum = 1e-9;
 
 /// Terms of every kind, of times of order one and voltages of order one.
@@ -81,7 +81,7 @@ TEST(Terms, ExtremaMatchDenseSampling_long) {
   constexpr int samples = 20000;
   for (int i = 0; i < 60; ++i) {
     SignalPiece piece = random_piece(random);
-    piece.value -= piece.voltage(0);  // without a jump at the start
+    piece.value -= piece.voltage(0);  // no jump at the start
     const Signal signal = with_end(piece, duration);
     double largest = 0, smallest = 0, fastest = 0;
     for (int k = 0; k <= samples; ++k) {
@@ -145,7 +145,7 @@ TEST(Terms, ThatEndWhereTheNextPieceBeginsAreNoJump) {
     const Signal signal = with_end(random_piece(random), 1.3);
     EXPECT_EQ(signal.voltage_before(1.3), signal.voltage(1.3)) << i;
   }
-  // What is left of an exponential is none either.
+  // The rest of an exponential is not a jump either.
   const Signal decay({{.value = -10, .terms = {{.cosine = {10, 0, 0, 0}, .decay = 40}}}, {.begin = 1, .value = -10}});
   EXPECT_EQ(decay.voltage_before(1), -10);
   EXPECT_NEAR(decay.peak_slew(), 400, 400 * kPromisedTermExtremum * 2);

@@ -1,5 +1,5 @@
-// With all that softland/softland.h lists: a simulated device, closed by the waveforms of its scene, and how often its contact is
-// seen to close.
+// Uses all that softland/softland.h lists: a simulated device, closed by the waveforms of its scene, and how often its contact
+// is seen to close.
 #include <softland/softland.h>
 
 #include <cstdio>

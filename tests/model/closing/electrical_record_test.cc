@@ -44,7 +44,7 @@ struct LetGo {
     return simulate_closing(model, std::vector<Signal>{Signal::constant(0)},
                             {.duration = duration, .tolerance = 1e-11, .begins_closed = start});
   }
-  /// From the start until the contact force has fallen to this [s].
+  /// Returns the time from the start until the contact force has fallen to this [s].
   [[nodiscard]] static double time_to(double force) {
     const double still = contact_stiffness * gap / (stiffness + contact_stiffness), swing = gap + penetration - still;
     return std::acos((gap + force / contact_stiffness - still) / swing) / std::sqrt((stiffness + contact_stiffness) / mass);
@@ -62,7 +62,7 @@ struct LetGo {
 };
 
 TEST(ElectricalRecord, AgreesWithTheClosedFormOfAPlateThatComesBack) {
-  constexpr double exact = 1e-9;  // of the integrator's tolerance, relative
+  constexpr double exact = 1e-9;  // relative error that the integrator's tolerance allows
   LetGo plate;
   for (const double threshold : {0.0, 5e-6, 40e-6, 90e-6}) {
     SCOPED_TRACE(threshold);
@@ -80,7 +80,7 @@ TEST(ElectricalRecord, AgreesWithTheClosedFormOfAPlateThatComesBack) {
     EXPECT_EQ(all.closed_from, 0);
     plate.device.electrical.after = 0.99 * (closes - opens);
     EXPECT_EQ(plate.run(2 * period).electrical.openings, 2);
-    // In flight at the end.
+    // The plate is in flight at the end.
     const ElectricalOutcome open = plate.run(period + period / 2).electrical;
     EXPECT_EQ(open.openings, 1) << "what is not yet longer than counts does not count";
     EXPECT_TRUE(std::isnan(open.closed_from));

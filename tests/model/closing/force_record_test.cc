@@ -21,7 +21,7 @@ namespace {
 
 using namespace literals;
 
-/// What a softer landing is like: the drive lets go before the touch and pulls again after it.
+/// Drives for a softer landing: the drive lets go before the touch and pulls again after it.
 std::vector<Signal> thrown() { return {signal(Pulse{.levels = {21_V, 0_V, 17_V}, .times = {20_us, 33_us}, .edge = 0.5_us})}; }
 
 struct Brackets {
@@ -30,7 +30,7 @@ struct Brackets {
   double least = std::numeric_limits<double>::infinity();  // [N]
 };
 
-/// By knots alone, which bracket both.
+/// Finds brackets of both figures from the knots alone.
 Brackets by_knots(const Trajectory& t, double threshold) {
   Brackets found;
   const double touch = t.touches.front().begin;
@@ -81,7 +81,7 @@ TEST(ForceRecord, IsBracketedByTheKnotsUnderEveryLaw) {
   EXPECT_GE(lost, 1);
 }
 
-/// Of an undamped law without memory the force is one of the place.
+/// The force of an undamped law without memory depends on the place alone.
 TEST(ForceRecord, IsThatOfTheLawAlongTheMotion) {
   const Switch& model = test::gold();
   const std::vector<Signal> drives = thrown();

@@ -75,7 +75,7 @@ TEST(StepMotion, HalfwayIsOfSixthAndFourthOrder) {
   const Swing modes = swing();
   StepMotion motion(gold(), 1e-8);
   const double middle = length_of_phase(1);
-  // Of the fastest mode, in steps about one instant.
+  // Error of the fastest mode, in steps about one instant.
   const auto error = [&](double h, bool accurate_rates) {
     const Knot begin = modes.at(middle - h / 2), end = modes.at(middle + h / 2);
     motion.set(begin, end, tip(end), accurate_rates);
