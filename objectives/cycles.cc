@@ -19,7 +19,7 @@ CycleRecorder::CycleRecorder(double contact_gap, const MetricsOptions& options, 
 void CycleRecorder::knot(const TrajectoryPoint& point) {
   if (current_ == cycles_.size()) return;
   cycles_[current_].metrics.knot(point);
-  constexpr double last_part = 1.0 / 3;  // of the time after the command
+  constexpr double last_part = 1.0 / 3;  // share of the time after the command
   if (times_.begin(current_ + 1) - point.time <= last_part * (times_.period - times_.on_time)) {
     double& swing = cycles_[current_].swing;
     swing = std::max(swing, std::abs(point.position - open_position_));

@@ -103,14 +103,14 @@ void ElectricalRecord::take_rest(double begin, double end, const std::function<d
 // An extremum in between shows where the margin leaves both ends towards 0.
 template <class Margin>
 void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin, double end) const {
-  constexpr double beside = 1e-3;  // of the time: closer by, a force that sets in as a high power of it is lost in rounding
+  constexpr double beside = 1e-3;  // share of the time; nearer by, rounding loses a force that sets in with a high power of it
   constexpr int bits = 30;
   const double from = at(begin), to = at(end);
   if ((from > 0) == (to > 0)) {
     const double towards = from > 0 ? 1 : -1;
     const double after = at(begin + beside * (end - begin)) - from, before = at(end - beside * (end - begin)) - to;
     if (towards * after < 0 && towards * before < 0) {
-      const auto time = [&](double share) { return std::lerp(begin, end, share); };  // of order one, as the search expects
+      const auto time = [&](double share) { return std::lerp(begin, end, share); };  // the search expects arguments of order one
       const double turn = time(
           boost::math::tools::brent_find_minima([&](double share) { return towards * at(time(share)); }, 0.0, 1.0, bits).first);
       const double there = at(turn);
@@ -152,7 +152,7 @@ void ElectricalRecord::tell(const Followed& followed, double time) const {
 }
 
 bool ElectricalRecord::counts(const Followed& followed, double until) const {
-  constexpr double rounding = 1e-12;  // of the time, at which two steps meet
+  constexpr double rounding = 1e-12;  // relative error of the time at which two steps meet
   return until - followed.opened_at > std::max(closing_.shortest_opening(), rounding * until);
 }
 

@@ -10,17 +10,17 @@
 
 namespace softland {
 
-/// What happens to the contact point between two steps.
+/// Event of the contact point between two steps.
 struct PhaseChange {
   enum class Kind {
     edge,    ///< it crosses `level`
     turn,    ///< it turns back while it loads a contact with memory
-    impact,  ///< on a rigid contact, from which it rebounds
+    impact,  ///< it strikes a rigid contact and rebounds
     rests,   ///< an impact after which it stays
     leaves   ///< the rigid contact that it has rested on
   };
   Kind kind = Kind::edge;
-  double level = 0;  ///< of the edge [m]
+  double level = 0;  ///< level of the edge [m]
   ContactState before, after;
 };
 
@@ -48,7 +48,7 @@ class ClosingObserver {
   [[nodiscard]] virtual bool takes_energies() const { return false; }
   /// Of the run so far, at a breakpoint of the drives before what they do there [s].
   virtual void energies(double /*time*/, const EnergyBalance& /*balance*/) {}
-  /// At the knot that the next step starts from.
+  /// Takes an event at the knot that the next step starts from.
   virtual void pass(const Knot& /*here*/, const PhaseChange& /*change*/) {}
 
  protected:
