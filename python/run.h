@@ -33,8 +33,8 @@ class StoppedByInterrupt {
 /// One call from Python into the library.
 class Run {
  public:
-  /// `progress`: called with what is being computed and which part of it is done, at most ten times a second; None: nobody is
-  /// told.
+  /// `progress`: called with what is being computed and which part of it is done, at most ten times a second. None: no
+  /// progress is reported.
   explicit Run(pybind11::object progress = pybind11::none());
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
