@@ -30,7 +30,7 @@ constexpr double for_ever = std::numeric_limits<double>::infinity();
 
 // A connection that bounces twice, once for less than a picosecond less than a nanosecond, one of its contacts that begins
 // closed, and a contact of a device that never closes.
-StateRecord bouncing() {
+StateRecord closed_twice() {
   const StateChannel connection{.has_resistance = true,
                                 .spans = {{1.2345678912e-6, 1.5e-6, {{1.2345678912e-6, 40}, {1.3e-6, 2}, {1.5e-6, 9}}},
                                           {1.5009e-6, 2.25e-6, {{1.5009e-6, 9}, {2.25e-6, 9}}},
@@ -39,7 +39,7 @@ StateRecord bouncing() {
   return {.end = 9e-6, .channels = {connection, left}};
 }
 StateRecord devices() {
-  StateRecord record = bouncing();
+  StateRecord record = closed_twice();
   for (StateChannel& one : record.channels) one.device = 11;
   record.channels.push_back({.device = 12, .contact = {}, .spans = {}});
   return record;
@@ -80,7 +80,7 @@ void expect_edges(const std::vector<LevelEdge>& found, const StateChannel& one, 
 constexpr double half_a_picosecond = 0.5001e-12, written = 1e-21;  // [s]
 
 TEST(ContactStatesFile, IsReadBackToTheSameEdges) {
-  for (const StateRecord& record : {bouncing(), devices()}) {
+  for (const StateRecord& record : {closed_twice(), devices()}) {
     const std::string table = contact_states_csv(record), dump = contact_states_vcd(record), sources = contact_states_pwl(record);
     for (const StateChannel& one : record.channels) {
       SCOPED_TRACE(channel_name(one, "closed"));
@@ -101,7 +101,7 @@ double value_at(const Trace& trace, double time) {
 }
 
 TEST(ContactStatesFile, HasTheResistanceWhileTheContactIsClosed) {
-  const StateRecord record = bouncing();
+  const StateRecord record = closed_twice();
   const auto trace = [](const std::string& text, const std::string& file, const std::string& column) {
     const ReadKeys keys{.column = column};
     return trace_of(parse_recording(text, file, keys), keys, "", true);
@@ -149,7 +149,7 @@ TEST(ContactStatesFile, IsReadByGtkWave_optimized) {
   if (std::system("command -v vcd2fst >/dev/null && command -v fst2vcd >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "skipped: no other reader of value change dumps; needs: gtkwave";
   const TemporaryFolder folder;
-  for (const StateRecord& record : {bouncing(), devices()}) {
+  for (const StateRecord& record : {closed_twice(), devices()}) {
     const std::string dump = contact_states_vcd(record);
     (void)folder.write("contact.vcd", dump);
     const std::string command =
@@ -180,7 +180,7 @@ TEST(ContactStatesFile, IsDrawnAsSteps) {
 // A switch that the state drives and a resistor with the resistance, each below 1 kOhm at 1 V.
 TEST(ContactStatesFile, DrivesASwitchAndAResistorInNgspice_optimized) {
   if (std::system("command -v ngspice >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no circuit simulator; needs: ngspice";
-  const StateRecord record = bouncing();
+  const StateRecord record = closed_twice();
   const TemporaryFolder folder;
   (void)folder.write("contact.cir", contact_states_pwl(record));
   (void)folder.write("deck.cir", R"(a contact record in a circuit
