@@ -1,4 +1,4 @@
-// A switch from the side, as parts of an <svg> element: the supports of the moving part, and electrodes. Its colours are the
+// A switch from the side, as parts of an SVG element: the supports of the moving part, and electrodes. Its colours are the
 // page's.
 #pragma once
 
