@@ -1,4 +1,6 @@
 // Verb `cycle`: closes and opens a switch at a rate, and finds how high the rate may be.
+#include <fmt/format.h>
+
 #include <memory>
 #include <string>
 #include <vector>
@@ -95,6 +97,11 @@ void take(CycleWaveforms& waveforms, const PreparedScene& scene) {
 Outcome searched(const Setting& setting, const CycleRequest& request) {
   require_request(request.options.rate.has_value(), [] { return requested("search") + " needs " + requested("rate"); });
   require_request(request.results.empty(), [] { return requested("search") + " finds both waveforms, and takes no RESULT"; });
+  const CyclingOptions usual;
+  require_request(request.options.scans && request.options.devices == usual.devices, [] {
+    return fmt::format("{}, {}: a search tells the cycles at one rate of the nominal design", requested("no-scan"),
+                       requested("samples"));
+  });
   const CycleSearchOptions options{.rate = *request.options.rate,
                                    .duty = request.options.duty,
                                    .target = parse_aim(request.target),
@@ -113,8 +120,18 @@ Outcome searched(const Setting& setting, const CycleRequest& request) {
   return outcome;
 }
 
+// True if something is told that only a search takes.
+bool is_about_search(const CycleRequest& r) {
+  const CycleRequest usual;
+  return r.target != usual.target || r.actuator != usual.actuator || !r.waveform.empty() || r.budget != usual.budget;
+}
+
 Outcome run(const Setting& setting, const CycleRequest& request) {
   if (request.searches) return searched(setting, request);
+  require_request(!is_about_search(request), [] {
+    return fmt::format("{}, {}, {}, {}: belong to {}", requested("target"), requested("actuator"), requested("waveform"),
+                       requested("budget"), requested("search"));
+  });
   require_request(request.options.scans || request.options.rate,
                   [] { return requested("no-scan") + " needs " + requested("rate"); });
   const auto given = setting.prepared(false);

@@ -150,10 +150,8 @@ Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
                                .start = prepared.start(),
                                .opens_at = c.command ? c.command->time : std::numeric_limits<double>::infinity(),
                                .stop = watch.stop};
-  const std::vector<double> holding = prepared.start() == StartState::closed ? values_before(signals)
-                                      : c.command                            ? hold_levels(c.command->held)
-                                                                             : hold_levels(signals);
-  const MetricsOptions figures = with_load(with_opening(prepared.scene.metrics, fine, signals, c.command), fine, holding);
+  const MetricsOptions figures = with_load(with_opening(prepared.scene.metrics, fine, signals, c.command), fine, prepared.start(),
+                                           c.command ? c.command->held : signals);
   const Metrics& better = c.judge->metrics;
   const std::vector<Metrics> moved = at_other_pull_in(prepared, fine, quadrature, options, figures, watch);
   std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options, {.jobs = jobs}, watch);

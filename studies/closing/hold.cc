@@ -85,9 +85,10 @@ Hold hold_under(const Switch& model, const std::vector<double>& levels, const st
   return hold;
 }
 
-MetricsOptions with_load(MetricsOptions options, const Switch& model, const std::vector<double>& holding) {
+MetricsOptions with_load(MetricsOptions options, const Switch& model, StartState start, const std::vector<Signal>& held) {
   const Device& device = model.device();
   if (!device.load.is_given()) return options;
+  const std::vector<double> holding = start == StartState::closed ? values_before(held) : hold_levels(held);
   options.transfer = {.load = device.load, .light_below = hold_under(model, holding).steady_force(options)};
   const auto made_by = std::ranges::count_if(device.contacts, &Contact::connects);
   if (made_by == 1 && device.conducts()) options.transfer.contact = contact_resistance(device, 0);

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/closing.h"
 #include "model/pull_in.h"
 #include "model/trajectory.h"
 #include "objectives/metrics.h"
@@ -50,9 +51,10 @@ struct Hold {
 void set_hold(Trajectory& trajectory, const Hold& hold);
 /// Sets the same, and the capacitance of the state in which the hold levels leave the switch.
 void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold);
-/// Returns the options with the load that the switch carries, for a run whose contact these levels hold closed, one per drive
-/// [V].
-[[nodiscard]] MetricsOptions with_load(MetricsOptions options, const Switch& model, const std::vector<double>& holding);
+/// Returns the options with the load that the switch carries, for a run from this state whose drives until the command to open
+/// are these.
+[[nodiscard]] MetricsOptions with_load(MetricsOptions options, const Switch& model, StartState start,
+                                       const std::vector<Signal>& held);
 /// True if a run that began closed has left its contact for good.
 [[nodiscard]] bool has_opened(const Trajectory& run);
 

@@ -227,8 +227,7 @@ class ClosingRuns {
   // Records the connection, and each of several contacts. Contacts that strike a back stop are recorded to the end.
   [[nodiscard]] CourseRecorder recorder_of(const Switch& model, const std::optional<OpenCommand>& command) const {
     const MetricsOptions& plain = prepared_.scene.metrics;
-    const std::vector<double> holding = prepared_.start() == StartState::closed ? values_before(signals_) : hold_levels(held());
-    const MetricsOptions options = with_load(with_opening(plain, model, signals_, command), model, holding);
+    const MetricsOptions options = with_load(with_opening(plain, model, signals_, command), model, prepared_.start(), held());
     const auto open =
         command && model.contacts() > 1 ? model.open_equilibrium(hold_levels(signals_)) : std::optional<Eigen::VectorXd>();
     CourseRecorder recorder(prepared_.scene.device.contact_gap(), options);

@@ -88,10 +88,7 @@ bool lands_alike(const CycleFigures& cycle, const CycleFigures& first, const Cyc
 }
 
 CycledSwitch::CycledSwitch(const PreparedScene& driven, const Switch& model, const CycleWaveforms& waveforms)
-    : driven_(driven),
-      model_(model),
-      waveforms_(waveforms),
-      options_(with_load(driven.scene.metrics, model, hold_levels(waveforms.closing))) {
+    : driven_(driven), model_(model), waveforms_(waveforms), options_(driven.scene.metrics) {
   if (const auto open = model.open_equilibrium(hold_levels(waveforms.opening)))
     options_.opening.open_position = connection_deflection(model, *open);
 }
@@ -110,10 +107,11 @@ Trajectory CycledSwitch::observe(const CycleTimes& times, ClosingObserver& obser
   return observe_closing(model_, signals, options, observer);
 }
 
-Cycles CycledSwitch::run(const CycleTimes& times, bool keeps_gap, const Watch& watch) const {
-  CycleRecorder recorder(model_.contact_gap(), options_, times);
+Cycles CycledSwitch::run(const CycleTimes& times, bool is_told, const Watch& watch) const {
+  CycleRecorder recorder(model_.contact_gap(),
+                         is_told ? with_load(options_, model_, StartState::open, waveforms_.closing) : options_, times);
   KeptCourse course(recorder, model_.contact_gap());
-  const Trajectory run = keeps_gap ? observe(times, course, watch, {}) : observe(times, recorder, watch, {});
+  const Trajectory run = is_told ? observe(times, course, watch, {}) : observe(times, recorder, watch, {});
   Cycles found{.times = times,
                .status = run.status,
                .message = run.message,

@@ -53,8 +53,8 @@ class CycledSwitch {
   /// Keeps references. `driven` is the scene whose sources give the waveforms.
   CycledSwitch(const PreparedScene& driven, const Switch& model, const CycleWaveforms& waveforms);
 
-  /// Runs cycles, and keeps the course if `keeps_gap` is true.
-  [[nodiscard]] Cycles run(const CycleTimes& times, bool keeps_gap, const Watch& watch = {}) const;
+  /// Runs cycles. If `is_told` is true, it keeps their course, and they have the figures of a load and of the electrical state.
+  [[nodiscard]] Cycles run(const CycleTimes& times, bool is_told, const Watch& watch = {}) const;
   /// True if all of these cycles land like the first one; ends at the first that does not.
   [[nodiscard]] bool is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Watch& watch = {}) const;
   /// Times that a cycle needs for its closing and for its opening [s]. `rest` is the time to come to rest, in windows that show

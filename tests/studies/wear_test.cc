@@ -119,7 +119,7 @@ TEST(Wear, IsToldOfEveryCycle) {
   const CycleWaveforms ramps{.name = "ramps",
                              .closing = {Signal::piecewise_linear({{0, 0}, {1e-7, 45}})},
                              .opening = {Signal::piecewise_linear({{0, 45}, {5e-7, 0}}, 45)}};
-  const Cycles found = CycledSwitch(p, p.model, ramps).run({.period = 150e-6, .on_time = 60e-6, .cycles = 2}, false);
+  const Cycles found = CycledSwitch(p, p.model, ramps).run({.period = 150e-6, .on_time = 60e-6, .cycles = 2}, true);
   ASSERT_EQ(found.cycles.size(), 2u);
   const Closing alone = simulate(p, false);
   const Metrics& first = found.cycles.front().metrics;
