@@ -10,9 +10,9 @@
 #include "apps/streams.h"
 #include "base/companion.h"
 #include "base/require.h"
-#include "reports/files.h"
+#include "base/write_whole.h"
+#include "document/text.h"
 #include "reports/record_file.h"
-#include "reports/text.h"
 
 namespace softland::apps {
 

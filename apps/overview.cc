@@ -7,9 +7,9 @@
 #include "apps/stores.h"
 #include "base/printable.h"
 #include "base/shortened.h"
-#include "reports/document.h"
-#include "reports/quantity.h"
-#include "reports/text.h"
+#include "document/document.h"
+#include "document/quantity.h"
+#include "document/text.h"
 
 namespace softland::apps {
 namespace {

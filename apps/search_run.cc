@@ -12,8 +12,8 @@
 #include "apps/streams.h"
 #include "base/read_file.h"
 #include "base/require.h"
-#include "reports/quantity.h"
-#include "reports/text.h"
+#include "document/quantity.h"
+#include "document/text.h"
 #include "studies/search/search_space.h"
 
 namespace softland::apps {

@@ -7,8 +7,8 @@
 
 #include "apps/streams.h"
 #include "base/require.h"
+#include "document/quantity.h"
 #include "reports/origin.h"
-#include "reports/quantity.h"
 
 namespace softland::apps {
 

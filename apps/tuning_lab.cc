@@ -20,8 +20,8 @@
 #include "base/require.h"
 #include "base/shortened.h"
 #include "base/trimmed.h"
-#include "reports/files.h"
-#include "reports/quantity.h"
+#include "base/write_whole.h"
+#include "document/quantity.h"
 #include "reports/scene_export.h"
 #include "verbs/options.h"
 

@@ -30,6 +30,8 @@ fs::path real_path(const fs::path& path) {
   return error ? path : found;
 }
 
+}  // namespace
+
 bool is_database(const fs::path& path) {
   struct stat info {};
   if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return false;
@@ -41,8 +43,6 @@ bool is_database(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   return in.read(begin.data(), begin.size()) && std::memcmp(begin.data(), database_magic.data(), database_magic.size()) == 0;
 }
-
-}  // namespace
 
 bool is_companion(const fs::path& path, const fs::path& of) {
   const std::string name = real_path(path).string(), database = real_path(of).string();

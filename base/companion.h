@@ -15,6 +15,9 @@ inline constexpr std::array<std::string_view, 4> companion_endings{"-wal", "-shm
 /// Returns true when `path` is, by its name, a companion that the database `of` has or may get.
 [[nodiscard]] bool is_companion(const std::filesystem::path& path, const std::filesystem::path& of);
 
+/// Returns true for a regular file that begins as every SQLite file does.
+[[nodiscard]] bool is_database(const std::filesystem::path& path);
+
 /// Throws InvalidInput, beginning with `shown`, where `path` is the companion of an existing database: writing to it would
 /// destroy the database.
 void require_no_companion(const std::filesystem::path& path, const std::string& shown);

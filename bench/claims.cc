@@ -16,11 +16,11 @@
 #include <vector>
 
 #include "base/require.h"
+#include "base/write_whole.h"
 #include "bench/figure.h"
 #include "model/closing.h"
 #include "model/constants.h"
 #include "model/pull_in.h"
-#include "reports/files.h"
 #include "studies/closing/simulate.h"
 #include "studies/search/optimize.h"
 #include "version.h"

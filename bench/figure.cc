@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "reports/svg.h"
+#include "document/svg.h"
 
 namespace softland {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/chart.h"
+#include "document/chart.h"
 
 namespace softland {
 

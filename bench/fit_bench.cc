@@ -19,11 +19,11 @@
 
 #include "base/executor.h"
 #include "base/random.h"
+#include "base/write_whole.h"
 #include "bench/figure.h"
 #include "model/closing.h"
 #include "model/pull_in.h"
-#include "reports/files.h"
-#include "studies/fitting/fit.h"
+#include "studies/inverse/fit.h"
 #include "tests/support/measured_actuators.h"
 
 namespace softland {

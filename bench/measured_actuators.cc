@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
+#include "base/write_whole.h"
 #include "bench/figure.h"
 #include "model/closing.h"
 #include "model/pull_in.h"
-#include "reports/files.h"
 
 namespace softland {
 namespace {

@@ -25,8 +25,8 @@
 #include "model/constants.h"
 #include "model/pull_in.h"
 #include "sampling/statistics.h"
-#include "studies/tuning/practice_device.h"
-#include "studies/tuning/tuner.h"
+#include "studies/inverse/practice_device.h"
+#include "studies/inverse/tuner.h"
 
 namespace {
 

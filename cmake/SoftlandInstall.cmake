@@ -3,14 +3,14 @@
 # place.
 include(CMakePackageConfigHelpers)
 
-set(libraries base sampling store integrators waveforms exchange model objectives config optimizers closing devices search exploration stored_search tuning fitting reports)
+set(libraries base document sampling store integrators waveforms exchange model objectives config optimizers closing devices search exploration inverse reports)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/softland)
 
 # The program is softland::program outside; softland::softland is all that softland/softland.h needs.
 set_target_properties(softland PROPERTIES EXPORT_NAME program)
 install(TARGETS softland EXPORT softland)
 add_library(softland_public INTERFACE)
-target_link_libraries(softland_public INTERFACE softland_stored_search softland_tuning)
+target_link_libraries(softland_public INTERFACE softland_exploration softland_inverse)
 target_include_directories(softland_public INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
 set_target_properties(softland_public PROPERTIES EXPORT_NAME softland)
 add_library(softland::softland ALIAS softland_public)
@@ -19,7 +19,7 @@ install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/softland)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md")
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES reports/uplot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.uPlot)
+install(FILES document/uplot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.uPlot)
 
 # What the program says of itself with --help is written as a manual page and as completions when it is installed.
 foreach(made man_page:softland.1:${CMAKE_INSTALL_MANDIR}/man1 bash_completion:softland:${CMAKE_INSTALL_DATADIR}/bash-completion/completions)

@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.." || exit 5
 
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-{ cmake --preset clang && cmake --build --preset clang --target reports/page_files.cc; } >"$log" 2>&1 || { tail -n 20 "$log" && exit 5; }
+{ cmake --preset clang && cmake --build --preset clang --target document/page_files.cc; } >"$log" 2>&1 || { tail -n 20 "$log" && exit 5; }
 printf 'build/clang/%s\n' "$@" | xargs -I{} find {} -path '*/Unity/*.cxx' -print0 |
   xargs -0 -n 1 -P "$(nproc)" clang-tidy-16 -p build/clang --quiet >"$log" 2>/dev/null
 status=$?

@@ -10,13 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "document/chart.h"
+#include "document/quantity.h"
+#include "document/svg.h"
 #include "reports/accuracy_report.h"
 #include "reports/accuracy_words.h"
-#include "reports/chart.h"
 #include "reports/closing_captions.h"
 #include "reports/origin.h"
-#include "reports/quantity.h"
-#include "reports/svg.h"
 
 namespace softland {
 namespace {
@@ -302,7 +302,7 @@ std::pair<std::string, std::string> headline(const AccuracyRecord& record) {
 
 Document document_of(const AccuracyRecord& record) {
   const AccuracyStudy& study = record.found;
-  Document document{.title = title_of(record.origin), .origin = "accuracy", .made = {.origin = record.origin}};
+  Document document{.title = title_of(record.origin), .origin = "accuracy", .made = made_again(record.origin)};
   if (study.rows.empty()) {
     document.headline = study.status == Status::no_contact
                             ? "The switch does not touch within its window: there are no figures to be accurate in."

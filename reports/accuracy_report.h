@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "reports/document.h"
+#include "document/document.h"
 #include "reports/origin.h"
 #include "studies/closing/accuracy.h"
 

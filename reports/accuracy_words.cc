@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "document/quantity.h"
 #include "reports/closing_captions.h"
-#include "reports/quantity.h"
 
 namespace softland::internal {
 

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "document/quantity.h"
+#include "document/svg.h"
 #include "model/beam.h"
 #include "model/built_beam.h"
-#include "reports/quantity.h"
-#include "reports/svg.h"
 
 namespace softland {
 namespace {

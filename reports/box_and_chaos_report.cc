@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "reports/quantity.h"
+#include "document/quantity.h"
 #include "reports/robustness_report.h"
 
 namespace softland::internal {

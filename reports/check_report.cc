@@ -4,8 +4,8 @@
 
 #include "base/printable.h"
 #include "base/shortened.h"
+#include "document/text.h"
 #include "reports/pull_in_members.h"
-#include "reports/text.h"
 #include "studies/closing/summits_at_hold.h"
 
 namespace softland {

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <iterator>
 
-#include "reports/axis.h"
+#include "document/axis.h"
+#include "document/quantity.h"
 #include "reports/closing_words.h"
 #include "reports/devices_report.h"
 #include "reports/drive_demand.h"
 #include "reports/figure_text.h"
-#include "reports/quantity.h"
 #include "reports/record.h"
 
 namespace softland::internal {

@@ -7,16 +7,17 @@
 #include <cmath>
 #include <span>
 
-#include "reports/chart.h"
+#include "document/chart.h"
+#include "document/escape.h"
+#include "document/page.h"
+#include "document/quantity.h"
 #include "reports/closing_captions.h"
+#include "reports/closing_charts.h"
 #include "reports/closing_words.h"
 #include "reports/devices_report.h"
 #include "reports/drive_demand.h"
-#include "reports/escape.h"
 #include "reports/figure_text.h"
 #include "reports/motion_figure.h"
-#include "reports/page.h"
-#include "reports/quantity.h"
 #include "reports/record.h"
 #include "reports/seeds_report.h"
 #include "reports/sketch.h"
@@ -364,7 +365,7 @@ Document closing_document(const ClosingRecord& result) {
                     .keys = key_numbers(result),
                     .warnings = result.warnings,
                     .draw = [&result] { return picture(result); },
-                    .made = {.origin = result.origin, .tolerance = result.tolerance}};
+                    .made = made_again(result.origin, {}, result.tolerance)};
   if (result.search) {  // a search's terminal text has room for its findings alone
     const auto few = std::stable_partition(document.warnings.begin(), document.warnings.end(),
                                            [](const std::string& one) { return !is_few_summits_warning(one); });

@@ -1,8 +1,8 @@
 // The findings of a closing or a search as a document to pass on.
 #pragma once
 
+#include "document/document.h"
 #include "reports/closing_record.h"
-#include "reports/document.h"
 
 namespace softland {
 

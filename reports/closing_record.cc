@@ -10,9 +10,9 @@
 #include <variant>
 
 #include "base/require.h"
+#include "document/downsample.h"
 #include "integrators/quintic.h"
 #include "reports/closing_record.h"
-#include "reports/downsample.h"
 #include "reports/robustness_words.h"
 #include "studies/closing/effect_ablation.h"
 #include "studies/closing/resistance_course.h"
@@ -287,6 +287,29 @@ ClosingRecord record_of(const ForDevicesResult& found, const OptimizeOptions& op
   if (found.interrupted) r.status = "interrupted";
   s.course.value_name = "cost, on the nominal device";
   return r;
+}
+
+std::string trajectory_csv(const CurveRecord& curve) {
+  std::vector<const std::vector<double>*> columns;
+  std::string out;
+  for (const auto& [name, column] : {std::pair{"time_s", &curve.time},
+                                     {"tip_gap_m", &curve.gap},
+                                     {"tip_velocity_m_s", &curve.velocity},
+                                     {"contact_force_N", &curve.force},
+                                     {"contact_resistance_ohm", &curve.resistance}}) {
+    if (column->size() != curve.time.size()) continue;
+    out += (out.empty() ? "" : ",") + std::string(name);
+    columns.push_back(column);
+  }
+  out += '\n';
+  for (std::size_t row = 0; row < curve.time.size(); ++row) {
+    for (const std::vector<double>* column : columns) {
+      if (column != columns.front()) out += ',';
+      if (std::isfinite((*column)[row])) out += fmt::format("{}", (*column)[row]);
+    }
+    out += '\n';
+  }
+  return out;
 }
 
 }  // namespace softland

@@ -112,4 +112,8 @@ namespace internal {
 [[nodiscard]] std::optional<ByModes> read_by_modes(const nlohmann::json& found);
 }  // namespace internal
 
+/// Returns the curve of a run as CSV: header time_s,tip_gap_m,tip_velocity_m_s,contact_force_N,contact_resistance_ohm (those
+/// that exist). Each row is one line; a number is the shortest text that reads back to it, a non-finite value an empty field.
+[[nodiscard]] std::string trajectory_csv(const CurveRecord& curve);
+
 }  // namespace softland

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "reports/quantity.h"
+#include "document/quantity.h"
 
 namespace softland::internal {
 namespace {

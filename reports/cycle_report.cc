@@ -7,15 +7,16 @@
 #include <string_view>
 #include <utility>
 
-#include "reports/axis.h"
-#include "reports/chart.h"
-#include "reports/document.h"
-#include "reports/downsample.h"
-#include "reports/page.h"
-#include "reports/quantity.h"
+#include "document/axis.h"
+#include "document/chart.h"
+#include "document/document.h"
+#include "document/downsample.h"
+#include "document/page.h"
+#include "document/quantity.h"
+#include "document/svg.h"
+#include "reports/closing_charts.h"
 #include "reports/side_view.h"
 #include "reports/study_members.h"
-#include "reports/svg.h"
 #include "sampling/statistics.h"
 #include "waveforms/export.h"
 
@@ -429,7 +430,7 @@ Document document_of(const CycleRecord& r) {
                     .keys = keys_of(r),
                     .sections = {},
                     .warnings = r.warnings,
-                    .made = {.origin = r.origin, .seed = r.seed}};
+                    .made = made_again(r.origin, r.seed)};
   if (r.search && std::isfinite(r.search->cost)) {
     document.headline_rest = fmt::format(
         " The cost of the worst of the first cycles is {:.4f} instead of {:.4f}, after {} evaluations of pairs (target {}, "

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "document/document.h"
 #include "reports/closing_record.h"
-#include "reports/document.h"
 #include "reports/origin.h"
 #include "studies/devices/cycling.h"
 #include "studies/search/cycle_search.h"

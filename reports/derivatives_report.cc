@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "reports/quantity.h"
+#include "document/quantity.h"
 
 namespace softland::internal {
 namespace {

@@ -8,10 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "document/escape.h"
+#include "document/page.h"
+#include "document/svg.h"
+#include "reports/closing_charts.h"
 #include "reports/devices_report.h"
-#include "reports/escape.h"
-#include "reports/page.h"
-#include "reports/svg.h"
 #include "sampling/statistics.h"
 
 namespace softland {

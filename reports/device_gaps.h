@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "reports/chart.h"
+#include "document/chart.h"
 #include "reports/closing_record.h"
 
 namespace softland {

@@ -9,8 +9,8 @@
 #include <numeric>
 #include <vector>
 
-#include "reports/escape.h"
-#include "reports/page.h"
+#include "document/escape.h"
+#include "document/page.h"
 #include "reports/robustness_words.h"
 #include "sampling/statistics.h"
 

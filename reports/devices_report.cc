@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "document/escape.h"
+#include "document/page.h"
+#include "document/quantity.h"
 #include "reports/closing_words.h"
 #include "reports/device_gaps.h"
-#include "reports/escape.h"
 #include "reports/figure_text.h"
-#include "reports/page.h"
-#include "reports/quantity.h"
 #include "reports/robustness_words.h"
 
 namespace softland {

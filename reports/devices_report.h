@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "document/document.h"
 #include "reports/closing_record.h"
-#include "reports/document.h"
 #include "studies/search/devices_findings.h"
 
 namespace softland {

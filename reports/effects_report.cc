@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "base/require.h"
+#include "document/document.h"
+#include "document/json_number.h"
+#include "document/quantity.h"
 #include "reports/closing_captions.h"
-#include "reports/document.h"
-#include "reports/json_number.h"
-#include "reports/quantity.h"
 #include "reports/study_members.h"
 
 namespace softland {

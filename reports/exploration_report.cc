@@ -11,16 +11,16 @@
 #include "base/printable.h"
 #include "base/require.h"
 #include "base/split.h"
+#include "document/document.h"
+#include "document/escape.h"
+#include "document/heat_map.h"
+#include "document/json_number.h"
+#include "document/page.h"
+#include "document/page_files.h"
+#include "document/quantity.h"
+#include "document/svg.h"
 #include "optimizers/pareto.h"
-#include "reports/document.h"
-#include "reports/escape.h"
 #include "reports/exploration_view.h"
-#include "reports/heat_map.h"
-#include "reports/json_number.h"
-#include "reports/page.h"
-#include "reports/page_files.h"
-#include "reports/quantity.h"
-#include "reports/svg.h"
 #include "version.h"
 
 namespace softland {
@@ -274,7 +274,7 @@ Document exploration_document(const ExplorationReport& report) {
   Document document{.title = report.title,
                     .origin = "exploration: " + report.study,
                     .keys = keys_of(report, front),
-                    .made = {.origin = {.kind = {}, .version = std::string(version), .command = report.command, .made_with = {}}},
+                    .made = {.version = std::string(version), .command = report.command},
                     .style = std::string(internal::page_file("page/exploration.css")),
                     .scripts = script_of(data)};
   std::tie(document.headline, document.headline_rest) = headline_of(report);

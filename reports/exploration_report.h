@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "document/document.h"
 #include "reports/closing_record.h"
-#include "reports/document.h"
 #include "studies/exploration/aims.h"
 
 namespace softland {

@@ -13,8 +13,8 @@
 
 #include "base/random.h"
 #include "base/require.h"
-#include "reports/json_number.h"
-#include "reports/quantity.h"
+#include "document/json_number.h"
+#include "document/quantity.h"
 #include "sampling/statistics.h"
 
 namespace softland::internal {

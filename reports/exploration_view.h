@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "document/heat_map.h"
 #include "reports/exploration_report.h"
-#include "reports/heat_map.h"
 
 namespace softland::internal {
 

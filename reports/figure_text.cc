@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "document/quantity.h"
 #include "reports/closing_words.h"
-#include "reports/quantity.h"
 #include "studies/search/optimize.h"
 
 namespace softland::internal {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "base/require.h"
-#include "reports/quantity.h"
+#include "document/quantity.h"
 #include "reports/study_members.h"
 
 namespace softland {
@@ -475,7 +475,7 @@ Document document_of(const FitRecord& fit) {
                     .origin = "fit",
                     .headline = fit_headline(fit),
                     .sections = {values_section(fit)},
-                    .made = {.origin = fit.origin, .seed = fit.seed, .tolerance = fit.tolerance}};
+                    .made = made_again(fit.origin, fit.seed, fit.tolerance)};
   constexpr std::size_t most = 12;  // largest number of unknowns whose correlations can be read
   if (fit.unknowns.size() >= 2 && fit.correlation.size() == fit.unknowns.size() && fit.unknowns.size() <= most)
     document.sections.push_back({.id = "correlation",

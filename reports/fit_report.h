@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "reports/document.h"
+#include "document/document.h"
 #include "reports/origin.h"
-#include "studies/fitting/fit.h"
+#include "studies/inverse/fit.h"
 
 namespace softland {
 

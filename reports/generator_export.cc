@@ -9,9 +9,9 @@
 #include "base/choice.h"
 #include "base/require.h"
 #include "config/told_quantity.h"
+#include "document/quantity.h"
 #include "reports/closing_record.h"
 #include "reports/closing_words.h"
-#include "reports/quantity.h"
 #include "studies/closing/simulate.h"
 
 namespace softland {

@@ -8,13 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "reports/chart.h"
+#include "document/chart.h"
+#include "document/document.h"
+#include "document/quantity.h"
+#include "document/svg.h"
+#include "reports/closing_charts.h"
 #include "reports/closing_record.h"
-#include "reports/document.h"
-#include "reports/quantity.h"
 #include "reports/record_file.h"
 #include "reports/study_members.h"
-#include "reports/svg.h"
 #include "studies/closing/summits_at_hold.h"
 
 namespace softland {

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "config/assumed_spread.h"
-#include "reports/document.h"
+#include "document/document.h"
+#include "document/quantity.h"
 #include "reports/estimates.h"
-#include "reports/quantity.h"
 #include "reports/study_members.h"
 #include "sampling/statistics.h"
 

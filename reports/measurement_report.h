@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "reports/origin.h"
-#include "studies/search/identification.h"
+#include "studies/inverse/identification.h"
 
 namespace softland {
 

@@ -10,11 +10,11 @@
 
 #include "base/clamped_spline.h"
 #include "base/printable.h"
-#include "reports/chart.h"
-#include "reports/document.h"
-#include "reports/quantity.h"
+#include "document/chart.h"
+#include "document/document.h"
+#include "document/quantity.h"
+#include "document/svg.h"
 #include "reports/study_members.h"
-#include "reports/svg.h"
 
 namespace softland {
 namespace {

@@ -8,11 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "reports/axis.h"
-#include "reports/chart.h"
+#include "document/axis.h"
+#include "document/chart.h"
+#include "document/chart_json.h"
+#include "document/escape.h"
+#include "document/quantity.h"
 #include "reports/closing_captions.h"
-#include "reports/escape.h"
-#include "reports/quantity.h"
 #include "reports/side_view.h"
 
 namespace softland::internal {

@@ -26,6 +26,15 @@ Origin whole_origin_of(const char* kind, const PreparedScene& scene, const std::
   return origin;
 }
 
+MadeAgain made_again(const Origin& origin, std::optional<std::uint64_t> seed, double tolerance) {
+  return {.version = origin.version,
+          .command = origin.command,
+          .made_with = internal::made_with_text(origin.made_with),
+          .scene = origin.scene_toml,
+          .seed = seed,
+          .tolerance = tolerance};
+}
+
 std::string title_of(const Origin& origin) {
   const auto title = origin.scene.find("title");
   return title != origin.scene.end() && title->is_string() ? title->get<std::string>() : std::string();

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "document/document.h"
 #include "reports/made_with.h"
 #include "store/study_store.h"
 #include "studies/closing/prepared.h"
@@ -22,6 +23,9 @@ struct Origin {
 [[nodiscard]] Origin origin_of(const char* kind, const PreparedScene& scene, const std::string& command);
 /// Makes the origin with the text of the scene.
 [[nodiscard]] Origin whole_origin_of(const char* kind, const PreparedScene& scene, const std::string& command);
+/// Returns what a document says of a record with this origin, but for seed and tolerance.
+[[nodiscard]] MadeAgain made_again(const Origin& origin, std::optional<std::uint64_t> seed = {},
+                                   double tolerance = std::numeric_limits<double>::quiet_NaN());
 /// Returns the title of the scene; empty where it has none.
 [[nodiscard]] std::string title_of(const Origin& origin);
 

@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "base/require.h"
+#include "document/chart.h"
+#include "document/quantity.h"
+#include "document/svg.h"
+#include "document/text.h"
 #include "model/pull_in.h"
-#include "reports/chart.h"
 #include "reports/closing_record.h"
 #include "reports/pull_in_members.h"
-#include "reports/quantity.h"
-#include "reports/svg.h"
-#include "reports/text.h"
 #include "studies/closing/closed_state.h"
 #include "studies/devices/stable_approach.h"
 

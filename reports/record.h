@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "base/choice.h"
+#include "document/json_number.h"
 #include "objectives/figures.h"
-#include "reports/json_number.h"
 
 namespace softland::internal {
 

@@ -9,12 +9,12 @@
 #include <utility>
 
 #include "base/printable.h"
-#include "reports/chart.h"
-#include "reports/document.h"
-#include "reports/downsample.h"
-#include "reports/json_number.h"
-#include "reports/quantity.h"
-#include "reports/svg.h"
+#include "document/chart.h"
+#include "document/document.h"
+#include "document/downsample.h"
+#include "document/json_number.h"
+#include "document/quantity.h"
+#include "document/svg.h"
 
 namespace softland {
 namespace {

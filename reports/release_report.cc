@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "base/require.h"
-#include "reports/chart.h"
+#include "document/chart.h"
+#include "document/document.h"
+#include "document/quantity.h"
+#include "document/svg.h"
 #include "reports/closing_record.h"
-#include "reports/document.h"
-#include "reports/quantity.h"
 #include "reports/robustness_words.h"
 #include "reports/study_members.h"
-#include "reports/svg.h"
 #include "studies/closing/summits_at_hold.h"
 #include "waveforms/export.h"
 

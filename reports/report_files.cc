@@ -2,11 +2,12 @@
 
 #include <utility>
 
+#include "base/write_whole.h"
+#include "document/svg.h"
+#include "reports/closing_charts.h"
 #include "reports/closing_document.h"
 #include "reports/device_gaps.h"
-#include "reports/files.h"
 #include "reports/record_file.h"
-#include "reports/svg.h"
 #include "studies/closing/sent_signals.h"
 #include "waveforms/export.h"
 

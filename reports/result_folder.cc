@@ -9,7 +9,7 @@
 #include "base/output_lost.h"
 #include "base/read_file.h"
 #include "base/require.h"
-#include "reports/files.h"
+#include "base/write_whole.h"
 
 namespace softland {
 namespace {

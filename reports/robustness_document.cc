@@ -12,16 +12,16 @@
 #include <utility>
 #include <vector>
 
+#include "document/escape.h"
+#include "document/quantity.h"
+#include "document/text.h"
 #include "reports/box_and_chaos_report.h"
 #include "reports/derivatives_report.h"
 #include "reports/device_scatter.h"
-#include "reports/escape.h"
 #include "reports/estimates.h"
 #include "reports/origin.h"
-#include "reports/quantity.h"
 #include "reports/robustness_report.h"
 #include "reports/robustness_words.h"
-#include "reports/text.h"
 #include "sampling/statistics.h"
 
 namespace softland {
@@ -366,7 +366,7 @@ Document document_of(const RobustnessRecord& found) {
                     .origin = "robustness",
                     .sections = {{.id = "charts", .heading = "How the devices differ", .parts = {}}},
                     .warnings = found.warnings,
-                    .made = {.origin = found.origin, .seed = found.seed, .tolerance = found.tolerance}};
+                    .made = made_again(found.origin, found.seed, found.tolerance)};
   for (const std::string& words : found.about) document.sections.front().parts.emplace_back(Paragraph{words});
   if (found.devices == 0) return document;
   std::tie(document.headline, document.headline_rest) = headline_of(found);

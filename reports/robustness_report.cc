@@ -11,9 +11,9 @@
 
 #include "base/require.h"
 #include "config/assumed_spread.h"
+#include "document/json_number.h"
 #include "reports/box_and_chaos_report.h"
 #include "reports/derivatives_report.h"
-#include "reports/json_number.h"
 #include "reports/robustness_words.h"
 #include "reports/study_members.h"
 #include "studies/closing/closed_state.h"

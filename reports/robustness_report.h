@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "base/watch.h"
+#include "document/document.h"
 #include "reports/closing_record.h"
-#include "reports/document.h"
 #include "reports/origin.h"
 #include "studies/devices/box_and_chaos.h"
 #include "studies/devices/derivatives.h"

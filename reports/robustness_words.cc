@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/quantity.h"
+#include "document/quantity.h"
 
 namespace softland::internal {
 

@@ -10,14 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "document/chart.h"
 #include "model/closing.h"
 #include "objectives/figures.h"
 #include "studies/closing/shown_motion.h"
 
 namespace softland {
-
-/// Points [x, y] in order.
-using Points = std::vector<std::array<double, 2>>;
 
 /// A time in which a contact is closed.
 struct ClosedStretch {

@@ -13,7 +13,7 @@
 #include "studies/search/devices_findings.h"
 #include "studies/search/optimize.h"
 #include "studies/search/robust_optimize.h"
-#include "studies/stored_search/seed_study.h"
+#include "studies/search/seed_study.h"
 
 namespace softland {
 

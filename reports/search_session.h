@@ -21,8 +21,8 @@
 #include "reports/result_folder.h"
 #include "reports/search_log.h"
 #include "reports/search_report.h"
-#include "studies/stored_search/evaluation_store.h"
-#include "studies/stored_search/stored_search.h"
+#include "studies/search/evaluation_store.h"
+#include "studies/search/stored_search.h"
 
 namespace softland {
 

@@ -9,8 +9,8 @@
 #include <tuple>
 #include <vector>
 
+#include "document/quantity.h"
 #include "reports/figure_text.h"
-#include "reports/quantity.h"
 #include "reports/study_members.h"
 #include "sampling/statistics.h"
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "document/document.h"
 #include "objectives/cost.h"
 #include "reports/closing_record.h"
-#include "reports/document.h"
 #include "reports/origin.h"
 
 namespace softland {

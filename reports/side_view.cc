@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "reports/escape.h"
-#include "reports/quantity.h"
+#include "document/escape.h"
+#include "document/quantity.h"
 
 namespace softland::internal {
 namespace {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
+#include "document/escape.h"
+#include "document/quantity.h"
 #include "reports/drive_demand.h"
-#include "reports/escape.h"
-#include "reports/quantity.h"
 #include "reports/side_view.h"
 
 namespace softland::internal {

@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "studies/closing/sent_signals.h"
-#include "studies/tuning/contact_record.h"
-#include "studies/tuning/tuner.h"
+#include "studies/inverse/contact_record.h"
+#include "studies/inverse/tuner.h"
 #include "waveforms/table.h"
 
 namespace softland {

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "base/require.h"
-#include "reports/escape.h"
-#include "reports/quantity.h"
+#include "document/escape.h"
+#include "document/quantity.h"
 #include "reports/study_members.h"
 #include "reports/tuning_lines.h"
 #include "waveforms/export.h"
@@ -511,7 +511,7 @@ Document tuning_document(const TuningReport& report) {
                     .keys = keys_of(report),
                     .sections = {records_section(report), belief_section(report.belief)},
                     .draw = [&report] { return picture_of(report); },
-                    .made = {.origin = report.origin, .seed = report.seed, .tolerance = report.tolerance}};
+                    .made = made_again(report.origin, report.seed, report.tolerance)};
   std::tie(document.headline, document.headline_rest) = headline_of(report);
   if (report.end == TuningEnd::interrupted)
     document.headline = "Interrupted: what follows is what there is. " + document.headline;

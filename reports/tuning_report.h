@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "reports/document.h"
+#include "document/document.h"
 #include "reports/origin.h"
-#include "studies/tuning/tuner.h"
+#include "studies/inverse/tuner.h"
 
 namespace softland {
 

@@ -18,7 +18,7 @@
 #include "base/watch.h"
 #include "reports/tuning_lines.h"
 #include "reports/tuning_report.h"
-#include "studies/tuning/tuner.h"
+#include "studies/inverse/tuner.h"
 
 namespace softland {
 

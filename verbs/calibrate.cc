@@ -16,7 +16,7 @@
 #include "base/split.h"
 #include "config/units.h"
 #include "reports/measurement_report.h"
-#include "studies/search/identification.h"
+#include "studies/inverse/identification.h"
 #include "verbs/study.h"
 
 namespace softland::verbs {

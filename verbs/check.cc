@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "base/engineering.h"
+#include "document/quantity.h"
 #include "model/built_beam.h"
 #include "model/constants.h"
 #include "model/gas/gas_law.h"
 #include "model/pull_in.h"
 #include "reports/beam_drawing.h"
 #include "reports/check_report.h"
-#include "reports/quantity.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/closed_state.h"
 #include "studies/closing/sent_signals.h"

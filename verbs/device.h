@@ -1,7 +1,7 @@
 // Verb `device`: a simulated device that answers as a laboratory device does, to practise on.
 #pragma once
 
-#include "studies/tuning/practice_device.h"
+#include "studies/inverse/practice_device.h"
 #include "verbs/laboratory.h"
 #include "verbs/study.h"
 

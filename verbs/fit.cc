@@ -1,5 +1,5 @@
 // Verb `fit`: fits a scene to measurements.
-#include "studies/fitting/fit.h"
+#include "studies/inverse/fit.h"
 
 #include <fmt/format.h>
 

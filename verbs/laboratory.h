@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "config/scene.h"
-#include "studies/tuning/contact_record.h"
+#include "studies/inverse/contact_record.h"
 #include "verbs/options.h"
 
 namespace softland::verbs {

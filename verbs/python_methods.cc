@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "reports/text.h"
+#include "document/text.h"
 #include "verbs/study.h"
 
 namespace {

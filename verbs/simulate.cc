@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "document/quantity.h"
+#include "document/text.h"
 #include "reports/closing_document.h"
 #include "reports/closing_record.h"
-#include "reports/quantity.h"
 #include "reports/record_file.h"
-#include "reports/text.h"
 #include "studies/closing/certify.h"
 #include "studies/closing/timing.h"
 #include "verbs/report_outcome.h"

@@ -18,7 +18,7 @@
 #include "base/require.h"
 #include "base/trimmed.h"
 #include "reports/tuning_lines.h"
-#include "studies/tuning/practice_device.h"
+#include "studies/inverse/practice_device.h"
 
 namespace softland::apps {
 namespace {

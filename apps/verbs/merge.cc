@@ -15,8 +15,8 @@
 #include "apps/verbs/verbs.h"
 #include "base/printable.h"
 #include "base/require.h"
+#include "document/quantity.h"
 #include "reports/origin.h"
-#include "reports/quantity.h"
 
 namespace softland::apps {
 namespace {

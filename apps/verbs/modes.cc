@@ -16,12 +16,12 @@
 #include "base/require.h"
 #include "base/shell_word.h"
 #include "base/split.h"
+#include "base/write_whole.h"
 #include "config/told_quantity.h"
 #include "config/units.h"
+#include "document/text.h"
 #include "exchange/mode_table.h"
-#include "reports/files.h"
 #include "reports/mode_table_report.h"
-#include "reports/text.h"
 #include "studies/closing/auto_settings.h"
 
 namespace softland::apps {

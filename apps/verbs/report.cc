@@ -21,11 +21,11 @@
 #include "base/read_file.h"
 #include "base/require.h"
 #include "base/shortened.h"
+#include "document/text.h"
 #include "reports/closing_record.h"
 #include "reports/exploration_report.h"
 #include "reports/explored.h"
 #include "reports/record.h"
-#include "reports/text.h"
 #include "store/study_store.h"
 #include "verbs/study.h"
 

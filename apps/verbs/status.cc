@@ -17,7 +17,7 @@
 #include "apps/verbs/verbs.h"
 #include "base/printable.h"
 #include "base/shortened.h"
-#include "reports/quantity.h"
+#include "document/quantity.h"
 
 namespace softland::apps {
 namespace {

@@ -19,9 +19,9 @@
 #include "base/require.h"
 #include "base/shortened.h"
 #include "base/split.h"
-#include "reports/files.h"
-#include "reports/quantity.h"
-#include "reports/text.h"
+#include "base/write_whole.h"
+#include "document/quantity.h"
+#include "document/text.h"
 #include "store/study_store.h"
 
 namespace softland::apps {

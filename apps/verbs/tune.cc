@@ -29,8 +29,8 @@
 #include "reports/tuning_session.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/plain_step.h"
+#include "studies/inverse/tuner.h"
 #include "studies/search/search_setting.h"
-#include "studies/tuning/tuner.h"
 
 namespace softland::apps {
 namespace {

@@ -36,27 +36,27 @@
 #include "waveforms/waveform.h"  // Waveform: the families
 
 // What the verbs of the program do.
-#include "studies/closing/auto_settings.h"        // prepare_and_choose: a scene made ready to run
-#include "studies/closing/certify.h"              // simulate --certify
-#include "studies/closing/effects.h"              // effects
-#include "studies/closing/prepared.h"             // PreparedScene
-#include "studies/closing/simulate.h"             // simulate
-#include "studies/closing/sweep.h"                // pull-in --sweep
-#include "studies/devices/derivatives.h"          // figures by what the scene says
-#include "studies/devices/evaluator.h"            // figures as a function of numbers of a scene, many rows at once
-#include "studies/devices/robustness.h"           // robustness
-#include "studies/exploration/exploring.h"        // explore: the points of a plan into a store
-#include "studies/exploration/front_search.h"     // explore --pareto
-#include "studies/search/for_devices.h"           // optimize: for the drawing, and for devices that differ
-#include "studies/search/found_search.h"          // optimize, whatever its options: run(planned(completed(words, scene), scene))
-#include "studies/search/limit.h"                 // limit
-#include "studies/search/opening.h"               // release
-#include "studies/search/optimize.h"              // optimize --robust none
-#include "studies/search/robust_optimize.h"       // optimize --robust MEASURE
-#include "studies/stored_search/seed_study.h"     // optimize --seeds
-#include "studies/stored_search/stored_search.h"  // optimize --resume: a search as its store keeps it
-#include "studies/tuning/practice_device.h"       // device
-#include "studies/tuning/tuner.h"                 // tune
+#include "studies/closing/auto_settings.h"     // prepare_and_choose: a scene made ready to run
+#include "studies/closing/certify.h"           // simulate --certify
+#include "studies/closing/effects.h"           // effects
+#include "studies/closing/prepared.h"          // PreparedScene
+#include "studies/closing/simulate.h"          // simulate
+#include "studies/closing/sweep.h"             // pull-in --sweep
+#include "studies/devices/derivatives.h"       // figures by what the scene says
+#include "studies/devices/evaluator.h"         // figures as a function of numbers of a scene, many rows at once
+#include "studies/devices/robustness.h"        // robustness
+#include "studies/exploration/exploring.h"     // explore: the points of a plan into a store
+#include "studies/exploration/front_search.h"  // explore --pareto
+#include "studies/inverse/practice_device.h"   // device
+#include "studies/inverse/tuner.h"             // tune
+#include "studies/search/for_devices.h"        // optimize: for the drawing, and for devices that differ
+#include "studies/search/found_search.h"       // optimize, whatever its options: run(planned(completed(words, scene), scene))
+#include "studies/search/limit.h"              // limit
+#include "studies/search/opening.h"            // release
+#include "studies/search/optimize.h"           // optimize --robust none
+#include "studies/search/robust_optimize.h"    // optimize --robust MEASURE
+#include "studies/search/seed_study.h"         // optimize --seeds
+#include "studies/search/stored_search.h"      // optimize --resume: a search as its store keeps it
 
 // The doors for what softland does not have.
 #include "model/contact/own.h"

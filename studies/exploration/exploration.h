@@ -28,9 +28,9 @@
 #include "base/choice.h"
 #include "base/watch.h"
 #include "config/plan.h"
-#include "objectives/figures.h"
 #include "studies/devices/row_status.h"
 #include "studies/exploration/pull_in_memory.h"
+#include "studies/search/figure_columns.h"
 
 namespace softland {
 
@@ -40,18 +40,6 @@ inline constexpr auto point_studies = std::to_array<Named<PointStudy>>({{PointSt
                                                                         {PointStudy::robustness, "robustness"},
                                                                         {PointStudy::optimize, "optimize"}});
 static_assert(is_complete<point_studies>());
-
-/// A column of figures.
-struct PointFigure {
-  std::string quantity;  ///< "impact_velocity"
-  std::string name;      ///< name for people: "Impact speed"
-  std::string unit;      ///< SI unit; empty for a count, a share, yes or no (1 or 0)
-};
-
-/// Column of a searched parameter: "main.level_1_V" is "main.level_1" in V.
-[[nodiscard]] PointFigure parameter_figure(const std::string& name);
-/// Column of a figure of merit, with prefixes of its quantity and additions to its name.
-[[nodiscard]] PointFigure figure_column(const Figure& figure, const std::string& before = {}, const std::string& words = {});
 
 /// A study that is registered from outside: any verb that takes one scene.
 struct OtherStudy {

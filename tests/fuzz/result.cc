@@ -1,12 +1,13 @@
+#include "document/svg.h"
+#include "document/text.h"
+#include "reports/closing_charts.h"
 #include "reports/closing_document.h"
 #include "reports/closing_record.h"
 #include "reports/mode_table_report.h"
 #include "reports/record_file.h"
-#include "reports/svg.h"
-#include "reports/text.h"
 #include "tests/fuzz/scene_checks.h"
 #include "tests/fuzz/targets.h"
-#include "tests/reports/xml.h"
+#include "tests/support/xml.h"
 #include "verbs/study.h"
 
 namespace softland::fuzz {

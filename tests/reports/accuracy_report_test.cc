@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "xml.h"
+#include "tests/support/xml.h"
 
 namespace softland {
 namespace {

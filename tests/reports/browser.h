@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "reports/escape.h"
-#include "reports/files.h"
+#include "base/write_whole.h"
+#include "document/escape.h"
 #include "tests/support/temporary_folder.h"
 
 namespace softland::test {

@@ -7,11 +7,11 @@
 #include <regex>
 
 #include "base/require.h"
+#include "document/escape.h"
+#include "document/page_files.h"
+#include "document/text.h"
 #include "reports/closing_record.h"
-#include "reports/escape.h"
-#include "reports/page_files.h"
 #include "reports/sketch.h"
-#include "reports/text.h"
 #include "sample_result.h"
 
 namespace softland {

@@ -6,12 +6,13 @@
 
 #include <set>
 
+#include "base/write_whole.h"
+#include "document/svg.h"
+#include "document/text.h"
+#include "reports/closing_charts.h"
 #include "reports/closing_document.h"
 #include "reports/closing_record.h"
-#include "reports/files.h"
 #include "reports/record_file.h"
-#include "reports/svg.h"
-#include "reports/text.h"
 
 namespace softland {
 namespace {
@@ -185,6 +186,12 @@ TEST(ResultJson, HasEveryFigureOfTheTableAndNoOther) {
   EXPECT_TRUE(written["metrics"]["bounce_count"].is_number_integer());
   EXPECT_TRUE(written["metrics"]["settled"].is_boolean());
   EXPECT_TRUE(written["metrics"]["peak_slew_V_s"].is_null()) << "a jump";
+}
+
+TEST(TrajectoryCsv, HasOneLinePerRowAndReadsBackExactly) {
+  const CurveRecord curve{
+      .time = {0, 1.0 / 3.0}, .gap = {2e-6, Metrics::unset}, .velocity = {0.1, 0.2}, .force = {}, .rebounds = {}};
+  EXPECT_EQ(trajectory_csv(curve), "time_s,tip_gap_m,tip_velocity_m_s\n0,2e-06,0.1\n0.3333333333333333,,0.2\n");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "browser.h"
-#include "reports/svg.h"
+#include "document/svg.h"
 
 namespace softland {
 namespace {

@@ -8,12 +8,12 @@
 #include <limits>
 #include <string>
 
+#include "document/text.h"
 #include "reports/closing_captions.h"
 #include "reports/closing_document.h"
 #include "reports/closing_record.h"
 #include "reports/device_gaps.h"
 #include "reports/record_file.h"
-#include "reports/text.h"
 #include "sample_result.h"
 
 namespace softland {

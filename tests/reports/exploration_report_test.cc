@@ -12,7 +12,7 @@
 #include "reports/exploration_view.h"
 #include "sample_exploration.h"
 #include "sampling/statistics.h"
-#include "xml.h"
+#include "tests/support/xml.h"
 
 namespace softland {
 namespace {

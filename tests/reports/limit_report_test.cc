@@ -9,7 +9,7 @@
 #include <string>
 
 #include "tests/studies/scenes.h"
-#include "xml.h"
+#include "tests/support/xml.h"
 
 namespace softland {
 namespace {

@@ -13,8 +13,8 @@
 #include <sstream>
 #include <string>
 
+#include "document/text.h"
 #include "reports/box_and_chaos_report.h"
-#include "reports/text.h"
 #include "studies/closing/auto_settings.h"
 
 namespace softland::robustness_report_test {

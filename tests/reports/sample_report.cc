@@ -2,11 +2,12 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/write_whole.h"
+#include "document/svg.h"
+#include "reports/closing_charts.h"
 #include "reports/closing_document.h"
 #include "reports/closing_record.h"
 #include "reports/exploration_report.h"
-#include "reports/files.h"
-#include "reports/svg.h"
 #include "sample_exploration.h"
 #include "sample_result.h"
 

@@ -1,11 +1,12 @@
-#include "reports/svg.h"
+#include "document/svg.h"
 
 #include <gmock/gmock.h>
 
 #include "base/require.h"
+#include "reports/closing_charts.h"
 #include "reports/closing_record.h"
 #include "sample_result.h"
-#include "xml.h"
+#include "tests/support/xml.h"
 
 namespace softland {
 namespace {

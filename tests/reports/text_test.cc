@@ -1,4 +1,4 @@
-#include "reports/text.h"
+#include "document/text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,10 @@
 #include <regex>
 #include <sstream>
 
+#include "document/svg.h"
+#include "reports/closing_charts.h"
 #include "reports/closing_document.h"
 #include "reports/closing_record.h"
-#include "reports/svg.h"
 #include "sample_result.h"
 #include "tests/support/printed.h"
 

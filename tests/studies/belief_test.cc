@@ -1,5 +1,5 @@
 // Tests what records tell of a device.
-#include "studies/tuning/belief.h"
+#include "studies/inverse/belief.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Records of a capacitance, against records of a contact where the capacitance has the threshold.
-#include "studies/tuning/capacitance_edges.h"
+#include "studies/inverse/capacitance_edges.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -9,9 +9,9 @@
 
 #include "model/closing.h"
 #include "model/constants.h"
-#include "studies/tuning/practice_device.h"
-#include "studies/tuning/tuned_scene.h"
-#include "studies/tuning/tuner.h"
+#include "studies/inverse/practice_device.h"
+#include "studies/inverse/tuned_scene.h"
+#include "studies/inverse/tuner.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {

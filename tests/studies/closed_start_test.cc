@@ -18,7 +18,7 @@
 #include "studies/devices/derivatives.h"
 #include "studies/devices/evaluator.h"
 #include "studies/devices/robustness.h"
-#include "studies/search/identification.h"
+#include "studies/inverse/identification.h"
 #include "studies/search/limit.h"
 #include "studies/search/opening.h"
 #include "studies/search/optimize.h"

@@ -1,5 +1,5 @@
 // Records of a contact, and what is no record.
-#include "studies/tuning/contact_record.h"
+#include "studies/inverse/contact_record.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

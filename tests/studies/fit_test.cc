@@ -1,5 +1,5 @@
 // A scene fitted to what was measured on devices of it.
-#include "studies/fitting/fit.h"
+#include "studies/inverse/fit.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include "base/random.h"
 #include "model/pull_in.h"
 #include "scenes.h"
-#include "studies/fitting/estimate.h"
-#include "studies/fitting/trace_windows.h"
+#include "studies/inverse/estimate.h"
+#include "studies/inverse/trace_windows.h"
 
 namespace softland::fit_test {
 namespace {

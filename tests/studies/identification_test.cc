@@ -1,5 +1,5 @@
 // Tests what measurements tell of a device.
-#include "studies/search/identification.h"
+#include "studies/inverse/identification.h"
 
 #include <gtest/gtest.h>
 

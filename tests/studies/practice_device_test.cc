@@ -1,4 +1,4 @@
-#include "studies/tuning/practice_device.h"
+#include "studies/inverse/practice_device.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

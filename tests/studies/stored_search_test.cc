@@ -1,5 +1,5 @@
 // Searches that are kept from a library: gone on with, refused, and from several seeds.
-#include "studies/stored_search/stored_search.h"
+#include "studies/search/stored_search.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,10 +15,10 @@
 
 #include "base/require.h"
 #include "store/study_store.h"
+#include "studies/search/evaluation_store.h"
 #include "studies/search/found_search.h"
 #include "studies/search/robust_optimize.h"
-#include "studies/stored_search/evaluation_store.h"
-#include "studies/stored_search/seed_study.h"
+#include "studies/search/seed_study.h"
 #include "tests/studies/scenes.h"
 #include "tests/support/temporary_folder.h"
 

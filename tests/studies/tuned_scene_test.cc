@@ -1,5 +1,5 @@
 // The devices that a belief is made of, and their closings.
-#include "studies/tuning/tuned_scene.h"
+#include "studies/inverse/tuned_scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "studies/tuning/proposal.h"
+#include "studies/inverse/proposal.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {

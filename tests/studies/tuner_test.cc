@@ -1,5 +1,5 @@
 // Tuning from the first closing on, on simulated devices that the belief has not seen.
-#include "studies/tuning/tuner.h"
+#include "studies/inverse/tuner.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "sampling/statistics.h"
-#include "studies/tuning/practice_device.h"
-#include "studies/tuning/tuned_scene.h"
+#include "studies/inverse/practice_device.h"
+#include "studies/inverse/tuned_scene.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {

@@ -19,7 +19,7 @@
 #include "config/schema/laws.h"
 #include "config/section_reader.h"
 #include "studies/devices/ensemble.h"
-#include "studies/fitting/fit.h"
+#include "studies/inverse/fit.h"
 
 namespace softland::varied_keys_test {
 namespace {

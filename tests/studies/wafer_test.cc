@@ -1,5 +1,5 @@
 // Tests what tuned devices tell of the next of their wafer, with simple beliefs.
-#include "studies/tuning/wafer.h"
+#include "studies/inverse/wafer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,92 @@
+// A chart is a description that is drawn twice: as static SVG here (print, no JavaScript, README) and by uPlot in the page.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace softland {
+
+/// Points [x, y] in order.
+using Points = std::vector<std::array<double, 2>>;
+
+}  // namespace softland
+
+namespace softland::internal {
+
+/// The columns have equal length; the first key of a chart's x axis is one of them.
+using CurveTable = std::map<std::string, std::vector<double>>;
+using CurveTables = std::map<std::string, CurveTable>;
+
+/// The role says whose data a curve shows, and so chooses its pen. The roles `third`, `fourth`, `fifth` and `measured` (dots)
+/// are for other pictures than those of results. The role `limit` shows the limit of a source. The roles `device` and
+/// `device_before` are thin: one of many devices under the winner, and under the plain step.
+enum class Role { best, baseline, evaluations, third, fourth, fifth, measured, limit, device, device_before };
+enum class Scale { linear, logarithmic };
+
+struct Series {
+  std::string table;
+  std::string column;
+  std::string label;  ///< name in the legend; empty: not in the legend
+  Role role = Role::best;
+};
+
+/// A band fills the area between two columns.
+struct Band {
+  std::string table, low, high;
+  Role role = Role::best;
+};
+
+/// A dot on the picture; `text` may be empty.
+struct Mark {
+  double x = 0;
+  double y = 0;
+  Role role = Role::best;
+  std::string text;
+};
+
+struct Chart {
+  std::string id;  ///< letters, digits and dashes only
+  std::string title;
+  std::string caption;
+  std::string x_column;
+  std::string x_label;
+  std::string x_unit;  ///< unit of x; empty: a count
+  std::string y_label;
+  std::string y_unit;
+  Scale scale = Scale::linear;                  ///< scale of y
+  Scale x_scale = Scale::linear;                ///< scale of x; logarithmic: the curves join dots
+  std::array<double, 2> x_home{0, 1};           ///< range shown before any zoom
+  std::array<double, 2> x_whole{0, 1};          ///< whole range of the data
+  std::optional<std::array<double, 2>> y_home;  ///< range of y before any zoom; not set: from the data in view
+  bool zero_line = false;
+  std::string zero_label;
+  bool zero_label_left = false;  ///< true where the curves leave room on the left
+  std::string group;             ///< charts of one group share cursor and zoom; empty: alone
+  int height = 300;              ///< height of the chart [px]
+  std::vector<Series> series;
+  std::vector<Mark> marks;
+  std::vector<Band> bands = {};  ///< drawn below the curves, on static pictures alone
+  /// Each series is a bar, one below the other: full where its value is 1, pale where it is between, nothing where it is 0.
+  bool is_of_bars = false;
+};
+inline constexpr int bar_height = 24;  ///< the height of one bar [px]
+
+struct Picture {
+  CurveTables tables;
+  std::vector<Chart> charts;
+};
+
+/// Returns a chart without series over the time until `until` [s].
+[[nodiscard]] Chart chart_over_time(const std::string& id, const std::string& title, const std::string& y_label,
+                                    const std::string& y_unit, double until, int height);
+
+/// Draws the chart as SVG elements on a canvas `width` wide, its top left corner at (0, `top`); text and lines carry their own
+/// colours.
+[[nodiscard]] std::string chart_svg(const CurveTables& tables, const Chart& chart, double width, double top);
+/// Returns the height of the chart on that canvas [px], title and axes included.
+[[nodiscard]] double chart_svg_height(const Chart& chart);
+
+}  // namespace softland::internal

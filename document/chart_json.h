@@ -1,0 +1,19 @@
+// Charts for the script of a page: curves as small whole numbers.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "document/chart.h"
+
+namespace softland::internal {
+
+/// Returns {"unit": u, "steps": [...]}: value k is u times the sum of steps 0 ... k; null stands for a value that is not
+/// available and adds nothing.
+[[nodiscard]] nlohmann::json packed(const std::vector<double>& column, double unit);
+/// Returns curve tables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as
+/// integer steps of a unit fine enough to be invisible (one part in ten million of the largest value).
+[[nodiscard]] nlohmann::json chart_json(const Picture& picture, std::size_t rows);
+
+}  // namespace softland::internal

@@ -1,0 +1,20 @@
+// The interface of the module that holds Ceres: a shared library that is loaded for the first fit.
+#pragma once
+
+#include <exception>
+#include <vector>
+
+#include "studies/inverse/least_squares.h"
+
+namespace softland {
+
+inline constexpr const char* ceres_solve_name = "softland_ceres_solve";
+/// solve() in the module; `fault` receives what `evaluate` has thrown.
+using CeresSolve = void(const LeastSquares& problem, std::vector<double> start, const Watch& watch, LeastSquaresEnd& end,
+                        std::exception_ptr& fault);
+
+}  // namespace softland
+
+extern "C" [[gnu::visibility("default")]] void softland_ceres_solve(const softland::LeastSquares& problem,
+                                                                    std::vector<double> start, const softland::Watch& watch,
+                                                                    softland::LeastSquaresEnd& end, std::exception_ptr& fault);

@@ -1,0 +1,354 @@
+#include "studies/inverse/identification.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <mutex>
+#include <numeric>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "base/decompositions.h"
+#include "base/executor.h"
+#include "base/random.h"
+#include "base/require.h"
+#include "config/assumed_spread.h"
+#include "model/constants.h"
+#include "optimizers/problem.h"
+#include "sampling/confidence.h"
+#include "sampling/statistics.h"
+#include "studies/closing/plain_step.h"
+#include "studies/devices/instruments.h"
+#include "studies/search/robust_cost.h"
+
+namespace softland {
+namespace {
+
+constexpr double widest_change = 0.25;  // bound of the logarithm of a factor
+constexpr double first_step = 0.005;    // first step of the search, in the logarithm of a factor
+constexpr long closings_of_a_factor = 40;
+constexpr double periods_of_step = 5;  // window of a step that closes a switch
+constexpr double probability = 0.95;
+
+constexpr double unknown = Metrics::unset;
+
+// Runs tasks over devices, and reports their progress.
+template <class Task>
+void over_devices(std::size_t devices, int jobs, const char* what, const Watch& watch, const Task& task) {
+  std::atomic<std::size_t> done = 0;
+  std::mutex telling;
+  run_tasks(
+      devices, jobs,
+      [&](std::size_t k) {
+        if (watch.stopped()) return;
+        task(k);
+        const std::scoped_lock lock(telling);
+        watch.tell(what, static_cast<double>(++done) / static_cast<double>(devices));
+      },
+      watch.stop);
+}
+
+// A figure to measure, its error, and the way to read it.
+struct Gauge {
+  std::string name, unit;
+  double error;
+  std::function<double(const Switch&)> read;
+};
+
+std::vector<Gauge> instruments(const PreparedScene& nominal, const DeviceMeter& meter, const IdentificationOptions& options) {
+  const std::size_t electrode = meter.electrode();
+  const std::vector<double> bias = bias_of(nominal.scene, electrode);
+  std::vector<Gauge> all{
+      {"Vdp", "V", options.pull_in_error, [&meter](const Switch& m) { return meter.exact(m).volts * meter.pull_in(); }}};
+  const double duration = periods_of_step / meter.frequency();
+  const auto add = [&](std::string name, double error, const Instrument& instrument) {
+    all.push_back({std::move(name), std::string(row_of(instrument.what).unit), error,
+                   [=](const Switch& m) { return read(instrument, m, bias, duration); }});
+  };
+  add("Vsp", options.static_pull_in_error, {.what = Measurable::pull_in, .drive = electrode});
+  add("release", options.release_error, {.what = Measurable::release, .drive = electrode});
+  add("frequency", options.frequency_error, {.what = Measurable::frequency, .drive = electrode});
+  for (const double step : options.steps)
+    add(fmt::format("time at {:g} Vdp", step), options.time_error,
+        {.what = Measurable::closing_time, .drive = electrode, .level = step * meter.pull_in()});
+  all.push_back({std::string(measured_piezo), "1/V", options.piezo_error, DeviceMeter::piezo_unit});
+  return all;
+}
+
+// False for a figure that no device varies in, or that the nominal device does not have.
+bool tells(const MeasurableFigure& figure) {
+  if (!(figure.nominal > 0)) return false;
+  return std::any_of(figure.values.begin(), figure.values.end(),
+                     [&](double v) { return std::isfinite(v) && std::abs(v / figure.nominal - 1) > 1e-9; });
+}
+
+std::vector<MeasurableFigure> measure(const std::vector<Gauge>& all, const Switch& nominal, const RobustCost& cost, int jobs,
+                                      const Watch& watch) {
+  std::vector<MeasurableFigure> figures;
+  for (const Gauge& one : all) {
+    figures.push_back({.name = one.name,
+                       .unit = one.unit,
+                       .nominal = one.read(nominal),
+                       .error = one.error,
+                       .values = std::vector<double>(cost.devices(), unknown)});
+  }
+  over_devices(cost.devices(), jobs, "figures of the devices", watch, [&](std::size_t k) {
+    const SampledDevice& device = cost.device(k);
+    for (std::size_t f = 0; f < figures.size() && device.model && !watch.stopped(); ++f)
+      figures[f].values[k] = all[f].read(*device.model);
+  });
+  watch.throw_if_stopped();
+  std::erase_if(figures, [](const MeasurableFigure& f) { return !tells(f); });
+  return figures;
+}
+
+// A factor of a recipe.
+using Factor = double DeviceUnits::*;
+constexpr std::array all_factors{&DeviceUnits::volts, &DeviceUnits::time, &DeviceUnits::piezo};
+// Returns the factors of a recipe: that of a piezo comes last, and only if it is driven.
+std::span<const Factor> factors_of(bool drives_piezo) { return std::span(all_factors).first(drives_piezo ? 3 : 2); }
+
+constexpr DeviceUnits no_factors{.volts = unknown, .time = unknown};
+
+// Searches the best factors of a device from its own units.
+DeviceUnits best_factors(const RobustCost& cost, const std::vector<Waveform>& recipe, std::size_t k, const DeviceUnits& own,
+                         std::span<const Factor> factors) {
+  const auto units_at = [&](std::span<const double> x) {
+    DeviceUnits units;
+    for (std::size_t i = 0; i < factors.size(); ++i) units.*factors[i] = std::exp(x[i]);
+    return units;
+  };
+  std::vector<double> start;
+  for (const Factor factor : factors) start.push_back(std::log(own.*factor));
+  double least = std::numeric_limits<double>::infinity();
+  Problem problem{.variables = {{.name = "volts"}, {.name = "time"}, {.name = "piezo"}},
+                  .objective =
+                      [&](std::span<const double> x) {
+                        const double score = std::min(cost.score(cost.close(recipe, k, units_at(x))), RobustCost::not_closed);
+                        least = std::min(least, score);
+                        double changes = 0;
+                        for (const double change : x) changes += change * change;
+                        return score + changes;
+                      },
+                  .starts = {start}};
+  problem.variables.resize(factors.size());
+  for (Variable& variable : problem.variables) variable.lower = -widest_change, variable.upper = widest_change;
+  const OptimizerResult found = minimize(problem, {.optimizer = "nelder-mead",
+                                                   .max_evaluations = closings_of_a_factor * static_cast<long>(factors.size()),
+                                                   .step = first_step / (2 * widest_change)});
+  return found.x.empty() || least >= RobustCost::not_closed ? no_factors : units_at(found.x);
+}
+
+// Returns rows 1, ln x_1 ... of the devices; NaN for a figure that is missing.
+Eigen::MatrixXd regressors(const std::vector<MeasurableFigure>& figures, const std::vector<std::size_t>& used,
+                           std::uint64_t seed) {
+  const auto devices = static_cast<Eigen::Index>(figures.empty() ? 0 : figures.front().values.size());
+  Eigen::MatrixXd x = Eigen::MatrixXd::Ones(devices, static_cast<Eigen::Index>(used.size()) + 1);
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const MeasurableFigure& f = figures[used[i]];
+    for (Eigen::Index k = 0; k < devices; ++k) {
+      constexpr std::uint64_t room = 64;  // numbers reserved for the figures of a device
+      const double error = f.error * random_normal(seed, Stream::measurement, static_cast<std::uint64_t>(k) * room + used[i]);
+      x(k, static_cast<Eigen::Index>(i) + 1) = std::log(f.values[static_cast<std::size_t>(k)] / f.nominal * (1 + error));
+    }
+  }
+  return x;
+}
+
+// Predicts the factors of every device by a fit to the half that it is not in.
+std::vector<DeviceUnits> told_factors(const Eigen::MatrixXd& x, const std::vector<DeviceUnits>& best,
+                                      std::span<const Factor> factors) {
+  const Eigen::Index devices = x.rows(), middle = devices / 2, count = static_cast<Eigen::Index>(factors.size());
+  Eigen::MatrixXd told = Eigen::MatrixXd::Constant(devices, count, unknown);
+  for (const bool first : {true, false}) {
+    const Eigen::Index begin = first ? 0 : middle, end = first ? middle : devices;
+    std::vector<Eigen::Index> fitted;
+    for (Eigen::Index k = 0; k < devices; ++k) {
+      const bool inside = k >= begin && k < end;
+      if (!inside && x.row(k).allFinite() && std::isfinite(best[static_cast<std::size_t>(k)].volts)) fitted.push_back(k);
+    }
+    if (static_cast<Eigen::Index>(fitted.size()) < x.cols() + 2) continue;  // too few devices for a fit
+    Eigen::MatrixXd logarithms(fitted.size(), count);
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+      const DeviceUnits& units = best[static_cast<std::size_t>(fitted[i])];
+      for (Eigen::Index f = 0; f < count; ++f)
+        logarithms(static_cast<Eigen::Index>(i), f) = std::log(units.*factors[static_cast<std::size_t>(f)]);
+    }
+    const Eigen::MatrixXd rows = x(fitted, Eigen::all);
+    const Eigen::MatrixXd slopes = least_squares(rows, logarithms);
+    told.middleRows(begin, end - begin) = x.middleRows(begin, end - begin) * slopes;
+  }
+  std::vector<DeviceUnits> units(best.size());
+  for (Eigen::Index k = 0; k < devices; ++k) {
+    for (Eigen::Index f = 0; f < count; ++f)
+      units[static_cast<std::size_t>(k)].*factors[static_cast<std::size_t>(f)] = std::exp(told(k, f));
+  }
+  return units;
+}
+
+// Returns the root mean square error of the prediction, and its square over the variance.
+std::pair<double, double> misses(const std::vector<DeviceUnits>& told, const std::vector<DeviceUnits>& best, Factor factor) {
+  std::vector<double> wanted;
+  double square = 0;
+  for (std::size_t k = 0; k < told.size(); ++k) {
+    const double miss = std::log(told[k].*factor / best[k].*factor);
+    if (!std::isfinite(miss)) continue;
+    wanted.push_back(std::log(best[k].*factor));
+    square += miss * miss;
+  }
+  if (wanted.size() < 2) return {unknown, unknown};
+  const double mean_square = square / static_cast<double>(wanted.size()), deviation = sample_standard_deviation(wanted);
+  return {std::sqrt(mean_square), deviation > 0 ? mean_square / (deviation * deviation) : unknown};
+}
+
+// A prediction, and the factors that it predicts.
+struct Told {
+  Prediction prediction;
+  std::vector<DeviceUnits> units;
+};
+
+Told fitted(const IdentificationStudy& study, std::uint64_t seed, std::string name, std::vector<std::size_t> figures) {
+  Told told{.prediction = {.name = std::move(name), .figures = std::move(figures)}, .units = {}};
+  Prediction& p = told.prediction;
+  told.units = told_factors(regressors(study.figures, p.figures, seed), study.best, factors_of(study.drives_piezo));
+  std::tie(p.volts_miss, p.volts_unexplained) = misses(told.units, study.best, &DeviceUnits::volts);
+  std::tie(p.time_miss, p.time_unexplained) = misses(told.units, study.best, &DeviceUnits::time);
+  if (study.drives_piezo) std::tie(p.piezo_miss, p.piezo_unexplained) = misses(told.units, study.best, &DeviceUnits::piezo);
+  return told;
+}
+
+// Returns the bounds of the predictions from below and above, and the units that recipes are given in.
+std::vector<Told> told_for_reference(const IdentificationStudy& study, std::uint64_t seed) {
+  std::vector<Told> all;
+  const auto given = [&](std::string name, std::vector<DeviceUnits> units) {
+    all.push_back({.prediction = {.name = std::move(name), .figures = {}}, .units = std::move(units)});
+  };
+  const auto number_of = [&](std::string_view name) {
+    const auto found = std::find_if(study.figures.begin(), study.figures.end(), [&](const auto& f) { return f.name == name; });
+    return static_cast<std::size_t>(found - study.figures.begin());
+  };
+  const std::size_t count = study.figures.size();
+  given("nothing", std::vector<DeviceUnits>(study.devices));
+  given("the best factors themselves", study.best);
+  std::vector<std::size_t> every(count);
+  std::iota(every.begin(), every.end(), std::size_t{0});
+  all.push_back(fitted(study, seed, "all of them", every));
+  const std::size_t v = number_of(measured_pull_in), f = number_of(measured_frequency), p = number_of(measured_piezo);
+  if (v == count || f == count) return all;
+  const auto in_own_units = [&](const std::string& name, const std::vector<std::size_t>& measured) {
+    const Eigen::MatrixXd x = regressors(study.figures, measured, seed);
+    std::vector<DeviceUnits> own(study.devices);
+    for (Eigen::Index k = 0; k < x.rows(); ++k) {
+      DeviceUnits& units = own[static_cast<std::size_t>(k)];
+      units = {.volts = std::exp(x(k, 1)), .time = std::exp(-x(k, 2))};
+      if (x.cols() > 3) units.piezo = std::exp(-x(k, 3));
+    }
+    given("own units: " + name, std::move(own));
+  };
+  in_own_units("Vdp, frequency", {v, f});
+  if (study.drives_piezo && p < count) in_own_units("Vdp, frequency, piezo", {v, f, p});
+  return all;
+}
+
+// Returns the predictions from every figure, and from every two of them.
+std::vector<Told> told_by_figures(const IdentificationStudy& study, std::uint64_t seed) {
+  std::vector<Told> all;
+  const std::vector<MeasurableFigure>& figures = study.figures;
+  for (std::size_t a = 0; a < figures.size(); ++a) {
+    all.push_back(fitted(study, seed, figures[a].name, {a}));
+    for (std::size_t b = a + 1; b < figures.size(); ++b)
+      all.push_back(fitted(study, seed, figures[a].name + " and " + figures[b].name, {a, b}));
+  }
+  return all;
+}
+
+void judge_told(Told& told, const RobustCost& cost, const std::vector<Waveform>& recipe, int jobs, const Watch& watch) {
+  std::vector<DeviceOutcome> outcomes(cost.devices());
+  run_tasks(outcomes.size(), jobs, [&](std::size_t k) {
+    if (watch.stopped()) return;
+    const DeviceUnits& units = told.units[k];
+    if (units.are_known() && std::isfinite(units.time)) {
+      outcomes[k] = cost.close(recipe, k, units);
+    } else {
+      outcomes[k].failure = "its factors cannot be told";
+    }
+  });
+  if (watch.stopped()) return;
+  std::vector<double> scores, speeds, heights;
+  std::size_t free = 0;
+  for (const DeviceOutcome& o : outcomes) {
+    scores.push_back(std::min(cost.score(o), RobustCost::not_closed));
+    speeds.push_back(o.of(figure_of(&Metrics::largest_impact_velocity)));
+    heights.push_back(o.of(figure_of(&Metrics::major_bounce_height)));
+    free += is_bounce_free(o);
+  }
+  Prediction& p = told.prediction;
+  p.is_judged = true;
+  p.score = sample_quantile(scores, probability);
+  p.bounce_free = yield_of(free, outcomes.size());
+  p.impact_speed = estimated_quantile(speeds, probability);
+  p.rebound_height = estimated_quantile(heights, probability);
+}
+
+}  // namespace
+
+IdentificationStudy identify(SceneFile file, const IdentificationOptions& options, const Watch& watch) {
+  require(options.samples >= fewest_measured && options.samples <= most_measured, [&] {
+    return fmt::format("{} devices: there must be from {} to {}", options.samples, fewest_measured, most_measured);
+  });
+  const bool spread_assumed = assume_spread(file);
+  const Scene scene = read_scene(file);
+  require_open_start(scene, "calibrate closes every device");
+  const Device& device = scene.device;
+  require(device.has_contact(), "calibrate needs a [contact] section: without contact there is nothing to land on");
+  require(has_pulling_electrode(device), "calibrate needs an electrode that pulls in: its voltage is what devices differ in");
+  const SearchSetting setting = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", watch);
+  const PreparedScene& nominal = setting.given;
+  const std::vector<Waveform> recipe = nominal.waveforms();
+  require(!same_drives(nominal.told(recipe), setting.baseline_scene.signals()), [&] {
+    return fmt::format(
+        "{}: its drive is the plain step, which lands no device softly: there is no waveform to pin. Give what "
+        "softland optimize has found",
+        nominal.scene.file.name());
+  });
+  const DeviceMeter meter(nominal, {.pull_in = true});
+  const RobustAim aim;
+  const Ensemble ensemble(nominal, options.samples, options.seed);
+  const RobustCost cost(setting, aim, build_all(ensemble, {}, options.seed, options.jobs, watch));
+
+  IdentificationStudy study{.devices = cost.devices(), .spread_assumed = spread_assumed};
+  study.drives_piezo = nominal.model.has_piezo() && nominal.told(recipe).back().peak() > 0;
+  study.figures = measure(instruments(nominal, meter, options), nominal.model, cost, options.jobs, watch);
+  study.best.assign(study.devices, no_factors);
+  over_devices(study.devices, options.jobs, "best factors of the devices", watch, [&](std::size_t k) {
+    if (!cost.device(k).model) return;
+    DeviceUnits own = meter.exact(*cost.device(k).model);
+    if (!std::isfinite(own.volts)) own.volts = 1;
+    study.best[k] = best_factors(cost, recipe, k, own, factors_of(study.drives_piezo));
+  });
+  watch.throw_if_stopped();
+
+  std::vector<Told> all = told_for_reference(study, options.seed);
+  const std::size_t references = all.size();
+  for (Told& told : told_by_figures(study, options.seed)) all.push_back(std::move(told));
+  for (std::size_t i = 0; i < all.size() && !watch.stopped(); ++i) {
+    judge_told(all[i], cost, recipe, options.jobs, watch);
+    watch.tell("judging what is told", static_cast<double>(i + 1) / static_cast<double>(all.size()));
+  }
+  study.interrupted = watch.stopped();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    (i < references ? study.references : study.predictions).push_back(std::move(all[i].prediction));
+  std::stable_sort(study.predictions.begin(), study.predictions.end(), [](const Prediction& a, const Prediction& b) {
+    return a.is_judged != b.is_judged ? a.is_judged : a.is_judged && a.score < b.score;
+  });
+  return study;
+}
+
+}  // namespace softland

@@ -1,0 +1,436 @@
+#include "studies/inverse/tuner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "base/engineering.h"
+#include "base/require.h"
+#include "sampling/statistics.h"
+#include "studies/inverse/proposal.h"
+
+namespace softland {
+
+void check(const TunerOptions& options) {
+  constexpr std::string_view first_touch_key = key_of(&Metrics::initial_contact_time);
+  const auto share = [](double x) { return x >= 0 && x < 1; };
+  require(options.laboratory.edge_error > 0 && std::isfinite(options.laboratory.edge_error),
+          "the error of edges must be above 0 s");
+  require(options.laboratory.unseen >= 0 && std::isfinite(options.laboratory.unseen),
+          "the shortest opening that is seen must be at least 0 s");
+  require(options.laboratory.trigger_delay >= 0 && std::isfinite(options.laboratory.trigger_delay),
+          "the trigger delay must be at least 0 s");
+  require(share(options.laboratory.gain_error), "the error of the gain must be at least 0 and below 1");
+  require(share(options.laboratory.shot_error), "the error from shot to shot must be at least 0 and below 1");
+  require(options.jobs >= 1, "jobs must be at least 1");
+  require(options.most_recipes >= 1 && options.most_recipes <= 5, "recipes must be 1 to 5");
+  require(
+      !options.touch || ((options.touch->comparison == Comparison::below || options.touch->comparison == Comparison::at_most) &&
+                         options.touch->limit > 0 && options.touch->figure.key == first_touch_key),
+      "a condition must be that initial_contact_time is below a time");
+  require(options.effort > 0 && std::isfinite(options.effort), "the effort must be above 0");
+}
+
+namespace {
+
+constexpr std::size_t proposal_devices = 32;
+constexpr double enough_devices = 8;                  // effective devices that a belief needs to predict
+constexpr double certain = 3.5;                       // standard errors that establish another ratio of the gaps
+constexpr std::size_t first_ones = 4, last_ones = 8;  // numbers of records that are learned from
+
+double weighted_mean(const std::vector<double>& weights, const std::vector<double>& values) {
+  double sum = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) sum += weights[k] * values[k];
+  return sum;
+}
+
+double weighted_deviation(const std::vector<double>& weights, const std::vector<double>& values, double mean) {
+  double sum = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) sum += weights[k] * (values[k] - mean) * (values[k] - mean);
+  return std::sqrt(sum);
+}
+
+std::optional<BelievedQuantity> believed_gap_ratio(const TunedScene& scene, const Belief& belief) {
+  std::vector<double> ratios;
+  for (const Eigen::VectorXd& z : belief.points) {
+    const std::optional<double> ratio = scene.gap_ratio(scene.values(z));
+    if (!ratio) return {};
+    ratios.push_back(*ratio);
+  }
+  BelievedQuantity one{
+      .name = scene.gap_ratio_name(), .unit = {}, .prior_mean = 1, .prior_deviation = TunedScene::gap_ratio_deviation};
+  one.mean = weighted_mean(belief.weights, ratios);
+  one.deviation = weighted_deviation(belief.weights, ratios, one.mean);
+  return one;
+}
+
+// Start of the random numbers of a closing.
+std::uint64_t first_draw(int closings) { return (static_cast<std::uint64_t>(closings) + 1) << 20; }
+
+}  // namespace
+
+// The part that no closing changes.
+struct Tuner::Setting {
+  Setting(const SceneFile& file, const TunerOptions& options, const Watch& watch)
+      : scene(file, options, watch), recipes(recipes_of(scene, watch)), shapes(scene) {
+    if (!options.wafer.empty()) scene.begin_with(believed_of_wafer(options.wafer, scene.size()).next);
+  }
+
+  TunedScene scene;
+  std::vector<Recipe> recipes;
+  Shapes shapes;
+};
+
+struct Tuner::State {
+  struct Fired {
+    LearnedShot shot;
+    std::vector<double> x;  // numbers of its shape
+    TunerShot as_proposed;
+    int waveform = 0;  // number of the shot that fired it first
+  };
+  // A controller that makes the volts follow the touch time of a repeated shot.
+  struct Steering {
+    std::vector<Waveform> waveforms;  // waveforms at s = 1
+    int waveform = 0;                 // number of the shot that fired it first
+    double slope = Metrics::unset, most = 1, s = 1;
+    std::vector<double> touches;  // first touches, whose mean is the reference [s]
+    [[nodiscard]] std::vector<Waveform> steered() const {
+      std::vector<Waveform> own = waveforms;
+      for (Waveform& waveform : own) waveform = scaled(std::move(waveform), s, 1);
+      return own;
+    }
+    void follow(double touch) {
+      constexpr std::size_t of_reference = 8;
+      constexpr double share = 0.2, longest = 1e-3;
+      if (touches.size() < of_reference) touches.push_back(touch);
+      const double due = sample_mean(touches), error = std::clamp((touch - due) / slope, -longest, longest);
+      if (std::isfinite(error)) s = std::min(most, s * (1 - share * error));
+    }
+  };
+  struct Learned {
+    std::vector<Fired> fired;
+    int closings = 0, in_a_row = 0;
+    std::size_t forgotten = 0;  // number of first records that are not used any more
+    double hold = 1;            // hold level over the nominal one
+    Belief belief;
+    std::optional<Steering> steering;
+    std::vector<double> x;  // numbers of the next shot
+    TunerShot next, kept;
+    int next_waveform = 0;                           // number of the shot that fired the next waveform first; 0: none did
+    std::vector<double> surprises;                   // errors of predicted touch times, in standard deviations
+    int unexpected_bounces = 0;                      // closings that bounced, where hardly a device of the belief did
+    int unexplained_bounces = 0;                     // long bounces among the records in use that the best device does not have
+    std::optional<BelievedQuantity> gap_ratio = {};  // last value from enough devices, unless the scene's explains the records
+    TouchMisfit misfit = {};                         // misfit of the records that were learned from last
+  };
+
+  State(std::shared_ptr<const Setting> of_scene, const Watch& watch)
+      : setting(std::move(of_scene)), scene(setting->scene), shapes(setting->shapes), recipes(setting->recipes) {
+    Draws draws(scene.options().seed, first_draw(0));
+    now.belief = Belief::prior(scene.size(), draws);
+    const Outlook outlook(scene, now.belief.resampled(proposal_devices, draws), draws, watch);
+    const TunedScene::Units units = scene.units(now.belief.mean);
+    if (scene.prior()) now.hold = believed_hold(units);
+    const Shapes limited = shapes_for(now);
+    now.x = limited.in_units(recipes.front().x, {}, {});
+    if (scene.prior()) now.x = propose(scene, limited, outlook, recipes_in(units), scene.options().seed, watch).x;
+    now.next = shot(1, limited.waveforms(now.x), outlook);
+    now.kept = now.next;
+  }
+
+  [[nodiscard]] static double believed_hold(const TunedScene::Units& units) {
+    constexpr double lowest = 0.85, highest = 1.2;
+    return std::clamp(units.volts, lowest, highest);
+  }
+  [[nodiscard]] std::vector<std::vector<double>> recipes_in(const TunedScene::Units& units) const {
+    std::vector<std::vector<double>> all;
+    for (const Recipe& recipe : recipes) all.push_back(shapes.in_units(recipe.x, units_of(recipe), units));
+    return all;
+  }
+  [[nodiscard]] Shapes shapes_for(const Learned& known) const {
+    return shapes.within(scene.safe_level(known.belief.mean, known.belief.covariance), known.hold);
+  }
+  [[nodiscard]] TunerShot shot(int number, std::vector<Waveform> waveforms, const Outlook& outlook) const {
+    TunerShot shot{.number = number, .waveforms = std::move(waveforms), .hold_time = scene.hold_time()};
+    shot.expected_cost = outlook.expected(shot.waveforms, outlook.size()).total();
+    shot.predicted = outlook.predicted(shot.waveforms);
+    return shot;
+  }
+  [[nodiscard]] Learned learned(Learned known, const ContactRecord& record, const Watch& watch) const;
+  void propose_next(Learned& known, const Watch& watch) const;
+  void keep_best(Learned& known, const Outlook& outlook, double expected) const;
+  void repeat(Learned& known, const Outlook& outlook) const;
+  void fire_kept_again();
+
+  std::shared_ptr<const Setting> setting;
+  const TunedScene& scene;
+  const Shapes& shapes;
+  const std::vector<Recipe>& recipes;
+  Learned now;
+};
+
+namespace {
+
+// Difference of a recorded first touch from the predicted one, in standard deviations.
+double surprise(const PredictedRecord& predicted, const ContactRecord& record, double effective_devices) {
+  constexpr double both_sides = 1.96;
+  const std::optional<double> seen = first_touch(record);
+  if (!seen || predicted.touches == 0 || effective_devices < enough_devices) return 0;
+  const double edge = *seen < predicted.touch_median ? predicted.touch_low : predicted.touch_high;
+  return both_sides * (*seen - predicted.touch_median) / (edge - predicted.touch_median);
+}
+
+// True if the contact opened for longer than an error of the model explains: a mode that the model lacks opens it by a
+// nanometre.
+bool has_long_bounce(const TunedScene& scene, const ContactRecord& record) {
+  constexpr double share = 0.04;  // share of the closing time of the plain step
+  if (record.edges.empty()) return bounce_count(record).value_or(0) > 0;
+  const double least = scene.options().laboratory.unseen + share * scene.scales().closing_time;
+  return std::ranges::any_of(openings(record), [&](const ContactOpening& one) { return one.end - one.begin >= least; });
+}
+
+// Counts the records with a long bounce that the best device of the belief does not have.
+int unexplained_bounces(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& belief, const Watch& watch) {
+  const std::vector<Eigen::VectorXd> best{belief.mode};
+  const std::vector<ImaginedDevice> device = scene.devices(best, watch);
+  std::vector<ImaginedShot> fired;
+  for (const LearnedShot& shot : shots) fired.push_back({.device = device.data(), .waveforms = &shot.waveforms});
+  const std::vector<ImaginedClosing> closings = scene.close(fired, watch);
+  int count = 0;
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    const bool bounces = std::ranges::any_of(closings[i].seen().openings, [&](const ContactOpening& one) {
+      return one.end - one.begin >= scene.options().laboratory.unseen;
+    });
+    count += has_long_bounce(scene, shots[i].record) && !bounces;
+  }
+  return count;
+}
+
+// True if the ratio is off by its errors, and by one prior deviation, too.
+bool is_off(const std::optional<BelievedQuantity>& ratio) {
+  return ratio && std::abs(ratio->mean - 1) >= std::max(certain * ratio->deviation, ratio->prior_deviation);
+}
+
+}  // namespace
+
+Tuner::State::Learned Tuner::State::learned(Learned known, const ContactRecord& record, const Watch& watch) const {
+  const PredictedRecord predicted = known.next.predicted;
+  if (known.steering) known.next_waveform = known.steering->waveform;
+  known.fired.push_back({.shot = {.waveforms = known.next.waveforms, .record = record},
+                         .x = known.x,
+                         .as_proposed = known.next,
+                         .waveform = known.next_waveform > 0 ? known.next_waveform : known.next.number});
+  known.next_waveform = 0;
+  ++known.closings;
+  const bool quiet = is_bounce_free(record), bounced_long = has_long_bounce(scene, record);
+  const bool repeats = known.steering && first_touch(record) && !bounced_long;
+  known.in_a_row = quiet ? known.in_a_row + 1 : 0;
+  if (!repeats) known.surprises.push_back(surprise(predicted, record, known.belief.effective_devices));
+  constexpr double rarely = 0.05;
+  if (bounced_long && predicted.bounces <= rarely) ++known.unexpected_bounces;
+  if (repeats) {
+    if (quiet) known.kept = known.fired.back().as_proposed;
+    known.steering->follow(*first_touch(record));
+    known.next.waveforms = known.steering->steered();
+    known.next.number += 1;
+    return known;
+  }
+  if (known.steering) known.forgotten = known.fired.size() - std::min(known.fired.size(), last_ones);  // forget what drifted
+  known.steering.reset();
+  propose_next(known, watch);
+  return known;
+}
+
+void Tuner::State::propose_next(Learned& known, const Watch& watch) const {
+  constexpr double calm = 0.05;
+  constexpr int hold_is_fixed = 2;  // closings
+  Draws draws(scene.options().seed, first_draw(known.closings));
+  std::vector<LearnedShot> shots;
+  for (std::size_t k = known.forgotten; k < known.fired.size(); ++k) {
+    if (k < known.forgotten + first_ones || k + last_ones >= known.fired.size()) shots.push_back(known.fired[k].shot);
+  }
+  known.belief = softland::learned(scene, shots, known.belief, draws, watch);
+  Draws of_misfit(scene.options().seed, first_draw(known.closings) + (std::uint64_t{1} << 19));
+  known.misfit = touch_misfit(scene, shots, known.belief, of_misfit, watch);
+  known.unexplained_bounces = unexplained_bounces(scene, shots, known.belief, watch);
+  if (known.belief.effective_devices >= enough_devices) {
+    known.gap_ratio = believed_gap_ratio(scene, known.belief);
+    if (is_off(known.gap_ratio) &&
+        gap_ratio_misfit(scene, shots, known.belief, certain * certain, of_misfit, watch) < certain * certain)
+      known.gap_ratio.reset();
+  }
+  const TunedScene::Units units = scene.units(known.belief.mean);
+  if (known.closings <= hold_is_fixed) known.hold = believed_hold(units);
+  const Outlook outlook(scene, known.belief.resampled(proposal_devices, draws), draws, watch);
+  const Shapes limited = shapes_for(known);
+  std::vector<std::vector<double>> candidates{known.x};
+  std::ranges::move(recipes_in(units), std::back_inserter(candidates));
+  for (const Fired& fired : known.fired) {
+    if (std::ranges::find(candidates, fired.x) == candidates.end()) candidates.push_back(fired.x);
+  }
+  const Proposal proposal =
+      propose(scene, limited, outlook, candidates, scene.options().seed + static_cast<std::uint64_t>(known.closings), watch);
+  known.x = proposal.x;
+  known.next = shot(known.next.number + 1, limited.waveforms(known.x), outlook);
+  keep_best(known, outlook, proposal.cost.total());
+  if (known.in_a_row >= 2 && proposal.cost.landing < calm) repeat(known, outlook);
+}
+
+// Keeps the best waveform among those that did not bounce when they were fired last, unless the next is clearly better.
+void Tuner::State::keep_best(Learned& known, const Outlook& outlook, double expected) const {
+  constexpr double clearly = 0.15;
+  known.kept = known.next;
+  double least = expected + clearly;
+  for (auto one = known.fired.begin(); one != known.fired.end(); ++one) {
+    const Fired& fired = *one;
+    const bool is_last =
+        std::none_of(one + 1, known.fired.end(), [&](const Fired& later) { return later.waveform == fired.waveform; });
+    if (!is_last || !is_bounce_free(fired.shot.record)) continue;
+    const double cost = outlook.expected(fired.shot.waveforms, outlook.size()).total();
+    if (!(cost < least)) continue;
+    least = cost;
+    known.kept = fired.as_proposed;
+    known.kept.expected_cost = cost;
+    known.kept.predicted = outlook.predicted(fired.shot.waveforms);
+  }
+}
+
+void Tuner::State::repeat(Learned& known, const Outlook& outlook) const {
+  const auto fired = std::ranges::find(known.fired, known.kept.number, [](const Fired& one) { return one.as_proposed.number; });
+  if (fired == known.fired.end()) return;
+  known.steering = Steering{.waveforms = fired->shot.waveforms,
+                            .waveform = fired->waveform,
+                            .slope = outlook.touch_slope(fired->shot.waveforms),
+                            .most = std::max(1.0, shapes_for(known).room(fired->shot.waveforms))};
+  known.x = fired->x;
+  const int number = known.next.number;
+  known.next = known.kept;
+  known.next.number = number;
+}
+
+void Tuner::State::fire_kept_again() {
+  const auto fired = std::ranges::find(now.fired, now.kept.number, [](const Fired& one) { return one.as_proposed.number; });
+  if (fired == now.fired.end() || now.steering) return;  // the steered waveform is the one kept
+  now.x = fired->x;
+  now.next_waveform = fired->waveform;
+  const int number = now.next.number;
+  now.next = now.kept;
+  now.next.number = number;
+}
+
+Tuner::Tuner(const SceneFile& file, const TunerOptions& options, const Watch& watch) {
+  check(options);
+  state_ = std::make_unique<State>(std::make_shared<const Setting>(file, options, watch), watch);
+}
+Tuner::Tuner(std::shared_ptr<const Setting> setting, const Watch& watch)
+    : state_(std::make_unique<State>(std::move(setting), watch)) {}
+Tuner::~Tuner() = default;
+Tuner::Tuner(Tuner&&) noexcept = default;
+Tuner& Tuner::operator=(Tuner&&) noexcept = default;
+
+Tuner Tuner::restarted() const { return Tuner(state_->setting, {}); }
+
+const PreparedScene& Tuner::scene() const { return state_->scene.nominal(); }
+const std::vector<Recipe>& Tuner::recipes() const { return state_->recipes; }
+Approach Tuner::approach() const { return state_->scene.approach(); }
+double Tuner::step_closing_time() const { return state_->scene.scales().closing_time; }
+double Tuner::step_permanent_contact() const { return state_->scene.scales().permanent_contact; }
+bool Tuner::spread_is_assumed() const { return state_->scene.spread_is_assumed(); }
+const TunerShot& Tuner::next() const { return state_->now.next; }
+int Tuner::closings() const { return state_->now.closings; }
+const TunerShot& Tuner::kept() const { return state_->now.kept; }
+void Tuner::fire_kept_again() { state_->fire_kept_again(); }
+bool Tuner::was_kept_last() const {
+  return !state_->now.fired.empty() && state_->now.fired.back().as_proposed.number == state_->now.kept.number;
+}
+const std::vector<double>& Tuner::surprises() const { return state_->now.surprises; }
+int Tuner::unexpected_bounces() const { return state_->now.unexpected_bounces; }
+int Tuner::bounce_free_in_a_row() const { return state_->now.in_a_row; }
+
+void Tuner::learn(const ContactRecord& record, const Watch& watch) {
+  const std::string fault = record_fault(record);
+  require(fault.empty(), fault);
+  if (!record.error.empty()) {
+    ++state_->now.next.number;
+    return;
+  }
+  state_->now = state_->learned(state_->now, record, watch);
+}
+
+BeliefSummary Tuner::belief() const {
+  const TunedScene& scene = state_->scene;
+  const Belief& belief = state_->now.belief;
+  const std::vector<SpreadVariable>& variables = scene.nominal().scene.spread.variables;
+  std::vector<std::vector<double>> columns(variables.size() + 1);
+  for (const Eigen::VectorXd& z : belief.points) {
+    const std::vector<double> values = scene.values(z);
+    for (std::size_t i = 0; i < values.size(); ++i) columns[i].push_back(values[i]);
+    columns.back().push_back(scene.delay(z));
+  }
+  BeliefSummary summary{.quantities = {}, .effective_devices = belief.effective_devices, .correlated = {}};
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const bool is_delay = i == variables.size();
+    BelievedQuantity one{.name = is_delay ? trigger_delay_name : variables[i].name,
+                         .unit = is_delay ? "s" : (variables[i].is_factor ? std::string() : variables[i].keys.front().unit),
+                         .prior_mean = is_delay ? 0 : variables[i].distribution.mean(),
+                         .prior_deviation = is_delay ? scene.delay_deviation() : variables[i].distribution.standard_deviation()};
+    one.mean = weighted_mean(belief.weights, columns[i]);
+    one.deviation = weighted_deviation(belief.weights, columns[i], one.mean);
+    summary.quantities.push_back(one);
+  }
+  summary.touch_misfit = state_->now.misfit;
+  summary.gap_ratio = believed_gap_ratio(scene, belief);
+  const NormalBelief standard{.mean = Eigen::VectorXd::Zero(scene.size()),
+                              .covariance = Eigen::MatrixXd::Identity(scene.size(), scene.size())};
+  summary.coordinates = {.prior = scene.in_spread(standard),
+                         .posterior = scene.in_spread({.mean = belief.mean, .covariance = belief.covariance})};
+  constexpr double alike = 0.9;
+  for (std::size_t i = 0; i < columns.size() && state_->now.closings > 0; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const BelievedQuantity &a = summary.quantities[j], &b = summary.quantities[i];
+      double covariance = 0;
+      for (std::size_t k = 0; k < belief.weights.size(); ++k)
+        covariance += belief.weights[k] * (columns[j][k] - a.mean) * (columns[i][k] - b.mean);
+      const double correlation = covariance / (a.deviation * b.deviation);
+      if (!(std::abs(correlation) > alike)) continue;
+      summary.correlated.push_back(
+          fmt::format("The records do not tell {} from {} (correlation {:.2f}).", a.name, b.name, correlation));
+    }
+  }
+  return summary;
+}
+
+namespace {
+
+// Says "The device ...: its contact gap is 4.8 % wider ..." Devices of [spread] keep the ratio of the scene.
+std::string gap_ratio_words(const BelievedQuantity& ratio) {
+  constexpr double percent = 100;
+  const double change = percent * (ratio.mean - 1);
+  return fmt::format(
+      "The device does not behave like the scene: against the electrode gap its contact gap is {:.1f} % {}, with a standard "
+      "error of {:.1f} %, where devices of the scene keep the ratio of the two.",
+      std::abs(change), change > 0 ? "wider" : "narrower", percent * ratio.deviation);
+}
+
+}  // namespace
+
+std::optional<std::string> Tuner::broken_assumption() const {
+  constexpr int too_many = 3;
+  const State::Learned& now = state_->now;
+  if (now.misfit.is_beyond())
+    return fmt::format(
+        "The device does not behave like the scene: no device of its spread touches as was recorded. The squares of what the "
+        "best "
+        "one is off by add up to {}, and one device in a thousand exceeds {}.",
+        engineering(now.misfit.least, "", 3), engineering(now.misfit.bound, "", 3));
+  if (std::min(now.unexpected_bounces, now.unexplained_bounces) >= too_many)
+    return fmt::format(
+        "The device does not behave like the scene: it bounced in {} closings that were predicted to be free of bounces.",
+        now.unexpected_bounces);
+  return is_off(now.gap_ratio) ? std::optional(gap_ratio_words(*now.gap_ratio)) : std::nullopt;
+}
+
+}  // namespace softland

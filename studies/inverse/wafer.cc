@@ -1,0 +1,106 @@
+#include "studies/inverse/wafer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/decompositions.h"
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// The measurement y = J z + n of one device.
+struct LinearMeasurement {
+  MatrixXd rows;
+  VectorXd values;
+};
+
+void check(const NormalBelief& belief, Index size) {
+  const MatrixXd& c = belief.covariance;
+  require(belief.mean.size() == size && c.rows() == size && c.cols() == size && belief.mean.allFinite() && c.allFinite() &&
+              symmetric_eigen(c).values.minCoeff() > 0,
+          "a belief about a tuned device must have finite coordinates of this scene, and a positive definite covariance");
+}
+
+LinearMeasurement told_by(const TunedBelief& tuned) {
+  constexpr double is_told = 0.5;  // share of the variance before: samples of a belief scatter above it
+  const Index n = tuned.prior.mean.size();
+  const MatrixXd factor = cholesky_factor(tuned.prior.covariance), identity = MatrixXd::Identity(n, n);
+  MatrixXd inverse(n, n);
+  for (Index k = 0; k < n; ++k) inverse.col(k) = solve_linear(factor, identity.col(k));
+  const VectorXd mean = inverse * (tuned.posterior.mean - tuned.prior.mean);
+  const SymmetricEigen eigen = symmetric_eigen(inverse * tuned.posterior.covariance * inverse.transpose());
+  std::vector<Index> told;
+  for (Index k = 0; k < n; ++k) {
+    if (eigen.values[k] < is_told) told.push_back(k);
+  }
+  LinearMeasurement all{.rows = MatrixXd(static_cast<Index>(told.size()), n),
+                        .values = VectorXd(static_cast<Index>(told.size()))};
+  for (Index i = 0; i < all.values.size(); ++i) {
+    const Index k = told[static_cast<std::size_t>(i)];
+    const double variance = eigen.values[k], precision = 1 / variance - 1;  // precision of the records alone
+    const VectorXd direction = eigen.vectors.col(k);
+    all.rows.row(i) = std::sqrt(precision) * direction.transpose() * inverse;
+    all.values[i] = direction.dot(mean) / variance / std::sqrt(precision) + all.rows.row(i).dot(tuned.prior.mean);
+  }
+  return all;
+}
+
+}  // namespace
+
+WaferBelief believed_of_wafer(std::span<const TunedBelief> tuned, Index size) {
+  std::vector<LinearMeasurement> all;
+  Index count = 0;
+  for (const TunedBelief& one : tuned) {
+    check(one.prior, size);
+    check(one.posterior, size);
+    all.push_back(told_by(one));
+    count += all.back().values.size();
+  }
+  MatrixXd rows(count, size), own = MatrixXd::Zero(count, count);  // own: J J^T of each device
+  VectorXd values(count);
+  Index begin = 0;
+  for (const LinearMeasurement& one : all) {
+    const Index m = one.values.size();
+    rows.middleRows(begin, m) = one.rows;
+    values.segment(begin, m) = one.values;
+    own.block(begin, begin, m, m) = one.rows * one.rows.transpose();
+    begin += m;
+  }
+  constexpr int steps = 40;
+  constexpr double least_apart = 0.03;  // deviation of the devices of a wafer, over that of all
+  const MatrixXd identity = MatrixXd::Identity(count, count), shared = rows * rows.transpose();
+  std::vector<double> shares, logarithms;
+  std::vector<NormalBelief> nexts;
+  for (int s = 0; s <= steps; ++s) {
+    const double rho = 1 - std::pow(least_apart, 2.0 * s / steps);
+    const MatrixXd factor = cholesky_factor(identity + (1 - rho) * own + rho * shared);
+    MatrixXd whitened(count, size);
+    for (Index k = 0; k < size; ++k) whitened.col(k) = solve_linear(factor, rows.col(k));
+    const VectorXd residual = solve_linear(factor, values);
+    shares.push_back(rho);
+    logarithms.push_back(-factor.diagonal().array().log().sum() - residual.squaredNorm() / 2);
+    nexts.push_back({.mean = rho * whitened.transpose() * residual,
+                     .covariance = MatrixXd::Identity(size, size) - rho * rho * whitened.transpose() * whitened});
+  }
+  const double largest = *std::ranges::max_element(logarithms);
+  double sum = 0;
+  WaferBelief wafer{.next = {.mean = VectorXd::Zero(size), .covariance = MatrixXd::Zero(size, size)}};
+  for (std::size_t s = 0; s < nexts.size(); ++s) sum += logarithms[s] = std::exp(logarithms[s] - largest);
+  for (std::size_t s = 0; s < nexts.size(); ++s) {
+    wafer.share += logarithms[s] / sum * shares[s];
+    wafer.next.mean += logarithms[s] / sum * nexts[s].mean;
+  }
+  for (std::size_t s = 0; s < nexts.size(); ++s) {
+    const VectorXd off = nexts[s].mean - wafer.next.mean;
+    wafer.next.covariance += logarithms[s] / sum * (nexts[s].covariance + off * off.transpose());
+  }
+  return wafer;
+}
+
+}  // namespace softland

@@ -1,0 +1,78 @@
+// Searches from several seeds as one study: each becomes a row of a store as soon as it is done.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "objectives/figures.h"
+#include "store/study_store.h"
+#include "studies/search/evaluation_store.h"
+#include "studies/search/optimize.h"
+#include "studies/search/stored_search.h"
+
+namespace softland {
+
+/// The result of the search from one seed.
+struct SearchOfSeed {
+  std::uint64_t seed = 0;
+  std::string status, termination;
+  double cost = Metrics::unset, evaluations = Metrics::unset;
+  bool goal_met = false, confirmed = false, better_than_baseline = false;
+  FigureValues figures = {};  ///< figures of the waveform found
+};
+
+class SeedStudy {
+ public:
+  /// The progress of the study.
+  struct State {
+    std::uint64_t done = 0;  ///< number of finished seeds
+    double part = 0;         ///< share of all evaluations
+    long evaluations = 0;    ///< evaluations of this run
+    double best_cost = Metrics::unset, step_cost = Metrics::unset;
+  };
+  /// Callbacks from any thread, one call at a time; either may be null.
+  struct Listener {
+    std::function<void(const State&)> progress = {};
+    std::function<void(const SceneFile& best)> improvement = {};  ///< best of all seeds
+  };
+
+  /// `variables` are the searched parameters. Opens the store of the seeds, whose rows are not computed again. Keeps references
+  /// to search and evaluations. Throws as StudyStore does.
+  SeedStudy(const StoredSearch& search, EvaluationStore& evaluations, const std::filesystem::path& file,
+            std::vector<std::string> variables, const StoredOrigin& origin);
+
+  /// Runs the missing searches, several at once if there are as many as threads. A search is the same on any number of them.
+  /// Ends early when asked to stop.
+  void run(const Listener& listener);
+  /// Closes the store.
+  void close() { store_.close(); }
+
+  /// The finished searches, in the order of their seeds.
+  [[nodiscard]] std::vector<SearchOfSeed> searches() const;
+  /// The scene that the search from this seed found; empty if it found nothing.
+  [[nodiscard]] std::string scene_of(std::uint64_t seed) const;
+  [[nodiscard]] std::uint64_t missing() const { return search_.seeds - done_; }
+  [[nodiscard]] State state() const;
+
+ private:
+  void search(std::uint64_t k, int jobs, const Listener& listener);
+  [[nodiscard]] StoredRow row(std::uint64_t k, const OptimizeResult& result, double closings) const;
+
+  const StoredSearch& search_;
+  EvaluationStore& evaluations_;
+  std::vector<std::string> variables_;
+  std::filesystem::path file_;
+  StudyStore store_;
+  std::vector<std::uint64_t> to_do_;
+
+  mutable std::mutex mutex_;  // guards the members below
+  std::vector<long> made_;    // evaluations, by seed, of the searches that are running or done in this run
+  std::uint64_t done_ = 0;
+  double best_cost_ = Metrics::unset, step_cost_ = Metrics::unset;
+};
+
+}  // namespace softland
