@@ -77,13 +77,12 @@ std::string symbol_html(std::string_view symbol) {
   return fmt::format("{}<sub>{}</sub>", symbol.substr(0, at), symbol.substr(at + 1));
 }
 
-// True for the symbol of a quantity: a letter and a short index, as "t_i" or "v_max".
+// True for the symbol of a quantity, a letter and its index: "t_i", "v_max".
 bool has_index(std::string_view word) {
-  constexpr std::size_t longest_index = 3;
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  const auto is_of_index = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); };
-  return word.size() > 2 && word.size() <= 2 + longest_index && is_letter(word[0]) && word[1] == '_' &&
-         std::ranges::all_of(word.substr(2), is_of_index);
+  if (word.size() < 3 || !is_letter(word[0]) || word[1] != '_') return false;
+  const std::string_view index = word.substr(2);
+  return index == "max" || index == "min" || (index.size() == 1 && (is_letter(index[0]) || (index[0] >= '0' && index[0] <= '9')));
 }
 
 std::string cell_html(const TableCell& cell, const TableCell* head, std::string_view tag, std::string_view scope) {

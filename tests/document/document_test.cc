@@ -61,7 +61,7 @@ TEST(ReportTable, OfAPageEscapesSetsIndicesAndNamesItsClasses) {
                               "close &amp; stays open</td><td class=\"words\">late</td>"));
 }
 
-TEST(WordsHtml, SetsTheIndicesOfFiguresAlone) {
+TEST(WordsHtml, SetsTheIndicesOfSymbolsAlone) {
   EXPECT_EQ(words_html("t_i, v_max (of B_H) and t_p."), "t<sub>i</sub>, v<sub>max</sub> (of B<sub>H</sub>) and t<sub>p</sub>.");
   for (const char* other : {"driver.t_i", "t_i/x", "t_iv", "at_i", "t_", "_i", "max_slew", ""})
     EXPECT_EQ(words_html(other), other);

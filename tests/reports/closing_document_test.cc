@@ -245,7 +245,7 @@ TEST(ScriptJson, CannotEndTheScript) {
 TEST(PageFiles, AreTheFilesOfTheSourceTree) {
   for (const char* name : {"page/page.html", "page/page.css", "page/page.js", "page/scripts.html", "uplot/uPlot.iife.min.js",
                            "uplot/uPlot.min.css", "uplot/LICENSE"}) {
-    std::ifstream file(std::string(SOFTLAND_SOURCE_DIR) + "/reports/" + name, std::ios::binary);
+    std::ifstream file(std::string(SOFTLAND_SOURCE_DIR) + "/document/" + name, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     EXPECT_FALSE(text.empty()) << name;
     EXPECT_EQ(internal::page_file(name), text) << name;
