@@ -398,34 +398,7 @@ double drive_energy(const FleetClosing& c, const LaneClosing& lane) {
          of_layer;
 }
 
-fleet::LaneRunner runner(Vectors vectors) {
-#ifdef SOFTLAND_LANES_AVX512
-  if (vectors == Vectors::avx512) return fleet::run_avx512;
-#endif
-#ifdef SOFTLAND_LANES
-  if (vectors == Vectors::avx2) return fleet::run_avx2;
-#else
-  static_cast<void>(vectors);
-#endif
-  return nullptr;
-}
-
 }  // namespace
-
-bool has(Vectors vectors) {
-#ifdef SOFTLAND_LANES
-  __builtin_cpu_init();
-  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
-  if (vectors == Vectors::avx2) return avx2;
-#ifdef SOFTLAND_LANES_AVX512
-  if (vectors == Vectors::avx512) {
-    return avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd");
-  }
-#endif
-#endif
-  return vectors == Vectors::none;
-}
 
 Vectors vectors_in_use() {
   constexpr const char* variable = "SOFTLAND_VECTORS";
@@ -470,7 +443,7 @@ std::string why_not_in_lanes(const Switch& model) {
 
 std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, double tolerance, Vectors vectors) {
   std::vector<FleetEnd> ends(closings.size());
-  const fleet::LaneRunner run = runner(vectors);
+  const fleet::LaneRunner run = fleet::lane_runner(vectors);
   if (run == nullptr) return ends;
 
   fleet::LaneDrives drives;

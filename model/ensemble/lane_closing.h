@@ -4,6 +4,10 @@
 
 #include <cstddef>
 
+namespace softland {
+enum class Vectors;  // model/ensemble/fleet.h
+}
+
 namespace softland::fleet {
 
 inline constexpr int most_modes = 8, most_points = 48, most_drives = 6, most_segments = most_points;
@@ -146,5 +150,7 @@ struct LaneClosing {
 using LaneRunner = void (*)(const LaneLayout& layout, LaneClosing* closings, std::size_t count);
 void run_avx2(const LaneLayout& layout, LaneClosing* closings, std::size_t count);
 void run_avx512(const LaneLayout& layout, LaneClosing* closings, std::size_t count);
+/// Returns the function for these vectors; null where this build does not have them.
+[[nodiscard]] LaneRunner lane_runner(Vectors vectors);
 
 }  // namespace softland::fleet

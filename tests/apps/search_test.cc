@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -667,6 +668,54 @@ TEST(Robustness, LeavesTheWorstDevicesOfTheBox) {
               integrated_with * first_contact);
   for (const char* name : {"box-v_max.toml", "box-B_H.toml"}) EXPECT_GT(fs::file_size(here.path() / "out" / name), 0U) << name;
 }
+
+// The bars that searches over devices were built to reach: 95th percentiles of impact velocity, rebound and first touch, or the
+// yield, of devices that the search has not seen (results/race.md).
+struct Bar {
+  const char *scene, *actuator;
+  double impact_velocity, rebound;  // [m/s], [m]
+  double yield;                     // share of bounce-free devices
+  double first_touch;               // [s]
+};
+class DefaultSearch : public testing::TestWithParam<Bar> {};
+
+TEST_P(DefaultSearch, ReachesItsBar_slow) {
+  const Bar& bar = GetParam();
+  const Workplace here;
+  const Outcome o = here.run({"optimize", fmt::format("{}/scenes/{}.toml", SOFTLAND_SOURCE_DIR, bar.scene), "--actuator",
+                              bar.actuator, "--quiet", "--out", "out"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  const json rows = result(here, "out")["devices"]["rows"];
+  const auto row = [&](const char* name) {
+    return *std::ranges::find_if(rows, [&](const json& one) { return one["name"] == name; });
+  };
+  const json &own = row("for the devices"), &step = row("plain step");
+  const auto at_95 = [](const json& of, const char* key) {
+    const json& value = of["quantile_95"][key];
+    return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
+  };
+  EXPECT_LE(at_95(own, "largest_impact_velocity_m_s"), bar.impact_velocity);
+  EXPECT_LE(at_95(own, "major_bounce_height_m"), bar.rebound);
+  EXPECT_LE(at_95(own, "initial_contact_time_s"), bar.first_touch);
+  EXPECT_GE(own["bounce_free"].get<double>(), bar.yield);
+  for (const char* key : {"largest_impact_velocity_m_s", "major_bounce_height_m", "peak_contact_force_N"})
+    EXPECT_LE(at_95(own, key), at_95(step, key)) << key;
+  constexpr double more_open = 0.005;  // what a search may add to the share of devices that stay open
+  EXPECT_LE(own["does_not_close"].get<double>(), step["does_not_close"].get<double>() + more_open);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bars, DefaultSearch,
+                         testing::Values(Bar{"mem-gold", "electrostatic", 38e-3, 100e-9, 0, 188e-6},
+                                         Bar{"mem-gold-pzt", "pzt", 88e-3, 280e-9, 0, 125e-6},
+                                         Bar{"mem-gold-pzt", "electrostatic", 80e-3, 165e-9, 0, 125e-6},
+                                         Bar{"mem-gold-pzt", "both", 70e-3, 125e-9, 0, 120e-6},
+                                         Bar{"two-electrodes", "electrostatic", 242e-3, 260e-9, 0, 140e-6},
+                                         Bar{"nem-tin", "electrostatic", 32, 3.64e-9, 0.72, 6e-9}),
+                         [](const auto& bar) {
+                           std::string name = fmt::format("{}_{}", bar.param.scene, bar.param.actuator);
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace softland
