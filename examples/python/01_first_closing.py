@@ -12,15 +12,15 @@ closing = scene.simulate()
 closing
 
 # %% [markdown]
-# Figures are floats in SI units that know their unit and their error.
+# A figure is a float in SI units with the members `unit` and `error`.
 
 # %%
 print(f"first contact   {closing.initial_contact_time * 1e6:.3f} us")
-print(f"error of it     {closing.initial_contact_time.error:.1e} {closing.initial_contact_time.unit}")
+print(f"its error       {closing.initial_contact_time.error:.1e} {closing.initial_contact_time.unit}")
 print(f"highest rebound {closing.major_bounce_height * 1e9:.1f} nm")
 
 # %% [markdown]
-# The course at the contact, and the whole beam at any time.
+# The trajectory is that of the contact point; `shape` gives the deflection of the whole beam at any time.
 
 # %%
 run = closing.trajectory
@@ -30,7 +30,7 @@ if "ipykernel" in sys.modules:
     closing.plot()
 
 # %% [markdown]
-# A thicker beam: changes are checked as a scene file is.
+# Keys of the scene can be changed, and are checked as in a scene file. Here the beam becomes thicker.
 
 # %%
 scene["structure.thickness"] = "2.2 um"

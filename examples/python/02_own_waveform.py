@@ -1,7 +1,7 @@
 # %% [markdown]
 # # A waveform of your own
-# A swell: half a cosine up to a level, half a cosine down to another, half a cosine to the hold voltage. It is run as it stands, then its five
-# parameters are searched, and what is found is written for a generator. The same as `examples/05_own_waveform.cc`.
+# This waveform rises to a level, falls to another and rises to the hold voltage, each by half a cosine. First it is simulated with the given
+# parameters, then its five parameters are searched, and the result is written for a generator. `examples/05_own_waveform.cc` does the same in C++.
 
 # %%
 import numpy as np
@@ -15,7 +15,7 @@ limit = float(scene.resolved()["driver.main.max_voltage"])
 
 
 # %% [markdown]
-# The voltage is asked for arrays of times. Between the breakpoints it must be smooth; after the last one it stays.
+# softland calls `voltage` with arrays of times. The voltage must be smooth between the breakpoints, and constant after the last one.
 
 
 # %%

@@ -1,7 +1,7 @@
 # %% [markdown]
 # # SciPy drives the search
-# `scene.evaluator` is a function of arrays: a population of candidates is closed in one call, in lanes on all cores. Here the levels and times
-# of a pulse are searched by differential evolution.
+# `scene.evaluator` takes arrays: one call simulates a whole population of candidates on all cores. Here differential evolution searches the levels
+# and times of a pulse.
 
 # %%
 import numpy as np
@@ -17,7 +17,8 @@ evaluate = scene.evaluator(keys, ["impact_velocity", "major_bounce_height"])
 bounds = [(0.9 * hold, 1.19 * hold), (0.0, 0.5 * hold), (10e-6, 30e-6), (32e-6, 60e-6)]
 
 # %% [markdown]
-# What cannot be, and what does not touch, is NaN: a search takes it for far too fast. The rebound is minimised with the speed.
+# The figures of an impossible candidate, and of one that never touches, are NaN; the objective then returns a large value. The objective is the
+# impact velocity together with the rebound.
 
 
 # %%

@@ -1,7 +1,7 @@
 # %% [markdown]
 # # A map of dither
-# A small sine on top of the step changes how the switch bounces: "dither" (Bognash 2019). Find the frequency and amplitude that help: a map of 60 x 40
-# closings, in one call.
+# A small sine on top of the step, called dither, changes how the switch bounces (Bognash 2019). One call simulates a map of 60 x 40 closings, which
+# shows the frequencies and amplitudes that help.
 
 # %%
 import sys

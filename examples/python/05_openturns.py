@@ -1,6 +1,7 @@
 # %% [markdown]
-# # Sobol' indices by OpenTURNS, and ours
-# Which of the numbers that vary makes the impact speed vary? OpenTURNS samples `scene.evaluator`; `scene.robustness` has its own indices.
+# # Sobol' indices by OpenTURNS and by softland
+# Sobol' indices tell which varying quantity causes how much of the variance of the impact velocity. OpenTURNS computes them from samples of
+# `scene.evaluator`; `scene.robustness` computes them by itself.
 
 # %%
 import openturns as ot

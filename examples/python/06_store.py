@@ -1,6 +1,6 @@
 # %% [markdown]
 # # The store of an exploration, in NumPy, pandas and SQL
-# `softland explore` keeps what it computes in one SQLite file. It can be read while it is written.
+# `softland explore` writes its results into one SQLite file, which can be read at any time.
 
 # %%
 import os
@@ -20,7 +20,7 @@ plan = ["--vary", "gap.contact=1.8 um:2.2 um:5", "--vary", "structure.thickness=
 subprocess.run([program, "explore", str(scene), *plan, "--out", str(store)], check=True, capture_output=True)
 
 # %% [markdown]
-# As a structured array, and in pandas where it is installed:
+# The rows are a structured array of NumPy, from which pandas makes a table:
 
 # %%
 found = softland.open(store)
@@ -36,7 +36,7 @@ except ImportError:
     print("pandas is not installed")
 
 # %% [markdown]
-# And in SQL, without softland:
+# Any program that speaks SQL reads the file, too:
 
 # %%
 with sqlite3.connect(f"file:{store}?mode=ro", uri=True) as database:

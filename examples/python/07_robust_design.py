@@ -1,7 +1,7 @@
 # %% [markdown]
 # # From the nominal design to a waveform for devices
-# A waveform that closes the nominal design softly is of little use under process variation. Here one is searched for devices, by the mean of the worst tenth of
-# them, and judged on fresh ones beside the plain step.
+# A waveform that closes the nominal design softly is of little use under process variation. This search minimises the mean cost of the worst tenth of
+# the simulated devices. The waveform is then judged on other devices, beside the plain step.
 
 # %%
 import softland
@@ -10,7 +10,7 @@ scene = softland.shipped("mem-gold")
 print([key for key in scene if key.startswith("spread.")])
 
 # %% [markdown]
-# The search counts closings of devices. A real one takes 60 000 of them (`budget`), this one a tenth.
+# `budget` is a number of simulated closings. By default a search takes 60 000; this one takes a tenth of them.
 
 # %%
 found = scene.optimize(robust="cvar:0.9", samples=64, budget=6000)
@@ -18,7 +18,7 @@ best = softland.load(found.file("best.toml"))
 print(found.robust)
 
 # %% [markdown]
-# The scene of the winner holds its waveform: it can be simulated, judged, exported.
+# The scene `best.toml` holds the waveform that was found. It can be simulated, judged and exported.
 
 # %%
 judged = best.robustness(samples=500, seed=7)

@@ -1,6 +1,7 @@
 # %% [markdown]
 # # Many devices on a cluster
-# The evaluator can be pickled, so that Dask sends it to its workers. Another worker computes what a killed one was at: the table is the same.
+# The evaluator can be pickled, so Dask can send it to its workers. When a worker is killed, another one takes over its rows, and the table stays
+# the same.
 
 # %%
 import sys

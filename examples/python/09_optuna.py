@@ -1,7 +1,7 @@
 # %% [markdown]
 # # Optuna drives the evaluator
-# Two objectives at once: how fast the switch touches, and how soon. Optuna's NSGA-II proposes pulses, a whole generation is closed in one call of
-# `scene.evaluator`, and the front says what softness costs in time.
+# Two objectives are minimised at once: impact velocity and closing time. Optuna's NSGA-II proposes pulses, one call of `scene.evaluator` simulates a
+# whole generation, and the Pareto front shows how much time a softer landing costs.
 
 # %%
 import numpy as np
@@ -22,7 +22,7 @@ bounds = {
 evaluate = scene.evaluator(list(bounds), ["initial_contact_time", "impact_velocity"])
 
 # %% [markdown]
-# `ask` gives a candidate and `tell` takes its result. A candidate without figures, a pulse that never touches, say, is pruned.
+# `ask` returns a candidate and `tell` takes its result. A candidate without figures is pruned, for example a pulse that never touches.
 
 # %%
 optuna.logging.set_verbosity(optuna.logging.WARNING)
@@ -43,7 +43,7 @@ for touch, speed in front[:: max(1, len(front) // 8)]:
     print(f"{touch:6.2f} us  {speed:6.2f} mm/s")
 
 # %% [markdown]
-# One of them is run as the program runs it, with the errors of its figures.
+# One point of the front is simulated alone, with the errors of its figures.
 
 # %%
 slow = step.initial_contact_time * 1.4e6

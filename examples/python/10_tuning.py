@@ -1,7 +1,8 @@
 # %% [markdown]
 # # A waveform for one device on the bench
-# A device is a function: it gets a shot, the voltages to be played, and returns when its contact was closed. This one is simulated. It differs from
-# the nominal design as devices do, has a mode that the scene does not know, and tells nothing but the voltage of its contact, noise and all.
+# `scene.tune` sees a device as a function: the function takes a shot, which holds the commanded voltages, and returns the times at which the contact
+# closed and opened. The device here is simulated. It deviates from the nominal design by process variation, has a mode that the scene does not
+# have, and shows only a noisy voltage of its contact.
 
 # %%
 from typing import Any
@@ -23,7 +24,7 @@ def fire(shot: softland.Shot) -> dict[str, Any]:
 
 
 # %% [markdown]
-# Each line says what was seen and what is expected of the next closing.
+# Each printed line tells what the closing showed and what is expected of the next one.
 
 # %%
 found = scene.tune(fire, callback=print)
@@ -32,4 +33,4 @@ found = scene.tune(fire, callback=print)
 for quantity in found.belief.quantities:
     print(f"{quantity.name:24s} {quantity.prior_mean:5.3g} ± {quantity.prior_deviation:.2g} before, {quantity['mean']:8.3g} ± {quantity.deviation:.2g} now")
 step = scene.simulate(errors=False)
-print(f"the last {found.bounce_free_in_a_row} of {len(found.closings)} closings are without a bounce; the plain step on the drawing has {step.bounce_count:.0f}")
+print(f"the last {found.bounce_free_in_a_row} of {len(found.closings)} closings are without a bounce; the nominal design bounces {step.bounce_count:.0f} times under the plain step")
