@@ -22,7 +22,7 @@ bounds = {
 evaluate = scene.evaluator(list(bounds), ["initial_contact_time", "impact_velocity"])
 
 # %% [markdown]
-# `ask` returns a candidate and `tell` takes its result. A candidate without figures is pruned, for example a pulse that never touches.
+# `ask` returns a candidate and `tell` takes its result. A candidate without figures, such as a pulse that never touches, is marked as failed.
 
 # %%
 optuna.logging.set_verbosity(optuna.logging.WARNING)
