@@ -12,14 +12,14 @@
 
 namespace softland {
 
-/// A row of a table of names alone. Other tables have rows of their own with these two members.
+/// A row of a table that holds names only. The rows of other tables have these two members and further ones.
 template <class E>
 struct Named {
   E value;
   std::string_view name;
 };
 
-/// A short list of words in a row of such a table.
+/// A list of at most 12 words, for a member of a row.
 class Words {
  public:
   constexpr Words(std::initializer_list<std::string_view> words) {
@@ -48,7 +48,7 @@ template <auto value>
 }  // namespace internal
 
 /// Returns true when the rows stand for all enumerators, in the order of the enumeration, and have distinct names. Every table
-/// asserts it.
+/// of choices has a static_assert of this.
 template <const auto& rows>
 [[nodiscard]] consteval bool is_complete() {
   using E = decltype(rows[0].value);
@@ -104,7 +104,7 @@ template <class Texts>
   return words;
 }
 
-/// Returns the names of the rows whose `keys` hold this one.
+/// Returns the names of the rows whose `keys` contain `key`.
 template <class Row, std::size_t n>
 [[nodiscard]] std::vector<std::string_view> with_key(const std::array<Row, n>& rows, std::string_view key) {
   std::vector<std::string_view> names;

@@ -30,11 +30,11 @@ double integral_of_product(const std::vector<double>& points, F f, G g) {
 
 ClampedSpline::ClampedSpline(std::vector<double> x, std::vector<double> y, SplineEnd end) : x_(std::move(x)), y_(std::move(y)) {
   const std::size_t n = x_.size();
-  require(n >= 2 && y_.size() == n, "a spline needs two points at least, and as many y as x");
+  require(n >= 2 && y_.size() == n, "the x and y of a spline must have the same size, at least 2");
   require(std::adjacent_find(x_.begin(), x_.end(), [](double a, double b) { return !(a < b); }) == x_.end(),
-          "the points of a spline must rise");
-  // Rows of the tridiagonal system of the curvatures: the slope at the first point, continuous slopes between, s'' = 0 or the
-  // slope at the last.
+          "the x of a spline must increase from point to point");
+  // Rows of the tridiagonal system of the curvatures: the slope at the first point, continuous slopes between, and at the last
+  // point either s'' = 0 or the slope.
   std::vector<double> diagonal(n), above(n), right(n);
   const auto width = [&](std::size_t k) { return x_[k + 1] - x_[k]; };
   const auto chord = [&](std::size_t k) { return (y_[k + 1] - y_[k]) / width(k); };
@@ -79,7 +79,8 @@ double ClampedSpline::integral_of_slopes(const ClampedSpline& other) const {
 }
 
 bool is_hinged(const std::vector<double>& x, const std::vector<double>& y) {
-  constexpr double near = 0.2, between = 1.2;  // shear of a thick beam leaves 1.4 to 1.5
+  constexpr double near = 0.2,
+                   between = 1.2;  // thick beams, which shear lets leave their clamp with a slope, have exponents of 1.4 to 1.5
   if (x.size() < 4 || !(x[2] < near * x.back()) || !(y[1] * y[2] > 0)) return false;
   return std::log(y[2] / y[1]) / std::log(x[2] / x[1]) < between;
 }

@@ -3,8 +3,8 @@
 //   s(x_k) = y_k,   s''' is constant between points,   s'(x_0) = 0,   s''(x_n) = 0 or s'(x_n) = 0
 //
 // A beam that is clamped at x_0 bends in this way: a natural spline (s''(x_0) = 0) is wrong at the clamp, where the curvature
-// of a beam is largest. The error falls with the fourth power of the distance of the points for a function that keeps both
-// ends. Source: de Boor, A Practical Guide to Splines, 1978, ch. IV.
+// of a beam is largest. The error falls with the fourth power of the distance of the points for a smooth function that
+// satisfies both end conditions. Source: de Boor, A Practical Guide to Splines, 1978, ch. IV.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ enum class SplineEnd { free, clamped };
 
 class ClampedSpline {
  public:
-  /// Throws InvalidInput unless there are as many y as x, two at least, and x rises.
+  /// Throws InvalidInput unless x and y have the same size, at least 2, and x increases.
   ClampedSpline(std::vector<double> x, std::vector<double> y, SplineEnd end = SplineEnd::free);
 
   /// Returns the value; the outermost cubics continue beyond the ends.
@@ -33,10 +33,11 @@ class ClampedSpline {
   std::vector<double> x_, y_, curvature_;  // curvature: s'' at the points
 };
 
-/// Returns true when y leaves its first place with a slope, as at a hinge. A clamped beam leaves its clamp with the square of
-/// the distance, a hinged one with the distance itself. Returns false where too few places are near the first one to decide.
+/// Returns true when the deflection y has a slope at its first place, as at a hinge. Near a clamp the deflection grows with the
+/// square of the distance, near a hinge with the distance itself. Returns false when fewer than three places lie in the first
+/// fifth of the beam.
 [[nodiscard]] bool is_hinged(const std::vector<double>& x, const std::vector<double>& y);
-/// Returns the same for the last place, seen from there.
+/// Returns true when the deflection y has a slope at its last place; see is_hinged().
 [[nodiscard]] bool is_hinged_at_end(std::vector<double> x, std::vector<double> y);
 
 }  // namespace softland

@@ -1,11 +1,12 @@
-// The time for budgets. A computation with a budget takes its clock as an option, so that a test can pass another.
+// The clock of computations with a budget of time. Such a computation takes its clock as an option, so that a test can pass
+// another.
 #pragma once
 
 #include <chrono>
 
 namespace softland {
 
-/// Returns the time of this machine since some moment [s].
+/// Returns the time since an arbitrary moment, by a clock that is never set back [s].
 [[nodiscard]] inline double wall_clock() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }

@@ -58,8 +58,8 @@ void require_no_companion(const fs::path& path, const std::string& shown) {
     if (!name.ends_with(ending)) continue;
     const std::string database = name.substr(0, name.size() - ending.size());
     require(!is_database(database), [&] {
-      return shown + ": has the name that the store " + database +
-             " gives to a file of its own, which is not replaced; name another";
+      return shown + ": is the name of a file that the store " + database +
+             " needs for itself, and must not be overwritten; choose another name";
     });
   }
 }

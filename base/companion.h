@@ -1,4 +1,4 @@
-// The files that a database keeps beside it while it is written: files of these names belong to it.
+// Companions of a database: the files that SQLite keeps beside it while it is written, and the lock of a store.
 #pragma once
 
 #include <array>
@@ -9,21 +9,21 @@
 
 namespace softland {
 
-/// Endings of the files that SQLite, and the lock of a store, keep beside a file.
+/// Endings that the name of a companion adds to the name of its database.
 inline constexpr std::array<std::string_view, 4> companion_endings{"-wal", "-shm", "-journal", ".lock"};
 
-/// Returns true when `path` is, by its name, a companion that the database `of` has or may get.
+/// Returns true when `path` is the name of a companion of the database `of`. Neither file has to exist.
 [[nodiscard]] bool is_companion(const std::filesystem::path& path, const std::filesystem::path& of);
 
 /// Returns true for a regular file that begins as every SQLite file does.
 [[nodiscard]] bool is_database(const std::filesystem::path& path);
 
-/// Throws InvalidInput, beginning with `shown`, where `path` is the companion of an existing database: writing to it would
-/// destroy the database.
+/// Throws InvalidInput, with a message that begins with `shown`, when `path` is the name of a companion of an existing
+/// database: writing to that file would destroy the database.
 void require_no_companion(const std::filesystem::path& path, const std::string& shown);
 
-/// Marks a database that this process opens: it is not looked into again, since locks of a process go with any descriptor that
-/// it closes.
+/// Marks a file as a database that this process has open. require_no_companion() then does not open the file: closing any
+/// descriptor of a file releases the locks that the process has on this file.
 void mark_as_database(const std::filesystem::path& path);
 
 }  // namespace softland

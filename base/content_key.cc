@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <bit>
 
-// MurmurHash3_x64_128 of Austin Appleby (public domain), seed 0. It gives no protection against someone who wants two contents
-// of one key. It is 128 bits wide, the same on every machine and ten times as quick as a hash that does.
+// MurmurHash3_x64_128 of Austin Appleby (public domain), seed 0: 128 bits, the same on every machine, and ten times as quick as
+// a cryptographic hash. It does not resist someone who constructs two contents with the same key.
 namespace softland {
 namespace {
 

@@ -1,4 +1,4 @@
-// A key by which equal contents are found again.
+// A hash by which equal contents are recognised.
 #pragma once
 
 #include <compare>

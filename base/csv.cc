@@ -35,7 +35,7 @@ std::size_t column(const std::vector<std::string_view>& header, std::string_view
   return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
 }
 
-/// Returns a finite number, or nothing.
+/// Returns the finite number that the text stands for; none for any other text.
 std::optional<double> number(std::string_view text) {
   // from_chars reads every decimal number to the nearest double whatever the locale, but accepts no leading plus.
   const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
@@ -60,7 +60,7 @@ void read_csv(std::string_view content, const std::string& file, const std::vect
     content.remove_prefix(line_end == std::string_view::npos ? content.size() : line_end + 1);
     if (text.empty() || text.starts_with('#')) continue;
 
-    // Measured files are long: a message, and the place in it, is composed only when a row is refused.
+    // Measured files are long: the place is formatted only for a message.
     const CsvPlace place = [&] { return fmt::format("{}:{}", file, line_number); };
     const std::vector<std::string_view> found = cells(text);
     if (width == 0) {
@@ -68,8 +68,9 @@ void read_csv(std::string_view content, const std::string& file, const std::vect
       width = found.size();
       continue;
     }
-    require(found.size() == width,
-            [&] { return fmt::format("{}: the row has {} cells; it must have {} as the header", place(), found.size(), width); });
+    require(found.size() == width, [&] {
+      return fmt::format("{}: the row has {} cells; it must have {}, as the header has", place(), found.size(), width);
+    });
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const std::optional<double> value = number(found[at[i]]);
       require(value.has_value(),

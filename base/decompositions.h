@@ -1,5 +1,5 @@
-// Decompositions of small dense matrices. Eigen compiles each anew in every unit that names its class, which takes seconds:
-// here it is compiled once.
+// Decompositions of small dense matrices. Every unit that uses Eigen's decompositions takes seconds to compile; these functions
+// are compiled once.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,18 +17,19 @@ struct SymmetricEigen {
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
 /// Decomposes a symmetric tridiagonal matrix: n entries on its diagonal and n - 1 beside it.
 [[nodiscard]] SymmetricEigen tridiagonal_eigen(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside);
-/// Returns the k in rising order for which stiffness x = k mass x; both matrices are symmetric, the second positive definite.
+/// Returns the eigenvalues k of stiffness x = k mass x, in rising order; both matrices are symmetric, `mass` is positive
+/// definite.
 [[nodiscard]] Eigen::VectorXd generalized_eigenvalues(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& mass);
 
-/// Returns orthonormal columns that are orthogonal to those of `held`, which are fewer than its rows and independent.
+/// Returns orthonormal columns that are orthogonal to the columns of `held`, which are fewer than its rows and independent.
 [[nodiscard]] Eigen::MatrixXd orthogonal_complement(const Eigen::MatrixXd& held);
 
 /// Returns the lower triangular L with L L^T = matrix, which is symmetric and positive definite.
 [[nodiscard]] Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& matrix);
 /// Returns the x with matrix x = right; none where the symmetric matrix is not positive definite.
 [[nodiscard]] std::optional<Eigen::VectorXd> solve_definite(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
-/// Returns combinations of the columns of `basis` that are orthonormal in an energy, given its matrix between these columns;
-/// none where that matrix is not positive definite.
+/// Returns combinations of the columns of `basis` that are orthonormal in an energy. `energy` is the matrix of this energy
+/// between the columns of `basis`. Returns none when `energy` is not positive definite.
 [[nodiscard]] std::optional<Eigen::MatrixXd> orthonormal_in(const Eigen::MatrixXd& energy, const Eigen::MatrixXd& basis);
 
 /// Returns the x with matrix x = right, for a symmetric matrix that is positive definite up to rounding.

@@ -24,7 +24,7 @@ namespace {
 
 constexpr int most_threads = 256;  // oneTBB has no more on machines of up to 64 cores
 
-// Returns how many further threads the machine gives, `wanted` at most.
+// Returns how many further threads the machine can start now, at most `wanted`.
 int threads_available(int wanted) {
   std::latch counted(1);
   std::vector<std::jthread> probes;
@@ -38,8 +38,8 @@ int threads_available(int wanted) {
   return static_cast<int>(probes.size());
 }
 
-// The threads of oneTBB. It ends the process where it cannot start a permitted thread, and it starts them late, one by one. So
-// it is permitted only as many as the machine has just given, and made to start them all at once.
+// The threads of oneTBB. oneTBB ends the process when it cannot start a permitted thread, and it starts threads late, one by
+// one. So this class permits only as many threads as the machine can start now, and makes oneTBB start them all at once.
 class Workers {
  public:
   // The instance is never destroyed: its oneTBB threads end with the process, not before.
@@ -48,7 +48,7 @@ class Workers {
     return *workers;
   }
 
-  // Provides `wanted` threads besides the calling one, or as many as the machine gives. Returns how many.
+  // Provides `wanted` threads besides the calling one, or as many as the machine can start. Returns their number.
   int provide(int wanted) {
     const std::scoped_lock lock(mutex_);
     if (wanted > count_) {
@@ -66,12 +66,12 @@ class Workers {
 
   void permit(int count) {
     count_ = count;
-    // The lowest of several limits holds, so the new one acts once the old one is removed.
+    // oneTBB applies the lowest of several limits, so the new limit acts once the old one is removed.
     limit_ =
         std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count) + 1);
   }
 
-  // Gives every worker a task that lasts until all have one: each must have been started for that.
+  // Gives every worker a task that lasts until all workers have one: oneTBB must start each worker for that.
   void start(int count) {
     permit(count);
     {
@@ -84,7 +84,7 @@ class Workers {
   }
 
   void meet(int arriving) {
-    // A worker that is busy in another loop may come too late, but it was started.
+    // A worker that is busy in another loop may not come in time; it has been started already.
     constexpr std::chrono::seconds patience{1};
     std::unique_lock lock(meeting_);
     missing_ -= arriving;
@@ -102,7 +102,7 @@ class Workers {
   int missing_ = 0;
 };
 
-// Makes the work of one thread visible to the next. oneTBB does so too, but the thread sanitizer cannot see it.
+// Makes the writes of one thread visible to the next. oneTBB does so too, but the thread sanitizer cannot see that.
 void hand_over() {
   static std::mutex mutex;
   const std::scoped_lock lock(mutex);
@@ -116,8 +116,8 @@ class Loop {
   Loop(std::size_t count, int threads, const std::function<void(std::size_t)>& task, const std::atomic<bool>* stop)
       : count_(count), threads_(threads), task_(task), stop_(stop), end_(count) {}
 
-  // Runs tasks until none is left; every thread of the loop does this. Tasks are taken in their order, so that all before one
-  // that throws have been begun.
+  // Runs tasks until none is left; every thread of the loop calls this. The threads take tasks in their order, so that all
+  // tasks before one that throws have been begun.
   void work() {
     const int outer = std::exchange(threads_of_loop, threads_);
     while (stop_ == nullptr || !stop_->load(std::memory_order_relaxed)) {
@@ -136,7 +136,7 @@ class Loop {
     threads_of_loop = outer;
   }
 
-  // Calls work() on all threads of the arena, as far as there are tasks for them.
+  // Calls work() on all threads of the arena, on at most one thread per task.
   void work_together() {
     hand_over();
     const auto help = [this] {
@@ -179,7 +179,7 @@ std::size_t run_tasks(std::size_t count, int jobs, const std::function<void(std:
   if (threads == 1) {
     loop.work();
   } else if (nested) {
-    // The waiting thread must not begin a task of the outer loop inside its own.
+    // The waiting thread must not begin another task of the outer loop while it runs a task of that loop.
     tbb::this_task_arena::isolate([&] { loop.work_together(); });
   } else {
     tbb::task_arena(threads).execute([&] { loop.work_together(); });

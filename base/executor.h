@@ -1,8 +1,8 @@
-// Independent tasks on several threads. A loop does and throws what a sequential loop over its tasks would, whichever thread
-// runs a task, and whenever.
+// Independent tasks on several threads. A loop has the effects of a sequential loop over its tasks, and throws the same
+// exception, whichever threads run the tasks and when.
 //
-// The threads are those of oneTBB, one pool for the process, started when they are first needed and kept. Where the machine is
-// out of threads, the existing ones do the work, the calling one at least.
+// The threads are those of oneTBB, one pool for the process, started when they are first needed and kept. When the machine
+// cannot start further threads, the existing ones do the work, at least the calling thread.
 #pragma once
 
 #include <atomic>
@@ -11,15 +11,15 @@
 
 namespace softland {
 
-/// Runs task(0), ..., task(count - 1), begun in this order, on at most `jobs` threads, the calling one among them, and returns
-/// when all have ended. A task must not depend on what another one does.
+/// Runs task(0), ..., task(count - 1), begun in this order, on at most `jobs` threads including the calling thread, and returns
+/// when all tasks have ended. A task must not depend on the effects of another task.
 ///
-/// A task that throws ends the loop: tasks before it complete, those after it are not begun any more, and the exception is
-/// rethrown. If several throw, the exception of the lowest index is rethrown. Once `stop` is set no task is begun. Returns the
-/// number of tasks begun, which are the first ones; it is `count` for a loop that is not asked to stop.
+/// A task that throws ends the loop: tasks before it complete, tasks after it are not begun any more, and the exception is
+/// rethrown. If several tasks throw, the exception of the lowest index is rethrown. Once `stop` is set no task is begun.
+/// Returns the number of tasks begun, which are the first ones; without a stop this number is `count`.
 ///
-/// Loops may be nested: they share the threads of the outermost one, and an inner one uses at most `jobs` of them at a time.
-/// There are never more than 256. Throws InvalidInput unless jobs >= 1.
+/// Loops may be nested: they share the threads of the outermost loop, and an inner loop uses at most `jobs` of these at a time.
+/// A loop never has more than 256 threads. Throws InvalidInput unless jobs >= 1.
 std::size_t run_tasks(std::size_t count, int jobs, const std::function<void(std::size_t)>& task,
                       const std::atomic<bool>* stop = nullptr);
 

@@ -1,6 +1,6 @@
-// A field of a parameter struct, described once: keys of scenes, their checks, written scenes, messages and tests come from it.
+// A field of a parameter struct, described once: the keys of scenes, their checks, written scenes, messages and tests use this.
 //
-// A kind of part, such as the contact, is the variant of the parameter structs of its laws. A law is such a struct with
+// A part of a switch, such as the contact, is a variant of the parameter structs of its laws. A law is such a struct with
 //
 //   static constexpr std::string_view name;      its name in a scene
 //   static consteval auto fields();              an array of Field, in the order of a written scene
@@ -24,7 +24,7 @@
 
 namespace softland {
 
-/// The value of a number that is not given.
+/// The value of a number that a scene does not give.
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
 /// A number of the parameter struct `Owner`, a flag, or a word that chooses one of its enumerators. A field with neither `in`,
@@ -38,19 +38,19 @@ struct Field {
   int& (*count)(Owner&) = nullptr;   ///< whole number of the struct
   bool& (*flag)(Owner&) = nullptr;   ///< flag of the struct
   std::string_view or_word = {};     ///< word that may stand instead of a whole number
-  bool required = false;             ///< true when a scene must give it; otherwise it keeps the value of an Owner{}
+  bool required = false;             ///< true when a scene must give this field; an absent field keeps the value of an Owner{}
   Range range = positive;            ///< allowed range; in a scene the extent of the unit closes open ends
-  std::string_view fallback = {};    ///< value of an Owner{} as a scene writes it; empty where that means "none"
-  std::string_view instead_of = {};  ///< key of another field of the law that this one excludes
-  std::string_view unless = {};      ///< key in whose presence it is not required
-  std::string_view not_below = {};   ///< key of another field of the law, whose value is the least one
-  std::string_view such_as = {};     ///< example value for messages, where the usual one of the unit would not do
-  std::string_view beyond = {};      ///< advice for a value outside the range, which then binds scenes alone
-  std::string_view why_fixed = {};   ///< reason why varied devices cannot vary it; empty where they can
-  std::string_view if_list = {};     ///< advice for a list in the place of the number
+  std::string_view fallback = {};    ///< value of an Owner{} as a scene writes it; empty where an absent field means "none"
+  std::string_view instead_of = {};  ///< key of another field of the law that may not be given together with this one
+  std::string_view unless = {};      ///< key whose presence makes this field optional
+  std::string_view not_below = {};   ///< key of another field of the law whose value is the least allowed one
+  std::string_view such_as = {};     ///< example value for messages, where the usual example of the unit does not fit
+  std::string_view beyond = {};      ///< advice for a value outside the range; the range then applies to scenes only
+  std::string_view why_fixed = {};   ///< reason why process variation cannot vary this field; empty where it can
+  std::string_view if_list = {};     ///< advice for a list in place of the number
   std::vector<std::string_view> (*words)() = nullptr;    ///< words that the field accepts
   void (*choose)(Owner&, std::string_view) = nullptr;    ///< sets the enumerator of a word
-  std::string_view refused_word = {}, why_refused = {};  ///< word that people may expect here, and why it is refused
+  std::string_view refused_word = {}, why_refused = {};  ///< word that users may expect here, and why it is refused
 };
 
 /// Returns the member at the end of a path of members: reach<Law, &Law::summits, &Summits::radius>.
@@ -68,11 +68,11 @@ template <class Law, std::size_t... n>
   return all;
 }
 
-/// The fields of a law, computed once.
+/// The fields of a law, computed at compile time.
 template <class Law>
 inline constexpr auto fields_of = Law::fields();
 
-/// Returns true when a scene can name the law: not where the law declares `is_of_scenes = false`.
+/// Returns true when a scene can name the law, which is so unless the law declares `is_of_scenes = false`.
 template <class Law>
 [[nodiscard]] consteval bool is_of_scenes() {
   if constexpr (requires { Law::is_of_scenes; }) return Law::is_of_scenes;
@@ -88,7 +88,7 @@ constexpr void for_each_law(F&& f) {
   (std::make_index_sequence<std::variant_size_v<Variant>>());
 }
 
-/// Returns the name of the law in force.
+/// Returns the name of the law that the variant holds.
 template <class... Laws>
 [[nodiscard]] constexpr std::string_view name_of(const std::variant<Laws...>& law) {
   constexpr std::array names{Laws::name...};
@@ -130,7 +130,7 @@ template <class Owner>
   return nullptr;
 }
 
-/// Returns the number that a law has under this key; null where it has none.
+/// Returns a pointer to the number that a law has under this key; null when the law has no such number.
 template <class Law>
 [[nodiscard]] double* number_of(Law& law, std::string_view key) {
   const Field<Law>* const field = find_field<Law>(fields_of<Law>, key);
@@ -140,14 +140,14 @@ template <class... Laws>
 [[nodiscard]] double* number_of(std::variant<Laws...>& law, std::string_view key) {
   return std::visit([&](auto& own) { return number_of(own, key); }, law);
 }
-/// Returns the same by value; `otherwise` where the law has no such number.
+/// Returns the number that a law has under this key; `otherwise` when the law has no such number.
 template <class... Laws>
 [[nodiscard]] double number_of(std::variant<Laws...> law, std::string_view key, double otherwise) {
   const double* const number = number_of(law, key);
   return number == nullptr ? otherwise : *number;
 }
 
-/// Returns another law with the numbers of this one, as far as both have them.
+/// Returns `other` with the numbers of `own`, for all keys that both laws have.
 template <class... Laws>
 [[nodiscard]] std::variant<Laws...> under(std::variant<Laws...> own, std::variant<Laws...> other) {
   std::visit(
@@ -161,7 +161,7 @@ template <class... Laws>
   return other;
 }
 
-/// Returns true when the law in force has this key.
+/// Returns true when the law that the variant holds has this key.
 template <class... Laws>
 [[nodiscard]] bool has_key(const std::variant<Laws...>& law, std::string_view key) {
   return std::visit(

@@ -1,4 +1,5 @@
-// Four numbers at once: the size of the machine's vector instructions, whatever the number of modes.
+// Lanes of four numbers, which a processor with vector instructions computes at once. Arrays of any size are filled up to
+// lanes.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,20 +11,20 @@ namespace softland {
 inline constexpr std::size_t lanes = 4;
 using Lane = Eigen::Array<double, lanes, 1>;
 
-/// Returns the values filled up to whole lanes with `idle`.
+/// Returns the values followed by as many `idle` as fill the last lane.
 [[nodiscard]] inline std::vector<double> padded_to_lanes(std::vector<double> values, double idle) {
   values.resize((values.size() + lanes - 1) / lanes * lanes, idle);
   return values;
 }
 
-/// Returns the lane of a padded array that begins there.
+/// Returns the lane of a padded array that begins at index `begin`.
 inline Eigen::Map<Lane> lane(std::vector<double>& values, std::size_t begin) { return Eigen::Map<Lane>(values.data() + begin); }
 inline Eigen::Map<const Lane> lane(const std::vector<double>& values, std::size_t begin) {
   return Eigen::Map<const Lane>(values.data() + begin);
 }
 
-/// Loads a lane of an array of `size` numbers; numbers beyond its end are 0. They are loaded one by one where they do not fill
-/// a lane: a vector load of numbers that were just written one by one would wait for them.
+/// Loads a lane of an array of `size` numbers; numbers beyond the end of the array are 0. An incomplete lane is loaded number
+/// by number: a vector load waits for numbers that were just written one by one.
 [[nodiscard]] inline Lane load_lane(const double* from, std::size_t begin, std::size_t size) {
   if (begin + lanes <= size) return Eigen::Map<const Lane>(from + begin);
   const std::size_t left = size - begin;

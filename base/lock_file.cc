@@ -18,8 +18,8 @@
 namespace softland {
 namespace {
 
-constexpr std::string_view word = "process ";  // first word of a lock
-// A process that asks for the holder has a shared lock for a moment.
+constexpr std::string_view word = "process ";  // first word in a lock file
+// holder_of() takes a shared lock for a moment, so one failed attempt does not mean that another run has the lock.
 constexpr int most_attempts = 20;
 constexpr useconds_t between_attempts = 10'000;  // [us]
 
@@ -68,17 +68,17 @@ LockFile::LockFile(const std::filesystem::path& file, const LockedPlace& place, 
     if (held()) break;
     ::close(descriptor_);
   }
-  // A file of that name that no run has made belongs to somebody else.
+  // A file of this name that does not begin with the first word of a lock file belongs to somebody else.
   std::array<char, word.size()> begin{};
   const ssize_t there = ::pread(descriptor_, begin.data(), begin.size(), 0);
   if (there != 0 && (there < 0 || std::string_view(begin.data(), static_cast<std::size_t>(there)) != word)) {
     ::close(descriptor_);
-    throw InvalidInput(
-        fmt::format("{}: {} is no lock of softland; move it or name another {}", place.name, file_.string(), place.kind));
+    throw InvalidInput(fmt::format("{}: {} is not a lock file of softland; move it or choose another {}", place.name,
+                                   file_.string(), place.kind));
   }
   const std::string text = owner(command);
   const bool written = ::ftruncate(descriptor_, 0) == 0 && ::pwrite(descriptor_, text.data(), text.size(), 0) >= 0;
-  static_cast<void>(written);  // the lock holds without its text on a full disk
+  static_cast<void>(written);  // the lock is valid even when a full disk leaves its file empty
 }
 
 LockFile::~LockFile() {

@@ -1,5 +1,4 @@
-// One process at a time: a file beside the place of work, locked by the process that works there, with its description as
-// content.
+// A lock file, by which one process at a time works in a folder or on a store. Its content describes the process.
 #pragma once
 
 #include <filesystem>
@@ -8,22 +7,24 @@
 
 namespace softland {
 
-/// The place that a lock protects from other runs, in words for messages.
+/// The place that a lock protects from other runs, with the words that messages use for it.
 struct LockedPlace {
-  std::string name;      ///< messages begin with it: "--out run1"
-  std::string kind;      ///< kind of the place that cannot be written to where the lock cannot be made: "folder"
-  std::string occupied;  ///< message for a held lock: "another run works in this folder"
+  std::string name;      ///< name, with which messages begin: "--out run1"
+  std::string kind;      ///< kind of the place: "folder"
+  std::string occupied;  ///< message when another process has the lock: "another run works in this folder"
 };
 
-/// Keeps other runs out while it lives: flock on `file`, which it creates and removes. A process that died holds nothing.
+/// Keeps other runs out during the lifetime of this object, by flock on `file`, which the constructor creates and the
+/// destructor removes. The lock of a process ends with the process.
 class LockFile {
  public:
-  /// Throws InvalidInput with the words of `place` where the file cannot be made, is not a lock, or another run holds it.
+  /// Throws InvalidInput with the words of `place` when the file cannot be created, is not a lock file, or another run has
+  /// locked it.
   LockFile(const std::filesystem::path& file, const LockedPlace& place, const std::string& command);
   ~LockFile();
   LockFile(const LockFile&) = delete;
   LockFile& operator=(const LockFile&) = delete;
-  /// True when the lock still exists where it was made: somebody may have removed or renamed its folder.
+  /// Returns true when the lock file still exists at its path: somebody may have removed or renamed its folder.
   [[nodiscard]] bool held() const;
 
  private:
@@ -31,8 +32,8 @@ class LockFile {
   int descriptor_ = -1;
 };
 
-/// Returns the current holder of the lock, "process 4711 on node3 since 2026-01-31 12:00:00 UTC: softland optimize"; none if
-/// free.
+/// Returns a description of the process that has the lock, "process 4711 on node3 since 2026-01-31 12:00:00 UTC: softland
+/// optimize"; none when no process has it.
 [[nodiscard]] std::optional<std::string> holder_of(const std::filesystem::path& file);
 
 /// Returns the name of this machine; "?" where it has none.

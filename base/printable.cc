@@ -7,7 +7,8 @@
 namespace softland {
 namespace {
 
-/// The code point at the beginning of `text` and its bytes; 0 bytes where there is no well-formed UTF-8.
+/// The code point at the beginning of `text` and its number of bytes; 0 bytes when the text does not begin with well-formed
+/// UTF-8.
 struct CodePoint {
   char32_t value = 0;
   std::size_t bytes = 0;

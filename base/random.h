@@ -1,9 +1,9 @@
 // Random numbers without a state: every number is a function of (seed, stream, counter), so that neither the order in which
 // numbers are drawn nor the number of threads can change them.
 //
-// The generator is SplitMix64: output n of seed s is mix(s + (n + 1) gamma) with a fixed odd gamma, which makes any output as
-// cheap as the next. A stream is the SplitMix64 sequence whose seed is an output of the sequence of the user's seed. Each
-// sequence has a period of 2^64; those of different streams may overlap, by chance, as much as random ones.
+// The generator is SplitMix64: output n of seed s is mix(s + (n + 1) gamma) with a fixed odd gamma, so that any output is
+// computed directly. A stream is the SplitMix64 sequence whose seed is an output of the sequence of the user's seed. Each
+// sequence has a period of 2^64; the sequences of different streams overlap no more than random ones.
 // Sources: G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, section 4 (sequence
 // and splitting); D. Stafford, "Better bit mixing", 2011, variant 13 (mix).
 #pragma once
@@ -12,8 +12,8 @@
 
 namespace softland {
 
-/// The purpose of a number. Each purpose has a number of its own, which keeps the streams of one seed apart; none may change,
-/// or the same seed gives other results than before.
+/// The purpose of a random number. Each purpose has a code, which keeps the streams of one seed apart. A code must not change:
+/// the same seed would give other results.
 enum class Stream : std::uint64_t {
   sobol_shift = 1,
   skew = 2,
@@ -22,22 +22,22 @@ enum class Stream : std::uint64_t {
   scene = 5,
   perturbation = 6,
   spread = 7,              ///< the switches of an ensemble
-  indices = 8,             ///< the evaluations for Sobol' indices
-  bootstrap = 9,           ///< samples that a repetition of a bootstrap takes
-  folds = 10,              ///< figures that a cross-validation holds back together
+  indices = 8,             ///< the points of the estimates of Sobol' indices
+  bootstrap = 9,           ///< indices of the values that a bootstrap sample takes
+  folds = 10,              ///< values that a cross-validation holds back together
   measurement = 11,        ///< errors of measurements on a device
-  fresh = 12,              ///< seeds of devices that a search has not seen
-  jitter = 13,             ///< times by which the edges of a drive are late
-  classes = 14,            ///< the devices that classes are made from, and the starts of their search
+  fresh = 12,              ///< seeds of simulated devices that a search has not used
+  jitter = 13,             ///< delays of the edges of a drive (jitter)
+  classes = 14,            ///< the devices that are sorted into classes, and the starts of the search for these classes
   plan = 15,               ///< the points of an exploration
   offspring = 16,          ///< members of a population that become parents, and the variation of their child
   hop = 17,                ///< distance at which a local search begins from the best point
   race = 18,               ///< the search over waveform families on devices
-  tuning = 19,             ///< devices that represent a belief about one of them
-  practice_device = 21,    ///< values of a device to practise on
-  practice_gain = 22,      ///< gain of its sources, and its scatter
-  practice_edges = 23,     ///< errors of the times at which its contact is seen to close and open
-  piezo_measurement = 24,  ///< errors of the deflection that a device's piezo gives
+  tuning = 19,             ///< devices that represent the current estimate of the device under test
+  practice_device = 21,    ///< parameter values of a simulated device to practise tuning on
+  practice_gain = 22,      ///< gain of the sources of the practice device, and the scatter of this gain
+  practice_edges = 23,     ///< errors of the measured times at which the contact of the practice device closes and opens
+  piezo_measurement = 24,  ///< errors of the measured deflection by a piezo
   fit = 25,                ///< starts of the searches of a fit
 };
 

@@ -1,4 +1,4 @@
-// The one way to read a file: whole, within a bound, and only if it is a regular file.
+// Reads files: whole, within a bound of size, and regular files only.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +14,14 @@ inline constexpr std::size_t largest_file = std::size_t{64} << 20;
 /// file (a folder, a device, a pipe, for which it does not wait), or is larger than `largest_file`.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
-/// Returns the content of a file that is not an input of this run: results may replace it.
+/// Returns the content as read_file() does, but does not mark the file as an input of this run: results may replace it.
 [[nodiscard]] std::string look_into(const std::filesystem::path& path);
 
-/// Marks a file that other code reads, such as a database.
+/// Marks a file that other code reads, such as a database, as an input of this run.
 void mark_as_read(const std::filesystem::path& path);
 
-/// Returns true for a file that this process has read with read_file() or passed to mark_as_read(), and that still bears the
-/// name it was read by: results must not replace it.
+/// Returns true for a file that this process has read with read_file() or passed to mark_as_read(), and that still has the name
+/// under which it was read: results must not replace such an input.
 [[nodiscard]] bool was_read(const std::filesystem::path& path);
 
 }  // namespace softland

@@ -9,25 +9,26 @@
 
 namespace softland {
 
-/// Thrown for input that breaks a stated rule. The message is complete: it names the value and the rule. The program turns it
-/// into exit status 2.
+/// Thrown for input that breaks a stated rule. The message is complete: it names the value and the rule. The program turns this
+/// exception into exit status 2.
 class InvalidInput : public std::runtime_error {
  public:
   explicit InvalidInput(const std::string& message, std::source_location where = std::source_location::current())
       : std::runtime_error(message), where_(where) {}
-  /// Returns the line of our source that found it, for debugging; not shown to users.
+  /// Returns the place in the sources that threw the exception, for debugging; users do not see it.
   [[nodiscard]] const std::source_location& where() const noexcept { return where_; }
 
  private:
   std::source_location where_;
 };
 
-/// Throws InvalidInput with `message` unless `rule_holds`. Write the rule so that NaN fails it. It is never compiled out.
+/// Throws InvalidInput with `message` unless `rule_holds`. Write the rule so that NaN fails it. The check is never compiled
+/// out.
 inline void require(bool rule_holds, std::string_view message, std::source_location where = std::source_location::current()) {
   if (!rule_holds) throw InvalidInput(std::string(message), where);
 }
 
-/// The same; message() makes the message only when it is needed.
+/// Throws InvalidInput with message() unless `rule_holds`; calls message() only then.
 template <std::invocable Message>
 void require(bool rule_holds, Message&& message, std::source_location where = std::source_location::current()) {
   if (!rule_holds) throw InvalidInput(message(), where);
@@ -36,7 +37,8 @@ void require(bool rule_holds, Message&& message, std::source_location where = st
 /// Returns the name of a field of a request, for the message of an InvalidRequest.
 [[nodiscard]] inline std::string requested(std::string_view field) { return '\x02' + std::string(field) + '\x03'; }
 
-/// Returns the text with `before` each of the fields that requested() has marked: "--" for a command line, "" for a library.
+/// Returns the text with `before` in front of each field that requested() has marked: "--" for a command line, "" for a
+/// library.
 [[nodiscard]] inline std::string with_fields(std::string_view words, std::string_view before) {
   std::string text;
   for (const char c : words) {
@@ -46,13 +48,13 @@ void require(bool rule_holds, Message&& message, std::source_location where = st
   return text;
 }
 
-/// Thrown for a request, such as OptimizeOptions, that breaks a rule. Its message names the fields as requested() marks them;
-/// what() has their bare names.
+/// Thrown for a request, such as OptimizeOptions, that breaks a rule. Its message marks the fields by requested(); what() has
+/// their bare names.
 class InvalidRequest : public InvalidInput {
  public:
   explicit InvalidRequest(const std::string& message, std::source_location where = std::source_location::current())
       : InvalidInput(softland::with_fields(message, ""), where), message_(message) {}
-  /// Returns the message with `before` each of its fields.
+  /// Returns the message with `before` in front of each of its fields.
   [[nodiscard]] std::string with_fields(std::string_view before) const { return softland::with_fields(message_, before); }
 
  private:
@@ -65,7 +67,7 @@ void require_request(bool rule_holds, Message&& message, std::source_location wh
   if (!rule_holds) throw InvalidRequest(message(), where);
 }
 
-/// The same for one field and its given value: "FIELD GIVEN: " and broken(), the rule.
+/// Throws InvalidRequest with the message "FIELD GIVEN: RULE" unless `rule_holds`; broken() returns the rule.
 template <std::invocable Broken>
 void require_field(bool rule_holds, std::string_view field, std::string_view given, Broken&& broken,
                    std::source_location where = std::source_location::current()) {
@@ -73,7 +75,7 @@ void require_field(bool rule_holds, std::string_view field, std::string_view giv
       rule_holds, [&] { return requested(field) + ' ' + std::string(given) + ": " + std::string(broken()); }, where);
 }
 
-/// Thrown for a parameter that breaks the rules of its owner: a waveform family, a distribution.
+/// Thrown for a parameter that breaks a rule of its waveform family or distribution.
 class InvalidParameter : public InvalidInput {
  public:
   InvalidParameter(std::string_view parameter, const std::string& message, std::source_location where)
@@ -91,7 +93,7 @@ inline void require_of(std::string_view parameter, bool rule_holds, const std::s
   if (!rule_holds) throw InvalidParameter(parameter, message, where);
 }
 
-/// The same; message() makes the message only when it is needed.
+/// Throws InvalidParameter with message() unless `rule_holds`; calls message() only then.
 template <std::invocable Message>
 void require_of(std::string_view parameter, bool rule_holds, Message&& message,
                 std::source_location where = std::source_location::current()) {

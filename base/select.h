@@ -1,5 +1,5 @@
-// Branches on values, written once for one number and for a lane of numbers, each with its own answer. A lane is a type such as
-// std::experimental::simd with size(), mask_type, and where().
+// Branches on values, written once for one number and for a lane of numbers, where each number takes its own branch. A lane is
+// a type such as std::experimental::simd with size(), mask_type, and where().
 #pragma once
 
 #include <concepts>
@@ -20,8 +20,8 @@ void assign_where(const typename Lane::mask_type& condition, Lane& to, const Lan
   where(condition, to) = from;
 }
 
-/// Returns then() where the condition holds, else otherwise(). One number calls only one of both. A lane calls both, so each
-/// must return something, if only NaN, where it is not needed.
+/// Returns then() where the condition holds, else otherwise(). For one number only one of the two functions is called. For a
+/// lane both are called, so each must return a value, possibly NaN, also for numbers that do not need it.
 template <class Condition, class Then, class Otherwise>
 [[nodiscard, gnu::always_inline]] constexpr auto select(const Condition& condition, Then&& then, Otherwise&& otherwise) {
   if constexpr (std::same_as<Condition, bool>) {
@@ -33,7 +33,7 @@ template <class Condition, class Then, class Otherwise>
   }
 }
 
-/// Returns f of a number, or of every number of a lane: for operations that a lane can only do one by one, such as a table
+/// Returns f of a number, or of every number of a lane: for operations that have no vector instruction, such as a table
 /// look-up.
 template <class S, class F>
 [[nodiscard, gnu::always_inline]] constexpr S one_by_one(const S& x, F&& f) {

@@ -1,4 +1,4 @@
-// Words of a command line as a shell takes them.
+// Words of a command line, quoted for a shell.
 #pragma once
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-// Text of the user in messages: as much of it as a reader needs to recognise it.
+// Text of the user in messages, cut to what a reader needs to recognise it.
 #pragma once
 
 #include <algorithm>
@@ -8,17 +8,17 @@
 
 namespace softland {
 
-/// Returns `text`, cut to at most `longest` bytes and "…" when it is longer; never inside a UTF-8 sequence.
+/// Returns `text`, cut to at most `longest` bytes and "…" when it is longer; a UTF-8 sequence is never cut.
 [[nodiscard]] inline std::string shortened(std::string_view text, std::size_t longest = 80) {
   if (text.size() <= longest) return std::string(text);
   while (longest > 0 && (static_cast<unsigned char>(text[longest]) & 0xC0) == 0x80) --longest;
   return std::string(text.substr(0, longest)) + "…";
 }
 
-/// Returns the text as the shell takes it, so that an empty text is visible.
+/// Returns the text, or '' when it is empty.
 [[nodiscard]] inline std::string visible(const std::string& text) { return text.empty() ? "''" : text; }
 
-/// Returns `text` with every word longer than any path cut short, so that a message stays readable.
+/// Returns `text` with every word of more than 1000 bytes cut short, so that a message stays readable.
 [[nodiscard]] inline std::string with_words_shortened(std::string_view text) {
   constexpr std::size_t longest_word = 1000;
   std::string out;

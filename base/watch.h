@@ -1,4 +1,4 @@
-// Lets the outside watch a long computation: it can be asked to stop, and it reports its progress.
+// Lets the caller of a long computation stop it and follow its progress.
 #pragma once
 
 #include <atomic>
@@ -8,16 +8,16 @@
 
 namespace softland {
 
-/// Thrown when a computation was asked to stop before it had anything to return. The program turns it into exit status 130.
+/// Thrown when a computation is stopped before it has a result. The program turns this exception into exit status 130.
 class Interrupted : public std::exception {
  public:
   [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
 };
 
 struct Watch {
-  const std::atomic<bool>* stop = nullptr;  ///< set from outside (Ctrl-C); the computation ends with its result so far
-  /// Called often, from the threads that compute, one at a time, with the name of the computation and its completed part, 0 to
-  /// 1.
+  const std::atomic<bool>* stop = nullptr;  ///< set by another thread (Ctrl-C); the computation ends with its result so far
+  /// Function that is called often, from the threads that compute, one at a time, with the name of the computation and its
+  /// completed part, 0 to 1.
   std::function<void(std::string_view what, double part)> progress = {};
 
   [[nodiscard]] bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }

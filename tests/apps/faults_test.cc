@@ -616,7 +616,7 @@ TEST_F(Faults, NothingInTheFolderIsTakenForWhatItIsNot) {
   write(place.path() / "notes/softland.lock", "my notes");
   const Outcome notes = into("notes");
   EXPECT_EQ(notes.status, bad_input);
-  EXPECT_THAT(notes.err, HasSubstr("is no lock of softland"));
+  EXPECT_THAT(notes.err, HasSubstr("is not a lock file of softland"));
   EXPECT_EQ(read(place.path() / "notes/softland.lock"), "my notes");
   fs::create_directories(place.path() / "taken/result.json");
   const Outcome taken = into("taken");

@@ -255,7 +255,7 @@ TEST_F(Place, OfACompanionOfAStoreIsNoPlaceForOne) {
   for (const char* ending : {"-wal", "-shm", "-journal", ".lock"}) {
     const fs::path companion = file.string() + ending;
     const auto is_refused = ThrowsMessage<InvalidInput>(
-        AllOf(HasSubstr(companion.string() + ": has the name that the store "), HasSubstr("gives to a file of its own")));
+        AllOf(HasSubstr(companion.string() + ": is the name of a file that the store "), HasSubstr("must not be overwritten")));
     EXPECT_THAT([&] { StudyStore(companion, plan_of(10), origin(), Opening::fresh); }, is_refused);
     EXPECT_THAT([&] { StudyStore(companion, plan_of(10), origin(), Opening::resume); }, is_refused);
     EXPECT_THAT([&] { static_cast<void>(merge_studies({path("part.sqlite")}, companion, origin())); }, is_refused);
