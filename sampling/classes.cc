@@ -19,7 +19,7 @@ double square_distance(const SpacePoint& a, const SpacePoint& b) {
   return dx * dx + dy * dy + dz * dz;
 }
 
-// Chooses start centres; fewer than `count` where there are fewer points.
+// Chooses start centres; fewer than `count` when there are fewer distinct points.
 std::vector<SpacePoint> start_centres(std::span<const SpacePoint> points, std::size_t count, std::uint64_t seed,
                                       std::size_t start) {
   std::vector<SpacePoint> centres;
@@ -48,7 +48,7 @@ struct Sorted {
   double square = std::numeric_limits<double>::infinity();  // sum of the square distances
 };
 
-// Sorts the points by these centres, and moves each centre to the mean of its points until no point changes its class.
+// Assigns every point to its nearest centre and moves each centre to the mean of its points, until no point changes its class.
 Sorted settle(std::span<const SpacePoint> points, std::vector<SpacePoint> centres) {
   Sorted sorted{.classes = {.centres = std::move(centres), .shares = {}}};
   std::vector<std::size_t> own(points.size(), points.size());
@@ -91,16 +91,16 @@ std::size_t Classes::nearest(const SpacePoint& point) const {
 }
 
 Classes classes_of(std::span<const SpacePoint> points, std::size_t count, std::uint64_t seed) {
-  require(count > 0, "classes: there must be at least one");
+  require(count > 0, "the number of classes must be at least 1");
   require(!points.empty() && std::all_of(points.begin(), points.end(), [](const SpacePoint& p) { return is_finite(p); }),
-          "classes: there must be points, all of them finite");
+          "classes need at least one point, and all points must be finite");
   Sorted best;
   for (std::size_t start = 0; start < starts; ++start) {
     Sorted one = settle(points, start_centres(points, count, seed, start));
     if (one.square < best.square) best = std::move(one);
   }
   std::sort(best.classes.centres.begin(), best.classes.centres.end());
-  return settle(points, std::move(best.classes.centres)).classes;  // shares in the new order
+  return settle(points, std::move(best.classes.centres)).classes;  // shares by class, in ascending order of the centres
 }
 
 }  // namespace softland

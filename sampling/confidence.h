@@ -1,8 +1,8 @@
 // Confidence intervals of figures of a sample of independent values, larger being worse and +infinity the worst (statistics.h).
 //
-// An interval of confidence c covers the figure of the distribution in a share c of all samples. The two sides share the rest
-// equally. Scrambled Sobol' points and Latin hypercubes are not independent samples: for means over them these intervals are
-// too wide.
+// An interval of confidence c covers the figure of the distribution in a share c of all samples. The figure is below the
+// interval in a share (1 - c) / 2 of them, and above it in as many. Scrambled Sobol' points and Latin hypercubes are not
+// independent samples: for means over such points these intervals are too wide.
 //
 // Every function throws InvalidInput unless 0 < confidence < 1.
 #pragma once
@@ -16,22 +16,24 @@
 
 namespace softland {
 
-/// Returns Wilson's score interval of a probability of which `successes` of `trials` are known, the p with
+/// Returns Wilson's score interval of a probability after `successes` in `trials`: all p with
 ///
 ///   |s/n - p| <= z sqrt(p (1 - p) / n),   z = Phi^-1((1 + confidence) / 2)
 ///
-/// It is never empty and never outside [0, 1], also where none or all succeed. The confidence holds on average over p; near 0
-/// and 1 it can be less. Returns [0, 1] without trials. Throws InvalidInput for more successes than trials. Source: E. B.
-/// Wilson, J. Am. Stat. Assoc. 22 (1927) 209; L. D. Brown, T. T. Cai & A. DasGupta, Statistical Science 16 (2001) 101.
+/// The interval is never empty and always within [0, 1], even when no trial or every trial succeeds. Its confidence holds on
+/// average over p; near 0 and 1 it can be less. Returns [0, 1] without trials. Throws InvalidInput for more successes than
+/// trials. Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209; L. D. Brown, T. T. Cai & A. DasGupta, Statistical Science
+/// 16 (2001) 101.
 [[nodiscard]] Interval wilson_interval(std::size_t successes, std::size_t trials, double confidence = 0.95);
 
 /// Returns an interval of the quantile p of any distribution: between the order statistics x_l and x_u,
 ///
 ///   l = largest with P(B < l) <= (1 - confidence) / 2,   u = smallest with P(B >= u) <= (1 - confidence) / 2
 ///
-/// B is binomial (n, p). The interval covers with at least this confidence. A side for which the sample is too small is
-/// -infinity, or +infinity; so is the upper one where x_u is a failure. Throws InvalidInput as sample_quantile, and unless 0 <
-/// p < 1. Source: H. A. David & H. N. Nagaraja, "Order Statistics", 3rd ed. 2003, section 7.1.
+/// B is binomial (n, p). The interval covers the quantile with at least this confidence. Its low end is -infinity, or its high
+/// end +infinity, when the sample is too small; the high end is +infinity, too, when x_u is the figure of a failed switch.
+/// Throws what sample_quantile throws, and InvalidInput unless 0 < p < 1. Source: H. A. David & H. N. Nagaraja, "Order
+/// Statistics", 3rd ed. 2003, section 7.1.
 [[nodiscard]] Interval quantile_interval(std::span<const double> sample, double p, double confidence = 0.95);
 
 struct BootstrapOptions {
@@ -40,11 +42,12 @@ struct BootstrapOptions {
   std::uint64_t seed = 1;
 };
 
-/// Returns an interval of any figure of a sample: the quantiles of its values for samples that are drawn from this one, with
-/// replacement. Its error of coverage falls as n^-1/2 on each side, n^-1 on both. Below some ten values it covers too seldom,
-/// and for the extremes of a sample it is meaningless. The result is the same for the same seed, and NaN where a repetition
-/// gives NaN. Throws InvalidInput for a sample without values and unless there are at least 2 repetitions. Source: B. Efron &
-/// R. J. Tibshirani, "An Introduction to the Bootstrap", 1993, section 13.3 (percentile interval).
+/// Returns a bootstrap interval of any figure of a sample: quantiles of the figure over samples that are drawn from this sample
+/// with replacement. The error of its coverage falls as n^-1/2 for each side and as n^-1 for both together. With fewer than
+/// some ten values the interval covers the figure too seldom; for the extremes of a sample it is meaningless. The same seed
+/// gives the same interval, which is NaN when a repetition gives NaN. Throws InvalidInput for a sample without values and
+/// unless there are at least 2 repetitions. Source: B. Efron & R. J. Tibshirani, "An Introduction to the Bootstrap", 1993,
+/// section 13.3 (percentile interval).
 [[nodiscard]] Interval bootstrap_interval(std::span<const double> sample,
                                           const std::function<double(std::span<const double>)>& statistic,
                                           const BootstrapOptions& options = {});
@@ -54,10 +57,10 @@ namespace internal {
 /// Throws what bootstrap_interval throws for these options.
 void check(const BootstrapOptions& options);
 
-/// Returns which of `count` rows stands at `place` of repetition number `repetition`.
+/// Returns the index, below `count`, of the row that repetition number `repetition` draws at `place`.
 [[nodiscard]] std::size_t bootstrap_row(std::uint64_t seed, std::size_t repetition, std::size_t place, std::size_t count);
 
-/// Returns the middle `confidence` of the values of a figure over the repetitions; NaN where one of them is.
+/// Returns the middle `confidence` of the values of a figure over the repetitions; NaN when a value is NaN.
 [[nodiscard]] Interval percentile_interval(std::span<const double> values, double confidence);
 
 }  // namespace internal

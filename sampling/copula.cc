@@ -61,14 +61,14 @@ GaussianCopula::GaussianCopula(const Eigen::MatrixXd& correlation, const std::ve
 }
 
 void GaussianCopula::correlate(std::span<double> u) const {
-  require(u.size() == dimensions(), "a point has another number of coordinates than the copula");
+  require(u.size() == dimensions(), "a point must have one coordinate per dimension of the copula");
   Eigen::VectorXd z(factor_.rows());
   for (Eigen::Index i = 0; i < z.size(); ++i) {
     const double p = u[static_cast<std::size_t>(i)];
-    require(p > 0 && p < 1, "a coordinate must be above 0 and below 1");
+    require(p > 0 && p < 1, "every coordinate of a point must be above 0 and below 1");
     z[i] = standard_normal_quantile(p);
   }
-  for (Eigen::Index i = 1; i < z.size(); ++i) {  // the first one stays as it is, to the last bit
+  for (Eigen::Index i = 1; i < z.size(); ++i) {  // the first variable stays as it is, to the last bit
     const double correlated = factor_.row(i).head(i + 1).dot(z.head(i + 1));
     u[static_cast<std::size_t>(i)] = std::clamp(standard_normal_cdf(correlated), 0x1p-53, 1 - 0x1p-53);
   }

@@ -1,12 +1,12 @@
-// Gaussian copula: numbers that are each uniform, and depend on each other as normal ones of a given correlation do.
+// Gaussian copula: uniform variables that depend on each other as normal variables of a given correlation do.
 //
 //   v_i = Phi((L z)_i),   z_i = Phi^-1(u_i),   L L^T = R
 //
 // u, v are uniform in (0, 1), Phi is the standard normal distribution, R the correlation matrix, L its lower Cholesky factor:
-// v_1 = u_1. R is the correlation of the underlying normal numbers. That of the variables themselves, which have other
-// distributions, is smaller in size. The distributions leave the rank correlation (Spearman) unchanged, rho_S = 6/pi asin(rho /
-// 2), and Kendall's tau = 2/pi asin(rho). Extreme values of two variables are independent in the limit, whatever rho < 1 (no
-// tail dependence). rho = +-1 makes R singular and is refused: two such variables are one. Source: R. B. Nelsen, "An
+// v_1 = u_1. R is the correlation of the underlying normal variables. Variables with other distributions have a correlation of
+// smaller size. Their rank correlation (Spearman) does not depend on the distributions, rho_S = 6/pi asin(rho / 2), and neither
+// does Kendall's tau = 2/pi asin(rho). Extreme values of two variables are independent in the limit for any rho < 1 (no tail
+// dependence). rho = +-1 makes R singular and is refused: two such variables are one. Source: R. B. Nelsen, "An
 // Introduction to Copulas", 2nd ed. 2006; W. H. Kruskal, J. Am. Stat. Assoc. 53 (1958) 814 (ranks).
 #pragma once
 
@@ -23,15 +23,15 @@ class GaussianCopula {
   /// The least eigenvalue that a correlation matrix may have.
   static constexpr double least_eigenvalue = 1e-10;
 
-  /// `names` are the variables in messages; "variable 1", ... without names. Throws InvalidParameter, `correlation`, unless the
-  /// matrix is square and symmetric with a unit diagonal, all other elements are between -1 and 1, and all eigenvalues are at
-  /// least least_eigenvalue. The message names the variables to blame.
+  /// Messages call the variables by `names`, or "variable 1", ... without names. Throws InvalidParameter, `correlation`, unless
+  /// the matrix is square and symmetric with a unit diagonal, all other elements are between -1 and 1, and all eigenvalues are
+  /// at least least_eigenvalue. The message names the variables whose correlations break the rule.
   explicit GaussianCopula(const Eigen::MatrixXd& correlation, const std::vector<std::string>& names = {});
 
   [[nodiscard]] std::size_t dimensions() const { return static_cast<std::size_t>(factor_.rows()); }
 
-  /// Turns independent u into correlated ones, in place. They stay between 2^-53 and 1 - 2^-53. Throws InvalidInput unless
-  /// there is one per dimension, each above 0 and below 1.
+  /// Turns independent u into correlated numbers, in place, which stay between 2^-53 and 1 - 2^-53. Throws InvalidInput unless
+  /// u has one number per dimension, each above 0 and below 1.
   void correlate(std::span<double> u) const;
 
  private:

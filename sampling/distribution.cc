@@ -34,7 +34,8 @@ Normal logarithm_of(const Lognormal& d) {
   return {.mean = std::log(d.mean) - variance / 2, .standard_deviation = std::sqrt(variance)};
 }
 
-// Each kind has its check, its support, its quantile, and the probabilities of a value of at most x and of one below x.
+// Each kind of distribution has its check, its support, its quantile, and the probabilities of a value of at most x and of one
+// below x.
 
 void check(const Normal& d) {
   require_finite("mean", d.mean);
@@ -96,7 +97,7 @@ double quantile_of(const Empirical& d, double p) {
   const std::size_t i = std::min(static_cast<std::size_t>(place), d.values.size() - 2);
   return d.values[i] + (place - static_cast<double>(i)) * (d.values[i + 1] - d.values[i]);
 }
-// Returns the probability between values i and i + 1, which differ, where the distribution reaches x.
+// Returns cdf(x) for an x between the values i and i + 1, which differ.
 double between(const Empirical& d, std::size_t i, double x) {
   const double fraction = (x - d.values[i]) / (d.values[i + 1] - d.values[i]);
   return (static_cast<double>(i) + fraction) / static_cast<double>(d.values.size() - 1);
@@ -204,7 +205,7 @@ Moments moments_within(const Empirical& d, const Interval& x) {
 Distribution::Distribution(Parameters parameters, const Truncation& truncation)
     : parameters_(std::move(parameters)), truncation_(truncation) {
   if (auto* const empirical = std::get_if<Empirical>(&parameters_)) {
-    check(*empirical);  // check before the values are sorted, which NaN would upset
+    check(*empirical);  // NaN would make the order of the sorted values undefined
     std::sort(empirical->values.begin(), empirical->values.end());
   }
   std::visit([](const auto& d) { check(d); }, parameters_);
@@ -240,7 +241,7 @@ void Distribution::find_moments() {
 
 double Distribution::quantile(double p) const {
   if (!(p > 0 && p < 1)) require(false, "p = " + text(p) + " must be above 0 and below 1");
-  const double of_whole = std::min(below_ + p * kept_, 1 - 0x1p-53);  // rounding may lead to 1, where a quantile is infinite
+  const double of_whole = std::min(below_ + p * kept_, 1 - 0x1p-53);  // rounding may give 1, where a quantile is infinite
   const double value = std::visit([&](const auto& d) { return quantile_of(d, of_whole); }, parameters_);
   return std::clamp(value, support_.low, support_.high);  // rounding may lead out of the support
 }

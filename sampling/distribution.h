@@ -1,4 +1,4 @@
-// Distributions of one number: a dimension, a pressure, a surface energy of the switches of a wafer.
+// Distributions of one variable, such as a dimension, a pressure or a surface energy of the switches of a wafer.
 //
 //   normal      f(x) ~ exp(-(x - m)^2 / (2 s^2))                      mean m, standard deviation s > 0
 //   lognormal   ln x is normal; given by the mean m > 0 and standard deviation s > 0 of x itself:
@@ -8,8 +8,8 @@
 //   empirical   Q(p) = x_j + (h - j) (x_(j+1) - x_j),  h = 1 + (n - 1) p,  j = floor(h),  x_1 <= ... <= x_n
 //
 // The quantile of n values is linear between order statistics: definition 7 of Hyndman & Fan, The American Statistician 50
-// (1996) 361. So an empirical distribution has no value outside those it was given, a step where values are equal, and a
-// variance slightly below that of the values.
+// (1996) 361. So an empirical distribution has no value outside the given values, a step where values are equal, and a variance
+// slightly below that of the values.
 //
 // Each may be truncated to [low, high]: X given low <= X <= high, Q_t(p) = Q(F(low-) + p (F(high) - F(low-))). All numbers are
 // in the unit of the variable.
@@ -49,7 +49,7 @@ struct Normal {
 };
 struct Lognormal {
   double mean = 0;                ///< mean of the variable, not of its logarithm
-  double standard_deviation = 0;  ///< standard deviation of the variable, likewise
+  double standard_deviation = 0;  ///< standard deviation of the variable, not of its logarithm
 };
 struct Uniform {
   double low = 0;
@@ -73,8 +73,8 @@ class Distribution {
   /// The alternatives stand in the order of DistributionKind.
   using Parameters = std::variant<Normal, Lognormal, Uniform, Triangular, Empirical>;
 
-  /// The least probability that a truncation may keep: a smaller one is a mistake of units, and rounding would be visible in
-  /// it.
+  /// The least probability that a truncation may keep. A smaller one is a mistake of units, and its quantiles would show
+  /// rounding errors.
   static constexpr double least_kept = 1e-6;
 
   /// Throws InvalidParameter: `parameter()` is a key of distribution_kinds, or truncate_low or truncate_high.

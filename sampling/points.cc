@@ -18,7 +18,8 @@ std::vector<std::uint32_t> direction_numbers(std::size_t dimensions) {
   boost::random::sobol_engine<std::uint32_t, resolved_bits> sequence(dimensions);
   std::vector<std::uint32_t> directions;
   for (int r = 0; r < resolved_bits; ++r) {
-    // Boost's point s is the sum of the direction numbers of the bits of the Gray code of s + 1, which is 2^r here.
+    // Boost's point s combines the direction numbers of those bits that are set in the Gray code of s + 1. Here only bit r is
+    // set.
     sequence.seed(static_cast<std::uint32_t>((std::uint64_t{2} << r) - 2));
     for (std::size_t i = 0; i < dimensions; ++i) directions.push_back(sequence());
   }
@@ -54,8 +55,8 @@ std::uint64_t permuted(std::uint64_t key, std::uint64_t k, std::uint64_t size) {
   return k;
 }
 
-// Returns a number inside stratum `stratum` of `size`. Its bits leave the sum exact, so that it rounds neither to the next
-// stratum nor to 1.
+// Returns a number inside stratum `stratum` of `size`. It has so few random bits that the sum is exact and rounds neither to
+// the next stratum nor to 1.
 double in_stratum(std::uint64_t bits, std::uint64_t stratum, std::uint64_t size) {
   const int kept = 52 - static_cast<int>(std::bit_width(size - 1));
   const double inside = (static_cast<double>(bits >> (64 - kept)) + 0.5) / static_cast<double>(std::uint64_t{1} << kept);
@@ -76,8 +77,8 @@ SamplePoints::SamplePoints(PointSet kind, std::size_t dimensions, std::uint64_t 
 }
 
 void SamplePoints::point(std::uint64_t k, std::span<double> u) const {
-  require(k < size_, "there is no point of that number");
-  require(u.size() == dimensions(), "a point has another number of coordinates");
+  require(k < size_, "the number of a point must be below the size of its set");
+  require(u.size() == dimensions(), "a point must have one coordinate per dimension of its set");
   switch (kind_) {
     case PointSet::sobol:
       for (std::size_t i = 0; i < u.size(); ++i) {
@@ -90,7 +91,7 @@ void SamplePoints::point(std::uint64_t k, std::span<double> u) const {
       break;
     case PointSet::latin_hypercube:
       for (std::size_t i = 0; i < u.size(); ++i) {
-        // The complement of the key is the seed of the places inside the strata.
+        // The complement of the key is the seed of the positions inside the strata.
         u[i] = in_stratum(split_mix_64(~keys_[i], k), permuted(keys_[i], k, size_), size_);
       }
       break;

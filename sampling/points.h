@@ -1,22 +1,23 @@
-// Sets of points in the open unit cube (0, 1)^d. Every point costs the same: point k is a function of seed, stream, k and, for
-// a Latin hypercube, the size of the set. Neither order nor threads nor shards can change it.
+// Sets of points in the open unit cube (0, 1)^d. Point k is computed directly, as a function of seed, stream, k and, for a
+// Latin hypercube, the size of the set. The order of computation, threads and the division of a study into parts do not change
+// it.
 //
-//   sobol            a Sobol' sequence with Owen's nested uniform scrambling. Every point is uniform over the cube, so that means
-//                    over the set have no bias; together they are a digital net: of 2^m points, beginning at a multiple of 2^m,
-//                    each dimension has one in every interval [i, i + 1) 2^-m. The error of a mean of a smooth function falls
-//                    nearly as N^-3/2. Best for sizes that are powers of two. Point k is the same for every size.
+//   sobol            a Sobol' sequence with Owen's nested uniform scrambling. Every point is uniform over the cube, so that
+//                    means over the set have no bias; together the points are a digital net: of 2^m points, beginning at a
+//                    multiple of 2^m, each dimension has one in every interval [i, i + 1) 2^-m. The error of a mean of a smooth
+//                    function falls nearly as N^-3/2. Best sizes are powers of two. Point k is the same for every size.
 //   latin_hypercube  in each dimension a random permutation of N strata, with a uniform number inside each. The error of a mean
-//                    has the order of Monte Carlo's, without what is due to a sum of functions of one variable each. All points
-//                    depend on N: sets of different size have nothing in common.
+//                    falls as N^-1/2, like that of Monte Carlo, but a part of the function that is a sum of functions of one
+//                    variable each hardly adds to it. All points depend on N: sets of different size have nothing in common.
 //   monte_carlo      independent and uniform; the error falls as N^-1/2. Point k is the same for every size.
 //
 // Coordinate i does not depend on the number of dimensions. All coordinates are multiples of 2^-53 except in the Latin
 // hypercube, whose division by N rounds.
 //
 // Scrambling: each bit j of a coordinate is flipped by a random bit that belongs to the bits before it. There is one such bit
-// for each node of a binary tree, drawn by its number. 32 bits come from the direction numbers; those below are zero in the
-// sequence, and a random bit of their node whatever they were. Permutation: a Feistel network over the least power of two that
-// holds N, walked until it leads to a number below N.
+// for each node of a binary tree, drawn by the number of the node. The direction numbers give the highest 32 bits. Lower bits
+// are zero in the sequence, so that they become the random bits of their nodes. Permutation: a Feistel network over the least
+// power of two that holds N, repeated until it gives a number below N.
 //
 // Sources: A. B. Owen, "Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995 (scrambling), and "Scrambled net variance for
 // integrals of smooth functions", Annals of Statistics 25 (1997) 1541; S. Joe & F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635

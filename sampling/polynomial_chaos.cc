@@ -16,7 +16,7 @@ namespace {
 using Exponents = std::vector<int>;
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-constexpr int highest_degree = 50;  // powers of a normal germ above it overwhelm any sample
+constexpr int highest_degree = 50;  // a higher power of a normal germ would exceed all other terms in any sample
 constexpr double candidates_per_figure = 10;
 
 // Returns the orthonormal polynomials of degree 0, ..., degree at u.
@@ -63,11 +63,11 @@ struct Pursuit {
   Eigen::VectorXd coefficients;  // coefficients of all terms
 };
 
-// Chooses at most `most` of the columns, the constant one first. `held` are the held-back rows, `held_y` their figures.
+// Chooses at most `most` of the columns, the constant column first. `held` are the held-back rows, `held_y` their figures.
 Pursuit pursue(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, Eigen::Index most, const Eigen::MatrixXd& held,
                const Eigen::VectorXd& held_y) {
   const Eigen::RowVectorXd sizes = columns.colwise().norm();
-  // Psi = Q R for the chosen columns; their continuation to the held-back rows, Psi_held R^-1; R^-1.
+  // The chosen columns are Psi = Q R. Here are Q, its continuation Psi_held R^-1 to the held-back rows, and R^-1.
   Eigen::MatrixXd q(columns.rows(), most), q_held(held.rows(), most), inverse = Eigen::MatrixXd::Zero(most, most);
   Eigen::VectorXd residual = y, held_residual = held_y, projections(most);
   std::vector<bool> used(static_cast<std::size_t>(columns.cols()), false);
@@ -81,7 +81,7 @@ Pursuit pursue(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, Eigen::
     }
     if (next < 0) break;
     used[static_cast<std::size_t>(next)] = true;
-    // Gram-Schmidt runs twice: once leaves rounding errors of the size of the removed part.
+    // Gram-Schmidt runs twice: one pass leaves rounding errors of the size of the removed part.
     Eigen::VectorXd direction = columns.col(next), shares = Eigen::VectorXd::Zero(k);
     for (int time = 0; time < 2; ++time) {
       const Eigen::VectorXd share = q.leftCols(k).transpose() * direction;
@@ -108,7 +108,7 @@ Pursuit pursue(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, Eigen::
   return made;
 }
 
-// Returns the fold of each figure, at random: neighbours in a set of points may have something in common.
+// Returns the fold of each figure, drawn at random: neighbours in a set of points may depend on each other.
 std::vector<std::size_t> folds_of(std::size_t figures) {
   constexpr std::size_t most_folds = 10;
   const SamplePoints order(PointSet::latin_hypercube, 1, 0, Stream::folds, figures);
@@ -122,7 +122,7 @@ std::vector<std::size_t> folds_of(std::size_t figures) {
   return fold;
 }
 
-// Returns errors[k], those of predicting each fold from the others by k + 1 terms.
+// Returns, as element k, the squared error of predicting each fold from the other folds by k + 1 terms.
 std::vector<double> prediction_errors(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y,
                                       const std::vector<std::size_t>& fold, Eigen::Index most) {
   std::vector<double> errors(static_cast<std::size_t>(most), 0);
@@ -145,7 +145,7 @@ void check(const std::vector<Germ>& germs_of_variables, const Eigen::MatrixXd& p
   require_of("points", (points.array() > 0 && points.array() < 1).all(), "all coordinates of points must be above 0 and below 1");
   require_of("figures", figures.size() >= 4 && points.rows() == static_cast<Eigen::Index>(figures.size()),
              "there are " + std::to_string(figures.size()) + " figures of " + std::to_string(points.rows()) +
-                 " points; there must be as many, and at least 4");
+                 " points; there must be one figure per point, and at least 4");
   require_of("figures", std::all_of(figures.begin(), figures.end(), [](double y) { return std::isfinite(y); }),
              "all figures must be finite");
   require_of("most_degree", 1 <= most_degree && most_degree <= highest_degree,
@@ -159,10 +159,10 @@ PolynomialChaos::PolynomialChaos(const std::vector<Germ>& germs_of_variables, co
     : germs_(germs_of_variables) {
   check(germs_of_variables, points, figures, most_degree);
   const std::size_t n = figures.size(), d = dimensions();
-  // The terms are sorted by their degree: those of degree p and less are the first last[p].
+  // The terms are sorted by their degree: the first last[p] terms are those of degree at most p.
   std::vector<Exponents> candidates;
   std::vector<std::size_t> last;
-  double count = 1;  // number of terms of degree p and less: the binomial coefficient of d + p and p
+  double count = 1;  // number of terms of degree at most p: the binomial coefficient of d + p and p
   for (int p = 0; p <= most_degree; ++p) {
     if (p > 0) count *= static_cast<double>(d + static_cast<std::size_t>(p)) / p;
     if (p > 1 && count > candidates_per_figure * static_cast<double>(n)) break;
@@ -207,8 +207,9 @@ PolynomialChaos::PolynomialChaos(const std::vector<Germ>& germs_of_variables, co
 }
 
 double PolynomialChaos::operator()(std::span<const double> u) const {
-  require(u.size() == dimensions(), "a point has another number of coordinates than the sum has variables");
-  require(std::all_of(u.begin(), u.end(), [](double x) { return x > 0 && x < 1; }), "a coordinate must be above 0 and below 1");
+  require(u.size() == dimensions(), "a point must have one coordinate per variable of the expansion");
+  require(std::all_of(u.begin(), u.end(), [](double x) { return x > 0 && x < 1; }),
+          "every coordinate of a point must be above 0 and below 1");
   Value value;
   for (std::size_t i = 0; i < u.size(); ++i) value.of_variable.push_back(polynomials(germs_[i], degree_, u[i]));
   double sum = 0;
@@ -221,7 +222,7 @@ double PolynomialChaos::variance() const {
 }
 
 double PolynomialChaos::first_order(std::size_t i) const {
-  require(i < dimensions(), "there is no variable of that number");
+  require(i < dimensions(), "the number of a variable must be below the number of dimensions");
   double sum = 0;
   for (std::size_t k = 1; k < terms_.size(); ++k) {
     const int whole = std::accumulate(terms_[k].begin(), terms_[k].end(), 0);
@@ -231,7 +232,7 @@ double PolynomialChaos::first_order(std::size_t i) const {
 }
 
 double PolynomialChaos::total(std::size_t i) const {
-  require(i < dimensions(), "there is no variable of that number");
+  require(i < dimensions(), "the number of a variable must be below the number of dimensions");
   double sum = 0;
   for (std::size_t k = 1; k < terms_.size(); ++k) {
     if (terms_[k][i] > 0) sum += coefficients_[k] * coefficients_[k];

@@ -3,8 +3,9 @@
 //   y(xi) = sum c_a psi_a(xi),   psi_a(xi) = prod psi_(a_i)(xi_i),   |a| = sum a_i <= p
 //
 // xi_i are independent germs: uniform in (-1, 1) with Legendre polynomials, or standard normal with Hermite's. c_0 is the mean,
-// sum_(a != 0) c_a^2 the variance. Its parts with the terms that hold xi_i alone, or at all, are Sobol's indices of first order
-// and in total (B. Sudret, Reliability Engineering & System Safety 93 (2008) 964).
+// sum_(a != 0) c_a^2 the variance. The share of the terms that hold xi_i alone in this variance is Sobol's first-order index of
+// variable i, and the share of all terms that hold xi_i its total index (B. Sudret, Reliability Engineering & System Safety 93
+// (2008) 964).
 //
 // Choice of terms: orthogonal matching pursuit begins with the constant, and adds the term with which the residual correlates
 // most. The number k of terms, at most half the figures, and the degree p are those that predict best in a tenfold
@@ -12,11 +13,11 @@
 //
 //   q2 = 1 - sum (y_i - prediction_i)^2 / sum (y_i - mean)^2
 //
-// Leaving out one figure from a fit with given terms would be cheaper but too optimistic: for 60 random numbers it takes 29
-// terms, and a q2 of 0.6. The choice of k and p is still optimistic, by a tenth or two of 1 - q2. q2 is 1 for a polynomial, and
-// near or below 0 where the sum predicts no better than the mean. Degrees are tried up to `most_degree`, as long as they have
-// at most ten times as many terms as there are figures. A figure that jumps, or whose slope does, converges slowly: q2 shows
-// it.
+// Leaving out one figure from a fit with given terms would be cheaper but too optimistic: for 60 random numbers it chooses 29
+// terms and gives a q2 of 0.6. The choice of k and p is still optimistic, by a tenth or two of 1 - q2. q2 is 1 for a
+// polynomial, and near or below 0 where the sum predicts no better than the mean. Degrees are tried up to `most_degree`, as
+// long as there are at most ten times as many terms as figures. The sum converges slowly, and q2 is low, for a figure that
+// jumps or whose slope jumps.
 //
 // Sources: N. Agarwal & N. R. Aluru, Journal of Microelectromechanical Systems 18 (2009) 1454 (electrostatic MEMS); G. Blatman &
 // B. Sudret, Journal of Computational Physics 230 (2011) 2345 (sparse terms); Y. C. Pati, R. Rezaiifar & P. S. Krishnaprasad,
@@ -49,16 +50,17 @@ class PolynomialChaos {
                   int most_degree = 10);
 
   [[nodiscard]] std::size_t dimensions() const { return germs_.size(); }
-  [[nodiscard]] int degree() const { return degree_; }               ///< degree p; 0 where nothing is better than the mean
+  [[nodiscard]] int degree() const { return degree_; }  ///< degree p; 0 when no polynomial predicts better than the mean
   [[nodiscard]] std::size_t terms() const { return terms_.size(); }  ///< number of terms, with the constant
-  [[nodiscard]] double q2() const { return q2_; }  ///< q2 of the cross-validation; NaN where all figures are equal
+  [[nodiscard]] double q2() const { return q2_; }  ///< q2 of the cross-validation; NaN when all figures are equal
 
   /// Returns the sum at a point of the open unit cube. Throws InvalidInput unless it has dimensions() coordinates, all inside.
   [[nodiscard]] double operator()(std::span<const double> u) const;
 
   [[nodiscard]] double mean() const { return coefficients_[0]; }
   [[nodiscard]] double variance() const;
-  /// Return the Sobol' indices of variable i; NaN where the variance is zero. Throw InvalidInput unless i < dimensions().
+  /// Return the first-order and the total Sobol' index of variable i; NaN where the variance is zero. Throw InvalidInput unless
+  /// i < dimensions().
   [[nodiscard]] double first_order(std::size_t i) const;
   [[nodiscard]] double total(std::size_t i) const;
 

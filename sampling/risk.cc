@@ -14,7 +14,8 @@ double risk(std::span<const double> sample, const Risk& measure) {
     case RiskKind::quantile:
       return sample_quantile(sample, measure.parameter);
     case RiskKind::mean_sigma: {
-      require(measure.parameter >= 0 && std::isfinite(measure.parameter), "a factor of the deviation must be >= 0 and finite");
+      require(measure.parameter >= 0 && std::isfinite(measure.parameter),
+              "the factor of the standard deviation must be finite and at least 0");
       const double deviation = sample.size() > 1 ? sample_standard_deviation(sample) : 0;
       return measure.parameter == 0 ? sample_mean(sample) : sample_mean(sample) + measure.parameter * deviation;
     }

@@ -1,13 +1,13 @@
-// Measures of risk: one number for a sample in which larger is worse (statistics.h), which a robust search minimises.
+// Measures of risk: one number for a sample in which larger is worse (statistics.h). A robust search minimises it.
 //
 //   cvar       conditional value at risk at a level: the mean of the worst 1 - level
 //   quantile   the value that a share `level` stays below
 //   mean+sigma mean + factor times the standard deviation
-//   worst      the largest
+//   worst      the largest value
 //
-// CVaR uses every value of the tail; it bends where the others jump. A quantile depends on one or two values. A mean with its
-// deviation also punishes values far on the good side. The worst value grows with the sample. Source: R. T. Rockafellar & S.
-// Uryasev, Journal of Risk 2 (2000) 21.
+// CVaR uses every value of the tail, so that a single one moves it little. A quantile depends on one or two values. A mean with
+// its deviation also punishes values far on the good side. The worst value grows with the size of the sample. Source: R. T.
+// Rockafellar & S. Uryasev, Journal of Risk 2 (2000) 21.
 #pragma once
 
 #include <span>

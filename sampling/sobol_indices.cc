@@ -53,7 +53,7 @@ Estimate estimate(const Rows& rows, RowAt row_at) {
     }
   }
   const double n = static_cast<double>(rows.count), mean = sum / (2 * n);
-  made.variance = squares / (2 * n) - mean * mean;  // the figures are centred, so that hardly anything cancels
+  made.variance = squares / (2 * n) - mean * mean;  // the figures are centred, so that the difference loses hardly any digits
   for (std::size_t i = 0; i < d; ++i) {
     made.first_order[i] /= n * made.variance;
     made.total[i] /= n * made.variance;
@@ -100,8 +100,8 @@ SobolDesign::SobolDesign(PointSet kind, std::size_t dimensions, std::uint64_t se
     : points_(kind, 2 * dimensions, seed, Stream::indices, rows) {}
 
 void SobolDesign::point(std::uint64_t m, std::span<double> u) const {
-  require(m < evaluations(), "there is no evaluation of that number");
-  require(u.size() == dimensions(), "a point has another number of coordinates than the design");
+  require(m < evaluations(), "the number of an evaluation must be below the number of evaluations of the design");
+  require(u.size() == dimensions(), "a point must have one coordinate per dimension of the design");
   const std::size_t d = dimensions(), column = m % (d + 2);
   std::vector<double> both(2 * d);
   points_.point(m / (d + 2), both);
@@ -114,7 +114,8 @@ SobolEstimate sobol_indices(std::size_t dimensions, std::span<const double> figu
   internal::check(options.bootstrap);
   const std::size_t width = dimensions + 2;
   require(dimensions >= 1 && !figures.empty() && figures.size() % width == 0,
-          std::to_string(figures.size()) + " figures are not rows of " + std::to_string(width));
+          std::to_string(figures.size()) + " figures are given; their number must be a positive multiple of " +
+              std::to_string(width));
   SobolEstimate made{.rows = figures.size() / width};
   std::vector<double> kept;
   for (std::size_t j = 0; j < made.rows; ++j) {

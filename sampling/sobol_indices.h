@@ -8,13 +8,13 @@
 // if u_i were known; T_i is what would remain if all but u_i were known. 0 <= S_i <= T_i; the sum of S_i is at most 1, and 1
 // without interactions. f is centred by its mean, which changes no expectation and takes most of the noise out of S_i.
 //
-// Estimates may leave these bounds: a first-order index near zero is as often below it. Each has an interval by bootstrap over
-// the rows, as if they were independent: too wide for Sobol' points. An index is distinguishable from zero where its interval
-// is above it.
+// Estimates may leave these bounds: a first-order index near zero is as often below zero as above. Each index has a bootstrap
+// interval over the rows, which takes them for independent: it is too wide for Sobol' points. An index is distinguishable from
+// zero where its interval lies above zero.
 //
-// Figures that are not finite, of switches that failed, have no variance. A row with one of them is left out as a whole, so
-// that the indices are those of the switches that do not fail. There are no indices when more than `most_failed` of the rows
-// are left out.
+// A failed switch has a figure that is not finite, for which no variance exists. A row with such a figure is left out as a
+// whole, so that the indices are those of the switches that do not fail. There are no indices when more than `most_failed` of
+// the rows are left out.
 //
 // Sources: A. Saltelli, P. Annoni, I. Azzini, F. Campolongo, M. Ratto & S. Tarantola, Computer Physics Communications 181 (2010)
 // 259, table 2 (b); M. J. W. Jansen, Computer Physics Communications 117 (1999) 35 (total).
@@ -33,8 +33,8 @@
 namespace softland {
 
 /// The points at which the figure is needed, each computed by its number. Evaluation m belongs to row m / (d + 2), and within
-/// it to A (0), B (1) or A_B^i (2 + i). So the evaluations of a row stand together, and with Sobol' or Monte Carlo points those
-/// of fewer rows are the first of more.
+/// this row to A (0), B (1) or A_B^i (2 + i). So the evaluations of a row are consecutive, and with Sobol' or Monte Carlo
+/// points a design of fewer rows is the beginning of a larger one.
 class SobolDesign {
  public:
   /// Takes points of 2 d dimensions, stream `indices`. Throws what SamplePoints throws.
@@ -57,7 +57,7 @@ struct SobolIndex {
   bool above_zero = false;  ///< true when the index is distinguishable from zero
 };
 
-/// Indices from the rows that were used. They are NaN where all figures are equal and there is no variance to share.
+/// Indices from the rows that were used. They are NaN when all figures are equal, so that the variance is zero.
 struct SobolIndices {
   double mean = std::numeric_limits<double>::quiet_NaN();
   double variance = std::numeric_limits<double>::quiet_NaN();
@@ -66,18 +66,18 @@ struct SobolIndices {
 
 struct SobolEstimate {
   std::size_t rows = 0, failed_rows = 0;
-  std::optional<SobolIndices> indices = {};  ///< none where too many rows failed, or fewer than two are left
+  std::optional<SobolIndices> indices = {};  ///< none when too many rows failed, or fewer than two are left
 };
 
 struct SobolOptions {
   BootstrapOptions bootstrap = {};
-  /// The largest share of the rows that may hold figures that are not finite. One row in a hundred left out can move an index
-  /// by some hundredths, as much as the error of a thousand rows.
+  /// The largest share of the rows that may hold figures that are not finite. Leaving out one row in a hundred can move an
+  /// index by some hundredths, as much as the error of a thousand rows.
   double most_failed = 0.01;
 };
 
-/// Estimates the indices from the figures of all evaluations of a design, in its order. Throws InvalidInput unless there are
-/// rows of d + 2 of them, and what bootstrap_interval throws for its options.
+/// Estimates the indices from the figures of all evaluations of a design, in its order. Throws InvalidInput unless the number
+/// of figures is a positive multiple of d + 2, and what bootstrap_interval throws for its options.
 [[nodiscard]] SobolEstimate sobol_indices(std::size_t dimensions, std::span<const double> figures,
                                           const SobolOptions& options = {});
 

@@ -103,7 +103,7 @@ Histogram histogram(std::span<const double> sample, std::size_t most_bins) {
   if (!std::isfinite(bins)) bins = static_cast<double>(most_bins);
   made.counts.resize(static_cast<std::size_t>(std::clamp(bins, 1.0, static_cast<double>(most_bins))));
   for (const double x : finite) {
-    // Quarters are subtracted: the range may exceed all numbers.
+    // Quarters are subtracted: the range may exceed the largest double.
     const double part = std::isfinite(range) ? (x - made.low) / range : (x / 4 - made.low / 4) / (made.high / 4 - made.low / 4);
     const double place = range > 0 ? part * static_cast<double>(made.counts.size()) : 0;
     ++made.counts[std::min(static_cast<std::size_t>(place), made.counts.size() - 1)];

@@ -1,8 +1,8 @@
-// Figures of a sample in which larger is worse, and +infinity is the worst of all: the figure of a switch that failed.
+// Figures of a sample in which larger is worse, and +infinity, the figure of a switch that failed, is the worst of all.
 //
-// An infinite value makes mean, standard deviation and conditional value at risk infinite as soon as they use it. The skewness
-// becomes NaN. A quantile becomes infinite when an order statistic that it uses is. So quantiles stay finite while fewer
-// switches fail than they leave out, and the mean is of use only where none does.
+// Mean, standard deviation and conditional value at risk are infinite as soon as they use an infinite value; the skewness is
+// then NaN. A quantile is infinite when it uses an infinite order statistic. So the quantile p stays finite while less than
+// about a share 1 - p of the switches fails, but the mean only while none fails.
 //
 // Every function throws InvalidInput for a sample without values, and for one with NaN or -infinity. All results are in the
 // unit of the sample.
@@ -16,12 +16,12 @@ namespace softland {
 
 [[nodiscard]] double sample_mean(std::span<const double> sample);
 
-/// Returns the square root of sum (x - mean)^2 / (n - 1). NaN for one value.
+/// Returns the square root of sum (x - mean)^2 / (n - 1); NaN for one value.
 [[nodiscard]] double sample_standard_deviation(std::span<const double> sample);
 
 /// Returns G_1 = sqrt(n (n - 1)) / (n - 2) m_3 / m_2^(3/2), with m_k = sum (x - mean)^k / n. It is the adjusted Fisher-Pearson
-/// estimator, which has no bias for a normal distribution (D. N. Joanes & C. A. Gill, The Statistician 47 (1998) 183). NaN for
-/// fewer than three values, for equal ones, and where one is infinite.
+/// estimator, which has no bias for a normal distribution (D. N. Joanes & C. A. Gill, The Statistician 47 (1998) 183). The
+/// result is NaN for fewer than three values, for equal values, and for a sample with an infinite value.
 [[nodiscard]] double sample_skewness(std::span<const double> sample);
 
 /// Returns a quantile that is linear between order statistics: x_j + (h - j) (x_(j+1) - x_j), h = 1 + (n - 1) p, j = floor(h),
@@ -32,26 +32,26 @@ namespace softland {
 ///
 ///   CVaR = (sum_(i <= w) x_i + (m - w) x_(w+1)) / m,   m = (1 - alpha) n,   w = floor(m),   x_1 >= ... >= x_n
 ///
-/// It is the least value of c + mean(max(x - c, 0)) / (1 - alpha) over c. With m < 1 it is the worst value. Throws InvalidInput
-/// unless 0 <= alpha < 1. Source: R. T. Rockafellar & S. Uryasev, Journal of Risk 2 (2000) 21.
+/// This is the least value of c + mean(max(x - c, 0)) / (1 - alpha) over c. With m < 1 it is the worst value. Throws
+/// InvalidInput unless 0 <= alpha < 1. Source: R. T. Rockafellar & S. Uryasev, Journal of Risk 2 (2000) 21.
 [[nodiscard]] double conditional_value_at_risk(std::span<const double> sample, double alpha);
 
-/// Bins of equal width over the finite values, the last one closed.
+/// Bins of equal width over the finite values; the last bin includes both its ends.
 struct Histogram {
-  double low = 0, high = 0;              ///< ends of the first and the last bin; equal when all values are: one bin without width
+  double low = 0, high = 0;              ///< low end of the first bin and high end of the last; equal when all values are equal
   std::vector<std::size_t> counts = {};  ///< counts of the bins; empty where no value is finite
   std::size_t infinite = 0;              ///< number of infinite values, which are in no bin
 };
 
-/// Returns bins with the width of Freedman & Diaconis, 2 IQR n^(-1/3) (Z. Wahrscheinlichkeitstheorie 57 (1981) 453), over the
-/// finite values; 1 + log2(n) bins (Sturges 1926) where the interquartile range is 0. There are at most `most_bins`; throws
-/// InvalidInput for 0.
+/// Returns bins over the finite values. Their width is that of Freedman & Diaconis, 2 IQR n^(-1/3) (Z.
+/// Wahrscheinlichkeitstheorie 57 (1981) 453); when the interquartile range IQR is 0 there are 1 + log2(n) bins (Sturges 1926).
+/// There are at most `most_bins`; throws InvalidInput when this is 0.
 [[nodiscard]] Histogram histogram(std::span<const double> sample, std::size_t most_bins = 100);
 
 namespace internal {
-/// Throws what all of them throw.
+/// Throws InvalidInput for a sample without values, and for one with NaN or -infinity.
 void check_sample(std::span<const double> sample);
-/// Returns sample_quantile of values in ascending order, unchecked; the lowest may be -infinity.
+/// Returns sample_quantile() of values in ascending order, without checks; the lowest values may be -infinity.
 [[nodiscard]] double quantile_of_sorted(std::span<const double> sorted, double p);
 }  // namespace internal
 
