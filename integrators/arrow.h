@@ -12,7 +12,7 @@ namespace softland {
 
 class ArrowEquations {
  public:
-  /// Takes `size` unknowns, the first `core` of them dense, the rest in blocks of `block`.
+  /// Takes `size` unknowns: the first `core` of them form the dense core, the rest blocks of `block` unknowns.
   ArrowEquations(Eigen::Index size, Eigen::Index core, Eigen::Index block)
       : size_(size), core_(core), block_(block), blocks_(static_cast<std::size_t>((size - core) / block)) {}
 

@@ -19,9 +19,9 @@ struct DormandPrince {
   static constexpr float integral = 0.04F, proportional = 0.2F - 0.75F * integral;
   static constexpr double safety = 0.9;
   static constexpr double least_growth = 0.2, most_growth = 10;
-  static constexpr double first_growth = 1e4;  ///< growth after the first step, which is a guess
+  static constexpr double first_growth = 1e4;  ///< largest growth after the first step, whose length is only a guess
   static constexpr float least_error = -13;    ///< smallest error that the controller remembers, as a binary logarithm
-  static constexpr double not_finite = 0.1;    ///< factor of a step whose error is not a number
+  static constexpr double not_finite = 0.1;    ///< factor on the length of a step whose error is not a number
 };
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// The integrators of a closing, and their names.
+// Integrators of the equations of motion, and their names.
 #pragma once
 
 #include <array>
@@ -7,9 +7,9 @@
 namespace softland {
 
 enum class Integrator {
-  automatic,   ///< the caller chooses for its equations; no stepper can be made of it
-  lawson,      ///< explicit Runge-Kutta 5(4) on top of the free motion of the modes, own code
-  arkode_erk,  ///< the same pair on the motion itself, ARKODE
+  automatic,   ///< the caller chooses a method that suits its equations; make_stepper() refuses this value
+  lawson,      ///< explicit Runge-Kutta 5(4) for the deviation from the free motion of the modes, own code
+  arkode_erk,  ///< explicit Runge-Kutta 5(4) for the whole motion, ARKODE
   esdirk,      ///< diagonally implicit Runge-Kutta 5(4), ARKODE, exact Jacobian
   bdf,         ///< CVODE, exact Jacobian
   adams,       ///< CVODE, functional iteration

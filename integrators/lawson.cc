@@ -57,7 +57,7 @@ void Lawson::turn_to_nodes(double h) {
   for (std::size_t b = 0; b < omega_.size(); b += lanes) {
     const Lane phase = h * lane(omega_, b);
     for (std::size_t s = 1; s < stages; ++s) {
-      if (s == last) {  // the stage is at the node of the stage before
+      if (s == last) {  // the stage is at the same time as the stage before
         for (const auto member : {&Stage::cosine, &Stage::sine, &Stage::slack})
           lane(k_[s].*member, b) = lane(k_[s - 1].*member, b);
         continue;
@@ -159,7 +159,7 @@ bool Lawson::step(double t_stop) {
     const bool stops = t_ + h >= t_stop;
     if (stops) h = t_stop - t_;
     if (!(t_ + h > t_)) {
-      message_ = fmt::format("no step is short enough for the tolerance at t = {}", engineering(t_, "s", 4));
+      message_ = fmt::format("the tolerance cannot be met by any step length at t = {}", engineering(t_, "s", 4));
       return false;
     }
     const double end = stops ? t_stop : t_ + h;
@@ -184,7 +184,7 @@ bool Lawson::step(double t_stop) {
       y_.swap(trial_);
       rates_.swap(next_rates_);
       last_error_ = std::max(log_error, Pair::least_error);
-      // A step cut short by t_stop says little about the ones after it, which begin with a restart anyway.
+      // A step that t_stop shortened says little about the next steps, and these begin with a restart anyway.
       h_ = h * std::clamp(growth, Pair::least_growth, most);
       first_ = false;
       return true;

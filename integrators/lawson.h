@@ -1,25 +1,25 @@
-// Explicit Runge-Kutta steps of the pair 5(4) on top of the free motion of the modes.
+// Explicit Runge-Kutta steps of the pair 5(4) for the deviation from the free motion of the modes.
 //
 // The modes oscillate faster than the forces on them change: two periods of the fourth mode pass while the gap hardly moves. So
-// a step carries along the exact motion of every mode under the force at the begin of the step, and the Runge-Kutta method
-// integrates only what the force changes. With theta = omega t and a the acceleration at the begin,
+// a step contains the exact motion of every mode under the force at the start of the step, and the Runge-Kutta method
+// integrates only the effect of the change of the force. With theta = omega t and a the acceleration at the start of the step,
 //
 //   q = q0 + (a / omega^2) (1 - cos theta) + P cos theta + (v0 + R) sin theta / omega
 //   v = (v0 + R) cos theta + (a / omega) sin theta - P omega sin theta
-//   P' = -n sin theta / omega,  R' = n cos theta,  n = q'' + omega^2 q - (the same at the begin)
+//   P' = -n sin theta / omega,  R' = n cos theta,  n = q'' + omega^2 q - (this sum at the start of the step)
 //
-// Source: integrating factor of Lawson 1967, here about the equilibrium under the force at the begin (Certaine 1960). The pair:
-// Dormand & Prince 1980, RK5(4)7M; the fifth order is carried on, the last stage is the first of the next step. Step size
-// control: proportional-integral (Gustafsson 1991) with the exponents of Hairer & Wanner 1996, IV.2. The error of a step is the
-// root mean square, over the unknowns, of the embedded estimate over the absolute tolerances. An estimate that is not a number
-// rejects the step. The pair alone integrates the unknowns that follow the modes in the state. A step turns the fastest mode by
-// two radians at the most.
+// Source: integrating factor of Lawson 1967, here about the equilibrium under the force at the start of the step (Certaine
+// 1960). The pair: Dormand & Prince 1980, RK5(4)7M; the solution of fifth order is used, and the last stage is the first of the
+// next step. Step size control: proportional-integral (Gustafsson 1991) with the exponents of Hairer & Wanner 1996, IV.2. The
+// error of a step is the root mean square, over the unknowns, of the embedded estimate over the absolute tolerances. An
+// estimate that is not a number rejects the step. The unknowns after the modes in the state are integrated by the pair alone.
+// The phase of the fastest mode advances by two radians per step at the most.
 //
-// The last two stages, which are at the same time, show how stiff the equations are: by the difference of their slopes over
-// that of their states (Hairer & Wanner 1996, IV.2).
+// The last two stages, which are at the same time, show how stiff the equations are: stiffness is the ratio of the difference
+// of their slopes to the difference of their states (Hairer & Wanner 1996, IV.2).
 //
-// The reference closing takes 2100 right-hand sides at a tolerance of 1e-6 where the pair by itself takes 4200, and the error
-// of its B_H is then 3e-7 instead of 2e-4.
+// The reference closing takes 2100 right-hand sides at a tolerance of 1e-6, and 4200 by the pair for the whole motion. The
+// error of its highest rebound is 3e-7 instead of 2e-4.
 #pragma once
 
 #include <array>
@@ -48,7 +48,7 @@ class Lawson final : public Stepper {
   struct Stage {
     Modal q, v;                 // P', R'
     Modal cosine, sine, slack;  // functions of the phase up to the stage's node; slack: (1 - cosine) / omega^2
-    std::vector<double> rest;   // slope of the unknowns that follow the modes
+    std::vector<double> rest;   // slope of the unknowns after the modes
   };
 
   void turn_to_nodes(double h);
@@ -61,12 +61,12 @@ class Lawson final : public Stepper {
   Modal omega_, inverse_;
   double fastest_ = 0;
   std::vector<double> y_, trial_, rates_, next_rates_, weight_;
-  Modal q_, v_, a_;  // values at the begin of the step
+  Modal q_, v_, a_;  // values at the start of the step
   Modal q_weight_, v_weight_;
   std::array<Stage, stages> k_;
-  double turned_ = 0;  // step length that the phases belong to
+  double turned_ = 0;  // step length for which the phases were computed [s]
   double t_ = 0, h_ = 0, max_step_ = 0;
-  float last_error_ = 0;  // binary logarithm
+  float last_error_ = 0;  // error of the last step, as a binary logarithm
   bool first_ = true;
   std::string message_;
 };

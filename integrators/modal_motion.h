@@ -1,7 +1,7 @@
-// Motion of one point of the beam within a step. Every mode moves as if the force on it stayed as at the begin, which is exact
-// (integrators/phase.h); a quintic added to it makes position, velocity and acceleration right at the end. The force changes
-// little in a step, so this holds where the quintic through both ends does not: over steps of a radian and more of the fastest
-// mode.
+// Motion of one point of the beam within a step. Every mode moves by its exact motion under the force at the start of the step
+// (integrators/phase.h). A quintic is added, so that position, velocity and acceleration are right at the end. The force
+// changes little in a step, so this interpolation is accurate over steps of a radian and more of the fastest mode, for which
+// the quintic through both ends is not.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace softland {
 
-/// The quintic that starts from rest at 0 and is p, v and a at the end of a step of length 1.
+/// The quintic that starts from rest at 0 and has position p, velocity v and acceleration a at the end of a step of length 1.
 template <class T>
 struct Remainder {
   std::array<T, 3> factors{};  ///< coefficients of the powers 3 to 5
@@ -36,8 +36,8 @@ class ModalMotion {
     push_.resize(omega_.size());
   }
 
-  /// Sets a step of `length` [s] in equal pieces, from modal coordinates, velocities and accelerations to the motion of the
-  /// point at its end. The fastest mode's phase must not exceed largest_phase.
+  /// Sets a step of `length` [s], divided into equal pieces. q, v and a are coordinates, velocities and accelerations of the
+  /// modes at its start, `end` is the motion of the point at its end. The fastest mode's phase must not exceed largest_phase.
   void set(double length, int pieces, const double* q, const double* v, const double* a, const Sample& end) {
     per_length_ = 1 / length;
     Lane start = Lane::Zero();
@@ -65,7 +65,7 @@ class ModalMotion {
   /// Returns the motion after k pieces, 1 <= k <= pieces.
   [[nodiscard]] const Sample& knot(int k) const { return knots_[static_cast<std::size_t>(k) - 1]; }
 
-  /// Returns the motion at `time` after the begin, at most the step's length [s].
+  /// Returns the motion at `time` after the start of the step, at most its length [s].
   [[nodiscard]] Sample at(double time) const {
     Sample s{start_, 0, 0};
     for (std::size_t b = 0; b < omega_.size(); b += lanes) add_free(b, turn(lane(omega_, b) * time), s);
@@ -81,7 +81,7 @@ class ModalMotion {
     s.acceleration += (omega * omega * (pull * turned.cosine - push * turned.sine)).sum();
   }
 
-  // Adds the quintic at the share x of the step.
+  // Adds the quintic at this share x of the step.
   void add_rest(double x, Sample& s) const {
     s.position += rest_.position(x);
     s.velocity += per_length_ * rest_.velocity(x);

@@ -1,5 +1,5 @@
-// Rotation of free modes in a time: the exact motion between two instants of q'' = -omega^2 q + constant, for a few modes at
-// once.
+// Rotation of the phases of free modes: the exact motion between two instants of q'' = -omega^2 q + constant, for a lane of
+// modes at once.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ struct Turn {
   return {.cosine = 1 - slack, .sine = 2 * sine * cosine, .slack = slack};
 }
 
-/// Returns one turn after the other.
+/// Returns the rotation by the sum of both phases.
 [[nodiscard]] inline Turn operator+(const Turn& a, const Turn& b) {
   const Lane slack = a.slack + b.slack - a.slack * b.slack + a.sine * b.sine;
   return {.cosine = 1 - slack, .sine = a.sine * b.cosine + a.cosine * b.sine, .slack = slack};

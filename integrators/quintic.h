@@ -41,7 +41,7 @@ class Quintic {
     for (double& t : turns.at) t = begin_ + t * length_;
     return turns;
   }
-  /// Bounds of the position on [begin, end]: the curve stays among the control points of its Bernstein form.
+  /// Bounds of the position on [begin, end]: the curve stays between the control points of its Bernstein form.
   struct Bounds {
     double least = 0, most = 0;  ///< [m]
   };

@@ -17,15 +17,15 @@ struct Function {
 double bracketed_zero(Function f, double low, double high);
 }  // namespace internal
 
-/// Returns a zero of f in [low, high] where f(low) and f(high) differ in sign, to rounding, by TOMS algorithm 748 (Alefeld,
-/// Potra & Shi 1995). Returns the end at which |f| is less where they do not differ.
+/// Returns a zero of f in [low, high], to rounding, by TOMS algorithm 748 (Alefeld, Potra & Shi 1995), when f(low) and f(high)
+/// differ in sign. Otherwise returns the end at which |f| is less.
 template <class F>
 double bracketed_zero(const F& f, double low, double high) {
   return internal::bracketed_zero(
       {&f, [](const void* object, double at) -> double { return (*static_cast<const F*>(object))(at); }}, low, high);
 }
 
-/// Places in (0, 1) in order, at most N.
+/// Places in (0, 1) in ascending order, at most N.
 template <std::size_t N>
 struct Places {
   std::array<double, N> at{};

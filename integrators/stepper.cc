@@ -22,7 +22,7 @@ std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& sy
     case Integrator::automatic:
       break;
   }
-  throw std::logic_error("a stepper is made of a method, not of a choice");
+  throw std::logic_error("no stepper exists for Integrator::automatic; choose a method");
 }
 
 }  // namespace softland

@@ -10,16 +10,16 @@
 
 namespace softland {
 
-/// A system y = (q, v, z) of dimension n: modes with q' = v, v' = -frequency^2 q + ..., and the unknowns z that follow them.
-/// Only the implicit methods need the Jacobian of y' (column-major n x n).
+/// A system y = (q, v, z) of dimension n: modes with q' = v, v' = -frequency^2 q + ..., and further unknowns z. Only the
+/// implicit methods need the Jacobian of y' (column-major n x n).
 struct OdeSystem {
   std::size_t size = 0;
   std::vector<double> frequencies = {};  ///< frequencies of the modes [rad/s]
   /// Writes (v', z').
   std::function<void(double t, const double* y, double* rates)> rates;
   std::function<void(double t, const double* y, double* jacobian)> jacobian;
-  /// Sizes of an arrow Jacobian; 0 for a dense one. Beyond the first `core` unknowns it has blocks of size `block` that couple
-  /// with the core only.
+  /// Sizes of a Jacobian in the shape of an arrow; 0 for a dense Jacobian. Beyond the first `core` unknowns the Jacobian has
+  /// blocks of size `block` that couple with the core only.
   std::size_t core = 0, block = 0;
 };
 
@@ -30,21 +30,22 @@ class Stepper {
   /// `first_step` a suggestion [s].
   virtual bool restart(double t, const double* y, const double* rates, const std::vector<double>& absolute, double first_step,
                        double max_step) = 0;
-  /// Makes one step, never beyond t_stop. Returns false where it failed; see message().
+  /// Makes one step, never beyond t_stop. Returns false when the step failed; see message().
   virtual bool step(double t_stop) = 0;
   [[nodiscard]] virtual double time() const = 0;
   [[nodiscard]] virtual const double* state() const = 0;
   /// Returns (v', z') at time(); the last evaluation of the right-hand side was there.
   [[nodiscard]] virtual const double* rates() = 0;
   [[nodiscard]] virtual std::string message() const = 0;
-  /// Returns the stiffness, for an explicit method that knows it: the last step's length over the time in which the fastest
-  /// part of the solution decays; 0 where it is not known. At the limit of stability, about 3, this ratio and not the tolerance
-  /// keeps steps short.
+  /// Returns the stiffness, when an explicit method computes it: the last step's length over the time in which the fastest part
+  /// of the solution decays; 0 when it is not known. At the limit of stability, about 3, this ratio and not the tolerance keeps
+  /// steps short.
   [[nodiscard]] virtual double stiffness() const { return 0; }
 };
 
-/// Makes a stepper that keeps a reference to the system. `tolerance` is the relative tolerance from which the absolute ones of
-/// a restart come; the best predictor of a method depends on it. Throws std::logic_error for `automatic`.
+/// Makes a stepper that keeps a reference to the system. `tolerance` is the relative tolerance from which the absolute
+/// tolerances of restart() are derived; an implicit method chooses its predictor by it. Throws std::logic_error for
+/// `automatic`.
 [[nodiscard]] std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& system, double tolerance);
 
 }  // namespace softland

@@ -57,7 +57,7 @@ struct Destroy {
 template <class Handle>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy>;
 
-/// Takes ownership. The library returns a null pointer for what it could not make, which means that memory is short.
+/// Owns an object of the library. A null pointer means that the library was out of memory.
 template <class Handle>
 Owned<Handle> made(Handle handle) {
   if (handle == nullptr) throw std::bad_alloc();
@@ -78,12 +78,12 @@ class Context {
   SUNContext context_ = nullptr;
 };
 
-/// The common part of the SUNDIALS steppers: context, vectors, tolerances, the equations as its callbacks, its messages. The
-/// equations must not throw.
+/// The common part of the SUNDIALS steppers: context, vectors, tolerances, the equations as callbacks of the library, and its
+/// messages. The equations must not throw.
 class SundialsStepper : public Stepper {
  public:
   explicit SundialsStepper(const OdeSystem& system) : system_(system), y_(new_vector()), weights_(new_vector()) {
-    // One pass over a stage's sum replaces one per term: the vectors are short, but the calls take time.
+    // With fused operations one pass replaces a pass per term of a stage's sum: the vectors are short, but the calls take time.
     N_VEnableFusedOps_Serial(y_.get(), SUNTRUE);
     last_.rates.resize(system.size - system.frequencies.size());
   }
@@ -100,7 +100,7 @@ class SundialsStepper : public Stepper {
   }
   [[nodiscard]] double time() const final { return t_; }
   [[nodiscard]] const double* state() const final { return N_VGetArrayPointer(y_.get()); }
-  // The last stage of many methods is the right-hand side where the step ends.
+  // The last stage of many methods is the right-hand side at the end of the step.
   [[nodiscard]] const double* rates() final {
     if (!last_.is_at(t_, state())) evaluate(t_, state());
     return last_.rates.data();
@@ -108,14 +108,14 @@ class SundialsStepper : public Stepper {
   [[nodiscard]] std::string message() const final { return message_; }
 
  protected:
-  /// Allocates the library's memory for the equations from (t, y_) on.
+  /// Allocates the library's memory for equations that start at (t, y_).
   virtual bool create(double t) = 0;
-  /// Sets the options that are set once.
+  /// Sets the options of the method.
   virtual bool set_up() = 0;
   virtual bool reinitialize(double t) = 0;
   virtual bool set_steps(double first, double longest) = 0;
 
-  /// True when a call of the library succeeded; keeps the library's message where it did not.
+  /// Returns true when a call of the library succeeded; otherwise keeps the library's message.
   bool ok(int flag, std::string_view function) {
     if (flag >= 0) return true;
     message_ =
@@ -134,7 +134,7 @@ class SundialsStepper : public Stepper {
     auto* me = static_cast<SundialsStepper*>(self);
     const double* state = N_VGetArrayPointer(y);
     double* out = N_VGetArrayPointer(dydt);
-    // A step begins where the last one ended.
+    // A step begins at the end of the last step, where the right-hand side is known.
     const Evaluation& known = me->last_.is_at(t, state)    ? me->last_
                               : me->begin_.is_at(t, state) ? me->begin_
                                                            : me->evaluate(t, state);
@@ -151,7 +151,7 @@ class SundialsStepper : public Stepper {
     static_cast<SundialsStepper*>(self)->system_.jacobian(t, N_VGetArrayPointer(y), SUNDenseMatrix_Data(j));
     return 0;
   }
-  // SUNDIALS refuses tolerances below the rounding of their unknowns, which those in a stiff contact are.
+  // SUNDIALS refuses tolerances below the rounding errors of their unknowns. In a stiff contact the tolerances are that small.
   static int error_weights(N_Vector y, N_Vector ewt, void* self) {
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
     const auto* me = static_cast<SundialsStepper*>(self);
@@ -173,7 +173,7 @@ class SundialsStepper : public Stepper {
   double t_ = 0;
 
  private:
-  // An evaluation of the right-hand side.
+  // A point at which the right-hand side was evaluated, and its value.
   struct Evaluation {
     double t = std::numeric_limits<double>::quiet_NaN();
     std::vector<double> y, rates;
@@ -208,11 +208,11 @@ class SundialsStepper : public Stepper {
 };
 
 constexpr long unbounded_steps = -1;               // the caller bounds the work
-constexpr double smallest_change_of_step = 1e-10;  // relative; larger changes factorise anew
+constexpr double smallest_change_of_step = 1e-10;  // relative; a larger change of the step makes a new factorisation
 constexpr int steps_of_a_jacobian = 2;
-// Predictor of the iteration for a stage: the state before the step or, extrapolated from the last step, with a lower order the
-// later the stage. On a compressible film the first takes 0.5 of the time at 1e-4, the second 0.4 at 1e-8, and both the same at
-// 1e-5.
+// Predictor of the iteration for a stage: the state before the step, or an extrapolation from the last step whose order is
+// lower for later stages. On a compressible film the former takes half the time of the latter at a tolerance of 1e-4, the
+// latter 0.4 of the time of the former at 1e-8, and both take the same at 1e-5.
 constexpr int predictor_trivial = 0, predictor_of_falling_order = 2;
 constexpr double extrapolates_below = 3e-6;  // relative tolerance
 
@@ -279,7 +279,7 @@ class DirkStepper final : public SundialsStepper {
            ok(ARKStepSetLinearSolver(memory_, solver_.get(), matrix_.get()), "ARKStepSetLinearSolver") &&
            ok(ARKStepSetJacFn(memory_, &SundialsStepper::jacobian), "ARKStepSetJacFn") &&
            // The library remembers how fast its iterations converge for as long as it keeps a factorisation. After one lucky
-           // iteration it would accept the next ones too early, with stages a thousand times the tolerance wrong.
+           // iteration it would accept the next iterations too early, with errors of stages of a thousand times the tolerance.
            ok(ARKStepSetDeltaGammaMax(memory_, smallest_change_of_step), "ARKStepSetDeltaGammaMax") &&
            ok(ARKStepSetJacEvalFrequency(memory_, steps_of_a_jacobian), "ARKStepSetJacEvalFrequency") &&
            ok(ARKStepSetPredictorMethod(memory_, predictor_), "ARKStepSetPredictorMethod") &&

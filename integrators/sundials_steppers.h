@@ -8,8 +8,8 @@
 
 namespace softland {
 
-/// Makes a diagonally implicit Runge-Kutta 5(4) with eight stages (Kennedy & Carpenter 2003), ARKODE. At tight tolerances its
-/// stages begin from those of the last step.
+/// Makes a diagonally implicit Runge-Kutta 5(4) with eight stages (Kennedy & Carpenter 2003), ARKODE. At tight tolerances the
+/// iteration for a stage starts from an extrapolation of the last step.
 [[nodiscard]] std::unique_ptr<Stepper> make_esdirk(const OdeSystem& system, double tolerance);
 /// Makes backward differentiation, orders 1 to 5, CVODE.
 [[nodiscard]] std::unique_ptr<Stepper> make_bdf(const OdeSystem& system);
