@@ -12,9 +12,9 @@ namespace softland::internal {
 namespace {
 
 // Shares of the budget of an epoch.
-constexpr double refining = 0.2;  // share of the given budget; the same again with a gradient
+constexpr double refining = 0.2;  // share of the given budget; with a gradient this share is spent twice
 constexpr double sampling = 0.15;
-constexpr double hopping = 0.6;  // share of the budget left after that, for a search that continues with a gradient
+constexpr double hopping = 0.6;  // share of the remaining budget, for a search that continues an earlier one with a gradient
 constexpr double first_heat = 0.4;
 constexpr double later_heat = 0.2;
 
@@ -23,11 +23,11 @@ constexpr long epochs_with_gradient = 4, shortest_epoch = 600;
 constexpr std::size_t searches_at_once = 4;
 constexpr std::size_t starts_refined = 2;
 constexpr long shortest_refinement = 125;  // evaluations
-constexpr long shortest_heat = 20;  // evaluations: less than it takes to build a simplex or a model of 7 variables is wasted
+constexpr long shortest_heat = 20;         // evaluations: the least for a simplex or a quadratic model of 7 variables
 
-// Standard deviations of hops, fractions of the box. Each hop is a local search from beside the best point.
+// Standard deviations of hops, fractions of the box. Each hop is a local search from a random point near the best point.
 constexpr std::array hop_sizes = {0.0005, 0.002, 0.008, 0.03};
-constexpr std::size_t fewest_hopping = 16;  // variables: sampling the box is more successful with fewer
+constexpr std::size_t fewest_hopping = 16;  // variables: with fewer variables sampling the box is more successful
 constexpr long iterations_of_hop = 8;       // iterations, and one more for each variable, for a model of the curvature
 constexpr long evaluations_of_iteration = 1 + evaluations_of_gradient;
 
@@ -53,8 +53,8 @@ double distance(const Point& a, const Point& b) {
   return farthest;
 }
 
-/// Returns the best known points that are apart from each other and from the explored ones; the distance shrinks until there
-/// are enough.
+/// Returns the best known points that are apart from each other and from the points already explored; the required distance
+/// shrinks until there are enough.
 std::vector<Point> promising_points(std::vector<EvaluationRecord::Known> known, const std::vector<Point>& explored) {
   std::stable_sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.answer.value < b.answer.value; });
   std::vector<Point> chosen;
@@ -73,7 +73,7 @@ std::vector<Point> promising_points(std::vector<EvaluationRecord::Known> known, 
   return chosen;
 }
 
-/// Returns the best point; empty before a point was feasible.
+/// Returns the best point; empty when no point was feasible so far.
 Point best_point(const EvaluationRecord& record) {
   const auto& known = record.known();
   const auto best =
@@ -90,7 +90,7 @@ void sample(EvaluationRecord& record, std::uint64_t first, std::size_t count) {
   record.run(tasks);
 }
 
-/// Lets each search that has not converged go on for `budget` evaluations.
+/// Continues each search that has not converged for `budget` evaluations.
 void advance(EvaluationRecord& record, std::vector<Search>& searches, long budget) {
   std::vector<EvaluationRecord::Task> tasks;
   for (Search& search : searches) {
@@ -110,8 +110,8 @@ long share_of(long budget, double share, std::size_t searches) {
   return std::max(shortest_heat, static_cast<long>(share * static_cast<double>(budget) / static_cast<double>(searches)));
 }
 
-/// Runs monotonic basin hopping (Leary 2000, J. Glob. Optim. 18, 367) within a budget: local searches from around the best
-/// point, and again from the better ones that they find.
+/// Runs monotonic basin hopping (Leary 2000, J. Glob. Optim. 18, 367) within a budget: local searches start from random points
+/// near the best point, which a better result of a search replaces.
 void hop(EvaluationRecord& record, const Method& method, long budget) {
   const long each =
       std::max(shortest_heat, evaluations_of_iteration * (iterations_of_hop + static_cast<long>(record.dimension())));
@@ -136,7 +136,7 @@ void hop(EvaluationRecord& record, const Method& method, long budget) {
   }
 }
 
-/// `finisher` takes over from the searches after their first round, where it is another method.
+/// `finisher`, when it is another method, continues the searches after their first round.
 void search(EvaluationRecord& record, const std::array<const Method*, searches_at_once>& methods, const Method* finisher,
             const Method& polisher) {
   std::uint64_t points_sampled = 0;
@@ -155,7 +155,7 @@ void search(EvaluationRecord& record, const std::array<const Method*, searches_a
     const long budget = std::min(record.remaining(), longest_epoch);
     std::vector<Point> starts = promising_points(record.known(), explored);
     starts.resize(std::min(starts.size(), starts_refined));
-    std::vector<Search> refined;  // none where the search was stopped before its first evaluation
+    std::vector<Search> refined;  // empty when the search was stopped before its first evaluation
     const auto go_on = [&] {
       if (refined.empty()) return;
       advance(record, refined, std::max(share_of(budget, refining, refined.size()), shortest_refinement));

@@ -1,7 +1,7 @@
 // The default optimizer: it samples the box for promising points, then descends from the best of them.
 //
-// It is made for landscapes with narrow curved valleys, some of them blind, kinks, small jumps and noise, 4 to 7 variables, and
-// a budget of 500 to 2500 evaluations. Each epoch has four steps:
+// It is made for landscapes with narrow curved valleys, some of them dead ends, with kinks, small jumps and noise, 4 to 7
+// variables, and a budget of 500 to 2500 evaluations. Each epoch has four steps:
 // 1. Points spread over the box are evaluated.
 // 2. Local searches start from the best of all known points that lie apart from each other and from where earlier searches
 //    went. The best starts cma-es, which follows bent valleys and gets over kinks and small jumps. The second best starts
@@ -16,10 +16,10 @@
 
 namespace softland::internal {
 
-/// Runs until the record is over, or until an epoch makes no new evaluation.
+/// Runs until the record accepts no more evaluations (EvaluationRecord::over), or until an epoch makes no new evaluation.
 void search_auto(EvaluationRecord& record);
 /// Serves the methods with a gradient, which end at the first kink: cma-es makes the first round of every search; `finisher`
-/// continues from the best points it found, and polishes.
+/// continues from the best points found, and polishes.
 void search_and_finish(EvaluationRecord& record, const Method& finisher);
 
 }  // namespace softland::internal

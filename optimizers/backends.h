@@ -1,4 +1,4 @@
-// Interface of the search to the libraries: one run of one method from one point, answered by a BudgetedObjective.
+// Interface to the libraries of optimizers: one run of one method from one start, whose objective is a BudgetedObjective.
 #pragma once
 
 #include <cstdint>
@@ -29,17 +29,18 @@ struct Method {
 struct Run {
   Point start;
   double step = 0.25;      ///< first step as a fraction of the box
-  double population = 1;   ///< points of a generation, over the usual number
+  double population = 1;   ///< points of a generation, as a multiple of the usual number
   std::uint64_t seed = 0;  ///< seed of the library's random numbers
 };
 
 struct RunReport {
-  bool converged = false;  ///< true when the run ended by itself, and not by an error
+  bool converged = false;  ///< true when the run ended by its own criterion, and not by an error
   std::string message;     ///< message of the library
 };
 
-/// Both always return, whatever the objective does. A run repeated with the same arguments evaluates the same points in the
-/// same order. So a search that ran out of budget is continued by repeating it: its past is answered from memory.
+/// run_nlopt() and run_ipopt() always return, whatever the objective does. Repeated with the same arguments they evaluate the
+/// same points in the same order. So a search that ran out of budget is continued by repeating its run: the evaluations made
+/// before are answered from memory.
 [[nodiscard]] RunReport run_nlopt(const Method& method, const Run& run, BudgetedObjective& budgeted);
 [[nodiscard]] RunReport run_cma_es(const Run& run, BudgetedObjective& budgeted);
 [[nodiscard]] RunReport run_ipopt(const Run& run, BudgetedObjective& budgeted);

@@ -21,7 +21,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Smallest spread in units of the box; below it the spread of the points is lost in the noise of the objective.
+// Smallest spread in units of the box. A smaller spread would hide the differences of the points in the noise of the objective.
 constexpr double smallest_spread = 1e-7;
 
 /// Folds the real line onto [0, 1].
@@ -60,8 +60,8 @@ struct Child {
   double value;
 };
 
-// The points lie about the mean as sigma axes diag(lengths) z does, with z from the standard normal distribution. The
-// covariance without sigma is axes diag(lengths)^2 axes^T; its lower triangle is kept.
+// The points are mean + sigma axes diag(lengths) z, with z from the standard normal distribution. The covariance without sigma
+// is axes diag(lengths)^2 axes^T; its lower triangle is kept.
 class Distribution {
  public:
   Distribution(const Strategy& strategy, VectorXd mean, double sigma)
@@ -82,7 +82,8 @@ class Distribution {
   [[nodiscard]] double spread() const { return sigma_ * lengths_.maxCoeff(); }
   void shrink(double factor) { sigma_ *= factor; }
 
-  // Moves the mean to the weighted best children and adapts to their steps; children are sorted, the best first.
+  // Moves the mean to the weighted best children and adapts the distribution to their steps; children are sorted, the best
+  // first.
   void learn(const std::vector<Child>& children, long generation) {
     const Strategy& s = strategy_;
     VectorXd move = VectorXd::Zero(mean_.size());
@@ -138,11 +139,12 @@ RunReport run_cma_es(const Run& run, BudgetedObjective& budgeted) {
       std::stable_sort(children.begin(), children.end(), [](const Child& a, const Child& b) { return a.value < b.value; });
       points.learn(children, generation);
       const double spread = points.spread();
-      if (!(spread > smallest_spread)) return {.converged = true, .message = "CMA-ES: points have drawn together"};
+      if (!(spread > smallest_spread))
+        return {.converged = true, .message = "CMA-ES: the spread of the points is below the tolerance"};
       if (spread > 2) points.shrink(2 / spread);
     }
   } catch (const Cut&) {
-    return {.converged = false, .message = "CMA-ES: stopped by us"};
+    return {.converged = false, .message = "CMA-ES: stopped by softland"};
   }
 }
 

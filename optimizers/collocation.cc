@@ -19,8 +19,8 @@ using Eigen::VectorXd;
 
 constexpr Index stages = 3;
 
-// The Radau points of a piece [0, 1], and the slopes there of the polynomials that are 1 at one of (0, points) and 0 at the
-// others.
+// The Radau points of a piece [0, 1], and the slopes at these points of the polynomials that are 1 at one of (0, points) and 0
+// at the others.
 struct Radau {
   std::array<double, stages + 1> points = {0, (4 - std::sqrt(6.0)) / 10, (4 + std::sqrt(6.0)) / 10, 1};
   Eigen::Matrix<double, stages, stages + 1> slopes;
@@ -52,7 +52,7 @@ const Radau& radau() {
   return rule;
 }
 
-// The weight of a variable of the program in the control at a point.
+// The weight of one variable of the program in the value of a control at a point.
 struct Part {
   Index column;  // column of the controls
   double weight;
@@ -299,7 +299,7 @@ class Program final : public Ipopt::TNLP {
     }
   }
 
-  // Calls entry(row, column, value) in the order of the sparse matrix. The values mean nothing without rates.
+  // Calls entry(row, column, value) in the order of the sparse matrix. The values have no meaning when `rates` are not given.
   template <class F>
   void for_jacobian(const std::vector<ControlledSystem::Rates>& rates, const double* x, F&& entry) const {
     Index row = 0;
@@ -346,8 +346,8 @@ class Program final : public Ipopt::TNLP {
     });
   }
 
-  // Calls entry for the lower triangle of the Lagrangian's second derivatives; the objective is linear. The values mean nothing
-  // without x.
+  // Calls entry for the lower triangle of the Lagrangian's second derivatives; the objective is linear. The values have no
+  // meaning when x is null.
   template <class F>
   void for_hessian(const double* x, double time, const double* multipliers, F&& entry) {
     MatrixXd curvature = MatrixXd::Zero(n_ + nc_, n_ + nc_);
@@ -393,29 +393,30 @@ class Program final : public Ipopt::TNLP {
 };
 
 void check(const ControlProblem& p, const ControlledCourse& guess) {
-  require(p.system != nullptr, "optimal control: there is no system");
+  require(p.system != nullptr, "optimal control: the system must not be null");
   const Index n = p.system->states();
-  require(p.start.size() == n, "optimal control: one starting value for every state");
+  require(p.start.size() == n, "optimal control: `start` must have one value per state");
   require(static_cast<Index>(p.bounds.size()) == p.system->controls() && !p.bounds.empty(),
-          "optimal control: bounds for every control");
+          "optimal control: `bounds` must have one entry per control, at least one");
   for (const ControlBound& bound : p.bounds) {
-    require(bound.lower <= bound.upper && bound.slew > 0, "optimal control: a bound is upside down, or a slew is not positive");
+    require(bound.lower <= bound.upper && bound.slew > 0, "optimal control: a control must have lower <= upper and slew > 0");
     require(std::isfinite(bound.slew) == std::isfinite(p.bounds.front().slew),
-            "optimal control: either all controls jump or none does");
+            "optimal control: the slews must be finite for all controls or for none");
   }
   for (const auto* conditions : {&p.on_the_way, &p.at_the_end}) {
     for (const StateCondition& c : *conditions) {
-      require(c.row.size() == n && c.lower <= c.upper, "optimal control: a condition does not fit the states, or is upside down");
+      require(c.row.size() == n && c.lower <= c.upper,
+              "optimal control: a condition must have one coefficient per state and lower <= upper");
     }
   }
   require(p.shortest >= 0 && p.shortest < p.longest && std::isfinite(p.longest),
-          "optimal control: bounds of the time are upside down");
+          "optimal control: the times must be finite with 0 <= shortest < longest");
   require(p.knots.size() >= 2 && p.knots.front() == 0 && p.knots.back() == 1 &&
               std::is_sorted(p.knots.begin(), p.knots.end(), std::less_equal<>()),
-          "optimal control: knots must grow from 0 to 1");
-  require(p.longest_piece > 0, "optimal control: the pieces of the mesh must have a length");
+          "optimal control: the knots must increase from 0 to 1");
+  require(p.longest_piece > 0, "optimal control: longest_piece must be above 0");
   require(guess.states.rows() == n && guess.controls.rows() == p.system->controls() && guess.time > 0,
-          "optimal control: the guess does not fit the problem");
+          "optimal control: the guess must have the states and controls of the problem and a time above 0");
 }
 
 std::string words_of(Ipopt::ApplicationReturnStatus status) {
@@ -435,13 +436,13 @@ std::string words_of(Ipopt::ApplicationReturnStatus status) {
     case Ipopt::Invalid_Number_Detected:
       return "Ipopt: Invalid_Number_Detected";
     case Ipopt::User_Requested_Stop:
-      return "Ipopt: stopped by us";
+      return "Ipopt: stopped by softland";
     default:
       return "Ipopt: status " + std::to_string(static_cast<int>(status));
   }
 }
 
-// Returns the index of the interval that holds a fraction, and the relative place inside it.
+// Returns the index of the interval that contains a fraction, and the relative place inside this interval.
 std::pair<std::size_t, double> interval_of(const std::vector<double>& at, double fraction) {
   const auto above = std::upper_bound(at.begin() + 1, at.end() - 1, fraction);
   const auto i = static_cast<std::size_t>(above - at.begin()) - 1;
@@ -484,11 +485,12 @@ ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& gu
   options->SetNumericValue("mu_init", 1e-3);
   options->SetNumericValue("bound_push", 1e-4);
   options->SetNumericValue("bound_frac", 1e-4);
-  // With its own pivots of 1e-6 MUMPS miscounts the signs of the eigenvalues where states differ by decades, and Ipopt adds
-  // ever more to the Hessian. Minimum degree fills these matrices less than the order that MUMPS would choose.
+  // With its default pivot tolerance of 1e-6 MUMPS miscounts the signs of the eigenvalues when states differ by decades, and
+  // Ipopt adds ever more to the Hessian. Minimum degree ordering fills these matrices less than the ordering that MUMPS would
+  // choose.
   options->SetNumericValue("mumps_pivtol", 1e-3);
   options->SetIntegerValue("mumps_pivot_order", 0);
-  // The name is empty: without it Ipopt would read a file ipopt.opt from the working directory.
+  // The name is empty because otherwise Ipopt would read a file ipopt.opt from the working directory.
   auto status = application->Initialize("");
   if (status == Ipopt::Solve_Succeeded) status = application->OptimizeTNLP(new Program(problem, guess, result));
   result.converged = status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level;

@@ -1,5 +1,5 @@
 // Optimal control by direct collocation: it finds, among all controls that take a system from its start to its required end,
-// the one that takes the least time, or ends best.
+// the one that takes the least time, or ends in the best state.
 //
 //   minimise T, or e.x(T)    over T, c(.)    subject to  x' = f(x, c) on [0, T],  x(0) = x_0,  lower <= c <= upper,  |c'| <=
 //   slew,
@@ -8,7 +8,7 @@
 // x are the states, c the controls, T the time. Transcription: on each piece of the mesh x is a polynomial of degree three. It
 // fulfils the differential equations at the three Radau points (Radau IIA, of fifth order at the ends of pieces; Hairer &
 // Wanner, Solving Ordinary Differential Equations II, 1996, sec. IV.5). A control is constant between its knots, or linear
-// where its slew is bounded; the knots are fractions of T, and a mesh of their own may divide the intervals between them. Ipopt
+// where its slew is bounded. The knots are fractions of T; the mesh of the states may divide the intervals between them. Ipopt
 // solves the nonlinear program with its sparse, exact first and second derivatives (Betts, Practical Methods for Optimal
 // Control, 2010, ch. 4). The code is independent of switches. All quantities should be of the order of one: the caller scales.
 #pragma once
@@ -28,7 +28,7 @@ class ControlledSystem {
   virtual ~ControlledSystem() = default;
   [[nodiscard]] virtual Eigen::Index states() const = 0;
   [[nodiscard]] virtual Eigen::Index controls() const = 0;
-  /// True when rate `r` can depend on entry `k` of (x, c); other entries are left out of the sparse matrices.
+  /// Returns true when rate `r` can depend on entry `k` of (x, c); other entries are left out of the sparse matrices.
   [[nodiscard]] virtual bool depends(Eigen::Index r, Eigen::Index k) const = 0;
   struct Rates {
     Eigen::VectorXd value;  ///< f
@@ -50,11 +50,11 @@ struct StateCondition {
 struct ControlBound {
   double lower = 0;
   double upper = 1;
-  /// Largest |c'|: the control is linear between its knots and begins at `before`. Where it is infinite, the control is
-  /// constant between its knots, with jumps.
+  /// Largest |c'|. When it is finite, the control is linear between its knots and begins at `before`. When it is infinite, the
+  /// control is constant between its knots, with jumps.
   double slew = std::numeric_limits<double>::infinity();
   double before = 0;
-  /// Value on which a control with a slew ends, where it is given.
+  /// Value that a control with a bounded slew must have at T; any value when absent.
   std::optional<double> after = {};
 };
 
@@ -65,12 +65,12 @@ struct ControlProblem {
   std::vector<StateCondition> on_the_way = {};  ///< conditions at the ends of all pieces but the last
   std::vector<StateCondition> at_the_end = {};
   double shortest = 0, longest = 0;               ///< bounds of T
-  std::optional<Eigen::VectorXd> ends_best = {};  ///< e; the least time is sought without it
+  std::optional<Eigen::VectorXd> ends_best = {};  ///< e; when it is absent T is minimised
   std::vector<double> knots = {};                 ///< knots of the controls, fractions of T from 0 to 1
   double longest_piece = 1;                       ///< longest piece of the mesh, a fraction of T
   long max_iterations = 500;
   double tolerance = 1e-8;                  ///< tolerance of the optimality conditions
-  const std::atomic<bool>* stop = nullptr;  ///< set from outside; ends the solve
+  const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the solution with its result so far
 };
 
 /// A control and the course of the states under it.
@@ -89,11 +89,11 @@ struct ControlledCourse {
 };
 
 /// Solves the problem from a guess: any course of the same states and controls, which need not fulfil any condition. Throws
-/// InvalidInput for a problem whose parts do not fit; numerical trouble is in the result.
+/// InvalidInput for a problem or a guess whose sizes or bounds do not fit; numerical trouble is in the result.
 [[nodiscard]] ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& guess);
 
-/// Returns the knots with intervals halved, but not below `shortest`, in which a control is about to change, and their
-/// neighbours.
+/// Returns the knots of the course with further knots in the middle of some intervals: those in which a control is between its
+/// bounds, those at whose ends a control jumps, and their neighbours. No interval becomes shorter than `shortest`.
 [[nodiscard]] std::vector<double> refined_knots(const ControlledCourse& course, const std::vector<ControlBound>& bounds,
                                                 double shortest);
 

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t no_task = std::numeric_limits<std::size_t>::max();
 
-// Libraries square and subtract values: beyond this size only the order is kept, so that nothing overflows inside them.
+// Libraries square and subtract values. Values beyond this size are compressed, which keeps their order, so that nothing
+// overflows inside the libraries.
 constexpr double large_value = 1e12;
 double compress(double value) {
   const double size = std::abs(value);
@@ -26,11 +27,11 @@ double compress(double value) {
 // First penalty: above compress(x) for every finite x (the largest is 6.8e14).
 constexpr double first_penalty = 1e15;
 
-// The step is short, because the smooth pieces of an objective may be: those of the cost of a closing are narrower than a
-// thousandth of the box. The noise of about 1e-9 that objectives carry is then 1e-4 of a slope of order 1.
+// The step is short, because the smooth pieces of an objective may be short: those of the cost of a closing are narrower than a
+// thousandth of the box. The noise of about 1e-9 in objectives is then 1e-4 of a slope of order 1.
 constexpr double difference_step = 1e-5;
 
-// Libraries step over a bound by a rounding error, and into NaN when the objective leads them there. Adding 0 turns -0 to 0.
+// Libraries step over a bound by a rounding error, and pass NaN when the objective makes them. Adding 0 turns -0 to 0.
 Point inside(std::span<const double> point) {
   Point moved(point.begin(), point.end());
   for (double& coordinate : moved) coordinate = std::isnan(coordinate) ? 0.5 : std::clamp(coordinate, 0.0, 1.0) + 0.0;
@@ -110,8 +111,8 @@ Answer BudgetedObjective::remember(const Point& point, double value) {
   return answer;
 }
 
-// The penalty is above every value seen, yet of the same size: a wall of 1e15 next to values of order 1 would blind the methods
-// that fit models.
+// The penalty is above every value seen, but of the same size: a penalty of 1e15 next to values of order 1 would make the
+// models of the objective useless that some methods fit.
 double BudgetedObjective::penalty() const {
   if (worst_seen_ < best_seen_) return first_penalty;
   const double spread = worst_seen_ - best_seen_;
@@ -130,7 +131,7 @@ Values BudgetedObjective::values(std::span<const double> point) {
   return {found->second, answer.feasible};
 }
 
-// Returns false where the problem has no gradients; unknown gradients are NaN.
+// Returns false when the problem has no gradients; gradients that it does not know are NaN.
 bool BudgetedObjective::known_gradients(const Point& point, std::span<double> gradients) {
   if (!record_.has_gradient()) return false;
   const auto recall = [&](const Numbers& known) {
@@ -158,7 +159,7 @@ void BudgetedObjective::gradients(std::span<const double> point, std::span<doubl
     const auto of = [&](std::size_t value) -> double& { return gradients[value * n + i]; };
     const auto is_finite = [&](std::size_t value) { return std::isfinite(of(value)); };
     if (are_known && std::ranges::all_of(all, is_finite)) continue;
-    // Take two offsets from here; both to the same side next to a bound.
+    // Take two offsets, both to the same side next to a bound.
     double a = -difference_step;
     double b = difference_step;
     if (point[i] + a < 0) a = 2 * difference_step;
@@ -304,7 +305,7 @@ long EvaluationRecord::run(const std::vector<Task>& tasks) {
   return evaluations_ - before;
 }
 
-// After an exception only the value is known, and the conditions stand as kept.
+// After an exception only the value is known, and the conditions stay as they are.
 std::vector<double> EvaluationRecord::values(BudgetedObjective& budgeted, const Point& point, const Answer& answer) const {
   std::vector<double> kept(1 + problem_.conditions.count, 0.0);
   kept[0] = answer.value;
@@ -320,7 +321,7 @@ std::vector<double> EvaluationRecord::values(BudgetedObjective& budgeted, const 
   return kept;
 }
 
-// Returns the gradients by the point of the search. An exception leaves them to differences.
+// Returns the gradients by the point of the search. After an exception differences replace them.
 std::vector<double> EvaluationRecord::gradients(BudgetedObjective& budgeted, const Point& point) const {
   std::vector<double> scaled((1 + problem_.conditions.count) * free_.size(), std::numeric_limits<double>::quiet_NaN());
   try {

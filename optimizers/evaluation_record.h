@@ -1,10 +1,10 @@
-// The record of one minimisation: it makes, counts and remembers every evaluation; no library does.
+// The record of one minimisation, which makes, counts and remembers every evaluation; libraries evaluate only through it.
 //
 // Work comes in rounds of tasks. A task is sequential and has a fixed budget; the tasks of a round run in parallel. The order
 // of evaluations is (round, task, position within the task), whatever thread made them when. "First", "best so far" and
 // "already seen" refer to this order, so that results do not depend on the number of jobs. When a task reaches the target,
-// later tasks of the round are cut and left out, and earlier ones complete: running the tasks one after the other would have
-// given the same.
+// later tasks of the round are cut and left out, and earlier tasks complete: running the tasks one after the other would give
+// the same result.
 #pragma once
 
 #include <atomic>
@@ -25,10 +25,10 @@ namespace softland::internal {
 /// A point of the search: the variables that are free to move, each scaled to [0, 1].
 using Point = std::vector<double>;
 
-/// BudgetedObjective throws it to end a library's run; backends translate it to whatever ends theirs.
+/// Exception by which a BudgetedObjective ends the run of a library. Each backend translates it into what its library needs.
 struct Cut {};
 
-/// Answer to a search about a point. The value of an infeasible point is a finite penalty above all values seen before.
+/// The value of a point as a search receives it. An infeasible point has a finite penalty above all values seen before.
 struct Answer {
   double value;
   bool feasible;
@@ -50,25 +50,25 @@ inline constexpr long evaluations_of_gradient = 3;
 
 class EvaluationRecord;
 
-/// The evaluations of one task, made by one thread. Libraries receive nothing but this.
+/// The evaluations of one task, made by one thread. Libraries see the problem only through this class.
 class BudgetedObjective {
  public:
-  /// Throws Cut when the share of the budget is used up, the minimisation is over, or the search goes in circles (many times
-  /// only points it knows). A point that was seen before is answered from memory and costs nothing.
+  /// Throws Cut when the share of the budget is used up, the minimisation is over, or the search goes in circles: it asks very
+  /// often in succession for known points. A point that was seen before is answered from memory and costs nothing.
   Answer operator()(std::span<const double> point);
   /// Returns the value with the conditions of the problem; the value alone where the problem has none. No condition is broken
   /// at an infeasible point. Throws Cut.
   Values values(std::span<const double> point);
-  /// Writes the gradients of all values, one after the other. They are the problem's own where it has them, else central
-  /// differences. Differences are one-sided at the bounds and next to infeasible points, and 0 where nothing around is
-  /// feasible. Throws Cut.
+  /// Writes the gradients of all values, one after the other. A gradient that the problem does not give is taken by central
+  /// differences. Differences are one-sided at the bounds and next to infeasible points, and 0 where all neighbours are
+  /// infeasible. Throws Cut.
   void gradients(std::span<const double> point, std::span<double> gradients);
   /// Returns the number of conditions of the problem.
   [[nodiscard]] std::size_t conditions() const;
 
-  /// True when a further evaluation would be refused for good.
+  /// Returns true when every further evaluation would throw Cut.
   [[nodiscard]] bool over() const;
-  /// Counts circles anew. Call it before every run of a library.
+  /// Resets the count of repeated points. Call this before every run of a library.
   void begin_search() { repeats_ = 0; }
   [[nodiscard]] long evaluations() const { return static_cast<long>(records_.size()); }
   /// Returns the lowest feasible value this task has found; infinite without one.
@@ -116,7 +116,7 @@ class EvaluationRecord {
     Answer answer;
   };
 
-  /// Keeps references to both.
+  /// Keeps references to the problem and the options.
   EvaluationRecord(const Problem& problem, const OptimizerOptions& options);
 
   [[nodiscard]] std::size_t dimension() const { return free_.size(); }
@@ -125,7 +125,8 @@ class EvaluationRecord {
   [[nodiscard]] bool smooth() const { return options_.smooth; }
   [[nodiscard]] std::uint64_t seed() const { return options_.seed; }
   [[nodiscard]] const std::vector<Point>& starts() const { return starts_; }
-  /// Runs the tasks, with budgets cut from the end to what remains. Returns the number of new evaluations.
+  /// Runs the tasks. When their budgets exceed the remaining one, the last tasks are shortened first. Returns the number of new
+  /// evaluations.
   long run(const std::vector<Task>& tasks);
   [[nodiscard]] long remaining() const {
     return options_.max_evaluations - evaluations_ - evaluations_of_gradient * static_cast<long>(gradients_.size());
@@ -134,10 +135,10 @@ class EvaluationRecord {
   /// Returns everything evaluated in the rounds so far, in order.
   [[nodiscard]] const std::vector<Known>& known() const { return known_; }
   /// Returns true when work on the current round should end early for a reason other than the evaluation budget. It is cheap
-  /// and serves waiting loops.
+  /// enough for waiting loops.
   [[nodiscard]] bool cut_off(std::size_t task);
 
-  /// Returns the result; `message` is that of the last search, `converged` whether it ended by itself.
+  /// Returns the result; `message` is that of the last search, `converged` is true when this search ended by its own criterion.
   [[nodiscard]] OptimizerResult result(bool converged, const std::string& message) const;
 
  private:
@@ -159,7 +160,8 @@ class EvaluationRecord {
   std::chrono::steady_clock::time_point begin_;
   std::vector<std::size_t> free_;  ///< indices of the variables with lower < upper
   std::vector<Point> starts_;
-  std::unordered_map<Point, std::vector<double>, PointHash> exact_;  ///< user's digits of the starts, which scaling would round
+  std::unordered_map<Point, std::vector<double>, PointHash>
+      exact_;  ///< exact values of the user's starts, which scaling would round
 
   // These change between rounds only.
   std::vector<Known> known_;

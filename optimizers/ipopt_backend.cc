@@ -1,6 +1,6 @@
-// Ipopt 3.11.9 as a quasi-Newton method under bounds and conditions. Ipopt answers an objective it cannot evaluate by
-// shortening steps, thousands of times. So the BudgetedObjective counts, and its Cut passes through Ipopt, which catches
-// whatever callbacks throw and returns NonIpopt_Exception_Thrown.
+// Ipopt 3.11.9 as a quasi-Newton method under bounds and conditions. Ipopt shortens its steps, thousands of times, when the
+// objective cannot be evaluated. So the BudgetedObjective counts the evaluations and ends the run by a Cut. Ipopt catches the
+// Cut, like every exception of a callback, and returns NonIpopt_Exception_Thrown.
 #include <IpIpoptApplication.hpp>
 #include <IpTNLP.hpp>
 #include <algorithm>
@@ -51,7 +51,7 @@ class StrandProblem final : public Ipopt::TNLP {
     if (m > 0) std::copy_n(strand_.values(view(x, n)).all.begin() + 1, m, values);
     return true;
   }
-  // A call without `values` asks for the places of the entries: all of them, row by row.
+  // A call without `values` asks for the positions of the entries: all of them, row by row.
   bool eval_jac_g(Ipopt::Index n, const Ipopt::Number* x, bool, Ipopt::Index m, Ipopt::Index, Ipopt::Index* rows,
                   Ipopt::Index* columns, Ipopt::Number* values) override {
     if (m == 0) return true;
@@ -100,7 +100,7 @@ RunReport report_of(Ipopt::ApplicationReturnStatus status) {
       return {.converged = false, .message = "Ipopt: Error_In_Step_Computation"};
     case Ipopt::User_Requested_Stop:
     case Ipopt::NonIpopt_Exception_Thrown:
-      return {.converged = false, .message = "Ipopt: stopped by us"};
+      return {.converged = false, .message = "Ipopt: stopped by softland"};
     default:
       return {.converged = false, .message = "Ipopt: status " + std::to_string(static_cast<int>(status))};
   }
@@ -110,7 +110,7 @@ RunReport report_of(Ipopt::ApplicationReturnStatus status) {
 
 RunReport run_ipopt(const Run& run, BudgetedObjective& budgeted) {
   const auto turn = ipopt_turn([&] { return budgeted.over(); });
-  if (!turn) return {.converged = false, .message = "Ipopt: stopped by us while waiting for another solve"};
+  if (!turn) return {.converged = false, .message = "Ipopt: stopped by softland while waiting for another solve"};
   budgeted.begin_search();
   const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(/*create_console_out=*/false);
   const auto options = application->Options();
@@ -124,7 +124,7 @@ RunReport run_ipopt(const Run& run, BudgetedObjective& budgeted) {
   options->SetNumericValue("bound_frac", 1e-6);
   options->SetNumericValue("tol", 1e-6);  // tolerance of gradients that may be differences
   options->SetIntegerValue("max_iter", 1000);
-  // The name is empty: without it Ipopt would read a file ipopt.opt from the working directory.
+  // The name is empty because otherwise Ipopt would read a file ipopt.opt from the working directory.
   if (const auto status = application->Initialize(""); status != Ipopt::Solve_Succeeded) return report_of(status);
   return report_of(application->OptimizeTNLP(new StrandProblem(run.start, budgeted)));
 }

@@ -8,7 +8,7 @@
 
 namespace softland::internal {
 
-/// Waits until no other solve is at work, or until `gave_up()`; then the returned lock is not held.
+/// Waits until no other solve runs, or until `gave_up()`; in the latter case the returned lock is not held.
 [[nodiscard]] inline std::unique_lock<std::mutex> ipopt_turn(const std::function<bool()>& gave_up) {
   static std::mutex one_solve_at_a_time;
   constexpr std::chrono::milliseconds look_up{1};  // interval between attempts to take the lock

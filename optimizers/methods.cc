@@ -59,7 +59,7 @@ const Method& find_method(std::string_view name) {
   const auto found =
       std::find_if(all_methods.begin(), all_methods.end(), [&](const Method& method) { return method.name == name; });
   if (found != all_methods.end()) return *found;
-  const std::string there_are = fmt::format("there are {}", fmt::join(optimizer_names(), ", "));
+  const std::string there_are = fmt::format("choose one of {}", fmt::join(optimizer_names(), ", "));
   std::string plain(name);
   for (char& letter : plain)
     letter = letter == '_' ? '-' : letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter + 32) : letter;

@@ -31,7 +31,7 @@ void check(const Problem& problem, const OptimizerOptions& options) {
   }
   for (const std::vector<double>& start : problem.starts) {
     require(start.size() == problem.variables.size(),
-            fmt::format("a start has {} values where there are {} variables", start.size(), problem.variables.size()));
+            fmt::format("a start has {} values; it must have {}, one per variable", start.size(), problem.variables.size()));
     for (std::size_t i = 0; i < start.size(); ++i) {
       require(std::isfinite(start[i]),
               fmt::format("variable \"{}\": start {} must be finite", problem.variables[i].name, start[i]));
@@ -46,10 +46,10 @@ void check(const Problem& problem, const OptimizerOptions& options) {
   require(!std::isnan(options.target), "target must not be NaN");
 }
 
-// A search from an infeasible point sees a plateau: another start is worth a few evaluations.
+// A search from an infeasible point sees only the constant penalty: finding another start is worth a few evaluations.
 constexpr std::uint64_t infeasible_starts_skipped = 20;
 
-// Number of runs that end without a new evaluation: after these the method finds nothing more from any start.
+// Number of runs in succession without a new evaluation after which the search ends: further starts would bring nothing new.
 constexpr int idle_runs_allowed = 20;
 
 RunReport search_single_method(EvaluationRecord& record, const Method& method, const OptimizerOptions& options) {
@@ -122,7 +122,7 @@ OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options
   internal::evaluate_starts(record);
   if (record.dimension() == 0) {
     record.run({{.budget = 1, .body = [](internal::BudgetedObjective& budgeted) { budgeted(internal::Point{}); }}});
-    return record.result(true, "every variable is held");
+    return record.result(true, "every variable is fixed: lower bound and upper bound are equal");
   }
   if (method.backend == internal::Backend::search_auto) {
     internal::search_auto(record);

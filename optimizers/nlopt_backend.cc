@@ -1,9 +1,9 @@
-// NLopt 2.7.1. Its methods have needs that its interface does not say:
-// - Its own limits are not enough: several methods report success on NaN, hang, or swallow exceptions. So the BudgetedObjective
-//   counts, keeps the best point and cuts; of what NLopt returns only the message is used.
+// NLopt 2.7.1. Its methods behave in ways that its interface does not tell:
+// - NLopt's limits are not enough: several methods report success on NaN, hang, or swallow exceptions. So the BudgetedObjective
+//   counts evaluations, keeps the best point and ends a run; only the message of NLopt's result is used.
 // - Random numbers come from a generator of the calling thread, seeded from the clock unless nlopt::srand is called in it.
-// - MLSL is the variant that starts from random points: the Sobol sequence of the other one cannot be seeded.
-// - DIRECT divides the box at fixed places; a bent scale per variable, drawn from the seed, moves them.
+// - MLSL is the variant that starts from random points: the Sobol sequence of the other variant cannot be seeded.
+// - DIRECT divides the box at fixed places; a nonlinear scale per variable, drawn from the seed, moves these places.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,16 +16,16 @@
 namespace softland::internal {
 namespace {
 
-// Tolerance in units of the box. It is far below what the noise of an objective allows to resolve, so that no method gives up
-// on a narrow valley.
+// Tolerance in units of the box. It is far below what the noise of an objective allows to resolve, so that no method ends too
+// early in a narrow valley.
 constexpr double step_tolerance = 1e-7;
-// MLSL polishes many minima and needs only to tell them apart.
+// MLSL polishes many minima and needs only to distinguish them.
 constexpr double step_tolerance_inside_mlsl = 1e-4;
 
 struct Callback {
   BudgetedObjective& budgeted;
-  bool with_conditions;             ///< true when the conditions of the problem are followed
-  std::vector<double> bent_middle;  ///< image of 0.5; empty for a straight scale
+  bool with_conditions;             ///< true when the method uses the conditions of the problem
+  std::vector<double> bent_middle;  ///< place to which the nonlinear scale moves 0.5; empty for a linear scale
 
   [[nodiscard]] Point to_point(const std::vector<double>& x) const {
     Point point = x;
@@ -53,7 +53,7 @@ double call(const std::vector<double>& x, std::vector<double>& gradient, void* d
   }
 }
 
-// Serves methods with a gradient, whose scale is straight.
+// Serves methods with a gradient, whose scale is linear.
 void call_conditions(unsigned count, double* values, unsigned dimension, const double* x, double* gradient, void* data) {
   BudgetedObjective& budgeted = static_cast<Callback*>(data)->budgeted;
   const std::span<const double> point(x, dimension);
@@ -119,7 +119,7 @@ RunReport run_nlopt(const Method& method, const Run& run, BudgetedObjective& bud
     double value = 0;
     return report(true, name_of(opt.optimize(x, value)));
   } catch (const nlopt::forced_stop&) {
-    return report(false, "stopped by us");
+    return report(false, "stopped by softland");
   } catch (const nlopt::roundoff_limited&) {
     return report(true, "ROUNDOFF_LIMITED");
   } catch (const std::exception& exception) {

@@ -51,7 +51,7 @@ class Draws {
   std::uint64_t count_ = 0;
 };
 
-/// Returns fronts of rising rank: the members of each are not dominated by one of it or of a later one.
+/// Returns fronts of rising rank: no member of a front is dominated by a member of the same or of a later front.
 std::vector<std::vector<std::size_t>> ranked(std::vector<Member>& members) {
   std::vector<std::size_t> better_than_it(members.size(), 0);
   std::vector<std::vector<std::size_t>> beaten(members.size());
@@ -81,7 +81,8 @@ std::vector<std::vector<std::size_t>> ranked(std::vector<Member>& members) {
   return fronts;
 }
 
-/// Sums over the objectives the distance between the two neighbours, over the range of the front; infinite at its ends.
+/// Sets the crowding of every member of a front: the sum over the objectives of the distance between its two neighbours, over
+/// the range of the front; infinite at the ends of the front.
 void measure_crowding(std::vector<Member>& members, std::vector<std::size_t> front) {
   for (const std::size_t k : front) members[k].crowding = 0;
   const std::size_t objectives = members[front.front()].value.objectives.size();
@@ -119,8 +120,8 @@ const Member& tournament(const std::vector<Member>& members, Draws& draws) {
   return b.crowding > a.crowding ? b : a;
 }
 
-/// Returns the spread of children in halves of the distance of their parents, from the distribution that a bound at `room` cuts
-/// off.
+/// Returns the distance of the children from the middle of their parents, in halves of the distance of the parents. Its
+/// distribution is cut off at `room`, the place of a bound.
 double spread_factor(double u, double room, double index) {
   const double all = 2 - std::pow(room, -(index + 1));
   const double part = u * all;
@@ -164,7 +165,7 @@ class Evaluations {
   [[nodiscard]] bool over() const { return ended_ != Termination::not_run; }
   [[nodiscard]] Termination ended() const { return ended_; }
 
-  /// Returns members at these points, without those that the budget or the clock left out.
+  /// Returns members at these points, without those for which evaluations or time did not suffice.
   std::vector<Member> members_at(const std::vector<Point>& points) {
     std::vector<std::vector<double>> fresh;
     std::set<std::vector<double>> seen;
@@ -226,7 +227,7 @@ class Evaluations {
     return x;
   }
 
-  // Returns the value of `evaluate` at a point; infeasible where `evaluate` fails.
+  // Returns the value of `evaluate` at a point; an infeasible value when `evaluate` fails.
   [[nodiscard]] ParetoValue value_at(const std::vector<double>& x, std::string& exception) const {
     ParetoValue value;
     try {
@@ -290,7 +291,7 @@ void check(const ParetoProblem& problem, const ParetoOptions& options) {
   }
   for (const std::vector<double>& start : problem.starts) {
     require(start.size() == problem.variables.size(),
-            fmt::format("a start has {} values where there are {} variables", start.size(), problem.variables.size()));
+            fmt::format("a start has {} values; it must have {}, one per variable", start.size(), problem.variables.size()));
     require(std::all_of(start.begin(), start.end(), [](double v) { return std::isfinite(v); }), "a start must be finite");
   }
   require(options.population >= 4 && options.population % 2 == 0,
@@ -300,7 +301,7 @@ void check(const ParetoProblem& problem, const ParetoOptions& options) {
   require(options.jobs >= 1, fmt::format("jobs = {} must be at least 1", options.jobs));
   require(options.crossover_probability >= 0 && options.crossover_probability <= 1,
           fmt::format("crossover_probability = {} must be in [0, 1]", options.crossover_probability));
-  require(options.crossover_index >= 0 && options.mutation_index >= 0, "indices of distributions must not be negative");
+  require(options.crossover_index >= 0 && options.mutation_index >= 0, "crossover_index and mutation_index must be at least 0");
 }
 
 std::vector<Point> first_population(const ParetoProblem& problem, const ParetoOptions& options, const Evaluations& evaluations) {

@@ -1,10 +1,11 @@
-// Several objectives at once: NSGA-II finds the front, the best of one objective for a given level of the others.
+// Minimisation of several objectives by NSGA-II. It finds the Pareto front: the points at which no objective can improve unless
+// another one becomes worse.
 //
 // A population begins at the given starts and at the points of a Sobol' sequence. In every generation pairs of parents have two
 // children each, by simulated binary crossover and polynomial mutation; each parent is the better of two random members. The
-// best half of parents and children lives on, ranked by domination and, within a front, by the distance from their neighbours.
-// A point that keeps all constraints is better than one that does not; of two that do not the one with the smaller violation is
-// better.
+// best half of parents and children survives, ranked by domination and, within a front, by the distance from their neighbours.
+// A point that keeps all constraints is better than one that violates some; of two that violate constraints the one with the
+// smaller violation is better.
 //
 // Source: K. Deb, A. Pratap, S. Agarwal & T. Meyarivan, "A fast and elitist multiobjective genetic algorithm: NSGA-II", IEEE
 // Trans. Evol. Comput. 6 (2002) 182; bounded crossover and mutation as in their own code: K. Deb & R. B. Agrawal, Complex Systems
@@ -33,11 +34,11 @@ struct ParetoValue {
 struct ParetoProblem {
   std::vector<Variable> variables = {};
   std::size_t objectives = 2;
-  /// Evaluates a point; called from several threads at once when jobs > 1. A value that is not finite, a wrong number of them,
-  /// or an exception make the point infeasible beyond any violation; the first exception is kept in the result. It must give
-  /// the same value for the same x.
+  /// Evaluates a point; called from several threads at once when jobs > 1, and must give the same value for the same x. A value
+  /// that is not finite, a wrong number of values, or an exception make the point infeasible beyond any violation; the first
+  /// exception is kept in the result.
   std::function<ParetoValue(std::span<const double>)> evaluate = {};
-  /// Members of the first population; they are moved into the bounds.
+  /// Members of the first population; points outside the bounds are moved to them.
   std::vector<std::vector<double>> starts = {};
 };
 
@@ -56,8 +57,8 @@ struct ParetoOptions {
   double crossover_probability = 0.9;
   double crossover_index = 15;              ///< index of the distribution of children: the larger, the closer to their parents
   double mutation_index = 20;               ///< index of the distribution of mutations; each child has one on average
-  const std::atomic<bool>* stop = nullptr;  ///< set from outside; ends the search with its result so far
-  /// Called (under a lock) after every evaluation, as they happen. Its exceptions end minimize_all().
+  const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the search with its result so far
+  /// Called under a lock after every evaluation, in the order in which evaluations end. Its exceptions end minimize_all().
   std::function<void(const ParetoEvaluation&)> on_evaluation = {};
 };
 
@@ -71,7 +72,7 @@ struct ParetoResult {
 
 /// Returns the front. It depends on the problem, max_evaluations, population, the two indices and seed: not on jobs, and on
 /// time only through max_seconds and stop, which are checked before every evaluation. A child that was evaluated before costs
-/// nothing; the search has converged when a hundred generations have brought no other children. Throws InvalidInput for an
+/// nothing; the search has converged when a hundred generations have brought no new children. Throws InvalidInput for an
 /// invalid problem or invalid options.
 [[nodiscard]] ParetoResult minimize_all(const ParetoProblem& problem, const ParetoOptions& options);
 

@@ -20,11 +20,12 @@ bool is_finite(std::span<const double> values) {
 }
 
 void require_length(std::span<const double> point, std::size_t objectives) {
-  require(point.size() == objectives, fmt::format("a point has {} objectives where others have {}", point.size(), objectives));
+  require(point.size() == objectives,
+          fmt::format("a point has {} objectives; it must have {}, as the others have", point.size(), objectives));
 }
 
-/// The part of the box below a corner that points of two objectives dominate. The boundary is kept as steps: at x and to the
-/// right of it everything above y is dominated.
+/// The part of the box below a corner that points of two objectives dominate. Its boundary is kept as steps (x, y): from x to
+/// the next step everything above y is dominated.
 class Staircase {
  public:
   Staircase(double x_reference, double y_reference) : steps_{{-unbounded, y_reference}, {x_reference, -unbounded}} {}
@@ -87,7 +88,7 @@ std::vector<std::size_t> pareto_front(std::span<const Objectives> points) {
   std::vector<std::size_t> front;
   for (const std::size_t k : order) {
     const auto covers = [&](std::size_t other) { return points[other] == points[k] || dominates(points[other], points[k]); };
-    // Check the last ones first: they are the nearest.
+    // Check the last points of the front first: they are the nearest.
     if (std::none_of(front.rbegin(), front.rend(), covers)) front.push_back(k);
   }
   std::sort(front.begin(), front.end());
@@ -96,7 +97,7 @@ std::vector<std::size_t> pareto_front(std::span<const Objectives> points) {
 
 double hypervolume(std::span<const Objectives> points, std::span<const double> reference) {
   require(!reference.empty() && reference.size() <= 3,
-          fmt::format("a hypervolume is computed for one to three objectives, not for {}", reference.size()));
+          fmt::format("a hypervolume needs one to three objectives, not {}", reference.size()));
   require(is_finite(reference), "the reference of a hypervolume must be finite");
   std::vector<const Objectives*> below;
   for (const Objectives& point : points) {

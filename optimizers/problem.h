@@ -18,43 +18,43 @@ struct Variable {
   double upper = 1;
 };
 
-/// Conditions g(x) <= 0 of a minimisation. Only the methods with a gradient follow them by themselves. The others, and every
-/// comparison of points, use the objective alone: it must rise with the violation.
+/// Conditions g(x) <= 0 of a minimisation. Only the methods with a gradient use them. The other methods, and every comparison
+/// of points, use the objective alone: so the objective must rise with the violation.
 struct Conditions {
   std::size_t count = 0;
-  /// Returns {cost, g_1, ... g_count}; called like the objective, where that is finite.
+  /// Returns {cost, g_1, ... g_count} at a point at which the objective is finite; called from threads like the objective.
   std::function<std::vector<double>(std::span<const double>)> values = {};
-  /// Returns the derivatives of all of these by x: those of the cost, then those of g_1 and so on. Differences take their place
-  /// where it is null, or where a value is NaN.
+  /// Returns the derivatives by x of all these values: those of the cost, then those of g_1 and so on. Differences replace this
+  /// function when it is null, and values that are NaN.
   std::function<std::vector<double>(std::span<const double>)> gradients = {};
 };
 
 /// Minimise objective(x) subject to lower <= x <= upper. Optimizers work on x scaled to [0, 1]; a variable with lower == upper
-/// is held at it.
+/// stays at this value.
 struct Problem {
   std::vector<Variable> variables = {};
-  /// Called from several threads at once when jobs > 1, each call with its own x, which lies within the bounds exactly. A
-  /// non-finite value or an exception makes the point infeasible; the first exception is kept in the result. It must give the
-  /// same value for the same x: a point that comes back is answered from memory.
+  /// Called from several threads at once when jobs > 1, each call with its own x, which lies within the bounds exactly. The
+  /// objective must give the same value for the same x: a repeated point is answered from memory. A non-finite value or an
+  /// exception makes the point infeasible; the first exception is kept in the result.
   std::function<double(std::span<const double>)> objective = {};
-  /// Returns the derivatives of the objective by x, where they are known; may be null. Differences take the place of a NaN.
-  /// Like the objective it may be called from several threads.
+  /// Returns the derivatives of the objective by x; may be null. A NaN is replaced by a difference. Several threads may call
+  /// this function at once, like the objective.
   std::function<std::vector<double>(std::span<const double>)> gradient = {};
-  /// Conditions; where a problem has some, `gradient` is not used.
+  /// Conditions. When a problem has some, `gradient` is not used.
   Conditions conditions;
   /// Starting points worth trying first; may be empty. Points outside the bounds are moved to them. Every optimizer evaluates
-  /// all of them, as given to the last digit; local methods search from each in turn, `auto` and those with a gradient from the
-  /// most promising.
+  /// all starts, as given to the last digit; local methods search from each in turn, `auto` and the methods with a gradient
+  /// from the most promising.
   std::vector<std::vector<double>> starts = {};
 };
 
 struct Evaluation {
-  /// Unique, and increasing in an order that does not depend on the number of jobs. It has gaps where a search ended before its
-  /// share of the budget did, so it may exceed the number of evaluations.
+  /// Number of the evaluation: unique, and increasing in an order that does not depend on the number of jobs. Numbers are left
+  /// out where a search ended before its share of the budget did, so the number may exceed the number of evaluations.
   long index = 0;
   double value = 0;  ///< the objective; non-finite (NaN where it threw) when infeasible
   std::vector<double> x;
-  std::size_t problem = 0;  ///< number of the problem, where several share a log
+  std::size_t problem = 0;  ///< number of the problem, when several problems share a log
 };
 
 struct OptimizerOptions {
@@ -62,25 +62,27 @@ struct OptimizerOptions {
   long max_evaluations = 2000;
   double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
   std::uint64_t seed = 1;
-  double step = 0.25;     ///< first step of a local method, as a share of the box; `auto` takes its own
-  double population = 1;  ///< points of a generation of cma-es, over its usual number
+  double step = 0.25;     ///< first step of a local method, as a share of the box; `auto` uses its own
+  double population = 1;  ///< points of a generation of cma-es, as a multiple of the usual number
   int jobs = 1;           ///< threads, the calling one among them; `auto` makes use of them
-  /// True when the starts are the best of an earlier search: with a gradient `auto` spends most on hops from the best of them.
+  /// True when the starts are the best points of an earlier search. With a gradient `auto` then spends most of its budget on
+  /// local searches from points near the best start.
   bool goes_on = false;
-  /// True when the objective is smooth around the starts: `auto` follows its gradient from them at once.
+  /// True when the objective is smooth around the starts: `auto` then begins with a gradient method from the starts.
   bool smooth = false;
   double target = -std::numeric_limits<double>::infinity();  ///< the search stops once a value is at or below it
-  const std::atomic<bool>* stop = nullptr;  ///< set from outside (Ctrl-C); ends the search with its result so far
-  /// Called (under a lock) after every evaluation, as they happen. With jobs > 1 the order of calls may vary between runs, and
-  /// may include evaluations that the result leaves out (beyond the target in the job-independent order). If it throws, the
-  /// search ends with Termination::failure.
+  const std::atomic<bool>* stop = nullptr;  ///< set by another thread (Ctrl-C); ends the search with its result so far
+  /// Called under a lock after every evaluation, in the order in which evaluations end. With jobs > 1 this order may vary
+  /// between runs, and the calls may include evaluations that the result leaves out (beyond the target in the job-independent
+  /// order). An exception ends the search with Termination::failure.
   std::function<void(const Evaluation&)> on_evaluation = {};
-  /// Called (under the same lock) whenever an evaluation is the best so far.
+  /// Called under the same lock whenever an evaluation is the best so far.
   std::function<void(const Evaluation&)> on_improvement = {};
 };
 
-/// The reason why a search ended. interrupted, time_budget and evaluation_budget come with the best point so far; x is empty
-/// without one. no_feasible_point: the search went to its end and every evaluation was non-finite or threw.
+/// The reason why a search ended. A search that ended by interrupted, time_budget or evaluation_budget has the best point so
+/// far; x is empty when no point was feasible. no_feasible_point: the search went to its end and every evaluation was
+/// non-finite or threw.
 enum class Termination {
   not_run,
   converged,
@@ -95,12 +97,12 @@ enum class Termination {
 
 struct OptimizerResult {
   Termination termination = Termination::not_run;
-  std::string message = {};  ///< reason why it ended, with the message of the library where it has one
+  std::string message = {};  ///< reason why the search ended, with the message of the library when there is one
   std::vector<double> x;     ///< the best point; empty if no point was feasible
   double value = std::numeric_limits<double>::quiet_NaN();  ///< objective at x
   long evaluations = 0;
   std::vector<Evaluation> improvements;  ///< best-so-far history in the job-independent order
-  std::string first_exception;           ///< message of the first exception of the objective; empty without one
+  std::string first_exception;           ///< message of the first exception of the objective; empty when it threw none
 };
 
 /// Returns the names accepted in OptimizerOptions::optimizer, `auto` first.
@@ -114,18 +116,18 @@ struct OptimizerResult {
 /// is NaN. Otherwise it always returns.
 ///
 /// The result depends on problem, optimizer, max_evaluations, seed and target only: not on jobs, and on time only through
-/// max_seconds and stop. The time budget, the stop flag and the target are checked before every evaluation; one under way is
-/// never cut short.
+/// max_seconds and stop. The time budget, the stop flag and the target are checked before every evaluation; a running
+/// evaluation is never interrupted.
 ///
 /// `auto` searches near the best of the starts, samples the box, runs local searches from well separated good points, lets the
-/// promising ones continue and polishes the best, with the problem's gradient where it has one; it uses several jobs. So do the
-/// methods with a gradient, which go on from the best points of such a search after its first two fifths. Another local method
-/// runs from the starts in turn and then from points drawn from the seed, each time until it converges, as long as the budget
-/// lasts; infeasible points are passed over. A global method runs once.
+/// promising ones continue and polishes the best, with the problem's gradient when there is one; it uses several jobs. The
+/// methods with a gradient continue from the best points of such a search after its first two fifths. Another local method runs
+/// from the starts in turn and then from random points, each time until it converges, as long as the budget lasts; infeasible
+/// points are skipped. A global method runs once.
 ///
-/// A missing gradient is taken by central differences, which count as evaluations; a gradient of the problem counts as three,
-/// with those of its conditions. Ipopt solves one problem at a time in a process; others wait, so an objective must not itself
-/// minimize with ipopt while ipopt calls it.
+/// Without a gradient of the problem central differences are used, which count as evaluations; a gradient of the problem counts
+/// as three, with those of its conditions. Ipopt solves one problem at a time in a process; others wait, so an objective must
+/// not itself minimize with ipopt while ipopt calls it.
 [[nodiscard]] OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// Points spread evenly over a box, each of them available without those before it.
+// Points spread evenly over a box, each of them computed without the points before it.
 #pragma once
 
 #include <cstddef>

@@ -269,7 +269,7 @@ TEST_F(BadInput, Searches_long) {
   });
   // All the names are in the tests of optimizers.
   const std::string unknown = here->run(search({"--optimizer", "magic"})).err;
-  EXPECT_TRUE(unknown.starts_with("softland: optimizer \"magic\" is unknown; there are auto, ")) << unknown;
+  EXPECT_TRUE(unknown.starts_with("softland: optimizer \"magic\" is unknown; choose one of auto, ")) << unknown;
 }
 
 TEST_F(BadInput, CostsNoEarlierResult_optimized) {

@@ -269,7 +269,7 @@ TEST(BadInput, IsRefusedWithValueAndRule) {
   EXPECT_EQ(with([](auto& p, auto&) { p.variables[0].upper = std::numeric_limits<double>::infinity(); }),
             "variable \"x0\": bounds [0, inf] must be finite");
   EXPECT_EQ(with([](auto& p, auto&) { p.variables[0].lower = std::nan(""); }), "variable \"x0\": bounds [nan, 1] must be finite");
-  EXPECT_EQ(with([](auto& p, auto&) { p.starts = {{0.5}}; }), "a start has 1 values where there are 2 variables");
+  EXPECT_EQ(with([](auto& p, auto&) { p.starts = {{0.5}}; }), "a start has 1 values; it must have 2, one per variable");
   EXPECT_EQ(with([](auto& p, auto&) { p.starts = {{0.5, std::nan("")}}; }), "variable \"x1\": start nan must be finite");
   EXPECT_EQ(with([](auto&, auto& o) { o.max_evaluations = 0; }), "max_evaluations = 0 must be positive");
   EXPECT_EQ(with([](auto&, auto& o) { o.max_seconds = 0; }), "max_seconds = 0 must be positive");
