@@ -18,17 +18,18 @@ void require_not_negative(const OwnObjective& objective, double value) {
 }  // namespace
 
 Aim::Aim(std::vector<Part> parts) : parts_(std::move(parts)) {
-  require(!parts_.empty(), "a search needs a target");
+  require(!parts_.empty(), "a search needs a target or an own objective");
   for (auto part = parts_.begin(); part != parts_.end(); ++part) {
     require(part->weight > 0 && std::isfinite(part->weight),
             fmt::format("the weight of {} is {}; it must be finite and > 0", part->name(), part->weight));
     const auto is_same = [&](const Part& other) { return other.own == part->own && (other.own || other.target == part->target); };
-    require(std::none_of(parts_.begin(), part, is_same), fmt::format("{} stands twice in a sum of targets", part->name()));
+    require(std::none_of(parts_.begin(), part, is_same),
+            fmt::format("{} appears twice in a sum of targets; name each target once", part->name()));
   }
 }
 
 std::shared_ptr<const OwnObjective> Aim::refuse_null(std::shared_ptr<const OwnObjective> objective) {
-  require(objective != nullptr, "an own objective is null");
+  require(objective != nullptr, "an own objective must not be null");
   return objective;
 }
 
@@ -99,7 +100,8 @@ double cost(const Aim& aim, const Metrics& m, const CostScale& scale, const Metr
   const double h = shares.of(&Metrics::major_bounce_height);
   const double p = m.major_bounce_height / (m.major_bounce_height + 10 * options.significant_rebound);
   const double v = shares.of(&Metrics::largest_impact_velocity);
-  // The energy is not measured where a drive never comes to rest inside the run: the other figures decide then.
+  // The landing excess is unknown when a drive does not come to rest within the run. The cost then consists of the other
+  // figures.
   const double k = std::isnan(m.landing_excess) ? 0 : shares.of(&Metrics::landing_excess);
   const double s = m.separated / scale.score_window;
   const double t = shares.of(&Metrics::initial_contact_time);
@@ -107,8 +109,8 @@ double cost(const Aim& aim, const Metrics& m, const CostScale& scale, const Metr
   shares.lead = 0.2 * h + 0.15 * v * v + 0.45 * k + 0.1 * s * s + 0.05 * p + 0.02 * late;
   const double excess = scale.judges_hardness && !aim.has_own_objective() ? excess_over_step(m, scale.step) : 0;
   shares.lead += excess;
-  // A contact that opens again is not a landing, however soft it is: it ranks behind all that stay and before what never
-  // touches.
+  // A closing whose contact opens again, however softly it landed, ranks behind all closings that stay closed and before those
+  // that never touch.
   const double reopening = m.reopened ? 5 : 0;
   if (!aim.has_own_cost() && aim.from_the_start() == nullptr) return reopening + shares.lead;
   const double own = aim.mean(m, scale.step, [&](const TargetRow& row) { return row.in(row.nominal, shares); });

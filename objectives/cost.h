@@ -1,38 +1,39 @@
-// The cost that a search minimises. It is normalised by the plain step to the same hold level, so that the step costs about 1.
+// The cost that a search minimises. It relates figures of a closing to those of the plain step, a jump to the same hold levels,
+// so that the plain step ("the step" below) costs about 1.
 //
-// Bounce count and settling time jump at grazing rebounds. Past the first macro-bounce they are properties of an ensemble of
-// runs rather than of one: no search is led by them. Every search first follows the smooth cost of `bounce`, which leads to
-// closings without a significant rebound. There the other figures are well-conditioned, and a search for one of them goes on by
-// that figure itself. Every cost is scored over a fixed time after first contact, so that landing late hides no bounce.
+// Bounce count and settling time jump when a rebound just reaches the contact plane, and after the first large rebound they are
+// chaotic: no search minimises them directly. Every search first minimises the smooth cost of `bounce`, which leads to closings
+// without a significant rebound. There the other figures are smooth, and a search for one of them continues with this figure.
+// Every cost is computed over a fixed time after first contact, so that a late first contact hides no bounce.
 //
 //   H  highest rebound, over that of the step           V  largest impact velocity, over that of the step
-//   K  energy above the closed equilibrium once the switch has touched and the drives stand at their hold levels, over that of
-//      the step: a squared velocity that also sees the vibration of the beam behind the contact point
+//   K  energy above the closed equilibrium once the switch has touched and the drives are at their hold levels, over that of
+//      the step: a squared velocity that also contains the vibration of the beam behind the contact point
 //   S  time in separation after first touch, over the score window
-//   P  h / (h + 10 h_s), h the highest rebound, h_s the significant height: the last nanometres, which H no longer resolves
+//   P  h / (h + 10 h_s), h the highest rebound, h_s the significant height: it resolves rebounds of nanometres, as H does not
 //   T  first touch, over that of the step               L  T + 10 max(0, T - T_free): lateness
 //
 //   bounce, rebound, count     B = 0.2 H + 0.15 V^2 + 0.45 K + 0.1 S^2 + 0.05 P + 0.02 L
-//   settling, impact, energy,  f / (1 + f) with f = F + B / 1000 where h <= h_s / 2, and 1 + (B + F) / 2 where the closing
-//   force, drive, steady       rebounds higher; F is the target's own figure over that of the step.
+//   settling, impact, energy,  f / (1 + f) with f = F + B / 1000 where h <= h_s / 2, and 1 + (B + F) / 2 for a closing with a
+//   force, drive, steady       higher rebound; F is the target's own figure over that of the step.
 //                              settling: end of the last significant rebound, first touch if none, over first touch of the
-//                              step; impact: V; energy: root of impact energy over that of the step (for a soft touch that
-//                              ratio itself can be some 1e-4, and B / 1000 would lead); force: largest contact force;
+//                              step; impact: V; energy: root of impact energy over that of the step (for a soft touch the
+//                              ratio itself can be some 1e-4, less than B / 1000); force: largest contact force;
 //                              drive: energy that the drives give within the score; steady: time from which the contact
 //                              force is steady over first touch of the step, the end of the score where it is not steady
 //
-// A closing can be harder than the plain step and have no rebound. B and F grow by E: the largest excess of impact velocity,
-// peak contact force and impact energy over those of the step, as a share of them. A condition that the plain step breaks lifts
-// this rule, and so does an own objective.
+// A closing without a rebound can still hit harder than the plain step. So B and F grow by E: the largest relative excess of
+// impact velocity, peak contact force and impact energy over those of the step. E is left out when the plain step breaks a
+// condition of the search, and for an own objective.
 //
 // A weighted sum of targets has the weighted mean of their F; the F of bounce, rebound and count is B. The F of a user's own
-// objective is its value (own_objective.h); the cost is F / (1 + F) for one that does not ask for a landing first.
+// objective is its value (own_objective.h); the cost is F / (1 + F) for an own objective whose lands_first() is false.
 //
-// K leads B: it is smooth where the rebounds are a chaotic sequence, and where it is small there are none. Squares make the sum
-// flat and well-conditioned near a soft landing. Lateness costs little up to T_free and much beyond: the softest landing is a
-// late one. The bound of half a significant height leaves room for what a run at full accuracy adds. A closing that never
-// touches costs 10 plus the part of the gap it left. This leads the search towards contact. A closing that fails (touches the
-// electrode, leaves the laws' validity, cannot be integrated) is infeasible: its cost is infinity.
+// K has the largest weight in B: it is smooth even where the rebounds are chaotic, and where it is small there are no rebounds.
+// Squares make the sum flat and well-conditioned near a soft landing. Lateness costs little up to T_free and much beyond: the
+// softest landing would be a very late one. The bound h_s / 2 leaves a margin for the difference of a run at full accuracy. A
+// closing that never touches costs 10 plus the part of the gap that remains, which leads the search towards contact. A closing
+// that fails (touches the electrode, leaves the laws' validity, cannot be integrated) is infeasible: its cost is infinity.
 #pragma once
 
 #include <array>
@@ -52,21 +53,21 @@
 
 namespace softland {
 
-/// A closing beside that of the plain step: the forms of a target are computed from it.
+/// The figures of a closing and those of the plain step, from which the cost of a target is computed.
 struct Shares {
   const Metrics &own, &step;
   double lead = 0;    ///< cost of `bounce`
-  double window = 0;  ///< time after the first touch over which the closing was followed [s]
+  double window = 0;  ///< time after the first touch over which the closing was simulated [s]
 
-  /// Returns a ratio that stays finite where the step itself lands softly; NaN where the value is not known.
+  /// Returns a ratio that stays finite when the figure of the step is 0; NaN when the value is not known.
   [[nodiscard]] static double ratio(double value, double of_step) {
     if (std::isnan(value)) return value;
     return of_step > 0 ? value / of_step : value > 0 ? 1 : 0;
   }
-  /// Returns a figure over the same figure of the step, or over another figure `unit` of the step.
+  /// Returns a figure over the same figure of the step, or over the figure `unit` of the step.
   [[nodiscard]] double of(double Metrics::*figure) const { return ratio(own.*figure, step.*figure); }
   [[nodiscard]] double of(double Metrics::*figure, double Metrics::*unit) const { return ratio(own.*figure, step.*unit); }
-  /// Returns a time over the first touch of the step. An unknown time counts as later than every time of the run.
+  /// Returns a time over the first touch of the step. A time that is not known counts as later than every time of the run.
   [[nodiscard]] double of_time(double time) const {
     const double known = std::isfinite(time) ? time : 2 * (own.initial_contact_time + window);
     return ratio(known, step.initial_contact_time);
@@ -74,19 +75,19 @@ struct Shares {
 };
 
 enum class Target { bounce, settling, rebound, count, impact, energy, force, drive, steady, electrical };
-/// A target that a search can have. A new one is an enumerator and a row.
+/// A target of a search. A new target needs an enumerator and a row.
 struct TargetRow {
   using Form = double (*)(const Shares&);
 
   Target value;
   std::string_view name;
-  Figure::Member figure;         ///< own figure: for winners and goals, and for the forms below where these are null
-  Figure::Member unit = figure;  ///< figure of the step over which the own figure is taken in a sum of targets
-  /// True when a search for the target goes on by its own figure once it has followed the cost of `bounce`. Figures without
-  /// this have nothing left to improve without a significant rebound.
+  Figure::Member figure;         ///< figure that results are compared by, and that enters the cost when the form below is null
+  Figure::Member unit = figure;  ///< figure of the step by which the own figure is divided in a sum of targets
+  /// True when a search for the target continues with its own figure after the cost of `bounce`. It is false for figures that
+  /// cannot improve further once no rebound is significant.
   bool has_own_cost = true;
-  Form nominal = nullptr;             ///< form in the cost of a search on the nominal device
-  Form robust = nullptr;              ///< form in the cost of a search under process variation
+  Form nominal = nullptr;             ///< function for the cost of a search on the nominal device
+  Form robust = nullptr;              ///< function for the cost of a search under process variation
   std::string_view no_gradient = {};  ///< reason why the cost has no gradient; empty where it has one
 
   [[nodiscard]] double in(Form form, const Shares& shares) const {
@@ -113,7 +114,7 @@ inline constexpr auto targets = std::to_array<TargetRow>({
     {.value = Target::settling,
      .name = "settling",
      .figure = &Metrics::permanent_contact_time,
-     .unit = &Metrics::initial_contact_time,  // the step may not settle at all
+     .unit = &Metrics::initial_contact_time,  // the plain step may not settle at all
      .nominal = [](const Shares& s) { return s.of(&Metrics::last_rebound_end, &Metrics::initial_contact_time); },
      .robust = [](const Shares& s) { return s.of_time(s.own.permanent_contact_time); }},
     {.value = Target::rebound,
@@ -141,19 +142,19 @@ inline constexpr auto targets = std::to_array<TargetRow>({
      .figure = &Metrics::steady_force_time,
      .nominal = [](const Shares& s) { return internal::time_or_end(s, &Metrics::steady_force_time); },
      .robust = [](const Shares& s) { return s.of_time(s.own.steady_force_time); },
-     .no_gradient = "the time from which on the contact force is steady has no gradient"},
+     .no_gradient = "the time from which the contact force is steady has no gradient"},
     {.value = Target::electrical,
      .name = "electrical",
      .figure = &Metrics::electrical_settling,
-     .unit = &Metrics::initial_contact_time,  // the step may not close it
+     .unit = &Metrics::initial_contact_time,  // the plain step may not close the switch electrically
      .nominal = [](const Shares& s) { return internal::time_or_end(s, &Metrics::electrical_settling); },
      .robust = [](const Shares& s) { return s.of_time(s.own.electrical_settling); },
-     .no_gradient = "the time from which on the switch is electrically closed has no gradient"},
+     .no_gradient = "the time from which the switch is electrically closed has no gradient"},
 });
 static_assert(is_complete<targets>());
 [[nodiscard]] constexpr std::string_view to_string(Target target) { return name_of(targets, target); }
 [[nodiscard]] constexpr bool has_own_cost(Target target) { return row_of(targets, target).has_own_cost; }
-/// Returns the figure that a target is about.
+/// Returns the figure that a target minimises.
 [[nodiscard]] constexpr const Figure& figure_of(Target target) { return figure_of(row_of(targets, target).figure); }
 
 /// The aim of a search: one target or own objective, or a weighted sum of several.
@@ -168,31 +169,31 @@ class Aim {
     [[nodiscard]] std::string_view name() const { return own ? own->name() : to_string(target); }
   };
   Aim(Target target) : parts_{{.target = target}} {}  // NOLINT(google-explicit-constructor): a target is an aim
-  /// Throws InvalidInput where the objective is null.
+  /// Throws InvalidInput when the objective is null.
   explicit Aim(std::shared_ptr<const OwnObjective> objective)
       : Aim(std::vector<Part>{{.own = refuse_null(std::move(objective))}}) {}
-  /// Throws InvalidInput unless there is a part, weights are finite and > 0, and no target or own objective stands twice.
+  /// Throws InvalidInput unless there is a part, weights are finite and > 0, and no target or own objective appears twice.
   explicit Aim(std::vector<Part> parts);
 
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
   [[nodiscard]] bool is_sum() const { return parts_.size() > 1; }
-  /// True when a search for this aim goes on by a cost of its own once it has followed that of `bounce`. A single target
+  /// Returns true when a search for this aim continues with a cost of its own after the cost of `bounce`. A single target
   /// decides by its row; a sum always has its own cost.
   [[nodiscard]] bool has_own_cost() const;
   [[nodiscard]] bool is_about(Target target) const;
-  /// True when a part is an own objective.
+  /// Returns true when a part is an own objective.
   [[nodiscard]] bool has_own_objective() const;
-  /// True when the cost depends on the drive energy, as an own objective may.
+  /// Returns true when the cost depends on the drive energy, as an own objective may.
   [[nodiscard]] bool measures_drive_energy() const;
-  /// Returns the own objective that leads a search from its first evaluation on; null where no part has one.
+  /// Returns the own objective that a search minimises from its first evaluation on; null when no part has one.
   [[nodiscard]] const OwnObjective* from_the_start() const;
-  /// Returns the same aim with values of own objectives divided by that of the plain step, where the latter is below a
-  /// hundredth or above a hundred. Throws InvalidInput where that value is not finite.
+  /// Returns the same aim with the values of own objectives divided by their value for the plain step, if this value is below a
+  /// hundredth or above a hundred. Throws InvalidInput when this value is not finite.
   [[nodiscard]] Aim in_units_of(const Metrics& step) const;
   /// Returns for example "bounce" or "0.7 bounce + 0.3 energy".
   [[nodiscard]] std::string text() const;
-  /// Returns the weighted mean of value(row of the target); an own objective contributes its value for this closing beside the
-  /// plain step. Throws InvalidInput where that value is below 0.
+  /// Returns the weighted mean of value(row of the target). An own objective contributes its value for this closing, given the
+  /// plain step; throws InvalidInput when this value is below 0.
   template <class Value>
   [[nodiscard]] double mean(const Metrics& closing, const Metrics& step, const Value& value) const {
     const auto of = [&](const Part& part) {
@@ -234,7 +235,7 @@ class Aim {
 /// Figures in which a closing may be harder than that of the plain step.
 inline constexpr auto hard_figures =
     std::to_array({&Metrics::largest_impact_velocity, &Metrics::peak_contact_force, &Metrics::impact_energy});
-/// Returns the largest relative excess of the hard figures over those of the step; 0 where no figure exceeds it.
+/// Returns the largest relative excess of the hard figures over those of the step; 0 when no figure exceeds that of the step.
 [[nodiscard]] double excess_over_step(const Metrics& closing, const Metrics& step);
 
 /// Scales of the cost. The figures are those of a run that ends a fixed time after first contact.
@@ -242,10 +243,10 @@ struct CostScale {
   Metrics step;                 ///< figures of the plain step
   double score_window = 0;      ///< [s]
   double contact_gap = 0;       ///< [m]
-  double free_touch = 0;        ///< T_free, over first touch of the step
+  double free_touch = 0;        ///< T_free, as a multiple of the first touch of the step
   bool judges_hardness = true;  ///< false where the plain step breaks a condition of the search
 };
-/// Returns the cost; infinite for a run that could not be followed.
+/// Returns the cost; infinite for a run that could not be simulated to its end.
 [[nodiscard]] double cost(const Aim& aim, const Metrics& figures, const CostScale& scale, const MetricsOptions& options);
 
 }  // namespace softland

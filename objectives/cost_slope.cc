@@ -29,7 +29,7 @@ void add(FigureSlope& to, const FigureSlope& from, double factor = 1) {
   to.by_device += factor * from.by_device;
 }
 
-// Follows the motion of the contact point as MetricsObserver does.
+// Finds touches and rebounds in the motion of the contact point, as MetricsObserver does.
 class SlopeFinder {
  public:
   SlopeFinder(const Switch& model, std::span<const Signal> signals, const LinearizedClosing& motion,
@@ -48,7 +48,7 @@ class SlopeFinder {
       slopes_.why_none[&Metrics::peak_contact_force] =
           "a damped contact, or one along the pad, does not press hardest at its deepest point";
     if (model_.has_spread_contact())
-      slopes_.why_none[&Metrics::impact_energy] = "a contact along the pad stores its energy all along it";
+      slopes_.why_none[&Metrics::impact_energy] = "a contact along the pad stores energy over its whole length";
     auto passage = motion_.passages().begin();
     for (std::size_t i = 0; i < motion_.arcs().size(); ++i) {
       consider(i);
@@ -69,7 +69,7 @@ class SlopeFinder {
   using Arc = LinearizedClosing::Arc;
 
   [[nodiscard]] const Arc& arc(std::size_t i) const { return motion_.arcs()[i]; }
-  // Collects of(j) for every parameter that changes the switch; empty where no parameter does.
+  // Collects of(j) for every parameter that changes the switch; empty when no parameter does.
   template <class Of>
   [[nodiscard]] VectorXd by_device(Of&& of) const {
     if (motion_.by_device() == nullptr) return {};
@@ -94,7 +94,7 @@ class SlopeFinder {
   // Returns the slope of the time at which the contact point crosses a level at the end of an arc [s].
   [[nodiscard]] FigureSlope crossing_time(std::size_t i) const { return position(i, -1 / shape_.dot(arc(i).v)); }
 
-  // Considers turning points and the ends of the run.
+  // Considers turning points and the ends of the run for the extreme values.
   void consider(std::size_t i) {
     const double at = shape_.dot(arc(i).q);
     if (touches_ == 0) {
@@ -129,7 +129,7 @@ class SlopeFinder {
     force_slope_ = slope_of([&](const ContactLaw& of, double d) { return contact_force(of, d, law, 0); });
   }
 
-  // Returns true where a touch begins.
+  // Returns true when a touch begins here.
   bool cross(std::size_t i, const PhaseChange& change) {
     using Kind = PhaseChange::Kind;
     if (change.kind == Kind::turn || change.level != plane_) return false;
@@ -197,8 +197,8 @@ class SlopeFinder {
     return true;
   }
 
-  // Measures the energy above the closed equilibrium at the first touch under the hold levels, or when the drives reach these
-  // after it.
+  // Computes the energy above the closed equilibrium at the first touch or, if that is later, when the drives reach their hold
+  // levels.
   void measure_landing(std::size_t i, bool begins_to_touch) {
     if (measured_ || touches_ == 0) return;
     const Arc& at = arc(i);
@@ -274,7 +274,7 @@ std::optional<FigureSlope> cost_slope(const Aim& aim, const Metrics& figures, co
   for (const Part& part : parts) {
     const double value = figures.*part.figure;
     if (!std::isfinite(value)) continue;
-    // The cost is a closed form of its figures, so that differences are good to about 1e-10.
+    // The cost is a closed form of its figures, so that differences are accurate to about 1e-10.
     const double size = std::abs(value) > 0 ? std::abs(value) : part.scale;
     if (!(size > 0) || !std::isfinite(size)) continue;
     const double h = 1e-6 * size;

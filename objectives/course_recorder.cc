@@ -20,7 +20,7 @@ CourseRecorder::CourseRecorder(double contact_gap, const MetricsOptions& options
       most_knots_(most_knots),
       figures_(contact_gap, options),
       finder_(contact_gap) {
-  require(most_knots >= 4 * most_kept, "a course needs 32 knots or more");
+  require(most_knots >= 4 * most_kept, "most_knots must be at least 32");
 }
 
 void CourseRecorder::knot(const TrajectoryPoint& point) {
@@ -78,7 +78,7 @@ void CourseRecorder::hand_over(Trajectory& run) {
   run.touches = std::move(touches_);
 }
 
-// Treats the bucket that is not full yet as full: it becomes the last bucket, or is joined with the last one.
+// Ends the bucket that is not full yet: it becomes the last full bucket, or is joined with the last full one.
 void CourseRecorder::coarsen() {
   const std::vector<TrajectoryPoint> all = std::exchange(points_, {});
   const std::vector<std::size_t> ends = std::exchange(ends_, {});

@@ -1,7 +1,7 @@
-// Receives a closing and keeps what reports need of it: figures, rebounds and touches, and the knots that draw the same picture
-// of the course. The memory does not grow with the number of knots.
+// Observes a closing and keeps what reports need: figures, rebounds and touches, and those knots of the motion that its plot
+// needs. The memory does not grow with the number of knots.
 //
-// All knots are kept until the contact point has been beyond the contact plane and they are more than most_recorded_knots.
+// All knots are kept until there are more than most_recorded_knots and the contact point has been beyond the contact plane.
 // Consecutive knots share a bucket afterwards. A bucket keeps the first and the last knot, and those of the smallest and
 // largest position, velocity and contact force. Pairs of buckets are joined as often as that is needed.
 #pragma once
@@ -21,7 +21,7 @@ class CourseRecorder final : public ClosingObserver {
   /// `contact_gap` [m]; `most_knots`: at least 32.
   explicit CourseRecorder(double contact_gap, const MetricsOptions& options = {}, std::size_t most_knots = most_recorded_knots);
 
-  /// Records one of several contacts, the next in order, beside the connection that they make. `contact_gap` [m]
+  /// Adds one of several contacts, the next in order, whose figures are kept beside those of the connection. `contact_gap` [m]
   void follow_contact(double contact_gap, const MetricsOptions& options) {
     contacts_.push_back(std::make_unique<CourseRecorder>(contact_gap, options, most_knots_));
   }
@@ -33,24 +33,24 @@ class CourseRecorder final : public ClosingObserver {
     return number < contacts_.size() ? contacts_[number].get() : nullptr;
   }
 
-  /// Returns the figures of the run, from all knots, once it has ended: see metrics().
+  /// Returns the figures of the run, from all knots, after its end: see metrics().
   [[nodiscard]] Metrics metrics(const Trajectory& end) { return figures_.metrics(end); }
-  /// Returns rebounds() of all knots until the command to open.
+  /// Returns the rebounds of the run until the command to open, from all knots.
   [[nodiscard]] std::vector<Rebound> rebounds() const;
-  /// True when some knots are left out.
+  /// Returns true when some knots are left out.
   [[nodiscard]] bool is_thinned() const { return is_thinned_; }
-  /// Returns the figures of one of several contacts, once the run has ended.
+  /// Returns the figures of one of several contacts, after the end of the run.
   [[nodiscard]] Metrics metrics_of(std::size_t contact, const Trajectory& end);
   [[nodiscard]] std::vector<Rebound> rebounds_of(std::size_t contact) const { return contacts_[contact]->rebounds(); }
-  /// Moves the knots and touches that are kept into the run.
+  /// Moves the kept knots and touches into the run.
   void hand_over(Trajectory& run);
 
  private:
   void coarsen();
-  // Returns the index in points_ at which the bucket that is not full begins.
+  // Returns the index in points_ at which the last, incomplete bucket begins.
   [[nodiscard]] std::size_t last_begin() const { return ends_.empty() ? 0 : ends_.back(); }
   void reduce_long_last();
-  // Keeps of the points from `begin` on only those that a bucket keeps.
+  // Removes from the points from `begin` on those that a bucket does not keep.
   void reduce(std::size_t begin);
 
   double contact_gap_;
@@ -65,7 +65,7 @@ class CourseRecorder final : public ClosingObserver {
   std::size_t in_last_ = 0;        // number of knots since the last full bucket
   std::vector<Touch> touches_;
   std::vector<Rebound> rebounds_;
-  bool opens_ = false;  // true once the command to open is past
+  bool opens_ = false;  // true after the command to open
   std::vector<std::unique_ptr<CourseRecorder>> contacts_;
 };
 

@@ -35,7 +35,7 @@ void CycleRecorder::touch(const Touch& touch) {
   if (cycle < cycles_.size()) cycles_[cycle].metrics.touch(touch);
 }
 
-// A time in which the switch is closed may go on from one cycle to the next.
+// A time in which the switch is closed may extend over several cycles.
 void CycleRecorder::state(std::optional<std::size_t> contact, bool is_closed, double time) {
   if (contact) return;
   for (std::size_t n = 0; closed_from_ && n < cycles_.size(); ++n) cycles_[n].on_time += closed_in(n, time);

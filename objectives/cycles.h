@@ -1,5 +1,5 @@
-// Figures of a switch that is closed and opened again and again in one run. Every cycle has its own figures and begins in the
-// state that the cycle before has left.
+// Figures of a switch that is closed and opened repeatedly in one run. Every cycle has its own figures and begins in the state
+// at the end of the cycle before.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,10 @@
 
 namespace softland {
 
-/// Times at which cycles begin, and at which they are commanded to open.
+/// Times at which cycles begin, and at which the switch is commanded to open.
 struct CycleTimes {
   double period = 0;   ///< [s]
-  double on_time = 0;  ///< time from the begin of a cycle to its command [s]
+  double on_time = 0;  ///< time from the start of a cycle to its command to open [s]
   std::size_t cycles = 1;
 
   [[nodiscard]] double begin(std::size_t cycle) const { return static_cast<double>(cycle) * period; }  ///< [s]
@@ -21,18 +21,18 @@ struct CycleTimes {
 
 /// One cycle of a run.
 struct CycleFigures {
-  /// Figures of its closing until the command, and of the opening after it. Times count from the begin of the cycle, the drive
-  /// energy is what the sources give in it, and the first touch is that of the connection.
+  /// Figures of the closing until the command to open, and of the opening after it. Times count from the start of the cycle,
+  /// the drive energy is that of the sources in this cycle, and the first touch is that of the connection.
   Metrics metrics;
-  bool closes = false;  ///< true when the cycle begins open, and touches before the command
-  bool opens = false;   ///< true when the contact is open at the end
-  double on_time = 0;   ///< time in which the switch is electrically closed [s], of an observer that hands on state()
-  double swing = 0;     ///< largest distance from the open position in the last third of the time after the command [m]
+  bool closes = false;  ///< true when the cycle begins open, and the contact closes before the command to open
+  bool opens = false;   ///< true when the contact is open at the end of the cycle
+  double on_time = 0;   ///< time in which the switch is electrically closed [s]; needs a run that calls state()
+  double swing = 0;     ///< largest distance from the open position in the last third of the time after the command to open [m]
 };
 
 class CycleRecorder final : public ClosingObserver {
  public:
-  /// `contact_gap` [m]; `options` say what a rebound is, and where the contact comes to rest (MetricsOptions::opening).
+  /// `contact_gap` [m]; `options` define a significant rebound and the open position (MetricsOptions::opening).
   CycleRecorder(double contact_gap, const MetricsOptions& options, const CycleTimes& times);
 
   void knot(const TrajectoryPoint& point) override;
@@ -43,8 +43,8 @@ class CycleRecorder final : public ClosingObserver {
 
   /// Returns the number of cycles that have ended.
   [[nodiscard]] std::size_t ended() const { return current_; }
-  /// Returns the figures of a cycle that has begun. `run` carries the hold force and the in-contact period of the closings, as
-  /// far as they are known.
+  /// Returns the figures of a cycle that has begun. `run` has the hold force and the in-contact period of the closings, when
+  /// they are known.
   [[nodiscard]] CycleFigures figures(std::size_t cycle, const Trajectory& run);
 
  private:
@@ -55,16 +55,16 @@ class CycleRecorder final : public ClosingObserver {
     double swing = 0, on_time = 0;  // [m], [s]
   };
 
-  // Returns the part of the cycle in which the switch is closed, as it is now, until then [s].
+  // Returns the time until `until` in which the switch has been closed in this cycle, for a switch that is closed now [s].
   [[nodiscard]] double closed_in(std::size_t cycle, double until) const;
 
   double contact_gap_, open_position_;  // [m]
   CycleTimes times_;
   std::vector<Cycle> cycles_;
   std::size_t current_ = 0;
-  double work_before_ = 0;  // source work at the begin of the current cycle [J]
+  double work_before_ = 0;  // source work at the start of the current cycle [J]
   std::size_t counted_ = 0;
-  std::optional<double> closed_from_ = {};  // the switch is electrically closed since then [s]
+  std::optional<double> closed_from_ = {};  // time since which the switch is electrically closed [s]
 };
 
 }  // namespace softland

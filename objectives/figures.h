@@ -1,5 +1,5 @@
-// The figures of merit of a closing in one table: name in results, unit, which direction is better, and what decides its last
-// digits. Every list of figures is this table or a selection of it.
+// The figures of merit of a closing in one table: name in results, unit, which direction is better, and how the error is
+// estimated. Every list of figures is this table or a selection of it.
 #pragma once
 
 #include <algorithm>
@@ -19,16 +19,17 @@ namespace softland {
 /// The direction in which a figure is better.
 enum class Better { lower, neither };
 
-/// The dependence of a figure; this decides how its error can be estimated.
+/// The part of the motion that a figure depends on. It decides whether the difference of two runs, of which one is more
+/// accurate, estimates the error of the figure.
 enum class Conditioning {
-  first_touch,   ///< the motion until first contact: two runs differ by the error
-  high_rebound,  ///< one rebound: two runs differ by the error, unless they part before it
-  every_touch,   ///< all touches: two runs differ by the error as long as they have the same touches
+  first_touch,   ///< the motion until first contact: the difference estimates the error
+  high_rebound,  ///< one rebound: the difference estimates the error, unless the runs differ qualitatively before it
+  every_touch,   ///< all touches: the difference estimates the error when both runs have the same touches
   last_rebound,  ///< the end of a sequence of rebounds, chaotic past the first large one: only an ensemble of runs gives the
                  ///< range
-  open,          ///< the motion of a switch that stays open: two runs differ by the error
-  rest,          ///< the equilibrium under the hold levels: the quadrature alone
-  drives         ///< the drives alone: it has no error
+  open,          ///< the motion of a switch that stays open: the difference estimates the error
+  rest,          ///< the equilibrium under the hold levels, whose only error is that of the quadrature
+  drives         ///< the drives alone: the figure has no error
 };
 
 struct Figure {
@@ -42,23 +43,24 @@ struct Figure {
   Better better = Better::neither;
   Conditioning conditioning = Conditioning::first_touch;
   Member member;
-  /// Figure whose derivative this figure has: that of the permanent contact is that of the last rebound's end. Null where it
-  /// has none.
+  /// Figure whose derivative this figure has: the end of the last rebound for the permanent contact. Null when the figure has
+  /// no derivative.
   double Metrics::*slope = nullptr;
-  bool of_results = true, of_devices = false;  ///< true when results show the figure for a closing, for varied devices
-  bool AskedFigures::*asked = nullptr;  ///< request of a scene that makes results show the figure; null: every scene shows it
+  bool of_results = true,
+       of_devices = false;  ///< true when results show the figure for one closing; true when they show it for varied devices
+  bool AskedFigures::*asked = nullptr;  ///< request of a scene that makes results show the figure; null: always shown
   double worst = std::numeric_limits<double>::infinity();  ///< value that counts for a device that does not close
 
   [[nodiscard]] constexpr bool is_count() const { return std::holds_alternative<int Metrics::*>(member); }
   [[nodiscard]] constexpr bool is_yes_or_no() const { return std::holds_alternative<bool Metrics::*>(member); }
-  /// True when the difference of two runs is an estimate of the figure's error.
+  /// Returns true when the difference of two runs estimates the figure's error.
   [[nodiscard]] constexpr bool is_told_by_two_runs() const {
     return conditioning == Conditioning::first_touch || conditioning == Conditioning::high_rebound ||
            conditioning == Conditioning::every_touch || conditioning == Conditioning::open;
   }
-  /// True when results show the figure for a scene with these requests.
+  /// Returns true when results show the figure for a scene with these requests.
   [[nodiscard]] constexpr bool is_asked(const AskedFigures& of_scene) const { return asked == nullptr || of_scene.*asked; }
-  /// True when certify() gives the figure an error.
+  /// Returns true when certify() gives the figure an error.
   [[nodiscard]] constexpr bool has_error() const { return !is_yes_or_no() && conditioning != Conditioning::drives; }
 
   /// Returns for example "Permanent contact (settling time)".
@@ -67,10 +69,10 @@ struct Figure {
   [[nodiscard]] constexpr std::string_view quantity() const {
     return unit.empty() ? key : key.substr(0, key.size() - unit.size() - 1);
   }
-  /// Returns the figure of a closing, 1 for yes and 0 for no; NaN where it is not known.
+  /// Returns the figure of a closing, 1 for yes and 0 for no; NaN when it is not known.
   [[nodiscard]] double value(const Metrics& metrics) const;
-  /// Returns the value for comparisons: a rebound too low to count is as high as one that just counts, and a force as large as
-  /// is steady.
+  /// Returns the value for comparisons: a rebound that is not significant counts as the significant height, and a least force
+  /// below the steady force as the steady force.
   [[nodiscard]] double counted(const Metrics& metrics, const MetricsOptions& options) const;
 };
 
@@ -400,14 +402,14 @@ constexpr bool is_of_devices(const Figure& one) { return one.of_devices; }
 constexpr bool is_number_of_results(const Figure& one) { return one.of_results && !one.is_yes_or_no(); }
 constexpr bool is_derived(const Figure& one) { return one.slope != nullptr && (one.of_results || one.of_devices); }
 }  // namespace internal
-/// The selections are: figures that results show for a closing; figures of varied devices, on which conditions on these may be
-/// set; figures that conditions on one closing may use; figures that have derivatives.
+/// The selections are: figures that results show for a closing; figures of varied devices, on which conditions on devices may
+/// be set; figures that conditions on one closing may use; figures that have derivatives.
 inline constexpr auto all_figures = figures_that_are<internal::is_of_results>();
 inline constexpr auto device_figures = figures_that_are<internal::is_of_devices>();
 inline constexpr auto conditioned_figures = figures_that_are<internal::is_number_of_results>();
 inline constexpr auto derived_figures = figures_that_are<internal::is_derived>();
 
-/// Returns the figures of a selection that a scene asks for.
+/// Returns the figures of a selection that the requests of a scene include.
 [[nodiscard]] std::vector<Figure> asked_among(std::span<const Figure> figures, const AskedFigures& asked);
 
 /// Returns the row of a member of Metrics.
@@ -420,10 +422,10 @@ inline constexpr auto derived_figures = figures_that_are<internal::is_derived>()
   return *std::find_if(figure_table.begin(), figure_table.end(), [&](const Figure& one) { return one.key == key; });
 }
 
-/// The figures by which a closing is compared with one of another law or number of modes.
+/// The figures by which a closing is compared with a closing by another law or another number of modes.
 inline constexpr std::array compared_figures{figure_of(&Metrics::initial_contact_time), figure_of(&Metrics::impact_velocity),
                                              figure_of(&Metrics::major_bounce_height)};
-/// The figures that an accuracy study of a closing looks at: the compared figures, and one that needs a contact law.
+/// The figures that an accuracy study of a closing compares: the figures above, and one that needs a contact law.
 inline constexpr std::array studied_figures{compared_figures[0], compared_figures[1], compared_figures[2],
                                             figure_of(&Metrics::peak_contact_force)};
 
@@ -445,7 +447,7 @@ class PerFigure {
   }
 };
 
-/// A number for every figure: its value, or its error. NaN where it is not known.
+/// A number for every figure: its value, or its error. NaN when it is not known.
 class FigureValues : public PerFigure<double> {
  public:
   constexpr FigureValues() { values_.fill(Metrics::unset); }
@@ -454,10 +456,10 @@ class FigureValues : public PerFigure<double> {
   AskedFigures asked = {};  ///< requests of the scene: see Figure::is_asked()
 };
 
-/// Returns the relative change of a figure, (value - reference) / max(|reference|, least). NaN where either is not known.
+/// Returns the relative change of a figure, (value - reference) / max(|reference|, least); NaN when either is not known.
 [[nodiscard]] double relative_change(double value, double reference, double least = 0);
-/// Returns the size of the relative change, for comparison with a tolerance: 0 where both are equal or neither is known,
-/// infinite where only one is known.
+/// Returns the size of the relative change, for comparison with a tolerance: 0 when both are equal or neither is known,
+/// infinite when only one is known.
 [[nodiscard]] double relative_difference(double value, double reference, double least = 0);
 
 }  // namespace softland

@@ -17,7 +17,7 @@ std::vector<Rebound> rebounds(const Trajectory& trajectory) {
 
 void LandingFigures::touch(const Touch& touch) {
   touched_ = true;
-  // std::max would lose a NaN; here NaN stays once it has come up.
+  // std::max would lose a NaN; here a NaN is kept.
   if (std::isnan(touch.peak_force) || touch.peak_force > peak_force_) peak_force_ = touch.peak_force;
   impact_energy_ += touch.peak_energy;
   largest_impact_velocity_ = std::max(largest_impact_velocity_, touch.impact_velocity);
@@ -29,7 +29,7 @@ void LandingFigures::rebound(const Rebound& rebound) {
   latest_ = rebound;
   if (std::isfinite(rebound.end)) separated_ += rebound.end - rebound.begin;
   if (!(rebound.height > options_.significant_rebound)) return;
-  if (++significant_ == 1) first_duration_ = rebound.end - rebound.begin;  // NaN while the rebound is under way
+  if (++significant_ == 1) first_duration_ = rebound.end - rebound.begin;  // NaN when the rebound has not ended
   last_end_ = rebound.end;
 }
 
@@ -52,7 +52,7 @@ void MetricsObserver::knot(const TrajectoryPoint& point) {
   if (!opening_ && point.time >= options_.opening.time) begin_opening();
 }
 
-// A rebound that is under way belongs to the landing; what follows it belongs to the opening.
+// A rebound that has not ended belongs to the landing; later rebounds belong to the opening.
 void MetricsObserver::begin_opening() {
   landing_ = course();
   if (landing_->above) figures_.rebound(*rebounds_.under_way());

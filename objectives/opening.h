@@ -1,5 +1,5 @@
-// Figures of an opening: how a closed switch releases, and how long it vibrates afterwards. They are taken at the contact
-// point, like those of a closing.
+// Figures of an opening: how a closed switch opens, and how long it vibrates afterwards. They are taken at the contact point,
+// like those of a closing.
 #pragma once
 
 #include <limits>
@@ -12,23 +12,24 @@ namespace softland {
 
 struct OpeningBand {
   double open_position = 0;  ///< position of the contact point at rest under the open drives [m]
-  double width = 0;          ///< half-width of the band [m]: the switch is open for good once it stays this near
-  double drives_end = 0;     ///< time from which the drives stand at their open levels [s]
+  double width = 0;       ///< half-width of the band [m]: the switch is open for good once its contact point stays in this band
+  double drives_end = 0;  ///< time from which the drives are at their open levels [s]
 };
 
-/// The settling of the contact point in a band.
+/// The settling of the contact point in a band about its open position.
 struct BandFigures {
-  /// Time from which it stays in the band [s]; NaN where it does not.
+  /// Time from which the contact point stays in the band [s]; NaN when it does not.
   double settled_from = std::numeric_limits<double>::quiet_NaN();
   double below = 0, above = 0;  ///< largest excursion from the open position, away from and towards the contact [m]; 0 if none
   double residual = std::numeric_limits<double>::quiet_NaN();  ///< OpeningFigures::residual_vibration
 };
 
-/// Follows the distance from the open position from one turn to the next. Between knots the motion is the quintic through them.
+/// Computes the figures of a band from the distance to the open position, turning point by turning point. Between knots the
+/// motion is the quintic through them.
 class BandFollower {
  public:
   explicit BandFollower(const OpeningBand& band) : band_(band) {}
-  /// Takes the motion between two knots.
+  /// Adds the motion between two knots.
   void follow(const TrajectoryPoint& a, const TrajectoryPoint& b);
   [[nodiscard]] BandFigures figures() const;
 
@@ -43,14 +44,15 @@ class BandFollower {
 };
 [[nodiscard]] BandFigures band_figures(const Trajectory& course, const OpeningBand& band);
 
-/// A command to open, while a run goes on.
+/// A command to open during a run.
 struct OpeningCommand {
-  double time = std::numeric_limits<double>::infinity();  ///< [s]
-  /// Rest position of the contact point under the levels that follow [m]; NaN where it has none.
+  double time = std::numeric_limits<double>::infinity();  ///< time of the command [s]
+  /// Rest position of the contact point under the levels after the command [m]; NaN when it has none.
   double open_position = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The opening of a closed switch on a command. Times count from the command; NaN throughout where it is closed at the end.
+/// The opening of a closed switch on a command. Times count from the command; all are NaN when the contact is closed at the
+/// end.
 struct OpeningOnCommand {
   double command = std::numeric_limits<double>::quiet_NaN();       ///< time of the command from t = 0 [s]
   double opening_time = std::numeric_limits<double>::quiet_NaN();  ///< time to the last break of the contact [s]
@@ -58,28 +60,30 @@ struct OpeningOnCommand {
   double settling_time = std::numeric_limits<double>::quiet_NaN();
   /// Largest excursion beyond the open position, away from the contact [m].
   double overshoot = std::numeric_limits<double>::quiet_NaN();
-  double least_gap = std::numeric_limits<double>::quiet_NaN();  ///< smallest separation on the way back, or the last [m]
+  /// Smallest separation after the turn back towards the contact, or the last separation [m].
+  double least_gap = std::numeric_limits<double>::quiet_NaN();
   /// Highest separation that ends in a touch [m]; 0 without a bounce.
   double highest_bounce = std::numeric_limits<double>::quiet_NaN();
   double separated = 0;  ///< time in separations until the last break [s]
-  /// Number of separations above the significant rebound that end in a touch; meaningless where the contact is closed.
+  /// Number of separations above the significant rebound that end in a touch; meaningless when the contact is closed at the
+  /// end.
   int bounces = 0;
 };
 
-/// The contact has come to rest where it stays within this share of the contact gap of its open position.
+/// The contact is at rest when it stays within this share of the contact gap of its open position.
 inline constexpr double settled_band = 0.02;
 
-/// Finds the figures of an opening on a command while a run goes on.
+/// Computes the figures of an opening on a command during a run.
 class CommandedOpening {
  public:
   /// Lengths are in m.
   CommandedOpening(const OpeningCommand& command, double contact_gap, double significant_rebound);
-  /// Takes the motion between two knots after the command.
+  /// Adds the motion between two knots after the command.
   void follow(const TrajectoryPoint& a, const TrajectoryPoint& b);
-  /// Takes a separation that ended in a touch after the command.
+  /// Adds a separation that ended in a touch after the command.
   void bounce(const Rebound& rebound);
-  /// Returns the figures once the run has ended at its last knot. `under_way`: the separation in which the contact stands open;
-  /// none where it is closed.
+  /// Returns the figures after the run has ended at its last knot. `under_way` is the separation that has not ended; none when
+  /// the contact is closed.
   [[nodiscard]] OpeningOnCommand figures(const std::optional<Rebound>& under_way, const TrajectoryPoint& last) const;
 
  private:
@@ -94,19 +98,19 @@ class CommandedOpening {
 struct OpeningFigures {
   static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
-  /// done: the contact opens, and stays in the band until the end of the window. not_settled: it is closed at the end, or
-  /// outside the band. Otherwise the status of the run.
+  /// done: the contact opens, and stays in the band until the end of the window. not_settled: at the end the contact is closed,
+  /// or outside the band. Otherwise the status of the run.
   Status status = Status::not_run;
-  /// Time at which the contact point leaves the contact for good [s]; NaN while it is closed at the end.
+  /// Time at which the contact point leaves the contact for good [s]; NaN when the contact is closed at the end.
   double release_time = unset;
-  double settling_time = unset;  ///< time from which it stays in the band [s]; NaN where it does not
-  double overshoot = unset;      ///< largest excursion beyond its open position, away from the contact [m]; 0 if none
-  /// Largest distance from the open position once the drives stand [m]; NaN before that, or while closed.
+  double settling_time = unset;  ///< time from which the contact point stays in the band [s]; NaN when it does not
+  double overshoot = unset;      ///< largest excursion beyond the open position, away from the contact [m]; 0 if none
+  /// Largest distance from the open position after drives_end [m]; NaN when the run ends before, or with a closed contact.
   double residual_vibration = unset;
-  int touches = 0;  ///< number of touches of the contact after it has first left it
+  int touches = 0;  ///< number of touches of the contact after the first opening
 };
 
-/// Returns the figures of an opening (ClosingOptions::begins_closed). A run that did not come to its end has the status alone.
+/// Returns the figures of an opening (ClosingOptions::begins_closed). A run that did not reach its end has a status only.
 [[nodiscard]] OpeningFigures release_figures(const Trajectory& opening, const OpeningBand& band);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// The rebounds of a closing, found as its knots arrive: no past knots are kept.
+// The rebounds of a closing, found during the run: no past knots are kept.
 #pragma once
 
 #include <algorithm>
@@ -16,21 +16,21 @@ namespace softland {
 /// An interval in which the contact point stands above the first-touch plane, after first contact.
 struct Rebound {
   double begin = 0;           ///< [s]
-  double end = 0;             ///< [s]; NaN while it is under way at the end of the window
-  double height = 0;          ///< largest separation of the rebound [m]; a lower bound while it is under way
+  double end = 0;             ///< [s]; NaN when the rebound has not ended at the end of the window
+  double height = 0;          ///< largest separation of the rebound [m]; a lower bound when the rebound has not ended
   double time_of_height = 0;  ///< [s]
 };
 
-/// Follows the separation of the contact point from the plane. Between knots its turning points and its crossings of the plane
-/// are those of the quintic through them. A separation below 1e-12 of the contact gap does not count: the integrator stops at
-/// the plane to rounding.
+/// Finds rebounds in the separation of the contact point from the first-touch plane. Turning points and crossings of the plane
+/// between knots are those of the quintic through the knots. A separation below 1e-12 of the contact gap does not count: the
+/// integrator stops at the plane to rounding.
 class ReboundFinder {
  public:
   /// `contact_gap` [m]
   explicit ReboundFinder(double contact_gap) : gap_(contact_gap), usable_(std::isfinite(contact_gap)) {}
 
-  /// Takes the next knot and calls found(rebound) for every rebound that ends before it. Returns false, from then on, for a
-  /// knot that is not finite or goes back in time: neither it nor what follows counts.
+  /// Takes the next knot and calls found(rebound) for every rebound that ends before this knot. Returns false, from then on,
+  /// for a knot that is not finite or goes back in time: neither this knot nor later ones count.
   template <class Found>
   bool knot(const TrajectoryPoint& next, Found&& found) {
     usable_ = usable_ && std::isfinite(next.time) && std::isfinite(next.position) && std::isfinite(next.velocity) &&
@@ -46,7 +46,7 @@ class ReboundFinder {
     return true;
   }
 
-  /// True when every knot so far could be used.
+  /// Returns true when every knot so far could be used.
   [[nodiscard]] bool usable() const { return usable_; }
   [[nodiscard]] bool touched() const { return touched_; }
   [[nodiscard]] double first_touch() const { return first_touch_; }  ///< time of the first touch [s]; NaN before

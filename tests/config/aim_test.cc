@@ -45,7 +45,7 @@ TEST(Aim, RefusesWhatIsNone) {
   EXPECT_EQ(message("0.7 bounce + 0.3 softness"), rule);
   EXPECT_EQ(message("0.7 bounce + "), rule);
   EXPECT_EQ(message("much bounce + energy"), "'much bounce' must be a weight and a target, such as 0.7 bounce");
-  EXPECT_EQ(message("bounce + 2 bounce"), "bounce stands twice in a sum of targets");
+  EXPECT_EQ(message("bounce + 2 bounce"), "bounce appears twice in a sum of targets; name each target once");
   EXPECT_EQ(message("-1 bounce + 2 energy"), "the weight of bounce is -1; it must be finite and > 0");
 }
 

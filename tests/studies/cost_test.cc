@@ -133,7 +133,10 @@ TEST(Cost, OfASumLiesBetweenThoseOfItsPartsAndKnowsOnlyTheRatiosOfItsWeights) {
     before = between;
   }
   EXPECT_EQ(Aim({{Target::bounce, 0.7}, {Target::energy, 0.3}}).text(), "0.7 bounce + 0.3 energy");
-  EXPECT_EQ(refusal([] { Aim({{Target::bounce, 1}, {Target::bounce, 2}}); }), "bounce stands twice in a sum of targets");
+  EXPECT_EQ(refusal([] {
+              Aim({{Target::bounce, 1}, {Target::bounce, 2}});
+            }),
+            "bounce appears twice in a sum of targets; name each target once");
   EXPECT_EQ(refusal([] {
               Aim({{Target::bounce, 0}, {Target::drive, 2}});
             }),

@@ -158,7 +158,7 @@ TEST(OwnObjective, ThatIsNegativeIsRefusedAndWhatIsNotKnownIsInfeasible) {
   own.target = by([](const Metrics&, const Metrics&) { return std::numeric_limits<double>::quiet_NaN(); });
   EXPECT_EQ(own.price_at(x).own, std::numeric_limits<double>::infinity());
   EXPECT_EQ(own.gradient_refusal(own.target), "an own objective has no gradient");
-  EXPECT_EQ(refusal([] { (void)Aim(std::shared_ptr<const OwnObjective>()); }), "an own objective is null");
+  EXPECT_EQ(refusal([] { (void)Aim(std::shared_ptr<const OwnObjective>()); }), "an own objective must not be null");
 }
 
 TEST(OwnObjective, ThatThrowsEndsNoSearchAndIsToldOf) {
