@@ -1,5 +1,5 @@
-// Bending modes of a beam (Euler-Bernoulli) under an axial force. Its rigidity and mass are constant or linear from stretch to
-// stretch. It is clamped at x = 0, its far end free or clamped, or it stands on springs at either end.
+// Bending modes of a beam (Euler-Bernoulli) under an axial force. Rigidity and mass of the beam are constant or linear over
+// each of its stretches. The beam is clamped at x = 0 and free or clamped at its far end, or stands on springs at either end.
 //
 //   (EI(x) phi'')'' - N phi'' = omega^2 mu(x) phi,   phi(0) = phi'(0) = 0
 //   free:     (EI phi'')(L) = (EI phi'')'(L) - N phi'(L) = 0          clamped:  phi(L) = phi'(L) = 0
@@ -12,10 +12,10 @@
 // Discretisation: the curvature is a polynomial of degree 7 on each element, written in Legendre polynomials, and integrated
 // twice from the clamped end; nodes stand at every change of section. These functions are orthonormal in the bending energy, so
 // the stiffness is the unit matrix whatever the lengths of the elements, and a handful of long elements reaches 1e-9. A far
-// clamp leaves the combinations with no value and no slope there. An axial force makes them orthonormal in the elastic energy
-// anew: the rest of the computation has a unit stiffness again. This fails at the buckling load in compression, where the
-// straight beam stops being stable. Springs and linear stretches add their energies to that unit matrix, and springs at x = 0
-// the two motions of a rigid beam to the functions.
+// clamp permits only combinations of the functions without value and slope there. Under an axial force the combinations are
+// made orthonormal in the elastic energy, so that the stiffness is the unit matrix again. This fails at the buckling load in
+// compression, where the straight beam stops being stable. Springs and linear stretches add their energies to the unit matrix,
+// and springs at x = 0 add the two motions of a rigid beam to the functions.
 //
 // Source: textbook Ritz-Galerkin; integrated Legendre shape functions: Szabo & Babuska, Finite Element Analysis, 1991, sec. 6;
 // axial force and buckling: Timoshenko & Gere, Theory of Elastic Stability, 1961, sec. 2.1.
@@ -40,9 +40,11 @@ struct BeamSection {
   double end = 0;              ///< [m]
   double rigidity = 0;         ///< EI [N m^2]
   double mass_per_length = 0;  ///< mu [kg/m]
-  double taper = 0;      ///< relative growth of both above from the middle, where they are given, to the end; linear in between
-  double curvature = 0;  ///< curvature at rest of a beam of parts, positive away from the near electrode [1/m]
-  double piezo_moment = 0;  ///< moment of a piezo layer of a beam of parts, in its middle [N m / V]
+  double taper =
+      0;  ///< relative growth of rigidity and mass from the middle, where they are given, to the end; linear in between
+  double curvature = 0;  ///< curvature at rest of a beam with sections or layers, positive away from the near electrode [1/m]
+  double piezo_moment =
+      0;  ///< moment per volt of a piezo layer on a beam with sections or layers, in the middle of the stretch [N m / V]
 };
 
 /// Bending of a two-layer section about its own neutral axis.
@@ -54,7 +56,7 @@ struct CompositeSection {
 
 /// Returns E of the beam [Pa], or E / (1 - nu^2) with plate_strain.
 [[nodiscard]] double bending_modulus(const Structure& structure);
-/// Returns the bare beam's section, with the skins it may have.
+/// Returns the section of the beam without its piezo layer, with its surface skins if it has any.
 [[nodiscard]] CompositeSection plain_section(const Structure& structure, const std::optional<Surface>& surface = {});
 /// Returns the section of a beam with piezo layer (Zheng, Chen & Chen 2017, eqs. 5-6, equal widths).
 [[nodiscard]] CompositeSection layered_section(const Structure& structure, const Piezo& piezo);
@@ -62,18 +64,18 @@ struct CompositeSection {
 [[nodiscard]] double piezo_moment_per_volt(const Structure& structure, const Piezo& piezo);
 /// Returns the beam's sections in order.
 [[nodiscard]] std::vector<BeamSection> beam_sections(const Device& device);
-/// Returns the stress that residual_stress leaves in the released beam between two clamps [Pa]. A stress along the beam stays
-/// whole. The equal biaxial stress of a film leaves sigma (1 - nu), since the beam's sides are free and its strain along the
-/// beam is held.
+/// Returns the axial stress that residual_stress leaves in the released beam between two clamps [Pa]. A stress along the beam
+/// is kept entirely. The equal biaxial stress sigma of a film leaves sigma (1 - nu), since the sides of the beam are free and
+/// its length is fixed.
 [[nodiscard]] double axial_stress(const Bridge& bridge);
-/// Returns the compressive stress at which the beam buckles [Pa], E I as plain_section(): 4 pi^2 E I / (A L^2) between two
-/// clamps, a sixteenth of that with a free end.
+/// Returns the compressive stress at which the beam buckles [Pa], with E I of plain_section(): 4 pi^2 E I / (A L^2) between two
+/// clamps, a sixteenth of this with a free end.
 [[nodiscard]] double buckling_stress(const Structure& structure, const std::optional<Surface>& surface = {});
 
 /// Returns the reason why the beam cannot rest straight under its axial stress; empty when it can.
 [[nodiscard]] std::string why_buckled(const Structure& structure, const std::optional<Surface>& surface = {});
 
-/// Returns the rule that a beam breaks; empty where it breaks none.
+/// Returns the rule that a beam breaks; empty when it breaks none.
 [[nodiscard]] std::string why_no_beam(const Device& device);
 
 struct BeamSupport {
@@ -82,7 +84,7 @@ struct BeamSupport {
   Anchor near = {};        ///< anchor at x = 0
   Anchor far = free_end;   ///< anchor at L unless it is clamped
 };
-/// Returns clamps, and the axial force that residual stresses of bulk and surfaces leave.
+/// Returns the clamps of a beam and the axial force from residual stresses of its bulk and surfaces.
 [[nodiscard]] BeamSupport beam_support(const Structure& structure, const std::optional<Surface>& surface = {});
 
 /// The modes of a beam in units of its length and of the mass and rigidity of its first section. They are the same for every
@@ -102,35 +104,35 @@ class NormalisedModes {
     double near_rotation = Anchor::rigid;          ///< c L / EI
     double near_translation = Anchor::rigid;       ///< k L^3 / EI
     double far_rotation = 0, far_translation = 0;  ///< used unless far_clamp
-    /// True for more than even sections between clamps and free ends.
+    /// Returns true when a section changes linearly or an end stands on springs.
     [[nodiscard]] bool is_general() const;
     [[nodiscard]] bool operator==(const Beam&) const = default;
   };
-  /// Finds the modes. It starts from those of a similar beam `near`, of as many sections and modes, where this quickly leads to
-  /// the same result; else it searches in full. Both ways give the same modes up to rounding. Throws InvalidInput below the
-  /// buckling load.
+  /// Finds the modes. The search starts from the modes of a similar beam `near` with as many sections and modes when this
+  /// quickly leads to the same result, and is a full search otherwise. Both ways give the same modes up to rounding. Throws
+  /// InvalidInput for a compression beyond the buckling load.
   explicit NormalisedModes(Beam beam, const NormalisedModes* near = nullptr);
 
   [[nodiscard]] const Beam& beam() const { return beam_; }
-  /// Returns omega^-2 of the modes, falling.
+  /// Returns omega^-2 of the modes, in descending order.
   [[nodiscard]] const Eigen::VectorXd& inverse_squares() const { return inverse_squares_; }
   /// Return all modes at x in [0, 1].
   [[nodiscard]] Eigen::VectorXd value(double x) const { return (shape(x, 0) * shapes_).transpose(); }
   [[nodiscard]] Eigen::VectorXd slope(double x) const { return (shape(x, 1) * shapes_).transpose(); }
-  /// Returns the integrals of the products of slopes.
+  /// Returns the integrals of the products of the modes' slopes.
   [[nodiscard]] Eigen::MatrixXd slope_products() const;
-  /// Returns omega^-2 of the first mode of the beam that is also held at x. `near` is that of a similar beam.
+  /// Returns omega^-2 of the first mode of the beam that is also held at x. `near` is this number of a similar beam.
   [[nodiscard]] double pinned_inverse_square(double x, std::optional<double> near = {}) const;
 
  private:
-  // Searches by Ritz's method: all modes at once.
+  // Searches all modes at once by Ritz's method.
   void search();
-  // Iterates Rayleigh quotients that begin with other modes' frequencies. Returns false where it cannot prove that it found the
-  // modes.
+  // Iterates Rayleigh quotients that begin with the frequencies of `near`. Returns false when it cannot prove that it found the
+  // first modes.
   [[nodiscard]] bool follow(const NormalisedModes& near);
   // Returns a place where every mode moves.
   [[nodiscard]] double moving_place() const;
-  // Return all functions, x in units of the length; xi in [-1, 1] over an element.
+  // Return the values of all functions or of a derivative: at x in units of the length; at xi in [-1, 1] over an element.
   [[nodiscard]] Eigen::RowVectorXd shape(double x, int derivative) const;
   [[nodiscard]] Eigen::RowVectorXd shape(const BeamElement& element, double xi, int derivative) const;
   // Returns combinations of the functions that a general beam permits, orthonormal in its elastic energy.
@@ -143,17 +145,18 @@ class NormalisedModes {
   Eigen::MatrixXd shapes_;  // functions x modes
   Eigen::VectorXd inverse_squares_;
   double moving_place_ = 1;
-  double shift_ = 0, turn_ = 0;  // factors of the rigid motions, behind the elements' functions; 0: x = 0 does not move so
-  // All motions of a general beam that Ritz's method knows, of unit elastic energy, with omega^-2 each.
+  double shift_ = 0,
+         turn_ = 0;  // factors of the two rigid motions, after the elements' functions; 0 when x = 0 cannot move in this way
+  // All motions of a general beam by Ritz's method, with unit elastic energy, and omega^-2 of each.
   Eigen::MatrixXd all_motions_;
   Eigen::VectorXd all_inverse_squares_;
 };
 
 class BeamModes {
  public:
-  /// Finds the first `modes` modes. Takes the normalised ones from `known` where they are those of this beam, and starts from
-  /// them where they are not. Throws InvalidInput unless sections join and are positive, modes is in [1, 40], and the axial
-  /// force is above the buckling load.
+  /// Finds the first `modes` modes. Uses the normalised modes `known` when they are those of this beam, and otherwise starts
+  /// from them. Throws InvalidInput unless sections join and are positive, modes is in [1, 40], and the axial force is above
+  /// the buckling load.
   BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support = {},
             std::shared_ptr<const NormalisedModes> known = {});
 
@@ -165,7 +168,7 @@ class BeamModes {
   [[nodiscard]] Eigen::VectorXd slope(double x) const { return scale_ / length_ * normalised_->slope(x / length_); }
   /// Returns the integrals of phi_i' phi_j' over the beam [1/(kg m)].
   [[nodiscard]] Eigen::MatrixXd slope_products() const { return scale_ * scale_ / length_ * normalised_->slope_products(); }
-  /// Returns the first angular frequency of the beam that is also held at deflection 0 at x [rad/s]: the beam while in contact.
+  /// Returns the first angular frequency of the beam that is also held at deflection 0 at x, as in contact [rad/s].
   [[nodiscard]] double pinned_frequency(double x) const {
     return frequency_scale_ / std::sqrt(normalised_->pinned_inverse_square(x / length_));
   }
@@ -184,13 +187,14 @@ class BeamModes {
 };
 
 /// Returns the curl of a cantilever at x from its clamp [m], positive away from the near electrode. The axial stress before
-/// release grows by `gradient` [Pa/m] over its thickness, in the direction away from that electrode. The stress bends every
-/// section by M = gradient a b^3/12, so that the curvature is M/EI, gradient/E of a plain beam and less where a layer stiffens
-/// it. Source: W. Fang & J. A. Wickert 1996, J. Micromech. Microeng. 6, 301. Valid for slopes well below 1.
+/// release grows by `gradient` [Pa/m] over the thickness, in the direction away from the near electrode. This stress bends
+/// every section by M = gradient a b^3/12, so that the curvature is M/EI: gradient/E for a plain beam and less where a layer
+/// stiffens it. Source: W. Fang & J. A. Wickert 1996, J. Micromech. Microeng. 6, 301. Valid for slopes well below 1.
 [[nodiscard]] double curl(const Device& device, double gradient, double x);
 /// Returns the smallest curl along the beam, at most 0.
 [[nodiscard]] double lowest_curl(const Device& device, double gradient);
-/// Returns the modal force per volt of the piezo layer of a beam of parts: the integral of its moment per volt and phi_i''.
+/// Returns the modal force per volt of the piezo layer on a beam with sections or layers: the integral of its moment per volt
+/// and phi_i''.
 [[nodiscard]] Eigen::VectorXd piezo_forces(const Device& device, const BeamModes& modes);
 
 /// Returns the stretching of a beam between two clamps.

@@ -1,4 +1,4 @@
-// Local size of a beam made of parts (model/structure/beam_parts.h), and the rules that the parts keep.
+// Local size of a beam of sections and layers (model/structure/beam_parts.h), and the rules for these parts.
 //
 // The lower faces of all sections and layers lie in one plane before release, as on a flat sacrificial layer: gaps count from
 // that plane. A section's width is constant or linear, so that rigidity, mass and moments of a stretch grow with it by the same
@@ -9,9 +9,10 @@
 //
 //   k = (k_low + k_high) / 2,   k_low = 1 - r,   k_high = (1 - r) / (1 - r + r^2),   r = s/p
 //
-// Both are bounds. Stress in the ligaments alone, 1 - r of the width, is in equilibrium: least complementary energy. Sections
-// that stay plane, full between the holes and 1 - r of the width beside them, in series, are possible displacements: least
-// energy. The half distance of the bounds is 9 % of k at r = 0.2, and 14 % at r = 0.5, where it is largest. Derived here.
+// k_low and k_high are bounds. k_low: stress in the ligaments alone, 1 - r of the width, is in equilibrium (least complementary
+// energy). k_high: sections that stay plane, full between the holes and 1 - r of the width beside them, in series, are possible
+// displacements (least energy). The half distance of the bounds is 9 % of k at r = 0.2, and 14 % at r = 0.5, where it is
+// largest. Derived here.
 #pragma once
 
 #include <optional>
@@ -41,13 +42,14 @@ struct LocalSection {
 /// Returns the share of the stiffness along the beam that holes leave, k above.
 [[nodiscard]] double ligament_efficiency(const Holes& holes);
 
-/// Returns the structure from end to end: one stretch unless it has sections, or is a table of modes with widths.
+/// Returns the stretches of a structure from end to end: a single one unless it has sections, or is a table of modes with
+/// widths.
 [[nodiscard]] std::vector<LocalSection> local_sections(const Structure& structure);
-/// Returns the stretch at this place; the second of two that meet there.
+/// Returns the stretch at this place; the second one where two stretches meet.
 [[nodiscard]] LocalSection section_at(const Structure& structure, double x);
 /// Returns the width across the structure at this place, with its holes [m].
 [[nodiscard]] double width_at(const Structure& structure, double x);
-/// Returns the edges of sections and layers of a beam, from 0 to the length [m]; only these two for all other structures.
+/// Returns the edges of sections and layers of a beam, from 0 to its length [m]; for all other structures 0 and the length.
 [[nodiscard]] std::vector<double> edges_of_parts(const Structure& structure);
 
 /// Returns the places where the table of a beam's rest shape has kinks, between its ends [m]; empty without such a table.
@@ -58,7 +60,7 @@ struct PartConflict {
   std::string key;  ///< key of the part: "layers[2].span"
   std::string rule;
 };
-/// Returns nothing when the beam can be built.
+/// Returns a conflict of the parts of a device; none when the beam can be built.
 [[nodiscard]] std::optional<PartConflict> part_conflict(const Device& device);
 
 }  // namespace softland

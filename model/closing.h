@@ -2,29 +2,29 @@
 // make and break of contact. An opening is integrated in the same way, from rest on the contact.
 //
 // The integrator restarts at waveform breakpoints and at make and break of contact. It also restarts where a contact law is not
-// smooth or, with memory, passes from one of its curves to another (turning points while loading among them). So it only ever
-// integrates smooth right-hand sides. At a rigid contact the velocity is reversed, or the plate rests and nothing is integrated
-// until it is pulled off.
+// smooth and where a law with memory changes from one of its curves to another, as at a turning point while loading. So it only
+// ever integrates smooth right-hand sides. At a rigid contact the velocity is reversed, or the plate rests and nothing is
+// integrated until the drives pull the plate off.
 //
 // Within a step the contact point moves as the free modes do, plus a quintic (integrators/modal_motion.h). Contact events are
 // the zeros between the extrema of that motion, searched in pieces of a fraction of a radian of the fastest mode (grazing
 // touches do not hide between steps). A step with an event is repeated until it ends there. The trajectory has a knot at the
 // end of every piece.
 //
-// Error weights: a mode's coordinate counts as the deflection it causes at the contact point, its velocity as that times its
-// frequency. In flight the tolerance is relative to the contact gap, in contact to the penetration, which is a thousand times
-// smaller.
+// Error weights: a mode's coordinate counts by the deflection that it causes at the contact point, its velocity by this
+// deflection times the frequency of the mode. In flight the tolerance is relative to the contact gap, in contact to the
+// penetration, which is a thousand times smaller.
 //
-// An `automatic` run changes to BDF, with a hundredth of the tolerance, when a thousand and more steps are short for the
-// stability of the explicit method and not for the tolerance. This happens in a thick film in a gap that is nearly closed.
+// An `automatic` run changes to BDF, with a hundredth of the tolerance, when stability of the explicit method, and not the
+// tolerance, limits the length of a thousand steps and more. This happens in a thick film in a gap that is nearly closed.
 //
 // Every run audits its energy (closing/energy_audit.h). Dissipation is integrated by Simpson's rule over each step, and more
 // exactly once the residual exceeds 1e-4 of the energy that bends the beam by the contact gap. An integrator that loses the
 // contact between two steps, or a tolerance too loose for a stiff one, shows as energy that no source supplied. A residual
 // above 1 % of that bending energy is a warning; above 20 % the run is a numerical failure.
 //
-// A compressible gas film adds its pressures to the states; their diffusion takes thousandths of a period. Such
-// scenes run implicitly, with an equation solver that uses that the stations of the film couple only through the beam.
+// A compressible gas film adds its pressures to the states; they diffuse within thousandths of a period. Such scenes run
+// implicitly, with an equation solver that uses that the stations of the film couple only through the beam.
 #pragma once
 
 #include <array>
@@ -45,7 +45,7 @@ namespace softland {
 /// The equilibrium in which a run begins, under the drives' values before t = 0.
 enum class StartState { open, closed };
 
-/// Returns the integrator with which `automatic` begins: lawson, or esdirk where a gas film is compressible.
+/// Returns the integrator with which `automatic` begins: lawson, or esdirk for a compressible gas film.
 [[nodiscard]] Integrator automatic_integrator(const Switch& model);
 
 struct ClosingOptions {
@@ -53,12 +53,12 @@ struct ClosingOptions {
   double tolerance = 1e-6;  ///< relative tolerance of the integrator
   Integrator integrator = Integrator::automatic;
   double after_contact = std::numeric_limits<double>::infinity();  ///< time from the first touch to the end of the run [s]
-  double no_end_before = 0;  ///< earliest end of a run that has touched, whatever after_contact is [s]
-  double no_contact_before = std::numeric_limits<double>::infinity();  ///< time at which a run without touch ends [s]
+  double no_end_before = 0;  ///< earliest end of a run after a touch, whatever after_contact is [s]
+  double no_contact_before = std::numeric_limits<double>::infinity();  ///< time at which a run without a touch ends [s]
   long max_steps = 2'000'000;  ///< largest number of steps: a run that needs more ends as numerical_failure
-  /// False: the contact is a force that sets in within a step, as for an integrator without events. Steps continue through make
-  /// and break, which are then as exact as the interpolant; tolerances are those of contact throughout. Studies use it to
-  /// measure the value of restarting: see why_always_restarted().
+  /// If false, the contact is a force that sets in within a step, as for an integrator without events. Steps continue through
+  /// make and break, whose times are as exact as the interpolant; tolerances are those of contact throughout. Studies measure
+  /// the value of restarting in this way: see why_always_restarted().
   bool restart_at_contact = true;
   /// Potential of the closed equilibrium under the hold levels [J]; if given, Trajectory::landing_excess is measured against
   /// it.
@@ -68,28 +68,29 @@ struct ClosingOptions {
   /// Modal coordinates [m kg^(1/2)] of a closed equilibrium under the drives' values before t = 0; if given, the run begins
   /// there, at rest on the contact. The touch that holds then counts as one that began at t = 0 at no speed.
   std::span<const double> begins_closed = {};
-  /// Equilibrium at the start where begins_closed is empty: `closed` is the stable closed one under the drives' values before t
-  /// = 0.
+  /// Equilibrium at the start when begins_closed is empty: `closed` is the stable closed equilibrium under the drives' values
+  /// before t = 0.
   StartState start = StartState::open;
-  /// Time at which the drives command a closed switch to open [s]. The contact force and the electrical state after it are not
-  /// those of the closing: Trajectory::steady_force_time and the like describe the time before.
+  /// Time at which the drives command a closed switch to open [s]. Figures of the closing, such as
+  /// Trajectory::steady_force_time and the electrical state, describe the time before.
   double opens_at = std::numeric_limits<double>::infinity();
-  const std::atomic<bool>* stop = nullptr;  ///< set from outside; ends the run as `interrupted`
-  /// Called after every step with time [s], q and v, which the states of a compressible film follow; returns true to end the
-  /// run (status done).
+  const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the run as `interrupted`
+  /// Called after every step with time [s], q and v, after which the states of a compressible film are stored; returns true to
+  /// end the run (status done).
   std::function<bool(double, const double*, const double*)> observer = {};
 };
 
 /// Returns the reason why a closing of this switch cannot be run with restart_at_contact = false; empty when it can.
 [[nodiscard]] std::string why_always_restarted(const Switch& model);
 
-/// Never throws for numerical trouble: see Trajectory::status, which is collapsed_at_rest where the equilibrium that `start`
-/// requires does not exist. Throws InvalidInput unless there is one signal per drive of the switch, duration and tolerance are
-/// positive and tolerance <= 0.1. Throws it also where begins_closed has a wrong number of coordinates; where a run should
-/// begin closed and the switch has no contact; or where restart_at_contact is false and cannot be.
+/// Simulates a closing. Numerical trouble is never an exception: see Trajectory::status, which is collapsed_at_rest when the
+/// equilibrium that `start` requires does not exist. Throws InvalidInput unless there is one signal per drive of the switch,
+/// duration and tolerance are positive and tolerance <= 0.1. Also throws it when begins_closed has a wrong number of
+/// coordinates, when a run should begin closed and the switch has no contact, and when restart_at_contact is false although
+/// why_always_restarted() gives a reason.
 [[nodiscard]] Trajectory simulate_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options);
 
-/// Runs the same for an observer, which alone receives points and touches: those of the result stay empty.
+/// Simulates a closing for an observer, which receives points and touches; in the result they are empty.
 [[nodiscard]] Trajectory observe_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options,
                                          ClosingObserver& observer);
 

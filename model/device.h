@@ -43,26 +43,27 @@ struct Landing {
 struct Dielectric {
   double thickness = 0;     ///< [m]
   double permittivity = 1;  ///< relative
-  double roughness = 0;     ///< air gap that is left where its summits touch [m]
+  double roughness = 0;     ///< air gap that remains when its summits touch [m]
   double charge = 0;        ///< charge per area on its face [C/m^2], of either sign
-  /// Landing; without one, anything that reaches the face has failed, or is a plate that stands on a contact.
+  /// Landing on the face. A moving part that reaches a face without a landing has failed, unless it is a plate on a contact
+  /// there. there.
   std::optional<Landing> landing = {};
 
-  /// Returns its contribution to the gap of the field, t / eps_r + roughness [m].
+  /// Returns the contribution of the dielectric to the gap of the field, t / eps_r + roughness [m].
   [[nodiscard]] double depth() const { return thickness / permittivity + roughness; }
   /// Returns V0, the voltage of the electrode at which the charge leaves no field in the air, -charge t / (eps_r eps0) [V].
   [[nodiscard]] double neutral_voltage() const;
 };
 
-/// One voltage, on one pad or several.
+/// An electrode: one voltage, on one pad or several.
 struct Electrode {
   std::string name = {};
-  Place begin;  ///< only the length counts on a plate: the electrode's area over the plate's width
+  Place begin;  ///< only the length of the interval matters on a plate: the electrode's area over the plate's width
   Place end;
-  std::vector<Span> further = {};  ///< pads beside that first one
+  std::vector<Span> further = {};  ///< further pads
   Fringing fringing = Fringing::meijs_fokkema;
   Side side = Side::near;
-  double gap = 0;                             ///< rest distance of the face on the far side, for far and both [m]
+  double gap = 0;                             ///< rest distance of the face on the far side, for the sides far and both [m]
   std::optional<Dielectric> dielectric = {};  ///< dielectric, on the near side only
 
   /// Returns all pads on a beam of this length [m].
@@ -71,14 +72,14 @@ struct Electrode {
 
 /// A piezoelectric layer on the face away from the electrode, as wide as the beam.
 struct Piezo {
-  Place begin;                                            ///< Lp1
-  Place end;                                              ///< Lp2
+  Place begin;                                            ///< Lp1, begin along the beam
+  Place end;                                              ///< Lp2, end along the beam
   double thickness = 0;                                   ///< bp [m]
   double youngs_modulus = 0;                              ///< Ep [Pa]
   double density = 0;                                     ///< [kg/m^3]
   double d31 = 0;                                         ///< [m/V], negative for the usual ceramics
-  double e31 = std::numeric_limits<double>::quiet_NaN();  ///< [C/m^2], instead of d31
-  /// Relative permittivity of the layer between its electrodes; the charging of the layer does not count where it is NaN.
+  double e31 = std::numeric_limits<double>::quiet_NaN();  ///< [C/m^2], given instead of d31
+  /// Relative permittivity of the layer between its electrodes; NaN: the charging of the layer is neglected.
   double relative_permittivity = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -96,8 +97,8 @@ static_assert(is_complete<conductors>());
 /// Casimir and van der Waals forces between beam and electrode plane, over the whole length.
 struct Dispersion {
   DispersionModel model = DispersionModel::automatic;
-  Conductor conductor = Conductor::ideal;  ///< conductor of the Casimir law; for casimir, automatic
-  double hamaker_constant = 0;             ///< A_h [J]; for van_der_waals, automatic
+  Conductor conductor = Conductor::ideal;  ///< conductor of the Casimir law; used by casimir and automatic
+  double hamaker_constant = 0;             ///< A_h [J]; used by van_der_waals and automatic
   double equilibrium_distance = 0;         ///< h0 [m], at which attraction and repulsion balance; 0: no repulsion
 };
 
@@ -119,11 +120,11 @@ struct Surface {
   ResidualLoad cantilever_load = ResidualLoad::none;  ///< effect of tau_0 on a cantilever
 };
 
-/// The rule by which the connection of a switch counts as electrically closed. It has no effect where nothing is given.
+/// The rule by which the connection of a switch counts as electrically closed. It has no effect when no number is given.
 struct ElectricalClosing {
-  double force = std::numeric_limits<double>::quiet_NaN();       ///< bound that its contact force exceeds [N]; NaN: none
-  double resistance = std::numeric_limits<double>::quiet_NaN();  ///< bound that its resistance stays below [Ohm]; NaN: none
-  double after = std::numeric_limits<double>::quiet_NaN();       ///< openings that are no longer than this do not count [s]
+  double force = std::numeric_limits<double>::quiet_NaN();       ///< the contact force must exceed this [N]; NaN: no bound
+  double resistance = std::numeric_limits<double>::quiet_NaN();  ///< the resistance must be below this [Ohm]; NaN: no bound
+  double after = std::numeric_limits<double>::quiet_NaN();       ///< openings that are not longer than this do not count [s]
 
   [[nodiscard]] bool is_asked() const { return force >= 0 || resistance > 0 || after >= 0; }
   [[nodiscard]] double shortest_opening() const { return after >= 0 ? after : 0; }
@@ -151,37 +152,40 @@ struct Device {
   std::optional<Surface> surface = {};
 
   [[nodiscard]] bool has_contact() const { return !contacts.empty(); }
-  /// True when the resistance of the connection is known: every contact that makes it conducts.
+  /// Returns true when the resistance of the connection is known: every contact of the connection conducts.
   [[nodiscard]] bool conducts() const {
     return has_contact() &&
            std::ranges::all_of(contacts, [](const Contact& c) { return !c.connects || c.conduction.is_given(); });
   }
-  /// Returns x_c, the centre of a contact's pad [m]: its force acts there, and figures of merit are taken at that of the first
-  /// contact. A pad without a given place ends at the free end, or lies about the middle of a beam between two clamps. Without
-  /// contact it is the free end, or the middle. A contact along the pad has the free end, which touches first.
+  /// Returns x_c, the centre of the pad of a contact [m]: the contact force acts there, and figures of merit are taken at x_c
+  /// of the first contact. A pad without a given place ends at the free end, or lies about the middle of a beam between two
+  /// clamps. Without contact x_c is the free end, or the middle. For a contact along the pad x_c is the free end, which touches
+  /// first.
   [[nodiscard]] double contact_position(std::size_t contact = 0) const;
   /// Returns the distance at which the structure rests from the straight shape at x, away from the near electrode [m].
   [[nodiscard]] double rest_offset(double x) const;
-  /// Returns the rest distance of a contact's place to its plane [m]: that of the straight shape plus the offset of the rest
+  /// Returns the distance of a contact at rest to its plane [m]: the gap of the straight shape plus the offset of the rest
   /// shape.
   [[nodiscard]] double contact_gap(std::size_t contact = 0) const;
-  /// Returns the landing on the dielectric of its electrodes, the same for all that have one; null where none has.
+  /// Returns the landing on the dielectric of the electrodes, the same for all dielectrics that have one; null without a
+  /// landing.
   [[nodiscard]] const Landing* landing() const;
-  /// Returns the number of the contact that is the face of a dielectric, all along its electrodes; none where no dielectric has
+  /// Returns the number of the contact that is the face of a dielectric, all along its electrodes; none when no dielectric has
   /// a landing.
   [[nodiscard]] std::optional<std::size_t> face_contact() const;
   [[nodiscard]] bool lands_along_face() const { return face_contact().has_value(); }
-  /// True when it lands on the dielectric of its electrodes, nearer to it than a hundredth of the gap.
+  /// Returns true when the moving part closes onto the dielectric of its electrodes, to within a hundredth of the electrode's
+  /// gap.
   [[nodiscard]] bool lands_on_dielectric() const { return lands_along_face() || gap.contact > 0.99 * gap.electrode; }
   /// Returns the local gap between a closed switch and the face of its electrode, for the laws of films [m]. It is at least a
   /// hundredth of the rest gap, below which these laws are continued.
   [[nodiscard]] double closed_gap() const { return std::max(gap.electrode - gap.contact, gap.electrode / 100); }
-  /// Returns the least contribution of the near electrodes' dielectrics to the gap of their fields, where each has one; else 0
-  /// [m].
+  /// Returns the least contribution of the near electrodes' dielectrics to the gap of their fields [m]; 0 when an electrode has
+  /// no dielectric.
   [[nodiscard]] double dielectric_depth() const;
-  /// True when there is a charge on the dielectric of an electrode.
+  /// Returns true when there is a charge on the dielectric of an electrode.
   [[nodiscard]] bool is_charged() const;
-  /// True when the contact acts along its pad, not at one place.
+  /// Returns true when the contact acts along its pad, not at one place.
   [[nodiscard]] bool touches_along_pad() const {
     return has_contact() && contacts.front().distribution == ContactDistribution::pad;
   }
@@ -196,10 +200,10 @@ struct Device {
 
 /// An electrode that has no room beside the others, and the reason.
 struct ElectrodeConflict {
-  std::size_t electrode = 0;  ///< its number
+  std::size_t electrode = 0;  ///< number of the electrode
   std::string why;
 };
-/// Returns a conflict of electrodes; nothing when all of them fit. Electrodes on one side of a beam must not overlap, and those
+/// Returns a conflict of electrodes; none when all electrodes fit. Electrodes on one side of a beam must not overlap, and those
 /// on one side of a plate must not have more area together than the plate: the force would count twice. Edges may touch, within
 /// rounding.
 [[nodiscard]] std::optional<ElectrodeConflict> electrode_conflict(const Structure& structure,
@@ -207,11 +211,11 @@ struct ElectrodeConflict {
 
 /// A contact that cannot stand beside the others, and the reason.
 struct ContactConflict {
-  std::size_t contact = 0;  ///< its number
+  std::size_t contact = 0;  ///< number of the contact
   std::string why;
 };
-/// Returns a conflict of contacts, or nothing. The first contact must be one on the near side, two on one side must lie at two
-/// places, and a rigid one or one along its pad must stand alone.
+/// Returns a conflict of contacts; none when all contacts fit. The first contact must be on the near side, two contacts on one
+/// side must differ in place or gap, and a rigid contact or one along its pad must be the only one.
 [[nodiscard]] std::optional<ContactConflict> contact_conflict(const Device& device);
 
 /// Returns true when the beam lands on both electrodes in the same way, or on neither.
@@ -222,9 +226,9 @@ inline constexpr auto unequal_landings = "where a dielectric has a landing, ever
 inline constexpr std::string_view face_name = "dielectric";
 
 /// Adds the face of the dielectric as a contact to a device whose dielectric has a landing. Its plane and place are where a
-/// beam that bends under its electrodes touches first. It comes last, and makes no connection, where the device has a contact
-/// on the near side; else it comes first, and makes it. A repeated call follows a landing that has changed. Without a landing
-/// nothing changes.
+/// beam that bends under its electrodes touches first. When the device has a contact on the near side, the face comes last and
+/// is not part of the connection; otherwise it comes first and makes the connection. A repeated call updates the contact after
+/// a change of the landing. Without a landing nothing changes.
 void set_face_contact(Device& device);
 
 /// Returns the reason why a device whose contact lies at its electrode cannot land there; empty when it can.

@@ -1,6 +1,6 @@
-// A force law that acts along the beam, erased to one indirect call per law and right-hand side. A law is a small value that
-// gives load(gap, velocity) over the scalar type (double for runs, Dual for exact derivatives). A conservative law is scaled by
-// a drive (`driven`: V^2 of an electrode, the factor of a force), or acts by itself; it also gives its potential(gap), whose
+// A force law that acts along the beam, behind one virtual call per law and right-hand side. A law is a small value that gives
+// load(gap, velocity) over the scalar type (double for runs, Dual for exact derivatives). A conservative law is scaled by a
+// drive (`driven`: V^2 of an electrode, the factor of a force), or acts by itself; it also gives its potential(gap), whose
 // slope is the load. The other laws dissipate.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace softland {
 
-/// The beam at the quadrature points, and at idle ones that fill the last lane (base/lanes.h): local gap h [m] and velocity
+/// The beam at the quadrature points, and at idle points that fill the last lane (base/lanes.h): local gap h [m] and velocity
 /// towards the electrode [m/s].
 struct GapField {
   Eigen::ArrayXd gap;
@@ -69,7 +69,7 @@ class DistributedLawOf final : public DistributedLaw {
       return;
     }
     for (Eigen::Index p = begin_; p < end_; ++p) {
-      if (!Law::driven && gap[p] >= floor_) {  // a film is squeezed out at a few points long before it is at all of them
+      if (!Law::driven && gap[p] >= floor_) {  // few points of a film are below the floor at a time
         load[p] += law.load(gap[p], velocity[p]);
         continue;
       }

@@ -1,6 +1,6 @@
-// Forward-mode dual numbers: evaluating a law with them gives the law's exact derivatives. A plain one has one direction. A
-// dual of duals has two: its value.slope and slope.value are the first derivatives, its slope.slope is the mixed second one. A
-// dual whose slope is Directions<N> has N at once, for one evaluation of the value.
+// Forward-mode dual numbers: evaluating a law with them gives the law's exact derivatives. A plain dual number has the slope in
+// one direction. A dual of duals has two directions: its value.slope and slope.value are the first derivatives, its slope.slope
+// is the mixed second one. A dual whose slope is Directions<N> has N directions at once, for one evaluation of the value.
 #pragma once
 
 #include <array>

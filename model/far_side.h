@@ -1,10 +1,10 @@
-// A force law on the far side of the moving part, where the gap opens as the other one closes.
+// A force law on the far side of the moving part, where the gap grows as the gap on the near side closes.
 //
 //   f(h, v) = -law(H - h, -v)       H = d0 + d_far
 //
 // h is the local gap on the near side [m], v the velocity towards the near side [m/s], d0 and d_far the rest gaps of both sides
-// [m]. Below `floor` the law is continued by its tangent: the switch ends a run that gets there. Laws of the velocity are
-// linear in it.
+// [m]. Below `floor` the law is continued by its tangent: a run that gets there ends. Laws of the velocity are linear in the
+// velocity.
 #pragma once
 
 #include "model/dual.h"

@@ -16,7 +16,7 @@
 
 namespace softland {
 
-/// One of the layers, in order from the near face.
+/// A layer of the stack; layers are in order from the near face.
 struct Lamina {
   double modulus = 0;    ///< modulus in bending: E, or E / (1 - nu^2) of its own material [Pa]
   double density = 0;    ///< [kg/m^3]

@@ -8,7 +8,7 @@
 // d jumps by (f before - f after) dt/dp. At an impact the velocity's part is reflected too (saltation: Aizerman and Gantmacher
 // 1958, Hiskens and Pai 2000, eq. 26). A contact with memory adds its residual interference to the state.
 //
-// The motion after the last moment that a figure depends on is not linearised.
+// The motion after the last moment that any of the figures depends on is not linearised.
 //
 // The forward mode carries d along for all parameters at once. The backward (adjoint) mode carries the weights that a figure
 // gives to d from the end to the beginning: its cost hardly depends on the number of parameters. Both apply the exponential to
@@ -33,9 +33,9 @@
 
 namespace softland {
 
-/// The derivative of a figure: weights of d at the end of an arc, before the next one. A figure measured at a time that moves
-/// with the beginning of a piece has a rate for it. A figure that depends on the device at fixed q and v has its derivative by
-/// each of SwitchSlopes::moving().
+/// The derivative of a figure: weights of d at the end of an arc, before an event there. A figure measured at a time that
+/// depends on the beginning of a piece of a drive also has a rate, its derivative by this time. A figure that depends on the
+/// device at fixed q and v also has its derivatives by each of SwitchSlopes::moving().
 struct FigureSlope {
   struct Weights {
     std::size_t arc = 0;  ///< index in LinearizedClosing::arcs()
@@ -55,41 +55,41 @@ class LinearizedClosing {
  public:
   using Modal = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_modes, 1>;  ///< one number per mode, without an allocation
 
-  /// A step of the tape, or its part until the contact point turns back in it, or the rest.
+  /// A step of the recorded motion, or a part of a step before or after the contact point turns back in it.
   struct Arc {
     double begin = 0, end = 0;  ///< [s]
-    Modal q, v;                 ///< state at its end
-    Modal accelerations;        ///< accelerations at its end
-    bool turns = false;         ///< true when the contact point turns back at its end
+    Modal q, v;                 ///< state at the end of the arc
+    Modal accelerations;        ///< accelerations at the end of the arc
+    bool turns = false;         ///< true when the contact point turns back at the end of the arc
     ContactState contact;
-    std::size_t step = 0;            ///< step of the tape
+    std::size_t step = 0;            ///< step of the recorded motion
     std::size_t pieces_entered = 0;  ///< see pieces()
   };
-  /// A passage of the tape after this number of arcs.
+  /// An event of the recorded motion after this number of arcs.
   struct PhaseEvent {
     std::size_t arcs = 0;
     PhaseChange change;
   };
 
-  /// Linearises a closing that was run with restart_at_contact, under these signals. Keeps references to all but the number.
+  /// Linearises a closing that was run with restart_at_contact, under these signals. Keeps references to the objects.
   /// `refinement` is the least number of parts of a step. `by_device` gives the derivatives of the switch by the parameters, as
-  /// many as those of the signals; null where they do not change the switch.
+  /// many as those of the signals; null when they do not change the switch.
   LinearizedClosing(const Switch& model, std::span<const Signal> signals, const RecordedMotion& tape, int refinement = 1,
                     SwitchSlopes* by_device = nullptr);
 
-  /// Returns the reason why there is no derivative, in words; empty where there is one.
+  /// Returns the reason why a closing of this switch has no derivative; empty when it has one.
   [[nodiscard]] static std::string refusal(const Switch& model);
 
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
-  /// Returns the pieces of the drives, all along an arc.
+  /// Returns the pieces on which the drives are during an arc.
   [[nodiscard]] const std::vector<std::size_t>& pieces(const Arc& arc) const { return pieces_[arc.pieces_entered]; }
   [[nodiscard]] const std::vector<PhaseEvent>& passages() const { return passages_; }
-  /// Returns null where the parameters do not change the switch.
+  /// Returns null when the parameters do not change the switch.
   [[nodiscard]] const SwitchSlopes* by_device() const { return by_device_; }
 
   /// Returns derivatives of figures, one row each, with respect to the parameters, in adjoint mode.
   [[nodiscard]] Eigen::MatrixXd backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes);
-  /// Returns the same numbers in forward mode.
+  /// Returns the same derivatives in forward mode.
   [[nodiscard]] Eigen::MatrixXd forward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes);
 
  private:
@@ -105,25 +105,25 @@ class LinearizedClosing {
     double begin = 0, end = 0;  // [s]
     std::size_t arc = 0;
     bool ends_arc = false;
-    int terms = 0;  // number of terms in the series of its exponential
+    int terms = 0;  // number of terms in the series of the exponential
   };
-  // Magnus' series of a part and the inputs of drives and dents: places in numbers_.
+  // Magnus' series of a part and the inputs of drives and dents: pointers into numbers_.
   struct Transition {
     const double* magnus;  // rows of whole lanes
-    const double* begin;   // inputs at the begin of the part, modes x inputs
-    const double* middle;  // inputs in the middle
-    const double* end;     // inputs at the end
+    const double* begin;   // inputs at the start of the part, modes x inputs
+    const double* middle;  // inputs in the middle of the part
+    const double* end;     // inputs at the end of the part
   };
-  // d, and the shift's derivative below it, after an event: matrix * d + by_device + sum over moved pieces. d stays without a
-  // matrix.
+  // The change at an event of d, with the derivative of the dent's shift as its last row: d becomes matrix * d + by_device +
+  // sum over moved pieces. Without a matrix the first term is d.
   struct Jump {
-    std::size_t parts = 0;                                              // number of parts before it
+    std::size_t parts = 0;                                              // number of parts before the event
     std::optional<Eigen::MatrixXd> matrix;                              // square, of size 2 modes + 1
     std::vector<std::pair<FigureSlope::Moved, Eigen::VectorXd>> moved;  // d gains the vector times d(begin)/dp
     Eigen::MatrixXd by_device = {};                                     // one column per moving parameter, or none
   };
 
-  // Computes the course, without derivatives.
+  // Computes the arcs and events of the recorded motion, without derivatives.
   void follow_tape();
   void enter_pieces(double t);
   void add_arcs(std::size_t step);
@@ -157,25 +157,25 @@ class LinearizedClosing {
   std::span<const Signal> signals_;
   const RecordedMotion& tape_;
   Index n_, size_;  // number of modes; number of unknowns, 2 modes
-  Index stride_;    // size_ in whole lanes
+  Index stride_;    // size_ rounded up to whole lanes
   SwitchSlopes* by_device_;
   Index dent_, moving_, inputs_;  // numbers of drives (the index of the dent), of device parameters, and of all inputs
   double fastest_;                // [rad/s]
   Switch::Workspace work_;
   int refinement_;
-  std::vector<std::vector<std::size_t>> pieces_;  // pieces of the drives, one set after the other
+  std::vector<std::vector<std::size_t>> pieces_;  // sets of the pieces on which the drives are, in order of time
   std::vector<Arc> arcs_;
   std::vector<PhaseEvent> passages_;
 
   std::size_t steps_ = 0;         // number of linearised steps of the tape
-  std::size_t next_arc_ = 0;      // arc that follows these steps
-  std::size_t next_passage_ = 0;  // passage of the tape that follows them
-  std::size_t on_ = 0;            // current set in pieces_
+  std::size_t next_arc_ = 0;      // arc that begins after these steps
+  std::size_t next_passage_ = 0;  // event of the recorded motion that comes next
+  std::size_t on_ = 0;            // index of the current set in pieces_
   std::vector<double> volts_;     // current values of the drives
   std::vector<Part> parts_;
   std::vector<double> numbers_;  // Magnus' series and inputs of the parts
   std::vector<Jump> jumps_;
-  Eigen::MatrixXd rest_;  // derivative of the motion's beginning, one column per moving parameter
+  Eigen::MatrixXd rest_;  // derivative of the rest position at the start, one column per moving parameter
   Node from_, middle_, to_;
   bool goes_on_ = false;  // true when the next part begins at from_
 };

@@ -1,5 +1,5 @@
-// The undamped modes of a structure: frequencies, mass-normalised shapes where its contact and its piezo layer act on it, and
-// quantities that follow from coordinates alone.
+// The undamped modes of a structure: frequencies, mass-normalised shapes at its contacts and its piezo layer, and quantities
+// that depend on modal coordinates alone.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,30 +24,30 @@ class ModalBasis {
     double frequency = 0;  ///< [rad/s]
   };
   ModalBasis() = default;
-  /// `piezo` is the piezo_shape() of a beam of parts; none: the layer of a uniform beam.
+  /// `piezo` is the piezo_shape() of a beam with sections or layers; none for a uniform beam, whose layer has a formula.
   ModalBasis(Eigen::VectorXd angular_frequencies, const Scales& scales, const SampledModes& sampled, const Device& device,
              const std::optional<Eigen::VectorXd>& piezo = {});
 
   [[nodiscard]] int modes() const { return static_cast<int>(frequencies_.size()); }
   [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s]
-  [[nodiscard]] const Eigen::VectorXd& squares() const { return squares_; }                  ///< squares of these
-  [[nodiscard]] const Eigen::VectorXd& contact_shape() const { return contact_shape_; }      ///< phi_i(x_c) [kg^(-1/2)]
-  /// Returns the same at the places of further contacts.
+  [[nodiscard]] const Eigen::VectorXd& squares() const { return squares_; }              ///< squares of the angular frequencies
+  [[nodiscard]] const Eigen::VectorXd& contact_shape() const { return contact_shape_; }  ///< phi_i(x_c) [kg^(-1/2)]
+  /// Returns phi_i at the places of further contacts [kg^(-1/2)].
   [[nodiscard]] const std::vector<Eigen::VectorXd>& further_contact_shapes() const { return further_contact_shapes_; }
-  /// Returns phi_i'(x_c) of a contact that acts along the pad [kg^(-1/2)/m]; 0 for every other.
+  /// Returns phi_i'(x_c) for a contact that acts along the pad [kg^(-1/2)/m]; 0 for every other contact.
   [[nodiscard]] const Eigen::VectorXd& pad_slope() const { return pad_slope_; }
   /// Returns the force on mode i per volt on the piezo [N kg^(-1/2) / V]; zero without a layer.
   [[nodiscard]] const Eigen::VectorXd& piezo_shape() const { return piezo_shape_; }
   [[nodiscard]] double in_contact_period() const { return in_contact_period_; }  ///< 2 pi over the first pinned frequency [s]
 
-  /// Returns y(x_c) [m]; the velocity when given one.
+  /// Returns y(x_c) [m] from coordinates, or the velocity of the contact point [m/s] from velocities.
   [[nodiscard]] double contact_deflection(const double* q) const {
     return deflection<double>({contact_shape_.data(), static_cast<std::size_t>(modes())}, q);
   }
-  /// Returns y'(x_c) of a contact along the pad.
+  /// Returns y'(x_c) for a contact along the pad; 0 for every other contact.
   [[nodiscard]] double pad_tilt(const double* q) const { return at(q).dot(pad_slope_); }
-  /// Returns the static deflection of the contact point per volt on the piezo, of the beam by itself and small [m/V]; 0 without
-  /// a layer. It is positive towards the electrodes.
+  /// Returns the static deflection of the contact point per volt on the piezo, without any other force and for small
+  /// deflections [m/V]; 0 without a layer. It is positive towards the electrodes.
   [[nodiscard]] double piezo_deflection() const { return contact_shape_.cwiseQuotient(squares_).dot(piezo_shape_); }
   /// Returns the charge that the deflection puts on the piezo's electrodes, theta q [C]. piezo_layer.h has the layer's own
   /// capacitance.

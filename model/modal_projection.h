@@ -1,4 +1,5 @@
-// Converts between modal coordinates and one place of the beam, over the scalar of the state and that of the mode shapes.
+// Converts between modal coordinates and one place of the beam, as templates over the scalars of the state and of the mode
+// shapes.
 //
 //   y(x) = sum over modes of phi_i(x) q_i        Q_i += phi_i(x) F
 //

@@ -1,4 +1,4 @@
-// The modes of a switch along its length, for drawings.
+// The modes of a switch along its length, for plots.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,9 +13,9 @@ struct ModeShapes {
 };
 
 /// Returns the modes at this number of places from end to end for a beam or a structure from a table of modes; for a plate at
-/// the quadrature points of the switch. Throws InvalidInput for fewer than two.
+/// the quadrature points of the switch. Throws InvalidInput for fewer than two places.
 [[nodiscard]] ModeShapes mode_shapes(const Switch& model, int places);
-/// phi_i of any structure at these places from 0 to its length [m], a row per place [kg^(-1/2)].
+/// Returns phi_i of any structure at these places from 0 to its length [m], one row per place [kg^(-1/2)].
 [[nodiscard]] Eigen::MatrixXd mode_shapes_at(const Switch& model, const Eigen::VectorXd& places);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// The capacitor that a piezoelectric layer is for its source.
+// The capacitance of a piezoelectric layer, which its source has to charge.
 //
 //   C = eps0 eps_r w (Lp2 - Lp1) / b_p
 //
@@ -22,8 +22,8 @@ namespace softland {
 /// Returns the capacitance [F]; NaN without a layer, or where the scene does not give its relative permittivity.
 [[nodiscard]] double layer_capacitance(const Device& device);
 
-/// Returns the energy that charging the layer takes from the source of the piezo on [0, end] [J]; that source is the last of
-/// the drives (Switch::drives()). It is 0 where layer_capacitance() is not known.
+/// Returns the energy that charging the layer takes from the source of the piezo on [0, end] [J]; this source is the last of
+/// the drives (Switch::drives()). The energy is 0 when layer_capacitance() is not known.
 [[nodiscard]] double layer_charging_energy(const Device& device, std::span<const Signal> drives, double end);
 
 }  // namespace softland

@@ -5,12 +5,12 @@
 
 namespace softland {
 
-/// The contact's side of the moving part, towards which deflections are positive, the other one, or both.
+/// The contact's side of the moving part, towards which deflections are positive (near), the other side (far), or both.
 enum class Side { near, far, both };
 inline constexpr auto sides = std::to_array<Named<Side>>({{Side::near, "near"}, {Side::far, "far"}, {Side::both, "both"}});
 static_assert(is_complete<sides>());
 
-/// A place on the beam, from the clamped end: a distance [m], or a share of the beam's length, which follows that length.
+/// A place on the beam, from the clamped end: a distance [m], or a share of the beam's length, which scales with this length.
 struct Place {
   constexpr Place() = default;
   constexpr Place(double distance) : value(distance) {}  // a length is a place

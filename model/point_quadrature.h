@@ -1,9 +1,10 @@
 // The places where the distributed laws of a switch act: points along its structure with their weights, the gap and its
-// velocity there, and loads there projected on the modes. It is a Galerkin projection, on Gauss panels that begin and end where
-// a part of the switch does.
+// velocity at these points, and loads at these points projected on the modes. It is a Galerkin projection, on Gauss panels that
+// begin and end where a part of the switch does.
 //
-// The matrices are small: processing a block of points, or a lane of modes, at a time, with its data in registers, beats a
-// general product. Code on the hot path of every closing is inlined: a call would end the vectors that continue behind it.
+// The matrices are small: processing a block of points, or a lane of modes, at a time, with its data in registers, is faster
+// than a general product. Code on the hot path of every closing is inlined: a call would interrupt vector instructions around
+// it.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,14 +19,15 @@ namespace softland {
 class PointQuadrature {
  public:
   PointQuadrature() = default;
-  /// Takes positions and weights [m], shapes of the modes there (points x modes) [kg^(-1/2)], and the rest gaps there [m].
+  /// Takes positions and weights [m], shapes of the modes at the positions (points x modes) [kg^(-1/2)], and the rest gaps
+  /// there [m].
   PointQuadrature(Eigen::ArrayXd positions, Eigen::ArrayXd weights, const Eigen::MatrixXd& shapes,
                   const Eigen::ArrayXd& rest_gaps);
 
   [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
   [[nodiscard]] const Eigen::ArrayXd& positions() const { return positions_; }  ///< [m]
   [[nodiscard]] const Eigen::ArrayXd& weights() const { return weights_; }      ///< [m]
-  /// Returns the rest gaps at the points; the idle points behind them have the largest one [m].
+  /// Returns the rest gaps at the points; the idle points after them have the largest rest gap [m].
   [[nodiscard]] const Eigen::ArrayXd& rest_gaps() const { return rest_gaps_; }
   /// Returns phi_i(x_p), one row per point, then rows of zero motion that fill the last block [kg^(-1/2)].
   [[nodiscard]] const Eigen::MatrixXd& shapes() const { return shapes_; }
@@ -45,7 +47,8 @@ class PointQuadrature {
     if (left == 2) smallest = add_modes<2>(first, q, v, field);
     if (left == 1) smallest = add_modes<1>(first, q, v, field);
   }
-  /// Returns modal forces of a load on the lane of modes that begins there: the sums over points of w_p phi_i(x_p) f(x_p).
+  /// Returns modal forces of a load on the lane of modes that begins with mode `first`: the sums over points of w_p phi_i(x_p)
+  /// f(x_p).
   [[gnu::always_inline]] [[nodiscard]] Lane projected(const Eigen::ArrayXd& loads, std::size_t first) const {
     const auto points = static_cast<std::size_t>(shapes_.rows());
     const double* shapes = weighted_lanes_.data() + first * points;
@@ -57,7 +60,8 @@ class PointQuadrature {
     }
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
   }
-  /// Computes derivatives of the modal forces by modal coordinates from those of the load by the local ones. `load` is scratch.
+  /// Computes derivatives of the modal forces by modal coordinates from those of the load by the local deflection. `load` is
+  /// scratch.
   void project_slopes(const Eigen::ArrayXd& slopes, Eigen::ArrayXd& load, Eigen::Ref<Eigen::MatrixXd> by) const;
 
   static constexpr Eigen::Index block = lanes;  ///< number of points that are handled at once

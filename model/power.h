@@ -1,5 +1,5 @@
-// x^y for laws along the beam; for doubles it is written so that a loop over points becomes vector instructions. The library's
-// pow is a call per point that costs many times the rest of a film law.
+// x^y for laws along the beam. For doubles it is written so that a loop over points becomes vector instructions. The library's
+// pow is a call per point, which takes many times as long as the rest of a film law.
 //
 //   x = 2^e m, sqrt(1/2) <= m < sqrt(2);   log2 x = e + (2 / ln 2) (f + f^3/3 + ... + f^21/21),  f = (m - 1)/(m + 1)
 //   2^z = 2^n (1 + r + ... + r^13/13!),    n = round z,  r = (z - n) ln 2
@@ -17,12 +17,12 @@
 
 namespace softland {
 
-// It is inlined whatever the size of the caller: a call would keep its loop from becoming vector instructions.
+// The function is always inlined: a call would keep the caller's loop from becoming vector instructions.
 template <class S>
 requires std::same_as<S, double> || LaneOfNumbers<S>
 [[nodiscard, gnu::always_inline]] inline S power(const S& x, double y) {
   constexpr double ln2 = 0.69314718055994530942;
-  // These are the bits of 2^52 + 2^51: adding it puts a rounded number, negative or not, into the low bits.
+  // These are the bits of 2^52 + 2^51. Adding this number puts a rounded number, negative or not, into the low bits.
   static constexpr double shift = 6755399441055744.0;
   constexpr auto one = std::bit_cast<std::int64_t>(1.0), low_root = std::bit_cast<std::int64_t>(0.70710678118654752440);
   const S m = one_by_one(x, [](double number) {
@@ -32,7 +32,7 @@ requires std::same_as<S, double> || LaneOfNumbers<S>
   });
   const S e = one_by_one(x, [](double number) {
     const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
-    // It is shifted as an unsigned number, with a bias that is removed again: vectors have no signed shift.
+    // The number is shifted as an unsigned one, with a bias that is removed again: vectors have no signed shift.
     const auto biased = static_cast<std::uint64_t>(above + (std::int64_t{1024} << 52)) >> 52;
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(shift) + biased) - (shift + 1024);
   });
@@ -66,14 +66,14 @@ requires std::same_as<S, double> || LaneOfNumbers<S>
   return w + (w * e) * (0.25 + e * (5.0 / 32));
 }
 
-/// Computes it by roots for other scalars.
+/// Computes h^(-1/4) by roots for other scalars.
 template <class S>
 [[nodiscard]] S inverse_fourth_root(const S& h) {
   using std::sqrt;
   return S(1) / sqrt(sqrt(h));
 }
 
-/// Calls the library's function for other scalars (complex numbers in tests).
+/// Calls the library's pow for other scalars (complex numbers in tests).
 template <class S>
 [[nodiscard]] S power(const S& x, double y) {
   using std::pow;

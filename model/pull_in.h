@@ -1,12 +1,15 @@
-// The statics of snapping in and release: static and dynamic pull-in, release, and the closed equilibrium.
+// The statics of pull-in and release: static and dynamic pull-in, release, and the closed equilibrium.
 //
-// Consider static equilibria of one electrode at voltage V, with the other drives at a bias:   omega_i^2 q_i = V^2 g_i(q) +
-// f_i(q) - phi_i(x_c) P(y(x_c) - dt) with f the dispersion force at factor 1. They are followed by the deflection of the
-// contact point, which passes the fold without turning back; V^2 is an unknown there. The same functions take the dispersion
-// force as the drive, its factor as the unknown.
+// Consider static equilibria of one electrode at voltage V, with the other drives at a bias:
 //
-// A charge on the dielectric shifts all voltages by V0 = Switch::neutral_voltage(): V - V0 stands for V above. Voltages are
-// those above V0, which a positive drive reaches; a negative drive reaches 2 V0 minus these.
+//   omega_i^2 q_i = V^2 g_i(q) + f_i(q) - phi_i(x_c) P(y(x_c) - dt)
+//
+// f is the dispersion force at factor 1. The deflection of the contact point, which keeps growing through the fold,
+// parametrises the branch of these equilibria; V^2 is an unknown. The factor of the dispersion force takes the place of V^2
+// when that force is the drive.
+//
+// A charge on the dielectric shifts all voltages by V0 = Switch::neutral_voltage(): V above is then V - V0. The functions
+// return the voltage above V0; a voltage V has the same force as 2 V0 - V.
 #pragma once
 
 #include <limits>
@@ -29,20 +32,21 @@ enum class StaticKind { fold, contact };
 
 struct StaticPullIn {
   Status status = Status::not_run;
-  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< Vsp [V]; for the dispersion force its factor less one
-  double deflection = std::numeric_limits<double>::quiet_NaN();  ///< deflection of the contact point there [m]
-  StaticKind kind = StaticKind::fold;  ///< fold of the branch, or the contact point reaches the contact plane before it
+  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< Vsp [V]; for the dispersion force its factor minus 1
+  double deflection = std::numeric_limits<double>::quiet_NaN();  ///< deflection of the contact point at this voltage [m]
+  StaticKind kind =
+      StaticKind::fold;  ///< fold of the branch, or contact when the contact point reaches the contact plane before the fold
 };
 
 /// Constant values of the other drives: one value per drive, as in Switch::drives(); the value of the drive in question is
-/// ignored. If empty, all of them are 0.
+/// ignored. If empty, all other drives are at 0.
 using Bias = std::span<const double>;
 
 /// Finds the fold of the static branch of `drive`, or the voltage at which the contact point reaches the contact plane if that
 /// comes first. The branch of an electrode begins at the switch's rest under the bias, without a field of its own. The status
-/// is collapsed_at_rest where there is no rest there or at 0 V, no_contact for an electrode on the far side. The branch of the
-/// dispersion force begins at factor 0, so that a negative answer shows by how much the nominal force is too strong. Throws
-/// InvalidInput for a bias of another number of drives.
+/// is collapsed_at_rest when no such rest exists or none at 0 V, and no_contact for an electrode on the far side. The branch of
+/// the dispersion force begins at factor 0, so that a negative result shows by how much the nominal force is too strong. Throws
+/// InvalidInput when the bias has another number of drives.
 [[nodiscard]] StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// An equilibrium, stable or not, in which a drive holds the contact point.
@@ -50,17 +54,18 @@ struct HeldEquilibrium {
   Eigen::VectorXd q;                                          ///< modal coordinates [m kg^(1/2)]
   double voltage = std::numeric_limits<double>::quiet_NaN();  ///< voltage of the drive [V]
 };
-/// Returns the equilibrium whose contact point has this deflection [m], on the branch that static_pull_in() and
-/// release_voltage() follow; none where it cannot be followed so far, or the drive would have to push. Throws as
+/// Returns the equilibrium whose contact point has this deflection [m], on the branch of static_pull_in() and
+/// release_voltage(). Returns none when the branch could not be computed so far, or the drive would have to push. Throws as
 /// static_pull_in() does.
 [[nodiscard]] std::optional<HeldEquilibrium> held_by_drive(const Switch& model, std::size_t drive, double deflection,
                                                            Bias bias = {});
 
-/// The stable open equilibria through which one drive carries the contact point from rest to the contact plane, with the other
-/// drives at a bias. The path of an electrode on the near side ends at a fold where its contact lies beyond one.
+/// The stable open equilibria through which one drive moves the contact point from rest to the contact plane, with the other
+/// drives at a bias. The path of an electrode on the near side ends at the fold when the contact plane lies beyond the fold.
 struct StablePath {
-  std::vector<double> deflections;  ///< deflection of the contact point, from rest under the bias to the plane, evenly [m]
-  std::vector<double> values;       ///< value of the drive there, from 0 V on, without turning back [V]
+  std::vector<double>
+      deflections;             ///< deflections of the contact point, from rest under the bias to the plane, evenly spaced [m]
+  std::vector<double> values;  ///< values of the drive at these deflections, from 0 V on, monotone [V]
   [[nodiscard]] double reaches() const { return values.back(); }
   /// Returns the slope of the deflection by the drive's value at the contact plane [m/V].
   [[nodiscard]] double slope() const {
@@ -68,57 +73,57 @@ struct StablePath {
     return (deflections[last] - deflections[last - 1]) / (values[last] - values[last - 1]);
   }
 };
-/// Returns none where no such path exists, or it could not be followed. Throws as static_pull_in() does.
+/// Returns the path; none when it does not exist or could not be computed. Throws as static_pull_in() does.
 [[nodiscard]] std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// The least voltage of the closed branch, and the deflection of the contact point there.
 struct ReleasePoint {
-  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< voltage as of release_voltage() [V]
+  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< voltage as release_voltage() returns it [V]
   double deflection = std::numeric_limits<double>::quiet_NaN();  ///< [m]
 };
 [[nodiscard]] ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias = {});
-/// Returns the release voltage [V]: the smallest voltage above V0 with a closed equilibrium. It is 0 where the dispersion
-/// force, or the bias, keeps the switch closed by itself, and negative where a charge on the dielectric keeps it closed at 0 V.
-/// It is NaN where there is no contact law, where the contact is too soft to keep the beam off the electrode at any voltage, or
-/// where the branch could not be followed. Throws as static_pull_in() does.
+/// Returns the release voltage [V]: the smallest voltage above V0 with a closed equilibrium. It is 0 when the dispersion force,
+/// or the bias, keeps the switch closed by itself, and negative when a charge on the dielectric keeps it closed at 0 V. It is
+/// NaN without a contact law, when the contact is too soft to keep the beam off the electrode at any voltage, and when the
+/// branch could not be computed. Throws as static_pull_in() does.
 [[nodiscard]] double release_voltage(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// An equilibrium of the beam on the contact.
 struct ClosedEquilibrium {
   Eigen::VectorXd q;         ///< modal coordinates [m kg^(1/2)]
   double contact_force = 0;  ///< [N]
-  double potential = 0;      ///< Switch::potential there [J]
-  /// Smallest eigenvalue of the tangent of the static forces there, over all modes that the contact leaves free [rad^2/s^2];
-  /// infinite where it leaves none. A beam leaves an equilibrium where it is not positive, however slowly.
+  double potential = 0;      ///< Switch::potential of the equilibrium [J]
+  /// Smallest eigenvalue of the tangent stiffness of the static forces, over all motions that the contact allows [rad^2/s^2];
+  /// infinite when it allows none. The equilibrium is unstable when the eigenvalue is not positive.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
-  /// Returns the coordinates for ClosingOptions::begins_closed; valid as long as this.
+  /// Returns the coordinates for ClosingOptions::begins_closed; valid during the lifetime of this object.
   [[nodiscard]] std::span<const double> coordinates() const { return {q.data(), static_cast<std::size_t>(q.size())}; }
 };
 /// Returns the closed equilibrium under constant voltages nearest to the contact plane, if one exists with a contact force
-/// above zero. It exists with one electrode at V and all other drives at 0 V above the release voltage, up to where the beam is
-/// pulled onto the electrode.
+/// above zero. It exists with one electrode at V and all other drives at 0 V from the release voltage up to the voltage at
+/// which the beam collapses onto the electrode.
 [[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::span<const double> volts);
-/// Finds the same by Newton's method from that of a slightly different switch and voltages, where that ends on a stable one;
-/// this takes a hundredth of the work.
+/// Returns closed_equilibrium(), found by Newton's method from the closed equilibrium of a slightly different switch and
+/// voltages, if this ends on a stable equilibrium. This takes a hundredth of the work.
 [[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium_near(const Switch& model, std::span<const double> volts,
                                                                        const ClosedEquilibrium& near);
 
-/// Returns true when the modes in use suffice to decide whether a closed equilibrium is stable: a beam clamped at both ends
-/// leaves it by a motion that the first mode does not have.
+/// Returns true when the number of modes suffices to decide whether a closed equilibrium is stable: a beam clamped at both ends
+/// leaves the equilibrium by a motion that the first mode does not have.
 [[nodiscard]] bool judges_stability(const Switch& model);
 
-/// Returns true for a closed equilibrium that the switch does not leave: a stable one, as far as its modes can show.
+/// Returns true when the closed equilibrium exists and is stable, as far as the modes of the switch can show.
 [[nodiscard]] bool keeps_closed(const Switch& model, const std::optional<ClosedEquilibrium>& closed);
 
-/// Returns the voltage of `drive`, above V0, from which on the closed switch collapses onto the electrode [V], with the other
-/// drives at `volts`: beyond it, its closed equilibrium is unstable or gone. The search covers a tenth to ten times its value
-/// in `volts`, or of the release voltage where that is larger, both counted from V0; the result is NaN if none lies there. The
-/// relative precision is `precision`.
+/// Returns the voltage of `drive`, above V0, from which the closed switch collapses onto the electrode [V], with the other
+/// drives at `volts`: above this voltage the closed equilibrium is unstable or does not exist. The search covers a tenth to ten
+/// times the value of `drive` in `volts`, or of the release voltage if that is larger, both counted from V0; the result is NaN
+/// if the voltage is not in this range. The relative precision is `precision`.
 [[nodiscard]] double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts,
                                           double precision = 1e-6);
 
-/// Finds the same, upwards from its value in `volts`, by Newton's method, which begins at a closed equilibrium of a slightly
-/// different switch and voltages; this takes a fifth of the work.
+/// Returns pull_through_voltage(), found by Newton's method upwards from the value of `drive` in `volts`. The search begins at
+/// a closed equilibrium of a slightly different switch and voltages, which takes a fifth of the work.
 [[nodiscard]] double pull_through_voltage_near(const Switch& model, std::size_t drive, std::span<const double> volts,
                                                const ClosedEquilibrium& near, double precision = 1e-6);
 
@@ -131,20 +136,20 @@ struct ClosedEquilibrium {
 inline constexpr double dynamic_pull_in_precision = 1e-7;
 
 /// Dynamic pull-in voltage Vdp [V]: the smallest constant step from rest under the bias whose contact point reaches the contact
-/// plane within 100 periods of the first mode, whether or not it stays, to `precision`. It is at most the static pull-in
-/// voltage, at which even the thickest film finally yields. It is NaN with a status when static pull-in under the same bias
+/// plane within 100 periods of the first mode, whether or not it stays, to `precision`. Vdp is at most the static pull-in
+/// voltage, at which the switch closes whatever its damping. Vdp is NaN with a status when static pull-in under the same bias
 /// fails, or `watch` asks to stop. Throws as static_pull_in() does.
 struct DynamicPullIn {
   Status status = Status::not_run;
-  double voltage = std::numeric_limits<double>::quiet_NaN();  ///< [V]; for the dispersion force its factor less one
+  double voltage = std::numeric_limits<double>::quiet_NaN();  ///< [V]; for the dispersion force its factor minus 1
 };
 [[nodiscard]] DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result,
                                             Bias bias = {}, const Watch& watch = {}, double tolerance = 1e-8,
                                             double precision = dynamic_pull_in_precision);
 
-/// Returns true when a constant step of `drive` to `value` from rest under the bias reaches the contact plane. This decides
-/// with one trial whether `value` is at least the dynamic pull-in voltage. Returns true where the bias leaves no open state.
-/// Throws as static_pull_in() does.
+/// Returns true when a constant step of `drive` to `value` from rest under the bias reaches the contact plane. One such trial
+/// decides whether `value` is at least the dynamic pull-in voltage. Returns true when the bias leaves no open state. Throws as
+/// static_pull_in() does.
 [[nodiscard]] bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias = {}, const Watch& watch = {},
                                double tolerance = 1e-8);
 

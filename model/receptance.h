@@ -2,12 +2,12 @@
 //
 //   a(lambda) = sum over modes of phi_i(x)^2 / (lambda_i - lambda),   lambda = omega^2
 //
-// Its poles are the natural frequencies, its zeros those of the beam that is also held at x. All is in the units and the
-// functions of NormalisedModes (model/beam.h). The quadratic form of elastic less kinetic energy is eliminated element by
-// element from the far end to the clamp at x = 0, as in a linear-quadratic control problem: the part beyond a node acts as a
-// stiffness of two by two there, and short elements cost no digits. The time is proportional to the number of elements. There
-// are as many negative pivots as natural frequencies below (Sylvester's law of inertia; Wittrick & Williams, Q. J. Mech. Appl.
-// Math. 24 (1971) 263). Where the motion is nearly a mode, a over its derivative is the step to the Rayleigh quotient.
+// Its poles are the natural frequencies, its zeros those of the beam that is also held at x. Units and functions are those of
+// NormalisedModes (model/beam.h). The quadratic form of elastic less kinetic energy is eliminated element by element from the
+// far end to the clamp at x = 0, as in a linear-quadratic control problem: the part beyond a node acts as a stiffness of two by
+// two at the node, and short elements cost no digits. The time is proportional to the number of elements. There are as many
+// negative pivots as natural frequencies below lambda (Sylvester's law of inertia; Wittrick & Williams, Q. J. Mech. Appl. Math.
+// 24 (1971) 263). When the motion is nearly a mode, a over its derivative is the step to the Rayleigh quotient.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,20 +23,20 @@ namespace softland {
 inline constexpr int element_functions = 8;
 using ElementRow = Eigen::Matrix<double, 1, element_functions>;
 
-/// Returns the functions of one element, at rest left of it, at xi in [-1, 1]: first (derivative 1) or second (0) integrals of
-/// P_m from -1. For m >= 2 both vanish at the right end.
+/// Returns the functions of one element, which are 0 left of it, at xi in [-1, 1]: first (derivative 1) or second (0) integrals
+/// of P_m from -1. For m >= 2 both vanish at the right end.
 [[nodiscard]] ElementRow element_integrals(double xi, int derivative);
 
 struct BeamElement {
-  double begin = 0, end = 0;  // lengths are in units of the beam's
+  double begin = 0, end = 0;  // begin and end in units of the beam's length
   double rigidity = 0, mass = 0;
-  double taper = 0;  // relative growth of both from the middle to the end, linear in between
+  double taper = 0;  // relative growth of rigidity and mass from the middle to the end, linear in between
 
   [[nodiscard]] double half() const { return (end - begin) / 2; }
 };
 
-/// Returns integrals over the beam of the products of slopes of motions, each a column of factors of the functions.
-/// `first_slopes` are their slopes at x = 0; 0 if absent.
+/// Returns integrals over the beam of the products of slopes of motions. A motion is a column of factors of the functions;
+/// `first_slopes` are the slopes of the motions at x = 0, or 0 if absent.
 [[nodiscard]] Eigen::MatrixXd slope_products(const std::vector<BeamElement>& elements, const Eigen::MatrixXd& motions,
                                              const std::optional<Eigen::RowVectorXd>& first_slopes = {});
 
@@ -52,25 +52,25 @@ class Receptance {
     Lane below;        ///< number of natural frequencies below
     Lane least_pivot;  ///< smallest pivot except the last, which vanishes at a pole: a small one magnifies the rounding
   };
-  /// Returns the answer at x in (0, 1].
+  /// Returns the receptance at x in (0, 1].
   [[nodiscard]] Answer at(const Lane& lambda, double x);
-  /// Returns the motion of the last answer in a lane: factors of the functions, which are orthonormal in the bending energy.
+  /// Returns the motion of the last result in a lane: factors of the functions, which are orthonormal in the bending energy.
   [[nodiscard]] Eigen::VectorXd motion(Eigen::Index lane) const;
 
  private:
   static constexpr int size = 2 + element_functions;  // deflection and rotation at an element's left end, then its functions
-  static constexpr int kept = 4;                      // number of these that move the right end
-  // A kind of equal elements, with their quadratic form: a lower triangle; the part below the kept rows is eliminated.
+  static constexpr int kept = 4;                      // number of these motions that move the right end
+  // A kind of equal elements with their quadratic form, a lower triangle. The part below the kept rows is eliminated.
   struct Kind {
     double half = 0, rigidity = 0, mass = 0;
-    double reach = 0;  // deflection of a function of unit energy, over the universal function
+    double reach = 0;  // deflection of a function of unit energy, over that of the universal function
     Lane form[size][size];
     Lane inverse[size];          // inverse pivots
     Lane negative, least_pivot;  // number of negative pivots, smallest pivot
 
     [[nodiscard]] bool holds(const BeamElement& e) const;
   };
-  // The kept rows of an element with everything beyond it, and its load.
+  // The kept rows of an element with all elements beyond it, and its load.
   struct Stage {
     std::size_t kind = 0;
     Lane form[kept][kept];
@@ -91,8 +91,8 @@ class Receptance {
   std::vector<Stage> stages_;
   std::vector<double> nodes_;  // ends of the elements
   std::size_t loaded_ = 0;     // index of the element at x
-  double probe_[size] = {};    // deflection of its motions at x
-  Lane load_[size];            // the load, condensed as its form is
+  double probe_[size] = {};    // deflections at x of the motions of this element
+  Lane load_[size];            // the load, eliminated like the quadratic form
 };
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// The motion of all modes in a closing as it was found: smooth arcs, and the events between them.
+// The recorded motion of all modes in a closing: smooth arcs, and the events between them.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@
 
 namespace softland {
 
-/// Records the motion, and passes everything on to another observer.
+/// Records the motion, and passes all calls on to another observer.
 class RecordedMotion final : public ClosingObserver {
  public:
   struct Arc {
     double begin = 0, end = 0;  ///< [s]
     ContactState contact;
   };
-  /// All modes at one time: pointers into the tape.
+  /// All modes at one time: pointers into the record.
   struct Motion {
     double time = 0;  ///< [s]
     const double *q, *v, *accelerations;
@@ -28,7 +28,7 @@ class RecordedMotion final : public ClosingObserver {
   };
 
   RecordedMotion() = default;
-  /// Keeps a reference.
+  /// Keeps a reference to the other observer.
   explicit RecordedMotion(ClosingObserver& next) : next_(&next) {}
 
   void knot(const TrajectoryPoint& point) override {
@@ -41,7 +41,7 @@ class RecordedMotion final : public ClosingObserver {
   void step(const Knot& begin, const Knot& end, const ContactState& contact) override {
     arcs_.push_back({begin.time, end.time, contact});
     for (const Knot* knot : {&begin, &end}) {
-      modes_ = knot->state.size() - knot->rates.size();  // a film counts in both
+      modes_ = knot->state.size() - knot->rates.size();  // the states of a film are in both arrays
       numbers_.insert(numbers_.end(), knot->state.data(), knot->state.data() + 2 * modes_);
       numbers_.insert(numbers_.end(), knot->rates.data(), knot->rates.data() + modes_);
     }
@@ -61,7 +61,7 @@ class RecordedMotion final : public ClosingObserver {
 
   ClosingObserver* next_ = nullptr;
   std::vector<Arc> arcs_;
-  std::vector<double> numbers_;  // q, v and accelerations at the begin of an arc, then at its end
+  std::vector<double> numbers_;  // q, v and accelerations at the start of an arc, then at its end
   std::size_t modes_ = 0;
   std::vector<PhaseEvent> passages_;
 };

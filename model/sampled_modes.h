@@ -1,5 +1,5 @@
 // Normalised modes at the places that a switch uses: at the points of its quadrature, at its contact and at the ends of its
-// piezo layer. Switches of the same lengths share one, whatever their stiffness and mass.
+// piezo layer. Switches with the same lengths share one object, whatever their stiffness and mass.
 #pragma once
 
 #include <Eigen/Core>
@@ -71,7 +71,7 @@ struct SampledModes {
     std::vector<double> x, w;
     for (auto corner = places.corners.begin(); std::next(corner) != places.corners.end(); ++corner) {
       const double begin = *corner, panel = *std::next(corner) - begin;
-      if (panel < 1e-9 * end) continue;  // two names of one place that differ by a rounding
+      if (panel < 1e-9 * end) continue;  // two values of one place that differ by rounding
       const int count = std::max(places.fewest_points, static_cast<int>(std::ceil(panel / end * places.points_per_length)));
       const GaussRule* known = near && rules.size() < near->rules.size() ? &near->rules[rules.size()] : nullptr;
       rules.push_back(known && static_cast<int>(known->points.size()) == count ? *known : gauss_rule(count));

@@ -8,8 +8,8 @@
 // The pull-in voltage is the largest of the open branch, or that at the contact plane; the release voltage is the least of the
 // closed branch. V as a function of the interference has no slope at such an extremum, and at the plane the interference is 0.
 // In each case V_p at a constant interference is the derivative of the voltage (envelope theorem). F_p and a figure's own
-// dependence come from the switches on either side of a parameter (SwitchSlopes). A slope is NaN where no such equilibrium
-// exists. There is one number for each of SwitchSlopes::moving().
+// dependence come from two switches with a smaller and a larger parameter (SwitchSlopes). A slope is NaN where no such
+// equilibrium exists. There is one number for each of SwitchSlopes::moving().
 #pragma once
 
 #include <cstddef>
@@ -24,20 +24,20 @@ namespace softland {
 /// Returns the slopes of static_pull_in() [V per unit of the parameter]; `pull_in` is its result.
 [[nodiscard]] std::vector<double> static_pull_in_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive,
                                                         const StaticPullIn& pull_in, Bias bias = {});
-/// Returns the slopes of release_point() [V per unit of the parameter]. A release voltage of 0 has none.
+/// Returns the slopes of release_point() [V per unit of the parameter]; NaN for a release voltage of 0.
 [[nodiscard]] std::vector<double> release_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive,
                                                  const ReleasePoint& release, Bias bias = {});
 
 /// Returns the angular frequency of a mode, counted from 0, of small undamped vibrations about the open switch at rest under
-/// these values of all drives; NaN where it does not rest open [rad/s]. If all values are 0 it is that of the free switch,
-/// Switch::angular_frequencies().
+/// these values of all drives; NaN when the switch does not rest open [rad/s]. If all values are 0 it is the frequency of the
+/// undeflected switch, Switch::angular_frequencies().
 [[nodiscard]] double resonance(const Switch& model, std::size_t mode, std::span<const double> values);
 /// Returns the slopes of resonance() [rad/s per unit of the parameter].
 [[nodiscard]] std::vector<double> resonance_slopes(const Switch& model, SwitchSlopes& by, std::size_t mode,
                                                    std::span<const double> values);
 
-/// Returns the capacitance of an electrode of the open switch at rest under these values of all drives [F]; NaN where it does
-/// not rest open.
+/// Returns the capacitance of an electrode of the open switch at rest under these values of all drives [F]; NaN when the switch
+/// does not rest open.
 [[nodiscard]] double open_capacitance(const Switch& model, std::size_t drive, std::span<const double> values);
 /// Returns the slopes of open_capacitance() [F per unit of the parameter].
 [[nodiscard]] std::vector<double> open_capacitance_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive,

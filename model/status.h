@@ -8,11 +8,11 @@ namespace softland {
 enum class Status {
   not_run,
   done,
-  open,                      ///< it stays open, as its drives command: no closing was due
+  open,                      ///< the switch stays open, as its drives command
   no_contact,                ///< the contact point never reached the contact gap in the window
-  not_settled,               ///< a rebound was under way, or contact had only just begun, at the end of the window
+  not_settled,               ///< a rebound had not ended, or contact had only just begun, at the end of the window
   collapsed_at_rest,         ///< no stable static equilibrium to start from
-  collapsed_onto_electrode,  ///< the beam met the metal of an electrode, or what stands behind it
+  collapsed_onto_electrode,  ///< the beam reached the metal of an electrode, or a wall on its far side
   numerical_failure,
   interrupted,
 };

@@ -1,4 +1,4 @@
-// Stretching of a beam between two clamps: a bending beam must grow longer, but its ends are held.
+// Stretching of a beam between two clamps: bending makes the beam longer, but its ends are held.
 //
 //   U = EA/(8 L) (int y'^2 dx)^2         stored energy [J]
 //   Q_i = -EA/(2 L) (q'G q) (G q)_i      modal force [N kg^(-1/2)],   G_ij = int phi_i' phi_j' dx,   y = sum phi_i q_i
@@ -56,7 +56,7 @@ struct MidPlaneStretchingOf {
  private:
   using Coordinates = Eigen::Map<const Eigen::VectorXd>;
 
-  // Returns (G q)_i; for plain numbers several at once.
+  // Returns (G q)_i; for plain numbers several elements at once.
   template <class S>
   [[nodiscard]] S pull(std::size_t i, const S* q) const {
     const P* column = slopes.data() + i * modes;

@@ -4,9 +4,9 @@
 //   N_s = 2 tau_0 a                                      [N]
 //
 // E_s is the surface modulus [N/m], of either sign (atoms at a surface have fewer neighbours); tau_0 the residual stress of the
-// surfaces [N/m], positive where they pull; a the width, b the thickness [m]. With `wide` faces the side faces are neglected,
-// as in most papers: they count as b / (3 a) of the others. N_s is the pull of upper and lower face. Between two clamps it is a
-// tension of the beam.
+// surfaces [N/m], positive in tension; a the width, b the thickness [m]. With `wide` faces the side faces are neglected, as in
+// most papers: they contribute b / (3 a) of what the wide faces do. N_s is the pull of upper and lower face. Between two clamps
+// it is a tension of the beam.
 //
 // In a cantilever the end is free: the faces' pull N_s is balanced by an equal compression of the bulk between them, and the
 // bending moments of the two cancel. So a residual stress changes nothing in small deflections (Gurtin, Markenscoff & Thurston

@@ -7,16 +7,16 @@
 // [N/m], w are quadrature weights [m], theta_i = M_p [phi_i'(Lp2) - phi_i'(Lp1)] with M_p the piezo moment per volt, P is the
 // contact force [N], d the interference [m], Q the force of stretching (model/stretching.h). The deflection is y(x) = sum
 // phi_i(x) q_i, positive towards the electrode. It is a Galerkin projection on Gauss panels that start and end where an
-// electrode, the piezo layer or a pad that acts along its length does. Only the laws that the device has are composed: an
-// absent effect costs nothing. A rigid plate is a strip that stays flat: one mode, one quadrature point per panel.
+// electrode, the piezo layer or a pad that acts along its length does. Only the laws that the device has are included, so that
+// an absent effect costs no time. A rigid plate is a strip that stays flat: one mode, one quadrature point per panel.
 //
 // A charge per area sigma lies on the face of an electrode's dielectric. With E in the air and E_d in the dielectric, Gauss'
 // law gives eps0 E = eps_r eps0 E_d + sigma, and V = E (h + h_r) + E_d t, so that
 //
 //   E = (V - V0) / (h + t / eps_r + h_r),   V0 = -sigma t / (eps_r eps0)
 //
-// The electrode pulls as if it were at V - V0. The fringing field is taken to scale with it. C (V - V0) is the charge on the
-// electrode up to a constant, which no source feels.
+// The electrode pulls as if its voltage were V - V0. The fringing field is taken to scale with V - V0. C (V - V0) is the charge
+// on the electrode up to a constant, which does not flow through a source.
 #pragma once
 
 #include <Eigen/Core>
@@ -45,13 +45,14 @@ class ReynoldsFilm;   // model/gas/reynolds_film.h
 
 struct SwitchOptions {
   double points_per_length = 24;  ///< quadrature points over a beam's length
-  int points_per_panel = 3;       ///< least number of points of a panel: more accuracy needs more of both
-  /// Modes of a beam, instead of those of its structure, up to most_static_modes: more than most_modes for statics only.
+  int points_per_panel = 3;       ///< least number of points of a panel; a study of accuracy increases both numbers
+  /// Number of modes of a beam, instead of that of its structure: at most most_static_modes, and above most_modes for statics
+  /// only.
   std::optional<int> modes = {};
 };
 
-/// The states of all contacts of a switch: one state for each, or the first one in this state and each of the others, on first
-/// loading, wherever it is within its reach.
+/// The states of all contacts of a switch: one state for each; or a state for the first contact, and then each other contact is
+/// on first loading wherever it is within its reach.
 struct ContactStates {
   ContactStates(const ContactState& first_one) : first(first_one) {}  // NOLINT: most switches have one contact
   ContactStates(std::same_as<bool> auto acts) : first(acts) {}        // NOLINT: most laws need nothing else
@@ -65,25 +66,25 @@ enum class DriveKind { electrode, dispersion, piezo };
 
 class Switch {
  public:
-  /// Throws InvalidInput for a device that validate() refuses. Takes normalised modes and quadrature from the switch `like`
-  /// where they are the same, and starts from its modes where they are not: the same switch up to rounding, built faster.
+  /// Throws InvalidInput for a device that validate() refuses. Reuses normalised modes and quadrature of the switch `like` when
+  /// they are the same, and otherwise starts from its modes: the result is the same up to rounding, and faster to build.
   explicit Switch(const Device& device, const SwitchOptions& options = {}, const Switch* like = nullptr);
 
   [[nodiscard]] const Device& device() const { return device_; }
-  /// Returns the modes of the structure by itself.
+  /// Returns the modes of the structure without forces.
   [[nodiscard]] const ModalBasis& basis() const { return basis_; }
   /// Returns the points at which the distributed laws act.
   [[nodiscard]] const PointQuadrature& quadrature() const { return quadrature_; }
   [[nodiscard]] int modes() const { return basis_.modes(); }
-  /// Returns the number of drives: the electrodes in order, then the dispersion force, then the piezo, as far as they exist.
-  /// The values of electrodes and piezo are voltages [V]; that of the dispersion force is its factor less one.
+  /// Returns the number of drives: the electrodes in order, then the dispersion force, then the piezo, if the device has them.
+  /// The values of electrodes and piezo are voltages [V]; that of the dispersion force is its factor minus 1.
   [[nodiscard]] std::size_t drives() const { return driven_laws_.size() + (device_.piezo ? 1 : 0); }
   [[nodiscard]] DriveKind drive_kind(std::size_t drive) const {
     if (drive < electrodes_) return DriveKind::electrode;
     return drive < driven_laws_.size() ? DriveKind::dispersion : DriveKind::piezo;
   }
-  /// Returns V0, the voltage at which an electrode does not pull: not 0 where its dielectric is charged. 0 for the other drives
-  /// [V].
+  /// Returns V0 [V], the voltage at which an electrode does not pull, which is not 0 when its dielectric is charged; 0 for the
+  /// other drives.
   [[nodiscard]] double neutral_voltage(std::size_t drive) const { return drive < electrodes_ ? neutral_voltages_[drive] : 0; }
   /// Returns the factor of a drive's law at this value: (V - V0)^2, or the force factor.
   [[nodiscard]] double strength(std::size_t drive, double value) const {
@@ -91,7 +92,7 @@ class Switch {
     const double acting = value - neutral_voltages_[drive];
     return acting * acting;
   }
-  /// Returns its derivative with respect to the value: 2 (V - V0), or 1.
+  /// Returns the derivative of strength() with respect to the value: 2 (V - V0), or 1.
   [[nodiscard]] double strength_slope(std::size_t drive, double value) const {
     return drive < electrodes_ ? 2 * (value - neutral_voltages_[drive]) : 1;
   }
@@ -106,10 +107,10 @@ class Switch {
   [[nodiscard]] const ContactLaw& contact(std::size_t c = 0) const { return c == 0 ? *contact_ : *further_[c - 1].law; }
   /// Returns how far above the plane of first touch the contact acts [m]; 0 for most laws, and without contact.
   [[nodiscard]] double contact_reach(std::size_t c = 0) const;
-  /// True when the contact acts along the pad or the face of a dielectric. It is active then at all times, and acts wherever
-  /// these are beyond the plane.
+  /// Returns true when the contact acts along the pad or the face of a dielectric. Such a contact is active at all times, and
+  /// acts at all points beyond the plane.
   [[nodiscard]] bool has_spread_contact(std::size_t c = 0) const { return c == face_at_ || (c == 0 && pad_ != nullptr); }
-  /// Returns the state of a contact that has not been touched yet: it acts only within its reach.
+  /// Returns the state of a contact before its first touch: it acts only within its reach.
   [[nodiscard]] ContactState untouched(const double* q) const {
     const double reach = contact_reach();
     return has_spread_contact() || (reach > 0 && contact_deflection(q) > contact_gap_ - reach);
@@ -122,8 +123,9 @@ class Switch {
   /// Returns the rest distance of the contact point to the contact plane [m].
   [[nodiscard]] double contact_gap(std::size_t c = 0) const { return c == 0 ? contact_gap_ : further_[c - 1].gap; }
   /// Returns the gap below which every law is continued by its tangent and a run counts as having touched the electrode [m]: a
-  /// hundredth of d0. For a switch that lands on a dielectric it is below the face, by half of the dielectric's part in the
-  /// field's gap; a wall holds at any depth. There the laws of a film are still continued from a hundredth of d0 on.
+  /// hundredth of d0. The gap is negative, below the face, for a switch that lands on a dielectric: half of the dielectric's
+  /// contribution to the gap of the field, or d0 for a wall, which no beam passes. The laws of a film are continued from a
+  /// hundredth of d0 in any case.
   [[nodiscard]] double gap_floor() const {
     if (const Landing* landing = device_.landing(); landing != nullptr && landing->is_wall()) return -device_.gap.electrode;
     return device_.lands_on_dielectric() ? -device_.dielectric_depth() / 2 : device_.gap.electrode / 100;
@@ -139,18 +141,18 @@ class Switch {
   };
   [[nodiscard]] Workspace workspace() const;
 
-  /// Returns the number of states that follow q and v where the gas film is compressible: its pressures
-  /// (model/gas/reynolds_film.h). They are 0 at rest.
+  /// Returns the number of states after q and v, the pressures of a compressible gas film (model/gas/reynolds_film.h), which
+  /// are 0 at rest; 0 for other gas laws.
   [[nodiscard]] std::size_t film_states() const;
   /// Returns the scale of the film's states: the uniform film pressure that bends the beam by the contact gap, over the ambient
-  /// one.
+  /// pressure.
   [[nodiscard]] double film_scale() const;
 
   /// Computes modal accelerations [m kg^(1/2) / s^2] for coordinates q, velocities v and drive voltages [V]; arrays of modes()
-  /// doubles. `film` are the states of a compressible film; without them it is at rest.
+  /// doubles. `film` are the states of a compressible film; null stands for a film at rest.
   void accelerations(const double* q, const double* v, std::span<const double> volts, const ContactStates& contacts,
                      Workspace& work, double* result, const double* film = nullptr) const;
-  /// Computes everything but q' of a state (q, v, film): accelerations, then the rates of the film.
+  /// Computes the rates of a state (q, v, film) except q': accelerations, then the rates of the film.
   void rates(const double* state, std::span<const double> volts, const ContactStates& contacts, Workspace& work,
              double* result) const;
   /// Computes modal forces of the drives at unit strength (for the piezo: per volt) in the field last computed with `work`,
@@ -162,7 +164,7 @@ class Switch {
   /// Adds the film's part to the derivatives of (v, rates) by the state (q, v, film) whose field `work` holds.
   void add_film_derivatives(const double* state, const Workspace& work, Eigen::Ref<Eigen::MatrixXd> derivatives) const;
 
-  /// The motion before the first touch: no contact, and no compressible film, acts. Its accelerations are linear in the
+  /// The motion before the first touch, in which no contact and no compressible film acts. Its accelerations are linear in the
   /// strengths of the drives (strength() of an electrode, the factor of the dispersion force, V of the piezo).
   struct FreeMotion {
     Eigen::VectorXd accelerations;  ///< [m kg^(1/2) / s^2]
@@ -171,13 +173,13 @@ class Switch {
   };
   [[nodiscard]] FreeMotion free_motion(const double* q, const double* v, std::span<const double> strengths,
                                        Workspace& work) const;
-  /// Returns second derivatives of the sum over modes of multiplier_i q_i'' in that motion, by (q, v, strengths): symmetric, 2
-  /// modes + drives rows. They are exact except at points nearer to an electrode than gap_floor(), which count as if the load
-  /// had none.
+  /// Returns second derivatives of the sum over modes of multiplier_i q_i'' in the motion before the first touch, by (q, v,
+  /// strengths): symmetric, 2 modes + drives rows. They are exact except for points nearer to an electrode than gap_floor(),
+  /// where the second derivatives of the load count as 0.
   [[nodiscard]] Eigen::MatrixXd free_motion_curvature(const double* q, const double* v, std::span<const double> strengths,
                                                       const double* multipliers, Workspace& work) const;
 
-  /// Returns y(x_c) [m]; also the velocity when given v. It is positive towards the plane of this contact.
+  /// Returns y(x_c) [m] from q, or its velocity from v. It is positive towards the plane of this contact.
   [[nodiscard]] double contact_deflection(const double* q, std::size_t c = 0) const {
     return c == 0 ? basis_.contact_deflection(q) : basis_.at(q).dot(further_[c - 1].shape);
   }
@@ -187,36 +189,36 @@ class Switch {
   }
   /// Returns the smallest local gap in the last field computed with `work` [m].
   [[nodiscard]] static double smallest_gap(const Workspace& work) { return work.field.smallest_gap; }
-  /// True when the beam comes within a hundredth of the rest gap of an electrode or a film's wall on its far side in that
-  /// field.
+  /// Returns true when the beam is within a hundredth of the rest gap of an electrode or a film's wall on its far side, in the
+  /// field last computed with `work`.
   [[nodiscard]] bool at_far_side(const Workspace& work) const {
     return std::isfinite(most_gap_) && work.field.gap.head(quadrature_.points()).maxCoeff() > most_gap_;
   }
 
-  /// Returns the stable static equilibrium under drives of 0, modal coordinates [m kg^(1/2)]. Returns none when the beam
+  /// Returns the stable static equilibrium with all drives at 0, modal coordinates [m kg^(1/2)]. Returns none when the beam
   /// collapses by itself, by the dispersion force or the charge on a dielectric, or rests on the contact plane.
   [[nodiscard]] const std::optional<Eigen::VectorXd>& rest() const { return rest_; }
-  /// Returns the equilibrium under these values of all drives, reached from the straight beam as they grow; a run starts from
-  /// it.
+  /// Returns the equilibrium under these values of all drives, reached from the straight beam as the values grow from 0; a run
+  /// starts from it.
   [[nodiscard]] std::optional<Eigen::VectorXd> open_equilibrium(std::span<const double> values) const;
   /// Returns the charge on drive k per its own volt (capacitance) [F]; 0 unless it is an electrode.
   [[nodiscard]] double capacitance(std::size_t drive, const double* q, Workspace& work) const;
   /// Returns the potential of a drive's law at unit strength [J]; 0 for the piezo.
   [[nodiscard]] double law_potential(std::size_t drive, const double* q, Workspace& work) const;
-  /// Returns minus the derivative of potential() with respect to the drive's value: the charge of an electrode beyond that at
-  /// V0, or of the piezo [C]; minus the dispersion law's potential [J].
+  /// Returns minus the derivative of potential() with respect to the drive's value: the charge of an electrode less that at V0,
+  /// or of the piezo [C]; minus the dispersion law's potential [J].
   [[nodiscard]] double charge(std::size_t drive, double value, const double* q, Workspace& work) const;
   [[nodiscard]] double elastic_energy(const double* q) const;  ///< energy of the beam, without piezo coupling and contact [J]
-  /// True when some part takes energy out all the time: gas, modal damping, or a contact law that depends on the rate.
+  /// Returns true when the motion always loses energy: by gas, modal damping, or a contact law that depends on the rate.
   [[nodiscard]] bool damped() const {
     return !passive_laws_.empty() || film_ || device_.structure.damping_ratio > 0 || has_damped_contact();
   }
   [[nodiscard]] bool has_damped_contact() const;
-  /// Returns the power dissipated by gas and modal damping [W]; a compressible film is at rest without its states.
+  /// Returns the power dissipated by gas and modal damping [W]; without `film` a compressible film is at rest.
   [[nodiscard]] double dissipated_power(const double* q, const double* v, Workspace& work, const double* film = nullptr) const;
-  /// Returns the same in the field last computed with `work`, whose velocities are `v`.
+  /// Returns the dissipated power in the field last computed with `work`, whose velocities are `v` [W].
   [[nodiscard]] double dissipated_power(const double* v, Workspace& work, const double* film = nullptr) const;
-  /// Returns the energy stored in the film in a state (q, v, film) [J]; 0 without a film.
+  /// Returns the energy stored in the film in a state (q, v, film) [J]; 0 without a compressible film.
   [[nodiscard]] double film_energy(const double* state, Workspace& work) const;
   /// Return the force of a contact on the beam [N], its stored energy [J] and its dissipated power [W], in a state in which it
   /// is active.
@@ -231,18 +233,18 @@ class Switch {
                                  Workspace& work) const;
 
  private:
-  /// Takes basis and quadrature from the moving structure, a beam or a plate.
+  /// Computes basis and quadrature from the modes of the structure, a beam or a plate.
   template <class Modes>
   void set_modes(const Modes& structure, double points_per_length, int fewest_points, const Switch* like);
   /// Calls f(xi, share, interference) for every point at which an active contact acts, xi from x_c towards the clamp [m].
   template <class F>
   void for_contact_points(const double* q, F&& f) const;
-  /// Returns the rate of the pad at xi [m/s].
+  /// Returns the velocity of the pad towards the plane at xi [m/s].
   [[nodiscard]] double contact_rate(const double* v, double xi) const;
   /// A contact after the first one.
   struct FurtherContact {
     std::shared_ptr<const ContactLaw> law;
-    Eigen::VectorXd shape;  // shape, positive towards its plane [kg^(-1/2)]
+    Eigen::VectorXd shape;  // mode shapes at the contact, positive towards its plane [kg^(-1/2)]
     double gap = 0;         // [m]
   };
   /// Calls f(contact, state, interference) for every further contact that is active.
@@ -254,15 +256,15 @@ class Switch {
   }
   void add_pad_force(const double* q, const double* v, double* result) const;
   [[nodiscard]] double penetration_under(double force) const;
-  /// Returns the pressure of the faces of the electrodes, whose contact this is.
+  /// Returns the pressure of the faces of the electrodes' dielectrics, which is the law of the contact along the face.
   [[nodiscard]] std::shared_ptr<const DistributedLaw> face_pressure() const;
   /// Returns the field of a state at rest.
   [[nodiscard]] GapField still_field(const double* q) const;
   void set_free_field(const double* q, const double* v, Workspace& work) const;
   /// Returns the values that produce a share of the forces of these values: of the strength of an electrode or the dispersion
-  /// force, V of the piezo.
+  /// force, or of V of the piezo.
   [[nodiscard]] std::vector<double> share_of(double share, std::span<const double> values) const;
-  /// Finds the equilibrium from the straight beam, in shares of the load where it must.
+  /// Finds the equilibrium from the straight beam, in increments of the load if necessary.
   [[nodiscard]] std::optional<Eigen::VectorXd> loaded_equilibrium(std::span<const double> values) const;
   [[nodiscard]] std::optional<Eigen::VectorXd> equilibrium_from(Eigen::VectorXd q, std::span<const double> values) const;
 
@@ -273,12 +275,13 @@ class Switch {
   std::size_t electrodes_ = 0;
   std::vector<double> neutral_voltages_;                             // V0 of each electrode [V]
   std::vector<std::shared_ptr<const DistributedLaw>> driven_laws_;   // one per electrode, then the dispersion force
-  std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // these dissipate
+  std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // laws that dissipate
   std::shared_ptr<const ContactLaw> contact_;
   std::vector<FurtherContact> further_;
-  std::shared_ptr<const PadQuadrature> pad_;    // set for a contact along the pad
-  std::shared_ptr<const DistributedLaw> face_;  // pressure of a contact along the face of a dielectric; null for others
-  std::size_t face_at_ = std::numeric_limits<std::size_t>::max();  // number of that contact
+  std::shared_ptr<const PadQuadrature> pad_;  // set for a contact along the pad
+  std::shared_ptr<const DistributedLaw>
+      face_;  // pressure of a contact along the face of a dielectric; null without such a contact
+  std::size_t face_at_ = std::numeric_limits<std::size_t>::max();  // number of the contact along the face
   std::shared_ptr<const GasLaw> gas_;
   std::shared_ptr<const ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;

@@ -1,16 +1,17 @@
-// Derivatives of a switch by parameters of its device: central differences of the two switches on either side of it.
+// Derivatives of a switch by parameters of its device: central differences of two switches with a larger and a smaller
+// parameter.
 //
 //   F_p = [F(q + h r, v; p + h) - F(q - h r, v; p - h)] / 2h - F_q r          at fixed q and v
 //
 // p is the parameter [its SI unit], h half the step between the two switches, F modal accelerations, F_q their derivative by q
-// in the switch itself. r is 0 where no contact acts. If one acts, a contact that is nanometres deep must not see that its
-// plane has moved by the step. r is then the motion along the contact's static deflection that leaves the interference as it
-// is; the effect of the plane's motion on the force comes from F_q, which is exact. So all properties of a device take part:
+// in the switch itself. r is 0 when no contact acts. If a contact acts, its depth is nanometres and must not change because the
+// step moves its plane. r is then the motion along the contact's static deflection that leaves the interference as it is; the
+// effect of the plane's motion on the force comes from F_q, which is exact. So all properties of a device are included:
 // frequencies and shapes of the modes, which keep their normalisation and sign, places of electrodes and contact, laws of
 // forces and gas.
 //
-// Steps of 3e-5 of a parameter leave F_p good to about 1e-7: truncation grows with the square of the step, the rounding of the
-// modes with its inverse.
+// Steps of 3e-5 of a parameter give F_p with an error of about 1e-7: the truncation error grows with the square of the step,
+// and the effect of rounding errors of the modes with its inverse.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,14 +32,14 @@ class SwitchSlopes {
   struct Neighbours {
     Switch above, below;
     double distance = 0;         ///< difference of the parameter, from below to above [its SI unit]
-    bool acts_in_flight = true;  ///< true when accelerations depend on it where no contact acts
+    bool acts_in_flight = true;  ///< true when accelerations depend on the parameter while no contact acts
   };
-  /// `neighbours` of each parameter; none where the switch does not depend on it. Keeps a reference to `model`. Throws
-  /// InvalidInput where a neighbour has another number of modes or drives, or a contact of another kind.
+  /// `neighbours` are the two switches for each parameter; none when the switch does not depend on it. Keeps a reference to
+  /// `model`. Throws InvalidInput when a neighbour has another number of modes or drives, or a contact of another kind.
   SwitchSlopes(const Switch& model, std::vector<std::optional<Neighbours>> neighbours);
 
   [[nodiscard]] std::size_t parameters() const { return parameters_; }
-  /// Returns the parameters that the switch depends on. The functions below take their number in this list.
+  /// Returns the parameters that the switch depends on. The functions below take a number j in this list.
   [[nodiscard]] const std::vector<std::size_t>& moving() const { return moving_; }
 
   /// Returns the slope of the interference of the contact point, y(x_c) - dt, at fixed q [m per unit].
@@ -46,7 +47,7 @@ class SwitchSlopes {
   /// Returns the slope of the contact point's velocity at fixed v [m/s per unit].
   [[nodiscard]] double velocity(std::size_t j, const double* v) const;
   /// Returns the slope of the interference of an edge of the contact's phases [m per unit]: 0 for the plane and for edges of a
-  /// dent, at which no force sets in, else that of the law's reach or kink there.
+  /// dent, at which no force sets in, else that of the law's reach or kink.
   [[nodiscard]] double edge(std::size_t j, double interference) const;
   /// Returns the slope of a function of the contact law.
   template <class F>
@@ -54,14 +55,14 @@ class SwitchSlopes {
     const Neighbours& n = neighbours_[j];
     return (f(n.above.contact()) - f(n.below.contact())) / n.distance;
   }
-  /// Returns the slope of a figure of the whole switch, f(switch, step); `step` is the difference of the parameter from that of
-  /// the switch.
+  /// Returns the slope of a figure of the whole switch, f(switch, step); `step` is the difference of that switch's parameter
+  /// from the parameter of `model`.
   template <class F>
   [[nodiscard]] auto of_switch(std::size_t j, F&& f) const {
     const Neighbours& n = neighbours_[j];
     return decltype(f(n.above, n.distance))((f(n.above, n.distance / 2) - f(n.below, -n.distance / 2)) / n.distance);
   }
-  /// Computes the slope of the modal accelerations at fixed q and v, F_p. `by_q` is F_q there: modes x modes.
+  /// Computes the slope of the modal accelerations at fixed q and v, F_p. `by_q` is F_q in this state: modes x modes.
   void accelerations(std::size_t j, const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
                      const Eigen::Ref<const Eigen::MatrixXd>& by_q, Eigen::Ref<Eigen::VectorXd> result);
 
@@ -71,7 +72,7 @@ class SwitchSlopes {
   std::vector<std::size_t> moving_;
   std::vector<Neighbours> neighbours_;            // neighbours of the moving parameters
   std::vector<Switch::Workspace> above_, below_;  // workspaces of the neighbours
-  Eigen::VectorXd deflection_;                    // static deflection under a force at the contact point, which it moves by 1 m
+  Eigen::VectorXd deflection_;  // static deflection under a force at the contact point that moves this point by 1 m
 };
 
 }  // namespace softland

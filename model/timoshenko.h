@@ -20,10 +20,10 @@
 namespace softland {
 
 /// Returns by how much Euler-Bernoulli's frequencies are too high, relative to Timoshenko's, mode by mode: 0.05 is 5 %. A
-/// missing Poisson's ratio counts as 0.3. It holds for a uniform beam between clamps and free ends; empty for all others.
+/// missing Poisson's ratio counts as 0.3. The result is empty unless the beam is uniform, between clamps and free ends.
 [[nodiscard]] std::vector<double> frequency_excess(const Structure& structure);
 
-/// Returns one sentence with the excess of every mode; empty where none reaches 2 %.
+/// Returns one sentence with the excess of every mode; empty when none reaches 2 %.
 [[nodiscard]] std::string slenderness_warning(const Structure& structure);
 
 }  // namespace softland

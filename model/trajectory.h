@@ -1,4 +1,4 @@
-// A closing as the figures of merit see it: the motion of the contact point.
+// The result of a closing: the motion of the contact point, touches, and what figures of merit need besides.
 #pragma once
 
 #include <limits>
@@ -24,11 +24,11 @@ struct TrajectoryPoint {
 /// One interval in which the contact law is active; an instant for an impact on a rigid contact from which the plate rebounds.
 struct Touch {
   double begin = 0;            ///< [s]
-  double end = 0;              ///< [s]; NaN when contact still holds at the end of the window
+  double end = 0;              ///< [s]; NaN when the contact is closed at the end of the window
   double impact_velocity = 0;  ///< velocity at begin [m/s]
   double peak_force = 0;       ///< [N]; NaN for a rigid contact, which has an impulse instead
-  double peak_energy = 0;      ///< largest energy stored in the contact law; for a rigid one the kinetic energy at impact [J]
-  /// Largest pressure of the highest summit over the hardness (model/contact/summit_pressure.h); NaN where it is not known.
+  double peak_energy = 0;      ///< largest energy stored in the contact law; for a rigid contact the kinetic energy [J]
+  /// Largest pressure of the highest summit over the hardness (model/contact/summit_pressure.h); NaN when it is not known.
   double pressure = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -49,8 +49,8 @@ struct EnergyBalance {
 
 /// The times at which a connection was electrically closed in a run: see model/closing/electrical_record.h.
 struct ElectricalOutcome {
-  double first_closed = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN where it never closes
-  /// Time from which it stays closed [s]; NaN where it is open at the end.
+  double first_closed = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN when the connection never closes
+  /// Time from which the connection stays closed [s]; NaN when it is open at the end.
   double closed_from = std::numeric_limits<double>::quiet_NaN();
   int openings = 0;  ///< number of openings after first_closed that count
 };
@@ -58,9 +58,9 @@ struct ElectricalOutcome {
 /// One contact of several, at the end of a run.
 struct ContactOutcome {
   std::string name;
-  std::vector<TrajectoryPoint> points;  ///< course of its place
+  std::vector<TrajectoryPoint> points;  ///< motion of the place of the contact
   std::vector<Touch> touches;
-  double gap = 0;                                                             ///< rest distance to its plane [m]
+  double gap = 0;                                                             ///< rest distance of the contact to its plane [m]
   double deepest_penetration = 0;                                             ///< [m]
   double hold_force = std::numeric_limits<double>::quiet_NaN();               ///< force as in Trajectory::hold_force [N]
   double steady_force_time = std::numeric_limits<double>::quiet_NaN();        ///< [s]
@@ -74,11 +74,13 @@ struct ContactOutcome {
 struct Trajectory {
   Status status = Status::not_run;
   std::string message;  ///< reason, unless the status is done
-  /// True when the run began in contact (ClosingOptions::start, begins_closed): the drives have not caused its first touch.
+  /// True when the run began in contact (ClosingOptions::start, begins_closed), so that the drives did not cause the first
+  /// touch.
   bool began_closed = false;
-  /// Contact point in the equilibrium of the other StartState, where the requested one does not exist [m].
+  /// Position of the contact point in the equilibrium of the other StartState, when the requested equilibrium does not exist
+  /// [m].
   double other_start = std::numeric_limits<double>::quiet_NaN();
-  bool ends_at_touch = false;  ///< true when the run ended where it first reached the plane, since the switch has no contact
+  bool ends_at_touch = false;  ///< true when the run ended at its first touch because the switch has no contact law
   double contact_gap = 0;      ///< dt: the first-touch plane [m]
   std::vector<TrajectoryPoint> points;
   std::vector<Touch> touches;
@@ -86,37 +88,37 @@ struct Trajectory {
   double in_contact_period = std::numeric_limits<double>::quiet_NaN();
   /// Force of the closed equilibrium under the hold levels, if computed [N].
   double hold_force = std::numeric_limits<double>::quiet_NaN();
-  /// Resistance of the connection, where the switch rests closed under the hold levels [Ohm]; NaN where that is open, or not
-  /// known.
+  /// Resistance of the connection when the switch rests closed under the hold levels [Ohm]; NaN when the switch rests open, or
+  /// the resistance is not known.
   double hold_resistance = std::numeric_limits<double>::quiet_NaN();
-  /// Capacitance between the beam and the electrode that closes the switch, where the hold levels leave the beam [F]: closed,
-  /// or open where nothing touched.
+  /// Capacitance between the beam and the electrode that closes the switch, at rest under the hold levels [F]: in the closed
+  /// equilibrium, or in the open one after a run without a touch.
   double hold_capacitance = std::numeric_limits<double>::quiet_NaN();
-  bool is_held = true;  ///< false where the switch is known to have no stable closed equilibrium under the hold levels
-  double collapse_time = std::numeric_limits<double>::quiet_NaN();  ///< time at which the beam met the electrode [s]
+  bool is_held = true;  ///< false when the switch is known to have no stable closed equilibrium under the hold levels
+  double collapse_time = std::numeric_limits<double>::quiet_NaN();  ///< time at which the beam reached the electrode [s]
   /// Smallest gap of the run from beam to electrode, at any place [m].
   double smallest_gap = std::numeric_limits<double>::quiet_NaN();
-  /// Energy above that of the closed equilibrium once the switch has touched and the drives stand at their hold levels [J]. It
+  /// Energy above that of the closed equilibrium once the switch has touched and the drives are at their hold levels [J]. It
   /// must be dissipated, by bouncing or otherwise, before the switch rests. It includes the energy that impacts on a rigid
-  /// contact have dissipated by then.
+  /// contact have dissipated until then.
   double landing_excess = std::numeric_limits<double>::quiet_NaN();
   double deepest_penetration = 0;  ///< [m]
-  /// Time from which to the end of the run the contact force is not below ClosingOptions::steady_force [s]. NaN where it is
-  /// below at the end, where nothing touched, and where no steady force was given.
+  /// Time from which to the end of the run the contact force is not below ClosingOptions::steady_force [s]. NaN when the force
+  /// is below it at the end, without a touch, and when no steady force was given.
   double steady_force_time = std::numeric_limits<double>::quiet_NaN();
-  /// Least contact force from its first maximum after the first touch to the end of the run; the force at the end where it only
-  /// rises [N]. NaN where nothing touched.
+  /// Least contact force from its first maximum after the first touch to the end of the run; the force at the end when it only
+  /// rises [N]. NaN without a touch.
   double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
   /// Outcome of each of several contacts; empty for a single one.
   std::vector<ContactOutcome> contacts;
-  /// First touch of any of several contacts that makes the connection [s], and the speed there [m/s]. NaN for a single contact,
-  /// or where nothing touched.
+  /// First touch of any of several contacts that makes the connection [s], and the speed of this touch [m/s]. NaN for a single
+  /// contact, and without a touch.
   double first_touch = std::numeric_limits<double>::quiet_NaN();
   double first_touch_velocity = std::numeric_limits<double>::quiet_NaN();
   /// Electrical outcome, if Device::electrical asks for it.
   ElectricalOutcome electrical = {};
   EnergyBalance energy;     ///< balance at the end of the run
-  double layer_energy = 0;  ///< layer_charging_energy() of the piezo, which no balance contains [J]
+  double layer_energy = 0;  ///< layer_charging_energy() of the piezo, which is not part of the energy balance [J]
   /// Largest residual of the energy balance at any make or break of contact and at the end [J].
   double energy_error = 0;
   Work work;

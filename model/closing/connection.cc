@@ -27,7 +27,7 @@ void ConnectionCourse::Followed::touch(const Touch& touch) {
   if (connects_) connection_.touches_.take(touch);
 }
 
-// Returns a given knot as it is. Between knots the place is that of the quintic, and the force is linear.
+// Returns a given knot as it is. Between knots the position is that of the quintic, and the force is linear.
 TrajectoryPoint ConnectionCourse::Followed::at(double time) const {
   const TrajectoryPoint* from = &*last;
   for (const TrajectoryPoint& to : fresh) {
@@ -60,7 +60,7 @@ std::size_t ConnectionCourse::decides(double time, std::size_t present) const {
 void ConnectionCourse::hand_over() {
   const Followed& any = followed_[deciding_];
   if (any.fresh.empty()) return;
-  // Handle a jump of all contacts, or the beginning.
+  // Handle a jump of all contacts, or the start of the run.
   while (!any.fresh.empty() && (!any.last || any.fresh.front().time == any.last->time)) {
     for (Followed& c : followed_) {
       if (!c.connects()) continue;
@@ -156,7 +156,7 @@ std::optional<Touch> ConnectionTouches::finish() {
 
 ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts) {
   if (contacts.size() == 1) return contacts.front();
-  // Return the later, or the smaller, of two; NaN where one of them is NaN.
+  // Return the later, or the smaller, of two numbers; NaN when one of them is NaN.
   const auto later = [](double a, double b) { return std::isnan(a) || a > b ? a : b; };
   const auto less = [](double a, double b) { return std::isnan(a) || a < b ? a : b; };
   std::optional<ForceOutcome> all;

@@ -1,11 +1,11 @@
-// The connection that several contacts of a switch make, as one contact point that an observer follows.
+// The connection that several contacts of a switch make, which an observer receives like a single contact.
 //
-// The connection is closed while all of the contacts that make it are, or while any of them is (Device::connection). Its
-// separation is the largest of theirs, or the smallest; its place counts from the plane of the first contact, at the separation
-// of the connection. Between two knots of any contact the contact that is furthest (or nearest) at both ends decides; where
-// that changes there is a knot at which both are equally far. The force of the connection is the least force of a contact that
-// makes it, or the largest. A touch of the connection holds the largest force and impact velocity, and the energies, of the
-// touches of its contacts.
+// The connection is closed while all of the contacts that make it are closed, or while any of them is (Device::connection). Its
+// separation is the largest of their separations, or the smallest; its place counts from the plane of the first contact, at the
+// separation of the connection. Between two knots of any contact the contact with the largest (or smallest) separation at both
+// ends decides; where the deciding contact changes there is a knot at which both have the same separation. The force of the
+// connection is the least force of a contact that makes it, or the largest. A touch of the connection has the largest force and
+// impact velocity, and the energies, of the touches of its contacts.
 #pragma once
 
 #include <cstddef>
@@ -19,19 +19,19 @@
 
 namespace softland {
 
-/// The touches of a connection, which combine those of its contacts.
+/// The touches of a connection, which combine the touches of its contacts.
 class ConnectionTouches {
  public:
-  /// Takes a touch of a contact that makes the connection.
+  /// Adds a touch of a contact that makes the connection.
   void take(const Touch& touch);
-  /// Closes the connection [s], at this speed [m/s]: returns the touch before, if there was one.
+  /// Closes the connection at this time [s], at this speed [m/s]; returns the touch before, if there was one.
   [[nodiscard]] std::optional<Touch> close(double time, double speed);
-  /// Opens the connection [s].
+  /// Opens the connection at this time [s].
   void open(double time) { touch_->end = time; }
-  /// Returns the last touch, once all touches of contacts have been taken.
+  /// Returns the last touch, after all touches of contacts have been added.
   [[nodiscard]] std::optional<Touch> finish();
 
-  /// Return the first touch of any contact that makes the connection [s], and the speed there [m/s]; NaN before.
+  /// Return the first touch of any contact that makes the connection [s], and its speed [m/s]; NaN before this touch.
   [[nodiscard]] double first_touch() const { return first_touch_; }
   [[nodiscard]] double impact_velocity() const { return impact_velocity_; }
 
@@ -46,24 +46,25 @@ struct ForceOutcome {
   double steady_force_time = std::numeric_limits<double>::quiet_NaN();
   double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
 };
-/// Finds the outcome of the connection from those of all contacts of the device, in order.
+/// Computes the outcome of the connection from the outcomes of all contacts of the device, in order.
 [[nodiscard]] ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts);
 
 class ConnectionCourse {
  public:
-  /// Keeps references. The observer receives the connection, and the observers that it names receive the contacts.
+  /// Keeps references. The observer receives the connection; the observers that observer.contact() returns receive the
+  /// contacts.
   ConnectionCourse(const Switch& model, ClosingObserver& observer);
   ConnectionCourse(const ConnectionCourse&) = delete;
   ConnectionCourse& operator=(const ConnectionCourse&) = delete;
 
-  /// Returns the observer that receives the course of a contact.
+  /// Returns the observer that receives the motion of a contact.
   [[nodiscard]] ClosingObserver& contact(std::size_t c) { return followed_[c]; }
-  /// Hands over the connection as far as all contacts are known.
+  /// Passes the motion of the connection on up to the time until which all contacts are known.
   void hand_over();
-  /// Hands over the last touch, once all contacts have handed over theirs.
+  /// Passes the last touch on, after all contacts have passed on theirs.
   void finish();
 
-  /// Return the first touch of any contact that makes the connection [s], and the speed there [m/s]; NaN before.
+  /// Return the first touch of any contact that makes the connection [s], and its speed [m/s]; NaN before this touch.
   [[nodiscard]] double first_touch() const { return touches_.first_touch(); }
   [[nodiscard]] double impact_velocity() const { return touches_.impact_velocity(); }
 
@@ -80,7 +81,7 @@ class ConnectionCourse {
     [[nodiscard]] double separation(double time) const { return gap_ - at(time).position; }
     [[nodiscard]] double gap() const { return gap_; }
 
-    std::optional<TrajectoryPoint> last;  ///< last knot up to which the connection has been followed
+    std::optional<TrajectoryPoint> last;  ///< last knot of the connection
     std::vector<TrajectoryPoint> fresh;
 
    private:
@@ -90,7 +91,7 @@ class ConnectionCourse {
     bool connects_;
   };
 
-  /// Returns the contact that decides at a time, `present` among equals.
+  /// Returns the contact that decides at a time; `present` when several contacts are equally far.
   [[nodiscard]] std::size_t decides(double time, std::size_t present) const;
   void follow_to(double time);
   void tell(double time);

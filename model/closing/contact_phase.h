@@ -2,14 +2,14 @@
 //
 //   flight     above the plane of first touch, and above the reach of a law that acts beyond it
 //   near       above the plane, within the reach of the law                    (adhesive_repulsive.h)
-//   loading    in contact; all through a touch for a law without memory
+//   loading    in contact; throughout a touch for a law without memory
 //   unloading  on the way back along the elastic curve of a law with memory    (memory.h)
-//   dent       below the plane, in the dent that a law with memory has left, where it carries nothing
+//   dent       below the plane, in the dent that a law with memory has left, where there is no contact force
 //   rest       a plate at rest on a rigid contact                              (rigid.h)
 //
-// A phase is entered at an edge of another one or, from loading to unloading, at the deepest point. A law that is not smooth at
-// some interferences has an edge there from loading to loading. The integrator is restarted at every edge, so that it only ever
-// integrates smooth right-hand sides.
+// A phase is entered at an edge of another phase or, from loading to unloading, at the deepest point. A law that is not smooth
+// at some interferences has an edge there from loading to loading. The integrator is restarted at every edge, so that it only
+// ever integrates smooth right-hand sides.
 #pragma once
 
 #include <algorithm>
@@ -24,28 +24,28 @@ namespace softland {
 
 enum class Phase { flight, near, loading, unloading, dent, rest };
 
-/// An end of a phase: side * (position - level) is positive inside it.
+/// An end of a phase: side * (position - level) is positive inside the phase.
 struct Edge {
   double level = 0;  ///< [m]
   double side = 0;   ///< 1: the phase lies beyond the level, towards the contact; -1: before it
   Phase next = Phase::flight;
-  std::size_t zone = 0;  ///< zone of the next phase: its kinks of the law, counted from the plane
+  std::size_t zone = 0;  ///< zone of the next phase: the number of kinks of the law below its interferences
 };
 
 class ContactPhase {
  public:
-  /// Follows one contact of the switch, which is in flight and has never touched.
+  /// Tracks the phase of one contact of the switch, which is in flight and has never touched.
   explicit ContactPhase(const Switch& model, std::size_t contact = 0);
 
   [[nodiscard]] Phase phase() const { return phase_; }
-  /// True when the contact point is at or below the plane of first touch.
+  /// Returns true when the contact point is at or below the plane of first touch.
   [[nodiscard]] bool in_contact() const { return phase_ != Phase::flight && phase_ != Phase::near; }
   /// Returns the state of the contact law that belongs to the phase.
   [[nodiscard]] const ContactState& law() const { return law_; }
   [[nodiscard]] std::span<const Edge> edges() const { return {edges_.data(), edge_count_}; }
   /// Returns the phase on the other side of the plane of first touch.
   [[nodiscard]] Phase above() const { return reach_ > 0 ? Phase::near : Phase::flight; }
-  /// True when the phase ends where the contact point turns back: loading of a law with memory.
+  /// Returns true when the phase ends where the contact point turns back: loading of a law with memory.
   [[nodiscard]] bool ends_at_turn() const { return remembers_ && phase_ == Phase::loading; }
   /// Returns the state of a law without memory at this position of the contact point [m], whatever the phase.
   [[nodiscard]] ContactState law_at(double position) const {
@@ -55,10 +55,10 @@ class ContactPhase {
   [[nodiscard]] double lost(double position) const;
 
   void enter(Phase phase, std::size_t zone = 0);
-  /// Begins at rest on the contact, with the contact point this much beyond the plane [m]: a law with memory has been loaded as
-  /// far.
+  /// Begins at rest on the contact, with the contact point this much beyond the plane [m]. A law with memory has been loaded to
+  /// this interference.
   void begin_closed(double interference);
-  /// Turns from loading to unloading at this interference [m].
+  /// Changes from loading to unloading at this interference [m].
   void turn(double deepest);
 
  private:
@@ -72,12 +72,12 @@ class ContactPhase {
   ContactState law_;
   std::array<Edge, 2> edges_;
   std::size_t edge_count_ = 0;
-  double deepest_ = 0;  // interference that the law remembers [m]
+  double deepest_ = 0;  // deepest interference, which a law with memory remembers [m]
   Dent dent_;           // dent that the law has left
-  double healed_ = 0;   // energy lost to dents that are forgotten [J]
+  double healed_ = 0;   // energy lost to dents that have healed [J]
 };
 
-/// The phases of all contacts of a switch, at least one: a switch without contact has that of its contact point.
+/// The phases of all contacts of a switch, at least one: that of the contact point for a switch without contact.
 class ContactPhases {
  public:
   explicit ContactPhases(const Switch& model) {
@@ -98,7 +98,7 @@ class ContactPhases {
   }
   /// Returns states in which no contact acts.
   [[nodiscard]] ContactStates apart() const { return {false, apart_}; }
-  /// True when any contact is at or below its plane.
+  /// Returns true when any contact is at or below its plane.
   [[nodiscard]] bool in_contact() const { return std::ranges::any_of(phases_, &ContactPhase::in_contact); }
 
  private:

@@ -18,7 +18,8 @@ class DriveCourse {
   [[nodiscard]] std::size_t size() const { return signals_.size(); }
   /// Returns the values of all drives before t = 0.
   [[nodiscard]] std::vector<double> before() const { return values_before(signals_); }
-  /// Returns begin and end of every stretch within [0, duration], in order, one of them at `also` if that lies within [s].
+  /// Returns begin and end of every stretch within [0, duration], in order. A stretch also begins at `also` if this time lies
+  /// within the interval [s].
   [[nodiscard]] std::vector<double> stretches(double duration, double also = std::numeric_limits<double>::infinity()) const {
     std::vector<double> stops{0, duration};
     if (also > 0 && also < duration) stops.push_back(also);
@@ -32,7 +33,7 @@ class DriveCourse {
     return stops;
   }
 
-  /// Enters the piece of drive k that begins at, or holds after, time t.
+  /// Enters the piece of drive k that begins at time t, or is valid after it.
   void enter(std::size_t k, double t) { pieces_[k] = signals_[k].piece_at(t); }
   [[nodiscard]] const SignalPiece& piece(std::size_t k) const { return signals_[k].pieces()[pieces_[k]]; }
   /// Returns the value of drive k by the formula of its present piece, also beyond its ends.
@@ -42,14 +43,14 @@ class DriveCourse {
     for (std::size_t k = 0; k < size(); ++k) values_[k] = value(k, t);
     return values_;
   }
-  /// True when every drive is on its last piece.
+  /// Returns true when every drive is on its last piece.
   [[nodiscard]] bool at_hold() const {
     for (std::size_t k = 0; k < size(); ++k) {
       if (pieces_[k] + 1 < signals_[k].pieces().size()) return false;
     }
     return true;
   }
-  /// Returns a step length that resolves every drive after t; infinity where none oscillates [s].
+  /// Returns a step length that resolves every drive after t; infinity when none oscillates [s].
   [[nodiscard]] double resolving_step(double t) const {
     double step = std::numeric_limits<double>::infinity();
     for (const Signal& signal : signals_) step = std::min(step, signal.resolving_step(t));

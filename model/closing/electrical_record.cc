@@ -25,7 +25,7 @@ ElectricalRecord::Instant ElectricalRecord::instant(std::size_t c, const Contact
     const double length = contact.to.time - contact.from.time, share = length > 0 ? (time - contact.from.time) / length : 1;
     now.force = std::lerp(contact.from.contact_force, contact.to.contact_force, share);
   } else {
-    // Steps may go through make and break of a law without memory, which its place alone tells.
+    // A step may contain make and break of a law without memory, whose state depends on the position alone.
     const ContactState state = has_memory(law) ? contact.law : ContactState(now.interference > -model_.contact_reach(c));
     if (state.active) now.force = contact_force(law, now.interference, state, tip.velocity(time));
   }
@@ -49,7 +49,7 @@ ElectricalRecord::Instant ElectricalRecord::connected(std::span<const Instant> c
   return all;
 }
 
-// Positive while closed; its size means nothing.
+// Positive while the connection is closed; the size has no meaning.
 double ElectricalRecord::margin(const Instant& now) const {
   double least = std::numeric_limits<double>::infinity();
   if (closing_.force >= 0) least = now.force - closing_.force;
@@ -100,10 +100,11 @@ void ElectricalRecord::take_rest(double begin, double end, const std::function<d
   follow(followed_.front(), at, begin, end);
 }
 
-// An extremum in between shows where the margin leaves both ends towards 0.
+// An extremum lies in between when the margin goes towards 0 from both ends.
 template <class Margin>
 void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin, double end) const {
-  constexpr double beside = 1e-3;  // share of the time; nearer by, rounding loses a force that sets in with a high power of it
+  constexpr double beside =
+      1e-3;  // share of the time; at smaller distances rounding hides a force that grows with a high power of the distance
   constexpr int bits = 30;
   const double from = at(begin), to = at(end);
   if ((from > 0) == (to > 0)) {
@@ -121,7 +122,7 @@ void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin
   follow_way(followed, at, begin, from, end, to);
 }
 
-// Over a time in which the margin changes sign once at most.
+// Records an interval in which the margin changes sign once at most.
 template <class Margin>
 void ElectricalRecord::follow_way(Followed& followed, const Margin& at, double begin, double from, double end, double to) const {
   set(followed, from > 0, begin);

@@ -1,13 +1,14 @@
 // The times at which the connection of a switch is electrically closed: while its contact force is above a value, or its
-// resistance below one, or both (Device::electrical); while it is in touch where neither is given.
+// resistance below one, or both (Device::electrical); while it is in touch when neither value is given.
 //
-// The force of the connection is the least of the contacts that make it, or with Connection::any the largest. Its resistance is
-// that of those contacts in series, or side by side (model/contact/resistance.h). A margin that is positive while it is closed is
-// a continuous function of the motion within a step: its changes of sign are located on that motion, as the events of the
-// contacts are. The margin is looked at after every piece of the step, where a contact turns back, and at an extremum in between
-// that the slopes at both ends show. Along a pad the force goes in a straight line.
+// The force of the connection is the least force of the contacts that make it, or with Connection::any the largest. Its
+// resistance is that of those contacts in series, or side by side (model/contact/resistance.h). A margin that is positive while
+// the connection is closed is a continuous function of the motion within a step. Its changes of sign are located on that
+// motion, as the events of the contacts are. The margin is evaluated after every piece of the step, where a contact turns back,
+// and at an extremum in between that the slopes at both ends reveal. Along a pad the force is taken as linear between these
+// times.
 //
-// An opening counts when it is longer than ElectricalClosing::after; one that is shorter is as if it had not been.
+// An opening counts when it is longer than ElectricalClosing::after; a shorter one is ignored.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +26,7 @@
 
 namespace softland {
 
-/// A contact in a step: its motion, its place at the begin of the step's last piece and at the end, the state of its law, and
+/// A contact in a step: its motion, its place at the start of the step's last piece and at the end, the state of its law, and
 /// whether it is at or below the plane of first touch.
 struct ContactInStep {
   StepMotion& motion;
@@ -37,14 +38,14 @@ struct ContactInStep {
 
 class ElectricalRecord {
  public:
-  /// Keeps references. An observer that follows the state is told every change of it.
+  /// Keeps references. An observer whose follows_state() is true receives every change of the state.
   ElectricalRecord(const Switch& model, ClosingObserver& observer);
 
-  /// Takes a step between two times [s] in which every contact stays in the state of its law.
+  /// Adds a step between two times [s] in which every contact stays in the state of its law.
   void take(double begin, double end, std::span<const ContactInStep> contacts);
-  /// Takes a time [s] in which the plate rests on its rigid contact, under a force [N] that is a function of the time.
+  /// Adds a time [s] in which the plate rests on its rigid contact, under a force [N] that is a function of the time.
   void take_rest(double begin, double end, const std::function<double(double)>& force);
-  /// The closing has ended at this time [s]: what is taken after it changes no outcome.
+  /// Ends the closing at this time [s]: no later change of the state affects an outcome.
   void finish(double time);
 
   [[nodiscard]] const ElectricalOutcome& connection() const { return followed_.front().outcome; }
@@ -81,7 +82,7 @@ class ElectricalRecord {
   ClosingObserver& observer_;
   ElectricalClosing closing_;
   std::vector<ContactResistance> resistances_;
-  std::vector<Followed> followed_;  // the connection, and of several contacts each
+  std::vector<Followed> followed_;  // the connection, then, if there are several, each contact
   bool is_finished_ = false;
 };
 

@@ -90,8 +90,8 @@ void EnergyAudit::step(const Knot& here, const Knot& next, double dissipation_at
   }
 }
 
-// Returns the mean power over a step at whose end it is `at_end`. The modes may turn by two radians in it, their power by four.
-// A compressible film has no motion that is exact for the modes.
+// Returns the mean power over a step at whose end it is `at_end`. The phases of the modes may advance by two radians in a step,
+// and those of the power by four. A compressible film has no motion that is exact for the modes.
 double EnergyAudit::mean_dissipation(double at_end, StepMotion& motion, bool implicit) {
   const auto power = [&](const std::vector<double>& state) {
     return equations_.dissipation(state.data()) + contact_dissipation(state.data());
@@ -123,7 +123,7 @@ double EnergyAudit::above_rest(const Knot& here) {
          impacts_ + model_.film_energy(q, equations_.workspace());
 }
 
-// Stored are the potential and, where a source holds a charge at its voltage, V Q.
+// The stored energy is the potential plus V Q for each charge that a source holds at its voltage.
 void EnergyAudit::settle(const Knot& here) {
   const double* q = here.state.data();
   const std::span<const double> values = drives_.values(here.time);

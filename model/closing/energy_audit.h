@@ -6,8 +6,8 @@
 // Q = C (V - V0) is the charge of an electrode, V0 the voltage of a charge on its dielectric; its field stores C (V - V0)^2/2 +
 // V0 Q.
 //
-// The bracket is taken over each stretch between breakpoints, the integral of Q dV by Simpson's rule where a voltage changes.
-// Changing a force factor moves no charge: its work is that integral alone. Dissipation is integrated by Simpson's rule over
+// The bracket is taken over each stretch between breakpoints, the integral of Q dV by Simpson's rule where a voltage changes. A
+// change of a force factor moves no charge: its work is the integral alone. Dissipation is integrated by Simpson's rule over
 // each step. Once the residual exceeds 1e-4 of the bending energy, Lobatto's rule with four points integrates it over a motion
 // that is exact for the modes.
 #pragma once
@@ -22,24 +22,24 @@ namespace softland {
 
 class EnergyAudit {
  public:
-  /// Keeps references. The switch is at rest at `start`, under its drives' values before t = 0 or on its contact; there they
-  /// are charged at once.
+  /// Keeps references. The switch is at rest at `start`, under its drives' values before t = 0 or on its contact; its
+  /// electrodes are charged there at once.
   EnergyAudit(const Switch& model, DriveCourse& drives, ContactPhases& phases, ClosingEquations& equations, const Knot& start);
 
-  /// Moves all drives to the pieces that hold after `here`; a jump charges its electrode at fixed deflection, the limit of ever
-  /// steeper edges.
+  /// Moves all drives to the pieces that are valid after `here`; a jump charges its electrode at fixed deflection, the limit of
+  /// ever steeper edges.
   void enter_stretch(const Knot& here, bool first);
-  /// Takes a step between two knots.
+  /// Adds a step between two knots.
   void step(const Knot& here, const Knot& next, double dissipation_at_end, StepMotion& motion, bool implicit);
-  /// Takes a time in which the drives change while nothing moves.
+  /// Adds a time in which the drives change while nothing moves.
   void rest(const Knot& here, double until);
-  /// Takes an impact on a rigid contact that has left the switch in a state of this dissipation [W].
+  /// Adds an impact on a rigid contact that has left the switch in a state of this dissipation [W].
   void impact(double lost, double dissipation);
 
-  /// Settles the balance at a knot.
+  /// Computes the residual of the balance at a knot.
   void settle(const Knot& here);
   [[nodiscard]] const EnergyBalance& balance() const { return balance_; }
-  /// Returns the largest residual of all settled balances [J]; NaN once one was NaN.
+  /// Returns the largest residual at all knots of settle() [J]; NaN once one was NaN.
   [[nodiscard]] double error() const { return error_; }
   /// Returns the energy of the moving switch plus what impacts on a rigid contact have dissipated [J].
   [[nodiscard]] double above_rest(const Knot& here);
@@ -63,7 +63,7 @@ class EnergyAudit {
   ClosingEquations& equations_;
   std::size_t modes_;
   double rest_energy_;      // energy stored at the start [J]
-  double source_work_ = 0;  // work without the charges that are on the drives now [J]
+  double source_work_ = 0;  // work of the sources without V Q of the charges that are on the electrodes now [J]
   double dissipated_ = 0;   // [J]
   double dissipation_ = 0;  // dissipation at the last knot [W]
   double impacts_ = 0;      // energy lost in impacts [J]

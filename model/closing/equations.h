@@ -1,4 +1,4 @@
-// The switch under its drives and in its contact phase, as an integrator sees it.
+// The equations of motion of the switch under its drives and in its contact phase, for an integrator.
 #pragma once
 
 #include "integrators/stepper.h"
@@ -11,23 +11,23 @@ namespace softland {
 
 class ClosingEquations {
  public:
-  /// Keeps references. `phase_decides`: the state of a contact law is that of its phase; otherwise that of the position,
-  /// whatever the phase.
+  /// Keeps references. If `phase_decides`, the state of a contact law is that of its phase; otherwise it is that of the
+  /// position, whatever the phase.
   ClosingEquations(const Switch& model, DriveCourse& drives, ContactPhases& phases, bool phase_decides);
   ClosingEquations(const ClosingEquations&) = delete;
   ClosingEquations& operator=(const ClosingEquations&) = delete;
 
   [[nodiscard]] const OdeSystem& system() const { return system_; }
-  /// Computes all rates but q' of a state at time t, with the contact law in the state of the phase.
+  /// Computes the rates of a state except q' at time t, with the contact law in the state of the phase.
   void rates(double t, const double* state, double* result) { rates(t, state, phases_.states(), result); }
   void rates(Knot& knot) { rates(knot.time, knot.state.data(), knot.rates.data()); }
-  /// Returns figures in the field of the last evaluation, which must have been at this state up to a shift by rounding.
+  /// Returns figures in the field of the last evaluation, whose state must have been this one up to rounding.
   [[nodiscard]] FieldFigures field(const double* state);
   /// Returns the dissipation by gas, film and modal damping in any state [W]; overwrites the field.
   [[nodiscard]] double dissipation(const double* state) {
     return model_.dissipated_power(state, state + modes_, work_, film_of(state));
   }
-  /// Returns the workspace in which electrical and elastic energies of a state are computed; they overwrite the field.
+  /// Returns the workspace in which electrical and elastic energies of a state are computed, which overwrites the field.
   [[nodiscard]] Switch::Workspace& workspace() { return work_; }
   [[nodiscard]] long evaluations() const { return evaluations_; }
 

@@ -4,7 +4,7 @@ namespace softland {
 namespace {
 
 // Returns the time in [from, to] at which the contact point first crosses an edge outwards. The motion is monotone between its
-// turns, so that no crossing hides between two others.
+// turning points, so that two of these never enclose more than one crossing.
 std::optional<double> crossing(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const Edge& edge) {
   const double side = edge.side;
   const Quintic::Bounds reached = tip.bounds();
@@ -16,7 +16,7 @@ std::optional<double> crossing(const TipMotion& tip, const TrajectoryPoint& from
     return at < 0;
   };
   const auto found = [&](double outside) {
-    // A touch without depth is over before it began. Just after an event the motion starts on the edge.
+    // Just after an event the motion starts on the edge. When it is not inside the phase anywhere, the phase ends at once.
     return depth(inside) > 0 ? bracketed_zero(depth, inside, outside) : inside;
   };
   for (const double turn : tip.turns()) {

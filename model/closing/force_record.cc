@@ -26,7 +26,7 @@ bool rises_with_depth(const Switch& model, std::size_t contact) {
 ForceRecord::ForceRecord(const Switch& model, double threshold, std::size_t contact)
     : model_(model), contact_(contact), threshold_(threshold), rises_with_depth_(rises_with_depth(model, contact)) {}
 
-// Slopes at both ends towards the same side reveal an extremum of the force in between.
+// An extremum of the force lies in between when the force rises from both ends, or falls from both.
 template <class Force>
 void ForceRecord::follow_way(const Force& force, double begin, double from, double end, double to) {
   constexpr double beside = 1e-6;  // share of the time
@@ -43,7 +43,7 @@ void ForceRecord::follow_way(const Force& force, double begin, double from, doub
   follow(force, turn, there, end, to);
 }
 
-// Follows the force over a time in which it only rises or only falls.
+// Adds a time over which the force only rises or only falls.
 template <class Force>
 void ForceRecord::follow(const Force& force, double begin, double from, double end, double to) {
   has_fallen_ = has_fallen_ || (has_risen_ && to < from);
@@ -59,7 +59,7 @@ void ForceRecord::follow(const Force& force, double begin, double from, double e
   }
 }
 
-// Returns the least force, which is 0 up to the rounding of the place where a contact opens.
+// Returns the least force, which is 0 up to the rounding error of the position at which a contact opens.
 double ForceRecord::least() const {
   constexpr double rounding = 1e-12;
   const double least = has_fallen_ ? least_ : last_;

@@ -1,10 +1,10 @@
 // The contact force of a closing after the first touch: the time from which it stays above a threshold, and its least value
 // afterwards.
 //
-// Between knots the force is that of the contact law along the motion of the contact point. It is linear along a pad, and for a
-// plate at rest on a rigid contact. Out of contact it is that of a law that acts beyond the plane, else 0. Extremes are located
-// at knots and where the contact point turns back, which suffices for laws that press harder with depth. For others, which pull
-// or are damped, they are located between these too.
+// Between knots the force is that of the contact law along the motion of the contact point. It is taken as linear along a pad,
+// and for a plate at rest on a rigid contact. Out of contact it is that of a law that acts beyond the plane, else 0. Extremes
+// are located at knots and where the contact point turns back, which suffices for laws whose force grows with depth. For other
+// laws, which pull or are damped, they are located between these times too.
 #pragma once
 
 #include <limits>
@@ -20,12 +20,12 @@ class ForceRecord {
   /// Records one of the contacts. Keeps a reference. `threshold` [N]; NaN for none.
   ForceRecord(const Switch& model, double threshold, std::size_t contact = 0);
 
-  /// Takes a piece of a step after the first touch, under a contact law in this state.
+  /// Adds a piece of a step after the first touch, under a contact law in this state.
   void take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law);
-  /// Takes a time after the first touch over which the force changes linearly from one value to the other.
+  /// Adds a time after the first touch over which the force changes linearly from one value to the other.
   void take_line(const TrajectoryPoint& from, const TrajectoryPoint& to);
 
-  /// Marks that a maximum has passed: the contact has opened, or an impact on a rigid one is over.
+  /// Marks that a maximum of the force has passed: the contact has opened, or an impact on a rigid contact is over.
   void pass_maximum() { has_fallen_ = true; }
 
   /// Returns Trajectory::steady_force_time [s].
@@ -36,7 +36,7 @@ class ForceRecord {
  private:
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-  /// Follows a time over which the contact point moves in one direction.
+  /// Adds a time over which the contact point moves in one direction.
   template <class Force>
   void follow_way(const Force& force, double begin, double from, double end, double to);
   template <class Force>

@@ -8,8 +8,8 @@ namespace softland {
 
 struct Knot {
   double time = 0;            ///< [s]
-  std::vector<double> state;  ///< q, v, then the film where it is compressible
-  std::vector<double> rates;  ///< rates of all but q: q'', then those of the film
+  std::vector<double> state;  ///< q, v, then the film if it is compressible
+  std::vector<double> rates;  ///< rates of all states but q: q'', then those of the film
 };
 
 /// The figures of the gap field at a knot that the closing needs. They are taken from the workspace as soon as the knot is

@@ -1,4 +1,4 @@
-// Who receives the course of a closing: all of it, or only what figures are made of.
+// The interface through which a closing passes on its motion: its knots and touches, and more when an observer asks for it.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@ namespace softland {
 /// Event of the contact point between two steps.
 struct PhaseChange {
   enum class Kind {
-    edge,    ///< it crosses `level`
-    turn,    ///< it turns back while it loads a contact with memory
-    impact,  ///< it strikes a rigid contact and rebounds
-    rests,   ///< an impact after which it stays
-    leaves   ///< the rigid contact that it has rested on
+    edge,    ///< the contact point crosses `level`
+    turn,    ///< the contact point turns back while it loads a contact with memory
+    impact,  ///< the contact point strikes a rigid contact and rebounds
+    rests,   ///< the contact point stays on a rigid contact after an impact
+    leaves   ///< the contact point leaves the rigid contact on which it has rested
   };
   Kind kind = Kind::edge;
   double level = 0;  ///< level of the edge [m]
@@ -27,28 +27,29 @@ struct PhaseChange {
 class ClosingObserver {
  public:
   virtual ~ClosingObserver() = default;
-  /// The next knot, in order of time. Knots are handed over step by step, once nothing changes them any more.
+  /// Receives the next knot, in order of time. A knot is passed on once no event can change it any more.
   virtual void knot(const TrajectoryPoint&) {}
-  /// A touch that is over, or at the end of the run the one that holds, whose end is NaN.
+  /// Receives a touch that is over, or, at the end of the run, a touch that has not ended, whose end is NaN.
   virtual void touch(const Touch&) {}
-  /// Who receives knots and touches of one contact of several, while this observer receives those of the connection that they
-  /// make; null: nobody does. A switch with one contact does not ask.
+  /// Returns the observer of knots and touches of one contact of several, while this observer receives those of the connection
+  /// that the contacts make; null for none. It is not called for a switch with one contact.
   [[nodiscard]] virtual ClosingObserver* contact(std::size_t /*number*/) { return nullptr; }
-  /// Returns whether the observer asks when the switch is electrically closed (model/closing/electrical_record.h).
+  /// Returns true when the observer asks when the switch is electrically closed (model/closing/electrical_record.h).
   [[nodiscard]] virtual bool follows_state() const { return false; }
-  /// From this time [s] on the connection, or of several contacts the one of this number, is closed or open. It is open until
-  /// the first call. The calls of each are in order of time, and go on after ClosingOptions::opens_at.
+  /// Receives the state, closed or open, that begins at this time [s]: of the connection, or of the contact of this number when
+  /// there are several. Before the first call the state is open. The calls of each are in order of time, and go on after
+  /// ClosingOptions::opens_at.
   virtual void state(std::optional<std::size_t> /*contact*/, bool /*is_closed*/, double /*time*/) {}
-  /// Whether the observer follows the motion of all modes; then it is told every step and what happens between steps, in order
-  /// of time. Of several contacts it is told the state of the first, which does not say all that acts.
+  /// Returns true when the observer needs the motion of all modes. It then receives every step and the events between steps, in
+  /// order of time. It receives the state of the first contact only, which does not describe all forces of several contacts.
   [[nodiscard]] virtual bool follows_motion() const { return false; }
-  /// A step under a contact law in this state.
+  /// Receives a step under a contact law in this state.
   virtual void step(const Knot& /*begin*/, const Knot& /*end*/, const ContactState& /*contact*/) {}
-  /// Tells whether the observer wants the energies where a stretch of the drives ends.
+  /// Returns true when the observer needs the energies at the end of each stretch of the drives.
   [[nodiscard]] virtual bool takes_energies() const { return false; }
-  /// Of the run so far, at a breakpoint of the drives before what they do there [s].
+  /// Receives the energy balance of the run so far, at a breakpoint of the drives before their values change there [s].
   virtual void energies(double /*time*/, const EnergyBalance& /*balance*/) {}
-  /// Takes an event at the knot that the next step starts from.
+  /// Receives an event at the knot from which the next step starts.
   virtual void pass(const Knot& /*here*/, const PhaseChange& /*change*/) {}
 
  protected:

@@ -1,4 +1,4 @@
-// The course of the contact point as it is found: knots of the present step wait until nothing changes them any more.
+// The motion of the contact point during a run: knots of the present step wait until no event can change them any more.
 #pragma once
 
 #include <algorithm>
@@ -19,11 +19,11 @@ class Course {
         observer_(observer) {}
 
   void push(const TrajectoryPoint& point) { waiting_.push_back(point); }
-  /// Returns the last of all knots, handed over or waiting.
+  /// Returns the last of all knots, passed on or waiting.
   [[nodiscard]] const TrajectoryPoint& last() const { return waiting_.empty() ? handed_over_ : waiting_.back(); }
-  /// Returns the last waiting knot, to be corrected.
+  /// Returns the last waiting knot, for a correction.
   [[nodiscard]] TrajectoryPoint& last_waiting() { return waiting_.back(); }
-  /// Removes the waiting knots from this time on.
+  /// Removes the waiting knots from time `from` on.
   void take_back(double from, double step_begin) {
     while (!waiting_.empty() && waiting_.back().time >= from && waiting_.back().time > step_begin) waiting_.pop_back();
   }
@@ -35,7 +35,7 @@ class Course {
     if (!waiting_.empty()) handed_over_ = waiting_.back();
     waiting_.clear();
   }
-  /// Returns the largest squeeze number of the gas film at the contact point so far; 0 where the gas law has no limit for it.
+  /// Returns the largest squeeze number of the gas film at the contact point so far; 0 when the gas law has no limit for it.
   [[nodiscard]] double largest_squeeze() const { return largest_squeeze_; }
 
  private:

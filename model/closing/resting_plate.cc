@@ -25,7 +25,7 @@ RestingPlate::Impact RestingPlate::strike(Knot& here) {
   double &q = here.state[0], &v = here.state[1];
   Impact impact{.energy = model_.basis().kinetic_energy(&v)};
   const double speed = contact.restitution * std::max(0.0, v * shape);
-  q = plane / shape;  // the position error of events would add up over many impacts
+  q = plane / shape;  // position errors of events would add up over many impacts
   v = 0;
   impact.rests = RigidContact::rests(speed, press(here, here.time) * shape * shape, plane);
   if (!impact.rests) v = -speed / shape;
@@ -34,7 +34,7 @@ RestingPlate::Impact RestingPlate::strike(Knot& here) {
 }
 
 void RestingPlate::begin(Knot& here, double stretch_end) {
-  constexpr double looks = 32;  // evaluations of a stretch without sines
+  constexpr double looks = 32;  // evaluations of the drives in a stretch without oscillations
   force_ = here.rates[0] / model_.basis().contact_shape()[0];
   here.rates[0] = 0;
   look_ = std::min((stretch_end - here.time) / looks, drives_.resolving_step(here.time));
@@ -46,7 +46,7 @@ RestingPlate::Stay RestingPlate::stay(const Knot& here, double stretch_end) {
   if (pressed && next < 0) {
     const double last = t;
     t = bracketed_zero([&](double at) { return press(here, at); }, here.time, last);
-    // Stop on the side where the force pulls: the plate must not be found resting at the moment it leaves.
+    // Stop on the side on which the force pulls: a plate at rest at the time at which it leaves would rest again.
     for (double more = 1e-15 * last; (next = press(here, t)) >= 0; more *= 2) t = std::min(last, t + more);
   }
   force_ = next;

@@ -11,7 +11,7 @@ namespace softland {
 
 class RestingPlate {
  public:
-  /// Keeps references. Only force() may be called without a rigid contact.
+  /// Keeps references. Without a rigid contact only force() may be called.
   RestingPlate(const Switch& model, DriveCourse& drives, ClosingEquations& equations);
 
   struct Impact {
@@ -19,22 +19,22 @@ class RestingPlate {
     double lost = 0;    ///< energy lost in the impact [J]
     bool rests = false;
   };
-  /// Handles the arrival of the plate at the plane of first touch: puts it there with its rebound velocity, or at rest where
-  /// the rebound would be too low.
+  /// Handles the arrival of the plate at the plane of first touch: the plate is then on the plane with its rebound velocity, or
+  /// at rest when the rebound would be too low.
   Impact strike(Knot& here);
 
   /// Begins a rest from this knot, whose rates are known, to the end of the stretch at most.
   void begin(Knot& here, double stretch_end);
   struct Stay {
     double until = 0;     ///< [s]
-    bool leaves = false;  ///< true when the drives pull it off then
+    bool leaves = false;  ///< true when the drives pull the plate off at that time
   };
-  /// Rests for a while, and no longer than the plate is pressed on.
+  /// Continues the rest for a while, at most as long as a force presses the plate on the contact.
   Stay stay(const Knot& here, double stretch_end);
   /// Returns the force on the contact while the plate rests [N].
   [[nodiscard]] double force() const { return force_ > 0 ? force_ : 0; }
-  /// Returns the force with which the plate would press on the contact at `here` under the drives of another time [N];
-  /// negative: pull.
+  /// Returns the force with which the plate would press on the contact at `here` under the drives of time t [N]; negative when
+  /// it would be pulled off.
   [[nodiscard]] double press(const Knot& here, double t);
 
  private:

@@ -1,9 +1,9 @@
 // Motion of the switch within one step of the integrator: of the contact point, in pieces short enough for one quintic each,
 // and of all coordinates at single instants.
 //
-// Explicit methods take steps of up to two radians of the fastest mode: within them the modes move freely and a quintic adds
-// what the force changes (integrators/modal_motion.h). Longer steps come from an implicit method: one Hermite polynomial covers
-// them.
+// Explicit methods take steps of up to two radians of the fastest mode: within a step the modes move freely and a quintic adds
+// the effect of the change of the force (integrators/modal_motion.h). Longer steps come from an implicit method: one Hermite
+// polynomial covers each of them.
 #pragma once
 
 #include <vector>
@@ -19,12 +19,11 @@ namespace softland {
 class StepMotion {
  public:
   /// `tolerance` is that of the integrator: the quintic of a piece has an error of the same share of the fastest mode's
-  /// amplitude, at most 1e-5. `contact` is the contact whose place is the contact point.
+  /// amplitude, at most 1e-5. The place of `contact` is the contact point.
   StepMotion(const Switch& model, double tolerance, std::size_t contact = 0);
 
-  /// Considers the step between two knots; `end` is the contact point at its end. Keeps references to the knots.
-  /// `accurate_rates`: true when accelerations at the knots may be used; those of an implicit method may be its errors times
-  /// the stiffness.
+  /// Sets the step between two knots; `end` is the contact point at its end. Keeps references to the knots. `accurate_rates` is
+  /// true when accelerations at the knots may be used; those of an implicit method may be its errors times the stiffness.
   void set(const Knot& begin, const Knot& end_knot, const TrajectoryPoint& end, bool accurate_rates);
 
   [[nodiscard]] bool moves_by_modes() const { return moves_by_modes_; }
@@ -33,12 +32,13 @@ class StepMotion {
   [[nodiscard]] double length() const { return end_->time - begin_->time; }
   /// Returns the contact point after k pieces, 1 <= k < pieces().
   [[nodiscard]] const ModalMotion::Sample& knot(int k) { return motion().knot(k); }
-  /// Returns the contact point at a time in the step [s]. Call it only where moves_by_modes().
+  /// Returns the contact point at a time in the step [s]. Call this only if moves_by_modes().
   [[nodiscard]] ModalMotion::Sample at(double time) { return motion().at(time - begin_->time); }
 
-  /// Returns q, v and film halfway through the step by Hermite interpolation; valid until the next call of this or state_at().
+  /// Returns q, v and film halfway through the step by Hermite interpolation; valid until the next call of halfway() or
+  /// state_at().
   const std::vector<double>& halfway();
-  /// Returns q and v after a share of the step as the modes move. Call it only where moves_by_modes(), and without a
+  /// Returns q and v after a share of the step, moved by the modes. Call this only if moves_by_modes(), and without a
   /// compressible film.
   const std::vector<double>& state_at(double share);
 

@@ -13,20 +13,20 @@
 namespace softland {
 namespace {
 
-// An explicit method gives way to an implicit one when stability holds it back in one check after the other. A thick film in a
-// gap that is nearly closed makes every step such a step. In other closings they come and go, a dozen in a row at the most. A
-// damped contact that rattles may show ninety in a row, so that some such runs change over without need.
+// An explicit method is replaced by an implicit one when stability limits its steps in many checks in a row. A thick film in a
+// gap that is nearly closed limits every step. Other closings have a dozen of such steps in a row at the most. A damped contact
+// that rattles may have ninety in a row, so that some such runs change without need.
 constexpr double held_back = 2;  // Stepper::stiffness()
 constexpr long steps_to_look = 100;
 // The conditions under which an implicit method takes over.
 struct TakeOver {
-  int looks = 50;  // number of such checks in a row after which it takes over
-  // Share of the tolerance: an explicit method with a hundred times the steps had errors far below its own.
+  int looks = 50;  // number of such checks in a row after which the implicit method takes over
+  // Share of the tolerance: an explicit method with a hundred times the steps had errors far below its tolerance.
   double tolerance = 0.01;
 };
 
-// A film that is squeezed out along the face of a dielectric stays as stiff as it has become. There the kinks of the face, at
-// one point after the other, keep the steps short, not the tolerance.
+// A film that is squeezed out along the face of a dielectric stays as stiff as it has become. The kinks of the face, at one
+// point after the other, and not the tolerance, then limit the steps.
 TakeOver take_over(const Device& device) {
   return device.lands_along_face() && device.gas ? TakeOver{.looks = 2, .tolerance = 1} : TakeOver{};
 }
@@ -100,7 +100,7 @@ bool Stepping::fail(const std::string& why) {
   return false;
 }
 
-// A law that acts beyond the plane changes over lengths like those of penetration.
+// A law that acts beyond the plane changes over lengths like those of the penetration.
 const std::vector<double>& Stepping::tolerances() const {
   const bool touching = !parts_.options.restart_at_contact || std::ranges::any_of(parts_.contacts, [](const FollowedContact& c) {
     return c.phase.in_contact() || c.phase.phase() == Phase::near;
@@ -142,7 +142,7 @@ std::optional<Stepping::Step> Stepping::advance(double stop, EnergyAudit& audit)
   if (!stepper_->step(stop)) return failed(stepper_->message());
   ++work_.steps;
   take_state();
-  if (!std::isfinite(next_.rates[0])) return failed("the motion is no longer finite");
+  if (!std::isfinite(next_.rates[0])) return failed("the computed motion is not finite");
   if (next_.time < stop) last_step_ = next_.time - here_.time;
 
   consider_step();
@@ -151,7 +151,7 @@ std::optional<Stepping::Step> Stepping::advance(double stop, EnergyAudit& audit)
   if (step.event) {
     if (!step_again(*step.event)) return std::nullopt;
     consider_step();
-    // The event may have moved before knots on the way to it.
+    // The event may lie before knots that were added on the way to it.
     for (FollowedContact& c : parts_.contacts) c.course.take_back(next_.time, here_.time);
   }
   step.field = parts_.equations.field(next_.state.data());
@@ -164,14 +164,14 @@ std::optional<Stepping::Step> Stepping::advance(double stop, EnergyAudit& audit)
   return step;
 }
 
-// Takes the integrator's state as next_.
+// Reads the integrator's state into next_.
 void Stepping::take_state() {
   next_.time = stepper_->time();
   std::copy_n(stepper_->state(), next_.state.size(), next_.state.begin());
   std::copy_n(stepper_->rates(), next_.rates.size(), next_.rates.begin());
 }
 
-// Takes next_ for the end of the step from here_.
+// Makes next_ the end of the step from here_.
 void Stepping::consider_step() {
   for (FollowedContact& c : parts_.contacts) {
     c.end = parts_.point(c, next_);
@@ -179,7 +179,7 @@ void Stepping::consider_step() {
   }
 }
 
-// Records peaks and energies over the step from here_ to next_, in whose field these figures were found.
+// Records peaks and energies over the step from here_ to next_; `field` are the figures of the field at next_.
 void Stepping::account(const FieldFigures& field, EnergyAudit& audit) {
   if (here_.time == next_.time) return;
   for (FollowedContact& c : parts_.contacts) {
@@ -220,7 +220,7 @@ double Stepping::force_on_line(const FollowedContact& contact, double time) {
   return std::lerp(from.contact_force, to.contact_force, (time - from.time) / (to.time - from.time));
 }
 
-// Follows the contacts through the step from here_ to next_, up to the first event that needs a restart. Returns false where it
+// Moves the contacts through the step from here_ to next_, up to the first event that needs a restart. Returns false when this
 // failed.
 bool Stepping::follow(std::optional<Event>& event) {
   const double until = parts_.contacts.size() > 1 ? first_event_time() : next_.time;
@@ -244,7 +244,7 @@ double Stepping::first_event_time() {
   return first;
 }
 
-// Follows one contact: knots where the interpolant needs them, up to its first event, or to that of another contact.
+// Moves one contact: adds knots where the interpolant needs them, up to its first event, or to that of another contact.
 bool Stepping::follow(FollowedContact& contact, double until, std::optional<Event>& event) {
   StepMotion& motion = contact.motion;
   for (int k = 1; k <= motion.pieces(); ++k) {
@@ -254,11 +254,11 @@ bool Stepping::follow(FollowedContact& contact, double until, std::optional<Even
     if (found && found->time <= until) {
       if (parts_.options.restart_at_contact || !parts_.model.has_contact()) {
         found->contact = contact.number;
-        if (!event) event = found;  // the other of two events at the same time comes next
+        if (!event) event = found;  // of two events at the same time the other one comes next
         return true;
       }
       if (!go_through(contact, *found, tip)) return false;
-      if (found->time < to.time) --k;  // the rest of the piece
+      if (found->time < to.time) --k;  // repeat the rest of the piece
     } else if (to.time > until) {
       return true;
     } else if (k < motion.pieces()) {
@@ -287,8 +287,8 @@ bool Stepping::go_through(FollowedContact& contact, const Event& event, const Ti
 }
 
 // Repeats the last step so that it ends at the event: interpolated velocities would cost an order of accuracy at every touch.
-// The interpolant's error of place exceeds what a stiff contact yields, and would begin or end the touch with an error of
-// energy. Taylor's series corrects it, or Newton's method where the error is large.
+// The interpolant's error of position exceeds the depth of a stiff contact, so that the touch would begin or end with an error
+// of energy. Taylor's series corrects the position, or Newton's method where the error is large.
 bool Stepping::step_again(const Event& event) {
   constexpr int most_corrections = 8;
   const Switch& model = parts_.model;
@@ -317,7 +317,7 @@ bool Stepping::step_again(const Event& event) {
     time -= off / model.contact_deflection(next_.state.data() + n_, event.contact);
   }
   if (!(time > here_.time)) next_ = here_;
-  parts_.equations.rates(next_);  // makes the field belong to next_ again
+  parts_.equations.rates(next_);  // computes the field of next_ again
   return true;
 }
 

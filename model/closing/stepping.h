@@ -1,4 +1,4 @@
-// Steps of the integrator through a closing, each up to the next event of a contact.
+// Steps of the integrator through a closing; each ends at the next event of a contact at the latest.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@ namespace softland {
   return !options.begins_closed.empty() || options.start == StartState::closed;
 }
 /// Returns the equilibrium in which a run starts, under the drives' values before t = 0: an open one unless the options request
-/// another. Empty where it does not exist.
+/// a closed one. Empty when it does not exist.
 [[nodiscard]] std::optional<Eigen::VectorXd> start_of(const Switch& model, std::span<const Signal> signals,
                                                       const ClosingOptions& options);
 
@@ -49,15 +49,15 @@ struct FollowedContact {
   TouchRecord touches;
   ForceRecord force;
   Course course;
-  StepMotion motion;    ///< motion in the step that is considered
-  TrajectoryPoint end;  ///< contact point at the end of that step
+  StepMotion motion;    ///< motion in the present step
+  TrajectoryPoint end;  ///< contact point at the end of the present step
 };
 
 /// The parts of a closing; they keep references to each other.
 struct ClosingParts {
   const Switch& model;
   const ClosingOptions& options;
-  std::optional<Eigen::VectorXd> rest;  ///< equilibrium in which the run starts; none where it does not exist
+  std::optional<Eigen::VectorXd> rest;  ///< equilibrium in which the run starts; none when it does not exist
   DriveCourse drives;
   ContactPhases phases;
   ClosingEquations equations;
@@ -66,7 +66,7 @@ struct ClosingParts {
   std::vector<FollowedContact> contacts;       ///< contacts, at least one: see ContactPhases
   std::optional<ElectricalRecord> electrical;  ///< electrical record, if the device or the observer asks for it
   ClosingObserver& observer;
-  bool closing_is_over = false;  ///< true once ClosingOptions::opens_at is past
+  bool closing_is_over = false;  ///< true after ClosingOptions::opens_at
 
   ClosingParts(const Switch& switch_model, std::span<const Signal> signals, const ClosingOptions& closing_options,
                ClosingObserver& closing_observer)
@@ -96,9 +96,9 @@ struct ClosingParts {
   ClosingParts& operator=(const ClosingParts&) = delete;
 
   [[nodiscard]] FollowedContact& first() { return contacts.front(); }
-  /// Returns whether the electrical state is followed: after the closing is over only for an observer who asks.
+  /// Returns true when the electrical state is computed: after the end of the closing only for an observer that asks for it.
   [[nodiscard]] bool follows_state() const { return electrical && (!closing_is_over || observer.follows_state()); }
-  /// Treats the rest of the run as an opening [s].
+  /// Ends the closing at this time [s]: the rest of the run is an opening.
   void end_closing(double time) {
     if (electrical && !closing_is_over) electrical->finish(time);
     closing_is_over = true;
@@ -107,16 +107,16 @@ struct ClosingParts {
   void record(FollowedContact& contact, const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
   /// Returns the place of a contact at a knot.
   [[nodiscard]] TrajectoryPoint point(const FollowedContact& contact, const Knot& knot) const;
-  /// Continues every contact's course to a knot.
+  /// Continues the motion of every contact to a knot.
   void push(const Knot& knot) {
     for (FollowedContact& c : contacts) c.course.push(point(c, knot));
   }
-  /// Hands over the knots that nothing changes any more.
+  /// Passes on the knots that no event can change any more.
   void hand_over() {
     for (FollowedContact& c : contacts) c.course.hand_over();
     if (connection) connection->hand_over();
   }
-  /// Returns the begin of the first touch of a contact of the near side [s]; NaN before.
+  /// Returns the begin of the first touch of a contact of the near side [s]; NaN before this touch.
   [[nodiscard]] double first_touch() const;
   [[nodiscard]] bool has_touched() const { return !std::isnan(first_touch()); }
 };
@@ -128,15 +128,15 @@ class Stepping {
 
   [[nodiscard]] Knot& here() { return here_; }
   [[nodiscard]] const Work& work() const { return work_; }
-  /// Counts an evaluation of the drives over a resting plate as a step.
+  /// Counts an evaluation of the drives during the rest of a plate as a step.
   void count_step() { ++work_.steps; }
   /// Returns the reason why the last call failed.
   [[nodiscard]] const std::string& message() const { return message_; }
 
-  /// Restarts the integrator from here(), in its present phase. Returns false where it failed.
+  /// Restarts the integrator from here(), in the present phase. Returns false when this failed.
   bool restart();
-  /// Checks that the work is within its bound. From time to time it also checks that the method is the right one, and changes
-  /// to the other if not. Returns false where it failed.
+  /// Checks that the number of steps is within its limit. From time to time it also checks whether the method suits the
+  /// equations, and changes to the other method if not. Returns false when the check failed.
   bool check_work();
 
   struct Step {
@@ -144,7 +144,7 @@ class Stepping {
     std::optional<Event> event;
   };
   /// Integrates from here() to the end of a step, no further than `stop` and the next event that needs a restart. Peaks and
-  /// energies of the step are recorded, its knots wait in the course. Returns none where it failed.
+  /// energies of the step are recorded, its knots wait in the course. Returns none when the step failed.
   std::optional<Step> advance(double stop, EnergyAudit& audit);
 
  private:
@@ -167,7 +167,7 @@ class Stepping {
   std::size_t n_;   // number of modes
   double fastest_;  // angular frequency of the last mode [rad/s]
   Tolerances tolerances_;
-  Knot here_, next_;  // knots of the step that is considered
+  Knot here_, next_;  // knots of the present step
   Work work_;
   std::unique_ptr<Stepper> stepper_;
   double last_step_ = 0;  // last step that no stop cut short [s]

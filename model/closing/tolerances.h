@@ -9,17 +9,17 @@
 
 namespace softland {
 
-/// A mode's coordinate counts as the deflection it causes at the contact point, its velocity as that times its frequency. In
-/// flight the tolerance is relative to the contact gap, in contact to the penetration.
+/// A mode's coordinate counts by the deflection that it causes at the contact point, its velocity by this deflection times the
+/// frequency of the mode. In flight the tolerance is relative to the contact gap, in contact to the penetration.
 struct Tolerances {
   std::vector<double> in_flight, touching;  ///< tolerances of q, v, film
 
   /// Derives the tolerances from a relative one.
   Tolerances(const Switch& model, double relative) {
-    // The relative tolerance is a share of these lengths. The touches after the first magnify errors of the flight, so the
-    // flight has a tighter tolerance than the contact gap itself. With these two numbers a tolerance of 1e-6 holds t_i, v_i and
-    // B_H of the reference closing to four digits. Measured: a tenfold change of the second moves the error of B_H by less than
-    // a tenth of itself, of the first in proportion.
+    // The tolerances are the relative tolerance times these lengths. Later touches magnify errors of the flight, so the length
+    // of the flight is shorter than the contact gap. With these two numbers a tolerance of 1e-6 gives first contact time,
+    // impact velocity and highest rebound of the reference closing to four digits. Measured: a tenfold change of the second
+    // number changes the error of the highest rebound by less than a tenth of itself, one of the first number in proportion.
     constexpr double flight_fraction = 1.0 / 30;   // share of the contact gap
     constexpr double penetrations_in_contact = 1;  // multiple of the static interference that bends the beam by the contact gap
     const double gap = model.contact_gap();
@@ -30,8 +30,8 @@ struct Tolerances {
       std::vector<double> absolute(2 * n + model.film_states(), model.film_states() > 0 ? relative * model.film_scale() : 0);
       for (std::size_t i = 0; i < n; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
-        // A mode that hardly moves the contact point still shakes the rest of the beam: it counts as if it moved the point by a
-        // tenth of the others.
+        // A mode that hardly moves the contact point still shakes the rest of the beam. Its tolerance is that of a mode that
+        // moves the contact point by a tenth of the largest motion.
         const double amplitude = std::max(std::abs(shape[k]), largest / 10);
         absolute[i] = relative * length / amplitude;
         absolute[n + i] = relative * flight_fraction * gap / amplitude * omega[k];

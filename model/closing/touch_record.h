@@ -13,26 +13,26 @@ namespace softland {
 
 class TouchRecord {
  public:
-  /// Keeps references; hands every touch to the observer when it is over.
+  /// Keeps references; passes every touch to the observer when it is over.
   TouchRecord(const Switch& model, std::size_t contact, const ContactPhase& phase, ClosingObserver& observer);
 
   [[nodiscard]] long count() const { return count_; }
-  [[nodiscard]] double first_begin() const { return first_begin_; }      ///< begin of the first touch [s]; NaN before it
+  [[nodiscard]] double first_begin() const { return first_begin_; }      ///< begin of the first touch [s]; NaN before
   [[nodiscard]] double deepest_penetration() const { return deepest_; }  ///< [m]
-  /// Returns the touch under way, or the last one.
+  /// Returns the present touch, or the last one.
   [[nodiscard]] Touch& last() { return touch_; }
 
   /// Begins with the switch in contact, at rest.
   void begin_closed() { begin(0, 0); }
-  /// Notes an event that the contact point has reached, before its next phase begins; returns true when a touch begins.
+  /// Adds an event that the contact point has reached, before its next phase begins; returns true when a touch begins.
   bool note(const Event& event, const TrajectoryPoint& at);
   void end(double time) { touch_.end = time; }
-  /// Takes the peaks of a piece of a step; does nothing outside of contact.
+  /// Adds the peaks of a piece of a step; does nothing outside of contact.
   void take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
-  /// Takes the peaks of a whole step of a damped contact, whose largest force comes before the deepest point, or of a contact
-  /// along a pad, where it comes anywhere about it. Does nothing for other contacts.
+  /// Adds the peaks of a whole step of a damped contact, whose largest force comes before the deepest point, or of a contact
+  /// along a pad, whose largest force comes before or after it. Does nothing for other contacts.
   void take(const Knot& begin, const Knot& end, StepMotion& step);
-  /// Hands over the touch that holds at the end of the run.
+  /// Passes on the touch that has not ended at the end of the run.
   void finish();
 
  private:
