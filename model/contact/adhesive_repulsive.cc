@@ -10,7 +10,7 @@ namespace softland {
 template <>
 double AdhesiveRepulsiveContact::find_touch(const SurfacePressure& law) {
   const AdhesiveRepulsiveContact contact(law, 1, 0);
-  // Search from the reach inwards; at the reach itself the pressure is 0 as well.
+  // Search from the reach inwards; at the reach the pressure is 0 as well.
   constexpr int looks = 4096;
   for (int i = looks - 2; i > 0; --i) {
     const double x = law.reach * i / looks, further = law.reach * (i + 1) / looks;

@@ -1,4 +1,4 @@
-// Contact of rough surfaces as a pressure between them that reaches beyond touch. It has an attraction from afar, a soft wall,
+// Contact of rough surfaces as a pressure between them that acts before they touch: an attraction at a distance, a soft wall,
 // and, once asperities meet, adhesion and a stiff wall.
 //
 //   p(x) = l(x) - l(xr) - l'(xr) (x - xr) + c1 [max(0, dc - x) / 1 nm]^1.5 - c3 max(0, dc + ta - x) / 1 nm

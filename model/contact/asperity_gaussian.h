@@ -8,15 +8,14 @@
 // [m]; R radius [m]; eta summits per area [1/m^2]; An = width x pad length [m^2]; E* effective modulus [Pa]; U stored energy
 // [J]. The law is lossless.
 //
-// The tail is unbounded: some summit is always in touch in this law. Contact begins, by definition, where the mean of the
-// summits is four standard deviations away (three summits in 100 000 are higher). The force there, 1e-5 of that at the mean, is
-// subtracted, so that the force starts from zero. For d < 0 the formula is its own smooth continuation, bounded by that force.
-// Validity: elastic asperities that do not touch each other, many of them in touch, separation above the mean of the summits: d
-// < 4 sigma. Source: Greenwood & Williamson 1966, eq. 15; the constant h0 is our choice.
-//
+// The tail of the heights is unbounded: some summit is always in touch in this law. Contact begins, by definition, where the
+// mean of the summits is four standard deviations away (three summits in 100 000 are higher). The force there, 1e-5 of the
+// force at the mean, is subtracted, so that the force starts from zero. For d < 0 the formula is its own smooth continuation,
+// bounded by the subtracted force. Validity: elastic asperities that do not touch each other, many of them in touch, separation
+// above the mean of the summits: d < 4 sigma. Source: Greenwood & Williamson 1966, eq. 15; the constant h0 is our choice.
 // F_1.5 is tabulated as Taylor series about nodes an eighth apart, from the equation y'' + h y' - n y = 0 that F_n obeys. The
-// series is marched down from h = 14, where the other solution decays, and scaled by the closed form at 0. The relative error
-// is below 1e-11 on [-8, 8] (checked against quadrature); beyond, the power series of |h| holds below and 0 above.
+// series are computed from h = 14 downwards, where the other solution decays, and scaled by the closed form at 0. The relative
+// error is below 1e-11 on [-8, 8] (checked against quadrature); a power series in |h| continues below this range, and 0 above.
 #pragma once
 
 #include <array>

@@ -27,21 +27,22 @@ namespace softland {
 using ContactModel = std::variant<LinearSpring, UniformAsperities, GaussianAsperities, AdhesiveAsperities, HystereticSpring,
                                   PlasticAsperities, RigidStop, AdhesiveRepulsiveSurfaces, OwnContact>;
 
-/// The place where the contact acts: at the pad's centre, or wherever along the pad it is beyond the plane.
+/// The place where the contact acts: at the pad's centre, or at all points of the pad that are beyond the plane.
 enum class ContactDistribution { centre, pad };
 inline constexpr auto contact_distributions =
     std::to_array<Named<ContactDistribution>>({{ContactDistribution::centre, "centre"}, {ContactDistribution::pad, "pad"}});
 static_assert(is_complete<contact_distributions>());
 
-/// Rule for the connection of several contacts: closed while all of those that make it are, or any of them.
+/// Rule for the connection of several contacts: closed while all contacts that make it are closed, or while any of them is.
 enum class Connection { all, any };
 inline constexpr auto connections = std::to_array<Named<Connection>>({{Connection::all, "all"}, {Connection::any, "any"}});
 static_assert(is_complete<connections>());
 
-/// The electrical side of a closed contact: see model/contact/resistance.h. A contact without resistivity has no resistance.
+/// The electrical side of a closed contact: see model/contact/resistance.h. The resistance of a contact without resistivity is
+/// not known.
 struct Conduction {
   double resistivity = std::numeric_limits<double>::quiet_NaN();  ///< rho of both metals [Ohm m]
-  /// H of the softer metal; the hardness of a law which has one [Pa].
+  /// H of the softer metal; by default the hardness of the law, if it has one [Pa].
   double hardness = std::numeric_limits<double>::quiet_NaN();
   double film_resistance = 0;  ///< Rf in series with each contact [Ohm]
   double mean_free_path = 0;   ///< l of the electrons [m]
@@ -55,17 +56,18 @@ struct Contact {
   double pad_length = 0;                                        ///< lt [m]: see Device::contact_position()
   double pad_width = std::numeric_limits<double>::quiet_NaN();  ///< [m]; NaN: the width of the moving part
   std::string name = {};                                        ///< name; empty for the only contact
-  std::optional<Place> at = {};                                 ///< centre of its pad; none: see Device::contact_position()
-  /// Rest distance of its place to its plane [m]; Device::gap has that of the first contact.
+  std::optional<Place> at = {};                                 ///< centre of the pad; none: see Device::contact_position()
+  /// Rest distance of the contact to its plane [m]; Device::gap has that of the first contact.
   double gap = std::numeric_limits<double>::quiet_NaN();
-  Side side = Side::near;   ///< far: a back stop
-  bool along_face = false;  ///< true for the face of a dielectric, wherever the beam is beyond the plane; its law is per area
-  double count = 1;         ///< number of such contacts side by side across the beam
-  bool connects = true;     ///< true when it is one of those that make the connection
+  Side side = Side::near;  ///< far: a back stop
+  bool along_face =
+      false;             ///< true for the face of a dielectric, at all points of the beam beyond the plane; its law is per area
+  double count = 1;      ///< number of such contacts side by side across the beam
+  bool connects = true;  ///< true when the contact is part of the connection
   Conduction conduction = {};
 };
 
-/// True when the law acts per area of the pad, so that a plate needs a width and a length of the pad.
+/// Returns true when the law acts per area of the pad, so that a plate needs a width and a length of the pad.
 [[nodiscard]] inline bool acts_per_area(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {
@@ -73,7 +75,7 @@ struct Contact {
       },
       model);
 }
-/// True when the contact may hold without any voltage.
+/// Returns true when the contact may hold without any voltage.
 [[nodiscard]] inline bool may_stick(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {
@@ -91,8 +93,8 @@ struct Contact {
       },
       model);
 }
-/// Returns the interference up to which the law is physical: all of its asperities touch, or the plane has come down by four
-/// standard deviations of Gaussian ones [m]. It is infinite for a spring.
+/// Returns the interference up to which the law is physical [m]: all asperities touch, or for Gaussian heights the plane has
+/// come down by four standard deviations. It is infinite for a spring.
 [[nodiscard]] inline double largest_interference(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {

@@ -45,7 +45,7 @@ struct KernelsOf<std::variant<Models...>>
     : WithKernels<std::variant<>, decltype(std::declval<const Models&>().law(std::declval<const ContactPad&>()))...> {};
 }  // namespace internal
 
-/// The force of every law of ContactModel: the result of its parameters' law(pad), one or one of several.
+/// A contact law of any kind: the variant of all types that the parameters of ContactModel return by law(pad).
 struct ContactLaw : internal::KernelsOf<ContactModel>::Type {
   using variant::variant;
 };
@@ -84,7 +84,7 @@ concept HasMemory = requires(const Law& law) {
 };
 
 /// Returns the force [N] of a law at interference d in a state in which it acts. `rate()` returns d' [m/s] and is called only
-/// where the law depends on it.
+/// if the law depends on the rate.
 template <class Law, class S, class Rate>
 S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
   if constexpr (HasMemory<Law>) {
@@ -120,7 +120,7 @@ S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
       },
       law);
 }
-/// The memory of a law of its deepest interference; zero for laws without memory.
+/// The dent that a law with memory has left, from its deepest interference; zero for laws without memory.
 struct Dent {
   double shift = 0;    ///< residual interference [m]
   double lost = 0;     ///< energy lost in making the dent [J]
@@ -140,7 +140,7 @@ struct Dent {
 [[nodiscard]] inline bool has_memory(const ContactLaw& law) {
   return std::visit([](const auto& l) { return HasMemory<std::decay_t<decltype(l)>>; }, law);
 }
-/// Returns the power dissipated by a law that depends on the rate [W]; 0 for the others.
+/// Returns the power dissipated by a law that depends on the rate [W]; 0 for other laws.
 [[nodiscard]] inline double contact_dissipation(const ContactLaw& law, double interference, double rate) {
   return std::visit(
       [&](const auto& l) {
@@ -152,7 +152,7 @@ struct Dent {
       },
       law);
 }
-/// Returns how far above the plane of first touch a law acts [m]; 0 for most.
+/// Returns how far above the plane of first touch a law acts [m]; 0 for most laws.
 [[nodiscard]] inline double contact_reach(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {
@@ -161,7 +161,7 @@ struct Dent {
       },
       law);
 }
-/// Returns the interferences beyond touch at which a law is continuous, but not smooth, in order [m]; none for most.
+/// Returns the interferences beyond touch at which a law is continuous, but not smooth, in order [m]; none for most laws.
 [[nodiscard]] inline std::vector<double> contact_kinks(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {
@@ -170,7 +170,7 @@ struct Dent {
       },
       law);
 }
-/// True for a user's own law, which has no exact derivatives.
+/// Returns true for a user's own law, which has no exact derivatives.
 [[nodiscard]] inline bool is_own(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {

@@ -5,7 +5,7 @@
 
 namespace softland {
 
-/// The state of a contact law. Laws without memory know only whether they act. `Yes` is bool, or the mask of a lane of numbers.
+/// The state of a contact law. Laws without memory need only `active`. `Yes` is bool, or the mask of a lane of numbers.
 template <class S, class Yes>
 struct ContactStateOf {
   constexpr ContactStateOf() = default;

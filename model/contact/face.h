@@ -5,22 +5,22 @@
 //
 // p is the pressure of the face on the beam [Pa], d depth [m], h local gap between beam and face, b height above the face from
 // which the pressure acts, k stiffness per area [Pa/m], U energy per length [J/m], a local width [m]. The law is lossless.
-// Source: textbook, a bed of springs (Winkler), and that of the asperities. These stand on the face, with heights up to Hm
-// above it: the beam touches the highest one at h = Hm.
+// Source: textbook, a bed of springs (Winkler), and the source of the law of the asperities. The asperities stand on the face,
+// with heights up to Hm above it: the beam touches the highest asperity at h = Hm.
 //
-// The field below the face of a wall does not grow. The k of a wall is that at which the field of the voltage 2 V1 presses the
-// beam in by a fiftieth of H = t / eps_r + roughness, the smallest gap of the field: own choice. V1^2 = 8 K g^3 / (27 eps0 A)
-// closes parallel plates. K is the stiffness of the beam at the contact point [N/m], g the rest gap of the field, A the area of
-// the faces [m^2].
+// The field below the face of a wall does not grow. The k of a wall is such that the field of the voltage 2 V1 presses the beam
+// in by a fiftieth of H = t / eps_r + roughness, the smallest gap of the field; this is our choice. V1^2 = 8 K g^3 / (27 eps0
+// A) closes parallel plates. K is the stiffness of the beam at the contact point [N/m], g the rest gap of the field, A the area
+// of the faces [m^2].
 //
 // The field keeps growing below the face of a linear bed. A beam on a bed softer than 27 eps0 V^2 / (8 (H + b)^3) collapses
-// onto the electrode, like parallel plates whose springs are at rest where the pressure begins. Asperities hold such plates off
+// onto the electrode, like parallel plates whose springs are relaxed where the pressure begins. Asperities hold such plates off
 // up to a voltage V:
 //
 //   eps0 V^2 / 2 = max over d of p(d) (H + b - d)^2
 //
-// That product has one maximum: p / p' is two thirds of the mean depth of the summits in touch, weighted with its root, which
-// grows with d, while H + b - d falls. Own derivation.
+// This product has one maximum: p / p' is two thirds of the mean depth of the summits in touch, weighted with the root of the
+// depth, and grows with d, while H + b - d falls. Derived here.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@ namespace softland {
   return 27.0 / 8 * vacuum_permittivity * voltage * voltage / (depth * depth * depth);
 }
 
-/// Returns the voltage up to which the face holds plates off, whose springs are at rest where the pressure begins [V].
+/// Returns the voltage up to which the face holds parallel plates off whose springs are relaxed where the pressure begins [V].
 /// `pressure` is a law of elastic contact per area, `depth` is H + b [m].
 template <class Law>
 [[nodiscard]] double most_face_voltage(const Law& pressure, double depth) {

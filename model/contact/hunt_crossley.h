@@ -39,7 +39,7 @@ struct HuntCrossley {
   [[nodiscard]] double energy(double d) const { return elastic.energy(d); }
 };
 
-/// Returns the law with damping, if any.
+/// Returns the law with damping, if the damping is not 0.
 template <class Elastic>
 [[nodiscard]] std::variant<Elastic, HuntCrossley<Elastic>> damped(const Elastic& elastic, double damping) {
   if (damping > 0) return HuntCrossley<Elastic>{.elastic = elastic, .damping = damping};

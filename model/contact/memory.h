@@ -38,7 +38,7 @@ struct ContactWithMemory {
   Elastic elastic = {};
 
   static constexpr bool heals = Heals;              ///< true when the dent is forgotten when contact ends
-  static constexpr bool grows_with_depth = !Heals;  ///< also from touch to touch: a dent that stays is only made deeper
+  static constexpr bool grows_with_depth = !Heals;  ///< true also from touch to touch when a dent stays: it only becomes deeper
 
   /// Returns the force of first loading; energy() returns its work.
   template <class S>

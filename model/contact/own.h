@@ -1,4 +1,4 @@
-// A user's own contact law, written by a program that links softland, beside those that scenes can name.
+// A user's own contact law, written by a program that links softland, besides the laws that scenes can name.
 //
 //   P = force(d, d')        U = energy(d), the integral of force(., 0) from 0 to d
 //
@@ -9,14 +9,15 @@
 //     std::string_view name() const override { return "cubic spring"; }
 //     double force(double d, double) const override { return 1e20 * d * d * d; }
 //   };
-//   device.contacts = {Contact{.model = OwnContact{std::make_shared<const Cubic>()}, .pad_length = 5e-6}};    // or, of a scene,
-//   file.add_contact({.model = OwnContact{std::make_shared<const Cubic>()}, .pad_length = 5e-6});          // which has no
-//   [contact]
+//   const Contact contact{.model = OwnContact{std::make_shared<const Cubic>()}, .pad_length = 5e-6};
+//   device.contacts = {contact};  // for a device
+//   file.add_contact(contact);    // for a scene file without [contact]
 //
 // Rules, which the laws of softland keep as well: force(0, d') = 0. For d > 0 the force is continuous with two continuous
 // derivatives. It is continued smoothly to d < 0, where an integrator evaluates it on its way to the event that ends contact.
-// It has no memory, and nothing acts before first touch. A law that depends on the rate takes energy: (force(d, d') - force(d,
-// 0)) d' >= 0. It is called from several threads at once, and often: some hundred times in a touch. It must not throw.
+// The law has no memory, and nothing acts before first touch. A law that depends on the rate dissipates energy: (force(d, d') -
+// force(d, 0)) d' >= 0. Several threads call the functions at once, and often: some hundred times in a touch. They must not
+// throw.
 //
 // Such a switch is simulated, searched and evaluated under process variation (prepare(), optimize(), robustness()) like any
 // other, one closing at a time instead of several in lanes of vector instructions. Tangents for implicit steps and for statics
@@ -44,10 +45,10 @@ class OwnContactLaw {
   [[nodiscard]] virtual std::string_view name() const = 0;
   /// Returns P [N] at an interference [m] and its rate [m/s].
   [[nodiscard]] virtual double force(double interference, double rate) const = 0;
-  /// True when the force depends on the rate: only then it is evaluated at other rates than 0, and the energy audit counts its
-  /// dissipation.
+  /// Returns true when the force depends on the rate. Only then it is evaluated at other rates than 0, and the energy audit
+  /// counts its dissipation.
   [[nodiscard]] virtual bool depends_on_rate() const { return false; }
-  /// True when the force is negative somewhere, so that the contact may stay closed without any voltage.
+  /// Returns true when the force is negative somewhere, so that the contact may stay closed without any voltage.
   [[nodiscard]] virtual bool pulls() const { return false; }
   /// Returns U [J] at an interference [m]. The default integrates by Gauss points in the root of the interference, exact to
   /// rounding for sums of its half-integer powers.
@@ -106,10 +107,8 @@ struct OwnContact {
 
   static consteval auto fields() { return std::array<Field<OwnContact>, 0>{}; }
   [[nodiscard]] bool sticks() const { return own->pulls(); }
-  /// Returns the rule that it breaks; empty where it breaks none.
-  [[nodiscard]] std::string why_invalid(double) const {
-    return own ? std::string() : "contact: an own law is needed, and none is given";
-  }
+  /// Returns the rule that the law breaks; empty when it breaks none.
+  [[nodiscard]] std::string why_invalid(double) const { return own ? std::string() : "contact: the own law must not be null"; }
   [[nodiscard]] std::variant<internal::OwnContactForce<false>, internal::OwnContactForce<true>> law(const ContactPad&) const {
     if (own->depends_on_rate()) return internal::OwnContactForce<true>{own};
     return internal::OwnContactForce<false>{own};

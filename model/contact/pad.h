@@ -9,10 +9,10 @@
 // i, of wave number k, departs from its tangent by (k lt)^4 / 24 of its deflection.
 //
 // Gauss points cover the part in contact, whose edge moves with the beam, in the root of the distance from that edge. The
-// half-integer powers of the laws become polynomials, exact while the pad is partly in touch. Measured, relative to the force:
-// 2e-12 where all of it is, 3e-10 for Gaussian summits, 3e-5 where summits are crushed (d > Hm: the law has a corner there).
-// Limits: laws without memory whose force starts from zero; others would keep a dent at every point. Validity: pad much shorter
-// than the beam. Source: textbook.
+// half-integer powers of the laws become polynomials, exact while the pad is partly in touch. Measured errors, relative to the
+// force: 2e-12 when the whole pad is in touch, 3e-10 for Gaussian summits, 3e-5 where summits are crushed (d > Hm: the law has
+// a corner there). Limits: laws without memory whose force starts from zero; a law with memory would keep a dent at every
+// point. Validity: pad much shorter than the beam. Source: textbook. than the beam. Source: textbook.
 #pragma once
 
 #include <algorithm>
@@ -35,14 +35,14 @@ class PadQuadrature {
     }
   }
 
-  /// Calls f(xi, share, interference) for points in the part of the pad that is beyond the plane; the shares add up to that
-  /// part over the pad.
+  /// Calls f(xi, share, interference) for points in the part of the pad that is beyond the plane; the shares add up to the
+  /// length of that part over that of the pad.
   template <class F>
   void over_contact(double end, double slope, F&& f) const {
     const double inner = end - slope * length_, deep = std::max(end, inner);
     if (!(deep > 0)) return;
     const double shallow = std::max(0.0, std::min(end, inner)), rise = deep - shallow;
-    // A pad that lies parallel to the plane is in touch all along.
+    // A pad that lies parallel to the plane is in touch over its whole length.
     const double part = shallow > 0 || rise == 0 ? length_ : rise / std::abs(slope);
     for (std::size_t i = 0; i < count; ++i) {
       const double from_deep = part * (1 - places_[i]);

@@ -32,10 +32,10 @@ namespace softland {
 
 class ContactResistance {
  public:
-  /// Takes a valid contact, whose moving part has this width [m].
+  /// Takes a valid contact of a moving part of this width [m].
   ContactResistance(const Contact& contact, double width);
 
-  /// True when the contact has a resistivity; otherwise its resistance is unknown and must not be requested.
+  /// Returns true when the contact has a resistivity. Otherwise its resistance is unknown and must not be requested.
   [[nodiscard]] bool is_known() const { return is_known_; }
   /// Returns the conductance [S] at an interference [m] under a contact force [N]; 0 when open.
   [[nodiscard]] double conductance(double interference, double force) const;
@@ -57,12 +57,12 @@ class ContactResistance {
   double adhesion_ = 0;  // load that adhesion adds to a summit in touch [N]
 };
 
-/// Returns the resistance of one contact of a device, whose moving part has the width of its sections there.
+/// Returns the resistance of one contact of a device, for the width of the moving part at the contact.
 [[nodiscard]] ContactResistance contact_resistance(const Device& device, std::size_t contact);
 
-/// Returns the conductance [S] of the connection that contacts with these conductances make, in the order of the device.
-/// Contacts that make it are in series where all of them are needed, else side by side. NaN where one of them is NaN, which
-/// means unknown.
+/// Returns the conductance [S] of the connection that contacts with these conductances make, in the order of the device. The
+/// contacts of the connection are in series when all of them are needed, else side by side. Returns NaN when one of their
+/// conductances is NaN, which means unknown.
 [[nodiscard]] double connection_conductance(const Device& device, std::span<const double> conductances);
 
 /// Returns 1 / conductance; NaN for 0: an open contact has no resistance [Ohm].

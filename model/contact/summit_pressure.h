@@ -3,7 +3,7 @@
 //   p / H = 4 E* / (3 pi H) sqrt(d / R)
 //
 // p is the mean pressure of an elastic spot [Pa]; H hardness [Pa]; E* effective modulus [Pa]; d interference of the contact,
-// which that summit has from first touch on [m]; R radius of the summits [m]. Source: Hertz 1882.
+// which the highest summit has from first touch on [m]; R radius of the summits [m]. Source: Hertz 1882.
 //
 // Limits: a summit yields from p / H = 0.4 on (Chang, Etsion & Bogy 1987, with their K = 0.6), and its pressure is the hardness
 // from about 1 on. The number above 0.4 indicates the depth of the dent, in proportion to the square root of d.

@@ -7,7 +7,7 @@
 
 namespace softland {
 
-/// The size of the contact that a law is made for.
+/// The size of a contact, from which a law takes its number of summits.
 struct ContactPad {
   double width = 0;   ///< width [m]; times the number of pads side by side
   double length = 0;  ///< lt [m]
@@ -23,7 +23,7 @@ struct Summits {
 
   /// Returns the number of summits under the pad.
   [[nodiscard]] double count(const ContactPad& pad) const { return density * pad.width * pad.length; }
-  /// Returns the force of all of them over d^1.5, by Hertz [N/m^1.5].
+  /// Returns the force of all summits over d^1.5, by Hertz [N/m^1.5].
   [[nodiscard]] double hertz(const ContactPad& pad) const { return count(pad) * effective_modulus * std::sqrt(radius); }
 
   /// Returns gold on gold, for tests.
@@ -39,7 +39,7 @@ template <class Law>
       {.key = "asperity_density", .unit = "1/m^2", .about = "summits per area", .in = reach<Law, &Law::summits, &Summits::density>, .required = true, .such_as = "1e11 1/m^2"},
   });
 }
-/// Returns the field of its modulus, which follows the heights.
+/// Returns the field of the effective modulus, which comes after the heights.
 template <class Law>
 [[nodiscard]] consteval auto modulus_fields() {
   return std::to_array<Field<Law>>({

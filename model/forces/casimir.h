@@ -6,8 +6,8 @@
 // h is the local gap [m]. eta is the reduction by real metals: 1 for ideal conductors (then u = -pi^2 hbar c / (720 h^3)), see
 // gold_casimir.h for gold. Each cross-section counts as if the beam were straight and flat, at zero temperature (thermal
 // corrections stay below a percent for gaps below 200 nm). Ideal conductors are a limit for gaps well above the plasma
-// wavelength (137 nm for gold): at 20 nm they overestimate gold seven times. Singular at h = 0: the switch ends a run before
-// any gap gets there. Source: H. B. G. Casimir 1948, Proc. K. Ned. Akad. Wet. 51, 793.
+// wavelength (137 nm for gold): at 20 nm they overestimate the force between gold seven times. Singular at h = 0: the switch
+// ends a run before any gap gets there. Source: H. B. G. Casimir 1948, Proc. K. Ned. Akad. Wet. 51, 793.
 #pragma once
 
 #include "model/constants.h"

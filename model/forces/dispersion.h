@@ -10,9 +10,9 @@
 //
 // Van der Waals and Casimir force are limits of one force, so they are never added: below the crossover the van der Waals law
 // is the smaller one, above it the Casimir law. There is one crossover (pi^3 hbar c / (40 A) for ideal conductors, 61 nm at A =
-// 4e-19 J) or, where the Casimir law of a real metal is smaller everywhere, none. The force is continuous there and its slope
-// jumps by a quarter. A run needs no restart for it: every quadrature point crosses at its own time and carries a small part of
-// the load, and step size control absorbs the kink (the energy tests close the balance across it).
+// 4e-19 J) or, where the Casimir law of a real metal is smaller everywhere, none. At the crossover the force is continuous and
+// its slope jumps by a quarter. A run needs no restart there: every quadrature point crosses at its own time and carries a
+// small part of the load, and step size control absorbs the kink (the energy tests close the balance across it).
 #pragma once
 
 #include <cmath>
@@ -48,7 +48,7 @@ struct SmallerOfBoth {
     }
     return 0;
   }
-  // No force depends on how the crossover moves: the force is continuous there.
+  // No force depends on the derivative of the crossover: the force is continuous there.
   [[nodiscard]] P find_crossover() const {
     if constexpr (requires { van_der_waals.hamaker_constant.value; }) {
       return P(crossover_of(van_der_waals.hamaker_constant.value));

@@ -36,7 +36,8 @@ struct ElectrostaticForce {
   [[nodiscard]] double potential(double gap) const { return -capacitance(gap) / 2; }
 };
 
-/// The same force through a dielectric on the electrode: the field crosses h + depth, the local gap being that to its face.
+/// The electrostatic force through a dielectric on the electrode: the field crosses h + depth, where h is the local gap to the
+/// face.
 template <class Law>
 struct ThroughDielectric {
   Law law;

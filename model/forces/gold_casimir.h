@@ -4,16 +4,16 @@
 //   r_TE = (K - k) / (K + k),  r_TM = (eps K - k) / (eps K + k),  k^2 = K^2 + (eps - 1) u^2,  xi = u c / (2 h)
 //   eps(i xi) = 1 + w_p^2 / (xi (xi + gamma)),  hbar w_p = 9 eV,  hbar gamma = 35 meV
 //
-// at zero temperature, without interband terms (they raise the force by some ten per cent below 50 nm). It is stored as a table
-// from 1 nm to 10 um. A cubic spline in h between its knots, clamped to the integral's own slopes at the ends, makes force and
-// stiffness smooth; it is within 2e-5 of the integral. Outside it continues with the same value and slope (1 - eta within 1 %
-// at 20 um):
+// The formula is for zero temperature, without interband terms (they raise the force by some ten per cent below 50 nm). eta is
+// stored as a table from 1 nm to 10 um. A cubic spline in h between its knots, clamped to the integral's own slopes at the
+// ends, makes force and stiffness smooth; it is within 2e-5 of the integral. Outside the table eta continues with the same
+// value and slope (1 - eta within 1 % at 20 um):
 //
 //   h < h_1: eta = n_0 x + n_1 x^2, x = h / h_1      p ~ h^-3, the van der Waals limit
 //   h > h_n: eta = 1 - f_0 x^(-1/2) - f_1 / x, x = h / h_n      the skin depth of a metal with losses grows like h^(1/2)
 //
-// Gold touches itself long before 1 nm matters. Sources: E. M. Lifshitz 1956, Sov. Phys. JETP 2, 73, eq. 2.9; Drude parameters
-// of gold: A. Lambrecht & S. Reynaud 2000, Eur. Phys. J. D 8, 309.
+// Gold touches itself before a gap of 1 nm matters. Sources: E. M. Lifshitz 1956, Sov. Phys. JETP 2, 73, eq. 2.9; Drude
+// parameters of gold: A. Lambrecht & S. Reynaud 2000, Eur. Phys. J. D 8, 309.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ class GoldFactor {
   /// Returns the table, computed at first use.
   [[nodiscard]] static const GoldFactor& table();
 
-  /// Returns the piece of a gap: the last one that begins at or below it, the first one below the table.
+  /// Returns the piece of a gap: the last piece that begins at or below the gap; the first piece below the table.
   template <class S>
   [[nodiscard]] const Piece& piece(const S& h) const {
     std::size_t low = 0, high = pieces_.size();
@@ -51,7 +51,7 @@ class GoldFactor {
   [[nodiscard]] double first() const { return pieces_.front().begin; }
   [[nodiscard]] double last() const { return pieces_.back().begin; }
 
-  std::array<double, 2> near = {}, far = {};  ///< n and f of the laws outside the table
+  std::array<double, 2> near = {}, far = {};  ///< coefficients n and f of the formulas outside the table
 
  private:
   GoldFactor();

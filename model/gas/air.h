@@ -6,10 +6,10 @@
 //
 // beta = 1.458e-6 kg/(s m K^(1/2)), S = 110.4 K, mu is the viscosity [Pa s], T temperature [K], p ambient pressure [Pa], R_g =
 // 287 J/(kg K) of air, lambda mean free path [m], h local gap [m], Kn Knudsen number. lambda belongs to the viscosity in use,
-// also where the scene gives that one: 67.00 nm for air at 101325 Pa and 300 K. Other conventions (hard spheres: about 53 nm)
-// differ by 20 %; a scene that needs one gives mean_free_path. Sources: W. Sutherland, Phil. Mag. 36 (1893) 507, with the
-// constants of U.S. Standard Atmosphere, 1976, eq. 51, for 100 to 1900 K; textbook definition of the viscosity-based mean free
-// path.
+// whether a scene gives the viscosity or not: 67.00 nm for air at 101325 Pa and 300 K. Other conventions (hard spheres: about
+// 53 nm) differ by 20 %; a scene that needs one gives mean_free_path. Sources: W. Sutherland, Phil. Mag. 36 (1893) 507, with
+// the constants of U.S. Standard Atmosphere, 1976, eq. 51, for 100 to 1900 K; textbook definition of the viscosity-based mean
+// free path.
 #pragma once
 
 #include <cmath>
@@ -26,11 +26,11 @@ inline constexpr double gas_constant_of_air = 287;  ///< R_g [J/(kg K)]
   return beta * temperature * std::sqrt(temperature) / (temperature + sutherland);
 }
 
-/// Returns mu [Pa s]: as given, or that of air.
+/// Returns mu [Pa s]: the given value, or that of air.
 [[nodiscard]] inline double viscosity(const FilmState& gas) {
   return std::isnan(gas.viscosity) ? air_viscosity(gas.temperature) : gas.viscosity;
 }
-/// Returns lambda [m]: as given, or from viscosity, pressure and temperature.
+/// Returns lambda [m]: the given value, or that from viscosity, pressure and temperature.
 [[nodiscard]] inline double mean_free_path(const FilmState& gas) {
   if (!std::isnan(gas.mean_free_path)) return gas.mean_free_path;
   return viscosity(gas) / gas.pressure * std::sqrt(pi * gas_constant_of_air * gas.temperature / 2);

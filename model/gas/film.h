@@ -28,7 +28,7 @@ struct Film {
 /// Largest squeeze number of an incompressible strip film; the strip's cut-off is pi^2.
 inline constexpr double incompressible = 10;
 
-/// Range in which a law holds.
+/// The range in which a law is valid.
 struct FilmLimits {
   double least_knudsen = 0;
   double most_knudsen = std::numeric_limits<double>::infinity();

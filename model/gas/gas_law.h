@@ -21,7 +21,7 @@ struct LawsOf<std::variant<Laws...>> {
   using Type = std::variant<decltype(std::declval<const Laws&>().law(std::declval<const Film&>()))...>;
 };
 }  // namespace internal
-/// The load of every law of Gas: the result of its parameters' law(film).
+/// A gas law of any kind: the variant of all types that the parameters of Gas return by law(film).
 struct GasLaw : internal::LawsOf<Gas>::Type {
   using variant::variant;
 };
@@ -33,8 +33,8 @@ struct GasLaw : internal::LawsOf<Gas>::Type {
 /// rectangle (Griffin, Richardson & Yamanami, J. Basic Eng. 88 (1966) 451; the series is that of torsion of a rectangular bar).
 [[nodiscard]] double end_flow(double ratio);
 
-/// Returns the law for a structure of constant width and thickness, or for this width and thickness [m]. A compressible film
-/// gives its incompressible limit.
+/// Returns the law for a structure of constant width and thickness, or for this width and thickness [m]. For a compressible
+/// film it returns the incompressible limit.
 [[nodiscard]] GasLaw gas_law(const Gas& gas, const Structure& structure, double unit_quality);
 [[nodiscard]] GasLaw gas_law(const Gas& gas, double width, double thickness, double unit_quality);
 
@@ -46,7 +46,8 @@ struct GasLaw : internal::LawsOf<Gas>::Type {
 /// Returns 12 mu a^2 rate / (p h^2), with the rate [1/s] at which the gap h [m] changes.
 [[nodiscard]] double squeeze_number(const FilmState& gas, double width, double gap, double rate);
 
-/// Returns the squeeze number at the contact point, with the rate |v| / h; 0 where the device's law has no limit for it.
+/// Returns the squeeze number at the contact point, with the rate |v| / h; 0 when the device's law has no limit for this
+/// number.
 [[nodiscard]] double squeeze_number(const Device& device, double rest_gap, const TrajectoryPoint& point);
 
 /// Returns one line per limit of the gas law that a closing exceeded, with law, limit and value. Knudsen numbers are taken

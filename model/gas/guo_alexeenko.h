@@ -4,8 +4,8 @@
 //   A = 10.39 kg/(m^2 s),  B = 1.374,  c = 3.100,  d = 1.825,  e = 0.966
 //
 // a is the width [m], b the beam thickness [m], h the local gap [m], lambda the mean free path [m], v the velocity towards the
-// electrode [m/s]. It is a fit to one family of devices (nickel beams about 4 um thick and 120 um wide, gaps of micrometres,
-// air): the viscosity does not enter and the thickness does. Compared with Gallis & Torczynski it is about twice as strong at
+// electrode [m/s]. It is a fit to one type of device (nickel beams about 4 um thick and 120 um wide, gaps of micrometres, air):
+// the viscosity does not enter and the thickness does. Compared with Gallis & Torczynski the force is about twice as strong at
 // 3.5 um and a tenth as strong at 0.1 um. Singular at h = 0. Source: Guo & Alexeenko, J. Micromech. Microeng. 19 (2009) 045026,
 // as coded in Purdue PUQ 2.2.
 #pragma once

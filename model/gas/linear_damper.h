@@ -1,4 +1,4 @@
-// Damping that does not depend on the gap: that of a lumped model or of a measured quality factor.
+// Damping that does not depend on the gap, as in a lumped model or from a measured quality factor.
 //
 //   f = -c v                                                                              [N/m], positive towards the electrode
 //   c = omega_1 / (Q integral of phi_1^2 dx)                                              where a quality factor is given
@@ -28,7 +28,7 @@ struct LinearDamperOf {
 };
 using LinearDamper = LinearDamperOf<double>;
 
-/// The law in a scene: either of the two is given.
+/// The law in a scene, which gives either the damping or the quality factor.
 struct LinearGas {
   static constexpr std::string_view name = "linear";
   double damping = not_given, quality_factor = not_given;

@@ -2,15 +2,15 @@
 // smaller than the width.
 //
 //   f = -c v,   c = mu g(h/a) / (1 + 6 X Kn),   Kn = lambda / h                           [N/m], positive towards the electrode
-//   g(x) = x^-3 (1 + 6 Z x + 12 E x^2) for x >= 0.015, below that its tangent at 0.015 (Z and E stay those of the local Kn)
+//   g(x) = x^-3 (1 + 6 Z x + 12 E x^2) for x >= 0.015, below that its tangent at 0.015 (with Z and E of the local Kn)
 //   X = 5.5964,  Z = 48.62 Kn / (1 + 0.3405 Kn),  E = (1 + 210.79 Kn) / (67.59 Kn)
 //
 // mu is the viscosity [Pa s] (1.98e-5 in the source), a the width [m], h the local gap [m], lambda the mean free path [m], v
 // the velocity towards the electrode [m/s]. f has a continuous derivative at x = 0.015. The law does not hold for continuum
-// flow: E diverges as Kn -> 0; 210.79 Kn below 1 is a warning. Unlike the other films, c FALLS towards contact where the
-// tangent acts. Finite at h -> 0. Source: coefficients as coded in the public force code of the Purdue PRISM centre
-// (ComputeForce.py); the paper behind them is presumably Parkos et al., J. Microelectromech. Syst. 22 (2013), which was not
-// read.
+// flow: E diverges as Kn -> 0; 210.79 Kn below 1 is a warning. Unlike the damping of the other films, c FALLS towards contact
+// where the tangent is used. Finite at h -> 0. Source: coefficients as coded in the public force code of the Purdue PRISM
+// centre (ComputeForce.py); the underlying paper is presumably Parkos et al., J. Microelectromech. Syst. 22 (2013), which we
+// have not seen.
 #pragma once
 
 #include "base/select.h"

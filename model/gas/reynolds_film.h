@@ -6,9 +6,9 @@
 //   D = (h^3 + 6 lambda h^2)/(12 mu) integral of (dp/dz)^2 dz             [W/m]
 //
 // p is the pressure [Pa], pa the ambient pressure [Pa], h the local gap [m], z across the width a [m], mu the viscosity [Pa s],
-// lambda the mean free path at pa [m]. The pressure is a state of its own: every station along the beam keeps it at a few
-// points over half the width, where it is symmetric, as P = p/pa - 1. Slow motion (squeeze number 12 mu a^2 omega/(pa h^2) well
-// below pi^2) gives the incompressible film mu (a/h)^3/(1 + 6 lambda/h) (slip.h), fast motion the spring pa a/h.
+// lambda the mean free path at pa [m]. The pressure is a state: every station along the beam has it at a few points over half
+// the width, since it is symmetric, as P = p/pa - 1. Slow motion (squeeze number 12 mu a^2 omega/(pa h^2) well below pi^2)
+// gives the incompressible film mu (a/h)^3/(1 + 6 lambda/h) (slip.h), fast motion the spring pa a/h.
 //
 // Across the width there are Gauss-Lobatto points of degree 8, in weak form with the same points as quadrature. So the gas is
 // conserved, the incompressible parabola is exact, and -sum of ln(p/pa) times the flow is the dissipation: U' + D = -f v with v
@@ -16,7 +16,7 @@
 // below 10, 1e-4 below 100 and 2e-2 at 1000, where a boundary layer thinner than the point spacing forms at the edge.
 //
 // Valid for strips much longer than wide (flow along the beam, of order (a/L)^2, is neglected), slip flow (lambda/h below about
-// 0.1), isothermal gas. Below the floor of the gap the coefficients keep their values there: the run has ended. Source: Hung &
+// 0.1), isothermal gas. For gaps below the floor the coefficients are those at the floor: the run has ended. Source: Hung &
 // Senturia 1999, J. MEMS 8(3), 280-289, eq. 2 (after Burgdorfer 1959 for the slip); Blech 1983, J. Lubr. Tech. 105, 615-620.
 #pragma once
 
@@ -107,7 +107,7 @@ class ReynoldsFilm {
   using Station = ReynoldsStationOf<double>;
   static constexpr int nodes = Station::nodes;  ///< number of pressures per station
 
-  /// `stations` are the points of the beam, in order; gaps below `floor` [m] count as that.
+  /// `stations` is the number of points of the beam, in order; gaps below `floor` [m] count as `floor`.
   ReynoldsFilm(const FilmState& gas, double width, Eigen::Index stations, double floor);
 
   /// Returns the number of extra unknowns: P at the nodes of the first station, of the second, ...

@@ -20,13 +20,13 @@ struct Beam {
   double density = 0;         ///< rho [kg/m^3]
   bool plate_strain = false;  ///< true to use E / (1 - nu^2)
   double poissons_ratio = not_given;
-  std::vector<SectionPart> sections = {};  ///< sections from x = 0 on; none for a uniform beam
+  std::vector<SectionPart> sections = {};  ///< sections from x = 0 on; empty for a uniform beam
   std::vector<LayerPart> layers = {};      ///< layers on its faces
-  std::optional<Anchor> anchor = {};       ///< anchor at x = 0; a clamp without one
-  std::optional<Anchor> far_anchor = {};   ///< anchor at the far end; by default that of the kind
+  std::optional<Anchor> anchor = {};       ///< anchor at x = 0; a clamp when absent
+  std::optional<Anchor> far_anchor = {};   ///< anchor at the far end; that of the kind when absent
   std::optional<RestShape> rest_shape = {};
 
-  /// True when it is made of more than one even piece.
+  /// Returns true when the beam has sections or layers.
   [[nodiscard]] bool is_built() const { return !sections.empty() || !layers.empty(); }
 
   static constexpr std::array usual_spread{UsualSpread{"thickness", "2 %"}, UsualSpread{"youngs_modulus", "3 %"}};
@@ -94,7 +94,7 @@ struct Cantilever : Beam {
     return stress_gradient < 0 ? rest_offset(device, device.structure.length) : 0;
   }
 
-  /// True when no stress curls the beam.
+  /// Returns true when no stress curls the beam.
   [[nodiscard]] bool is_straight() const {
     return stress_gradient == 0 &&
            std::none_of(layers.begin(), layers.end(), [](const LayerPart& layer) { return layer.stress != 0; });
@@ -132,7 +132,7 @@ struct Bridge : Beam {
   [[nodiscard]] static S example() {
     return {.length = 400e-6, .width = 20e-6, .thickness = 2e-6, .kind = Bridge{{.youngs_modulus = 78e9, .density = 19300}, 2e6}};
   }
-  /// Returns none where bending does not stretch the beam.
+  /// Returns none when bending does not stretch the beam.
   template <class Modes, class S>
   [[nodiscard]] auto stretching(const Modes& modes, const S& structure) const {
     return stretches && structure.has_far_clamp() ? std::optional(stretching_of(modes, structure)) : std::nullopt;

@@ -11,7 +11,7 @@
 
 namespace softland {
 
-/// Square holes in a square pattern, their sides along and across the beam; no holes where nothing is given.
+/// Square holes in a square pattern, their sides along and across the beam; no holes when the numbers are not given.
 struct Holes {
   double pitch = not_given;  ///< distance from centre to centre [m]
   double size = not_given;   ///< side of a hole [m]
@@ -19,18 +19,18 @@ struct Holes {
   [[nodiscard]] bool exist() const { return size > 0; }
 };
 
-/// One stretch of a beam. A missing number is that of the structure.
+/// One stretch of a beam. A number that is not given is that of the structure.
 struct SectionPart {
   double length = 0;                  ///< length along the beam [m]
-  double width = not_given;           ///< width at its begin [m]
-  double end_width = not_given;       ///< width at its end, linear in between; by default as at its begin [m]
+  double width = not_given;           ///< width at its start [m]
+  double end_width = not_given;       ///< width at its end, linear in between; by default equal to `width` [m]
   double thickness = not_given;       ///< [m]
   double youngs_modulus = not_given;  ///< [Pa]
   double density = not_given;         ///< [kg/m^3]
   Holes holes = {};
 };
 
-/// A layer on one face of the beam, as wide as the beam. The later one of several on a face at one place lies outside.
+/// A layer on one face of the beam, as wide as the beam. When several layers cover a place of a face, later ones lie outside.
 struct LayerPart {
   Side face = Side::far;              ///< near or far
   Place begin, end;                   ///< interval along the beam
@@ -48,7 +48,7 @@ struct RestShape {
 
   /// Returns the positions on a beam of this length [m].
   [[nodiscard]] std::vector<double> places(double length) const;
-  /// Returns the height at x [m]; the last line continues beyond the last position.
+  /// Returns the height at x [m]; beyond the last position the last line continues.
   [[nodiscard]] double height(double x, double length) const;
   /// Returns the least height of a beam of this length [m].
   [[nodiscard]] double lowest(double length) const;

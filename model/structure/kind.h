@@ -4,7 +4,7 @@
 // - `fields()`, consteval of a template argument S, an array of Field (base/field.h) of the Structure S: its keys.
 //   A number must be above 0 unless its field has another `range`. The unit is any product of the symbols of config/units.cc.
 // - `example()`, of the same argument, a structure that a switch may have, for tests
-// - `static constexpr std::array usual_spread`, the process variation of its devices where a scene gives none
+// - `static constexpr std::array usual_spread`, the process variation of its devices when a scene gives none
 // - `auto modes(device, known) const`, its modes: an object with
 //     angular_frequencies() [rad/s]; length() [m]; scale(), the shapes over the normalised ones [kg^(-1/2)];
 //     normalised(), which points to an object with value(x), slope(x) and pinned_inverse_square(x, near), x over the length;
@@ -24,8 +24,9 @@
 //
 // Functions that take a device are templates of its type, since a device contains structures; so they call beam_modes() of
 // model/beam.h without including it, and a class that holds BeamModes is a template, too. `Structure`
-// (model/structure/structure.h) answers for the kind in force. A kind that derives from Beam also has its warning of
-// slenderness, its verdicts by the number of modes and up to 40 modes at rest; one that derives from Cantilever has its curl.
+// (model/structure/structure.h) calls the functions of the kind that it holds. A kind that derives from Beam also has the
+// warning of slenderness, results that depend on the number of modes, and up to 40 modes at rest; one that derives from
+// Cantilever has the curl.
 #pragma once
 
 #include <string_view>
@@ -35,13 +36,13 @@
 
 namespace softland {
 
-/// The usual process variation of a key of [structure], where a scene gives none.
+/// The usual process variation of a key of [structure], for scenes that give none.
 struct UsualSpread {
   std::string_view key, cov;
-  bool has_default = false;  ///< true when it also varies where a scene does not write it
+  bool has_default = false;  ///< true when the key also varies if a scene does not write it
 };
 
-/// Returns the kind in force as the `Part` that it is, or derives from.
+/// Returns the kind that a structure holds as the `Part` that it is, or derives from.
 template <class Part, class S>
 [[nodiscard]] constexpr auto& part_of(S& structure) {
   return *structure.template find<Part>();

@@ -26,8 +26,8 @@ class RigidPlate {
   struct FlatMode {
     [[nodiscard]] Eigen::VectorXd value(double) const { return Eigen::VectorXd::Ones(1); }
     [[nodiscard]] Eigen::VectorXd slope(double) const { return Eigen::VectorXd::Zero(1); }
-    /// A rigid plate that is held at its contact cannot move at all. Its own frequency is used: a rebound takes no longer than
-    /// that.
+    /// A rigid plate that is held at its contact cannot move at all. The frequency of the free plate is used instead: a rebound
+    /// takes no longer than its period.
     [[nodiscard]] double pinned_inverse_square(double, std::optional<double> = {}) const { return 1; }
   };
 

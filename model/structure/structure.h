@@ -1,4 +1,4 @@
-// The moving part: one of the kinds of structures, with their common properties. A new kind is its header
+// The moving part: one of the kinds of structures, with their common properties. A new kind needs its header
 // (model/structure/kind.h describes it) and a row here.
 #pragma once
 
@@ -28,14 +28,14 @@ struct Structure {
   /// The most modes of a beam that moves.
   static constexpr int most_modes = 20;
 
-  double length = 0;             ///< L [m]; for a plate its area over its width; for a table of modes that of the table
+  double length = 0;             ///< L [m]; area over width for a plate; length of the table for a table of modes
   double width = 0;              ///< a [m]
   double thickness = not_given;  ///< b [m]
-  int modes = 4;                 ///< number of modes; a plate has one, whatever the value here
+  int modes = 4;                 ///< number of modes; a plate has one, whatever this number is
   double damping_ratio = 0;      ///< zeta of every mode
   StructureKind kind = Cantilever{};
 
-  /// Returns the kind in force where it is, or derives from, a `Part`; else null.
+  /// Returns the kind that the structure holds if it is, or derives from, a `Part`; else null.
   template <class Part>
   [[nodiscard]] constexpr Part* find() {
     return std::visit(
@@ -52,20 +52,20 @@ struct Structure {
   /// Returns the field of the damping ratio, which every kind has.
   [[nodiscard]] static consteval Field<Structure> damping();
 
-  /// True when it moves as a rigid body: there is one mode, and all places along it are equal.
+  /// Returns true when the structure moves as a rigid body: it has one mode, and all places along it are equal.
   [[nodiscard]] bool is_rigid() const;
-  /// True when its far end is held, by a clamp or by a compliant anchor.
+  /// Returns true when the far end is held, by a clamp or by a compliant anchor.
   [[nodiscard]] bool has_far_clamp() const;
-  /// Return how its ends are held: by a beam's anchors, else by the kind.
+  /// Return how the ends are held: by a beam's anchors, else as the kind says.
   [[nodiscard]] Anchor near_hold() const;
   [[nodiscard]] Anchor far_hold() const;
-  /// True when its size changes along it: a beam of sections, or with layers, or a table of modes with widths.
+  /// Returns true when the size changes along the structure: a beam with sections or layers, or a table of modes with widths.
   [[nodiscard]] bool is_built() const;
-  /// Return the reason why it cannot have a piezo layer, or skins; empty where it can.
+  /// Return the reason why the structure cannot have a piezo layer, or skins; empty when it can.
   [[nodiscard]] std::string_view why_no_layer() const;
   [[nodiscard]] std::string_view why_no_skins() const;
-  /// Returns the end of the message that a scene must give one of its numbers: "on a plate". Empty where a scene always gives
-  /// all.
+  /// Returns the end of the message that a scene must give a number of this kind: "on a plate". Empty when a scene always gives
+  /// all numbers.
   [[nodiscard]] std::string_view whose() const;
 };
 
@@ -80,10 +80,10 @@ consteval Field<Structure> Structure::damping() {
           .beyond = "for more give [gas] model = \"linear\" and quality_factor = 1 / (2 damping_ratio)"};
 }
 
-/// The fields of a kind, computed once.
+/// The fields of a kind, computed at compile time.
 template <class Kind>
 inline constexpr auto structure_fields = Kind::template fields<Structure>();
-/// Returns the fields of the kind in force.
+/// Returns the fields of the kind that the structure holds.
 [[nodiscard]] inline std::span<const Field<Structure>> fields_in_force(const Structure& s) {
   return std::visit([]<class Kind>(const Kind&) -> std::span<const Field<Structure>> { return structure_fields<Kind>; }, s.kind);
 }
@@ -142,7 +142,7 @@ inline std::string_view Structure::whose() const {
       kind);
 }
 
-/// Returns the most modes that a structure can have: 1 for a plate, those of the table for a table.
+/// Returns the largest number of modes of a structure: 1 for a plate, the number of modes of the table for a table.
 [[nodiscard]] inline int most_modes_of(const Structure& structure) {
   return std::visit(
       []<class Kind>(const Kind& kind) {

@@ -40,23 +40,23 @@ ModalTable::ModalTable(std::vector<double> positions, std::vector<double> freque
       far_end_(far_end) {
   constexpr std::size_t fewest = 3;
   require_table(positions_.size() >= fewest && positions_.front() == 0 && rises(positions_) && is_finite(positions_),
-                "three positions at least must rise from 0, the clamp");
+                "there must be at least three positions that increase from 0, the clamp");
   require_table(!frequencies_.empty() && frequencies_.front() > 0 && rises(frequencies_) && is_finite(frequencies_),
-                "the frequencies must be positive and rise");
+                "the frequencies must be positive and increase");
   require_table(shapes_.size() == frequencies_.size(), "there must be as many shapes as frequencies");
   require_table(rest_offsets_.empty() || (rest_offsets_.size() == positions_.size() && is_finite(rest_offsets_)),
-                "there must be a rest offset per position, and finite, or none");
+                "there must be one finite rest offset per position, or none");
   const auto is_width = [](double width) { return width > 0 && width < 1e30; };
   require_table(widths_.empty() || (widths_.size() == positions_.size() && std::ranges::all_of(widths_, is_width)),
-                "there must be a width per position, above 0, or none");
+                "there must be one width above 0 per position, or none");
   for (const std::vector<double>& shape : shapes_) {
     require_table(shape.size() == positions_.size(), "a shape must have a value per position");
-    require_table(is_finite(shape) && shape.front() == 0, "a shape must be 0 at the clamp, and finite");
-    require_table(std::any_of(shape.begin(), shape.end(), [](double v) { return v != 0; }), "a shape must move");
+    require_table(is_finite(shape) && shape.front() == 0, "a shape must be finite and 0 at the clamp");
+    require_table(std::any_of(shape.begin(), shape.end(), [](double v) { return v != 0; }), "a shape must not be 0 everywhere");
     splines_.emplace_back(positions_, shape, far_end);
   }
   if (!has_far_clamp()) return;
-  require_table(is_held_at_both_ends(), "a far end that is clamped must stand still in every mode");
+  require_table(is_held_at_both_ends(), "a clamped far end must not move in any mode");
   require_table(!is_hinged_at_end(positions_, shapes_.front()), "the first mode must leave a clamped far end without a slope");
 }
 

@@ -30,11 +30,11 @@ namespace softland {
 /// The content of a file: the same for all devices of a scene.
 class ModalTable {
  public:
-  /// `positions` [m] rise from 0, `frequencies` [Hz] rise, a shape [kg^(-1/2)] per frequency and a value in it per position, 0
-  /// at the first one. Throws InvalidInput with the rule unless that holds, with three positions at least. `rest_offsets` [m]
-  /// are those of its face, positive towards the near electrode: one per position, or none for a straight structure. `widths`
-  /// [m] are linear between positions: one per position, or none for a structure of constant width. A clamped far end stands
-  /// still in every mode, and the first mode leaves it without a slope.
+  /// Takes at least three `positions` [m] that rise from 0, `frequencies` [Hz] that rise, and for each frequency a shape
+  /// [kg^(-1/2)] with a value per position, which is 0 at the first one. `rest_offsets` [m] are those of the face at rest,
+  /// positive towards the near electrode: one per position, or none for a straight structure. `widths` [m] are linear between
+  /// positions: one per position, or none for a structure of constant width. A clamped far end must not move in any mode, and
+  /// the first mode must have no slope there. Throws InvalidInput with the rule that is broken.
   ModalTable(std::vector<double> positions, std::vector<double> frequencies, std::vector<std::vector<double>> shapes,
              std::vector<double> rest_offsets = {}, std::vector<double> widths = {}, SplineEnd far_end = SplineEnd::free);
 
@@ -52,9 +52,9 @@ class ModalTable {
   /// Returns the distance of the face at rest from its place at the clamp, away from the near electrode [m]: linear between
   /// positions.
   [[nodiscard]] double rest_offset(double x) const;
-  /// Returns the least of these [m].
+  /// Returns the smallest rest offset [m].
   [[nodiscard]] double lowest_rest_offset() const;
-  /// True when the last place stands still in every mode: the far end is held as well.
+  /// Returns true when the last place does not move in any mode, so that the far end is held as well.
   [[nodiscard]] bool is_held_at_both_ends() const;
   [[nodiscard]] bool has_far_clamp() const { return far_end_ == SplineEnd::clamped; }
   /// Returns the integrals of phi_i' phi_j' of the first modes, column by column [1/(kg m)].
@@ -82,8 +82,9 @@ class TabulatedModes {
     [[nodiscard]] Eigen::VectorXd value(double x) const;
     [[nodiscard]] Eigen::VectorXd slope(double x) const;
     /// Returns omega_1^2 over the square of the first angular frequency of the structure that is also held at x, from all modes
-    /// of the table: the root of sum phi_i(x)^2 / (omega_i^2 - omega^2) between the first two. Returns 1 for a single mode,
-    /// which cannot move then: its own frequency is used, as a rebound takes no longer than that.
+    /// of the table: the root of sum phi_i(x)^2 / (omega_i^2 - omega^2) between the first two frequencies. Returns 1 for a
+    /// single mode: the structure cannot move then, and the frequency of the free structure is used, as a rebound takes no
+    /// longer than its period.
     [[nodiscard]] double pinned_inverse_square(double x, std::optional<double> near = {}) const;
     [[nodiscard]] bool operator==(const Shapes& other) const {
       return modes == other.modes && (table == other.table || (table && other.table && *table == *other.table));
@@ -117,7 +118,7 @@ struct ModalStructure {
   double frequency_factor = 1;         ///< factor of all natural frequencies, over those of the table
   double axial_stiffness = not_given;  ///< force per elongation between its clamps, E A / L of an even beam [N/m]
 
-  /// config/modal_table.h has the keys for the place of the table, and for its reading.
+  /// config/modal_table.h has the keys for the file of the table, and for reading it.
   template <class S>
   static consteval auto fields() {
     constexpr std::string_view follows_no_size = "the modes of a file do not follow it; vary structure.frequency_factor";
@@ -159,7 +160,7 @@ struct ModalStructure {
   [[nodiscard]] double lowest_rest_offset(const Device&) const {
     return table->lowest_rest_offset();
   }
-  /// Returns none where the scene does not give its axial stiffness.
+  /// Returns none when the scene gives no axial stiffness.
   template <class S>
   [[nodiscard]] std::optional<MidPlaneStretching> stretching(const TabulatedModes& modes, const S&) const {
     if (std::isnan(axial_stiffness)) return std::nullopt;

@@ -219,12 +219,12 @@ TEST(TabulatedModes, AreRefusedWithTheRule) {
   const auto make = [](std::vector<double> x, std::vector<double> f, std::vector<std::vector<double>> y) {
     return [=] { (void)ModalTable(x, f, y); };
   };
-  expect_refused_with(make({0, 1}, {1}, {{0, 1}}), "three positions at least must rise from 0");
-  expect_refused_with(make({0.1, 1, 2}, {1}, {{0, 1, 2}}), "three positions at least must rise from 0");
-  expect_refused_with(make({0, 1, 2}, {2, 1}, {{0, 1, 2}, {0, 1, 2}}), "the frequencies must be positive and rise");
+  expect_refused_with(make({0, 1}, {1}, {{0, 1}}), "at least three positions that increase from 0");
+  expect_refused_with(make({0.1, 1, 2}, {1}, {{0, 1, 2}}), "at least three positions that increase from 0");
+  expect_refused_with(make({0, 1, 2}, {2, 1}, {{0, 1, 2}, {0, 1, 2}}), "the frequencies must be positive and increase");
   expect_refused_with(make({0, 1, 2}, {1}, {{0, 1}}), "a shape must have a value per position");
-  expect_refused_with(make({0, 1, 2}, {1}, {{0.1, 1, 2}}), "a shape must be 0 at the clamp");
-  expect_refused_with(make({0, 1, 2}, {1}, {{0, 0, 0}}), "a shape must move");
+  expect_refused_with(make({0, 1, 2}, {1}, {{0.1, 1, 2}}), "a shape must be finite and 0 at the clamp");
+  expect_refused_with(make({0, 1, 2}, {1}, {{0, 0, 0}}), "a shape must not be 0 everywhere");
   const auto table = modal_table_of(test::gold_cantilever(), 4, table_places);
   Device device = by_modes(test::gold_cantilever(), table);
   device.structure.modes = 5;
