@@ -24,7 +24,7 @@ namespace {
 
 constexpr int functions = element_functions;
 constexpr int shortest_count = 6;     // elements over the length, at least
-constexpr double least_pivot = 2e-3;  // smallest pivot of the elimination, which magnifies the rounding by its inverse
+constexpr double least_pivot = 2e-3;  // smallest pivot of the elimination, whose inverse magnifies rounding errors
 
 // Returns combinations of the functions that the support permits, orthonormal in the elastic energy.
 Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) {
@@ -40,12 +40,12 @@ Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::Matrix
   return basis;
 }
 
-// Returns what a linear rigidity adds to the bending energy between the functions m and m + 1 of an element whose taper is 1:
-// the integral of xi and two neighbours of the normalised Legendre polynomials.
+// Returns the bending energy that a linear rigidity adds between the functions m and m + 1 of an element with taper 1: the
+// integral of xi and two neighbours of the normalised Legendre polynomials.
 double taper_coupling(int m) { return (m + 1) / std::sqrt((2 * m + 1.0) * (2 * m + 3.0)); }
 
-// The phase of a mode over the beam if it bends as waves do that travel along it, and its growth with omega^2. It hardly
-// changes between similar beams.
+// The phase of a mode over the beam, as if the mode were a travelling bending wave, and the growth of the phase with omega^2.
+// Similar beams have nearly the same phases.
 struct WavePhase {
   double value = 0, slope = 0;
   WavePhase(const NormalisedModes::Beam& beam, double square) {
@@ -69,7 +69,7 @@ double carried_over(double square, const NormalisedModes::Beam& from, const Norm
   return square;
 }
 
-// Newton's method for four poles at once, with the motions there; none where it does not converge, or rounding may have grown.
+// Newton's method for four poles at once, with the motions there; none when it does not converge, or rounding may be large.
 std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double place, const Lane& rounding, Lane& squares) {
   constexpr int most_steps = 10;
   constexpr double least_motion = 1e-3;  // share of the place, in a normalised mode
@@ -85,9 +85,9 @@ std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double p
   return {};
 }
 
-// Finds 1 / omega^2 of the first mode of a general beam that is also held at a place. `deflections` are the deflections there
-// of all its motions of unit elastic energy. The receptance, the sum of r^2 / (1 - lambda / lambda_i), grows from the first
-// frequency to the second.
+// Finds 1 / omega^2 of the first mode of a general beam that is also held at a place. `deflections` are the deflections of all
+// its motions of unit elastic energy at this place. The receptance, the sum of r^2 / (1 - lambda / lambda_i), grows from the
+// first frequency to the second.
 double general_pinned_inverse_square(const Eigen::RowVectorXd& deflections, const Eigen::VectorXd& inverse_squares) {
   constexpr int bits = 60;
   const Eigen::Index last = inverse_squares.size() - 1;
@@ -100,8 +100,8 @@ double general_pinned_inverse_square(const Eigen::RowVectorXd& deflections, cons
   return 1 / high;
 }
 
-// Returns the stretch of the beam per axial force: the integral of 1 / (E A) [m/N]. E is used as given: the sides of the beam
-// are free to contract.
+// Returns the elongation of the beam per axial force: the integral of 1 / (E A) [m/N]. E is used as given: the sides of the
+// beam are free to contract.
 double stretch_per_force(const Structure& s) {
   double sum = 0;
   for (const LocalSection& local : local_sections(s)) {
@@ -114,16 +114,16 @@ double stretch_per_force(const Structure& s) {
   return sum;
 }
 
-// Returns the axial force that a stress, equal everywhere before release, leaves in a beam between its anchors: sections pull
-// at each other until the force is the same all along [N].
+// Returns the axial force that a stress, equal everywhere before release, leaves in a beam between its anchors [N]: the
+// sections pull at each other until the force is the same in all of them.
 double axial_force(const Structure& s, double stress) {
-  double shrinks = 0;  // shortening of the beam if it were free [m]
+  double shrinks = 0;  // shortening of the beam without its anchors [m]
   for (const LocalSection& local : local_sections(s)) shrinks += stress / local.youngs_modulus * (local.end - local.begin);
   return shrinks / stretch_per_force(s);
 }
 
-// Returns the stretches of a beam of parts, between the edges of all parts, under a stress that grows by `gradient` [Pa/m] over
-// the thickness of the beam itself. A piezo layer lies outside of all layers.
+// Returns the stretches of a beam of sections and layers, between the edges of all parts, under a stress that grows by
+// `gradient` [Pa/m] over the thickness of the beam itself. A piezo layer lies outside of all layers.
 std::vector<BeamSection> built_sections(const Device& device, double gradient) {
   const Structure& s = device.structure;
   const Beam& beam = part_of<Beam>(s);
@@ -132,7 +132,7 @@ std::vector<BeamSection> built_sections(const Device& device, double gradient) {
                piezo_end = device.piezo ? std::min(device.piezo->end.on(s.length), s.length) : 0;
   if (device.piezo) edges.insert(edges.end(), {piezo_begin, piezo_end});
   std::ranges::sort(edges);
-  // Positions of one place that differ by a rounding are one edge.
+  // Two values of one place that differ by rounding are one edge.
   const auto same = [&](double a, double b) { return b - a < 1e-9 * s.length; };
   edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
   edges.back() = s.length;
@@ -179,8 +179,8 @@ std::vector<BeamSection> built_sections(const Device& device, double gradient) {
   return sections;
 }
 
-// Returns true when both beams have the same modes. A general beam is searched in full, so that it may differ by rounding:
-// ratios of its sections do, when all of them become thicker by one factor.
+// Returns true when both beams have the same modes. The modes of a general beam come from a full search, so its numbers may
+// differ by rounding, as the ratios of its sections do when all of them become thicker by one factor.
 bool is_known(const NormalisedModes::Beam& beam, const NormalisedModes::Beam& known) {
   if (beam == known) return true;
   if (!beam.is_general() || !known.is_general() || beam.modes != known.modes || beam.far_clamp != known.far_clamp ||
@@ -252,7 +252,7 @@ std::string why_buckled(const Structure& s, const std::optional<Surface>& surfac
     try {
       static_cast<void>(beam_modes({.structure = lowest, .surface = surface}));
     } catch (const InvalidInput&) {
-      return fmt::format("leaves a force of {} along the beam, which buckles below it",
+      return fmt::format("leaves an axial force of {}, a compression beyond the buckling load of the beam",
                          engineering(beam_support(s, surface).axial_force, "N"));
     }
     return {};
@@ -343,7 +343,7 @@ void NormalisedModes::search() {
     mass += gram(element.mass, element.taper, 0);
     slopes += gram(1, 0, 1);
   }
-  Eigen::MatrixXd end(total, 2);  // value and slope at the far end
+  Eigen::MatrixXd end(total, 2);  // values and slopes of the functions at the far end
   end << shape(1, 0).transpose(), shape(1, 1).transpose();
   const bool is_general = beam_.is_general();
   const Eigen::MatrixXd basis = is_general ? permitted_motions(end, slopes) : permitted(beam_, end, slopes);
@@ -373,8 +373,8 @@ bool NormalisedModes::Beam::is_general() const {
          std::any_of(sections.begin(), sections.end(), [](const Section& s) { return s.taper != 0; });
 }
 
-// A stiff spring must not cost digits: the motions of its end are kept apart from those that leave the end at rest, the stiffer
-// first.
+// A stiff spring must not cost digits: the motions of its end are kept apart from those that leave the end at rest, beginning
+// with the stiffer spring.
 Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) const {
   const Eigen::Index total = slopes.rows();
   Eigen::MatrixXd energy = beam_.axial_force * slopes;
@@ -392,7 +392,7 @@ Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, c
 
   const double translation = beam_.far_clamp ? Anchor::rigid : beam_.far_translation,
                rotation = beam_.far_clamp ? Anchor::rigid : beam_.far_rotation;
-  std::vector<std::pair<double, Eigen::Index>> springs;  // springs, with the column of `end`
+  std::vector<std::pair<double, Eigen::Index>> springs;  // springs, each with the column of `end` that it acts on
   std::vector<Eigen::Index> held;
   for (const auto& [stiffness, column] : {std::pair{translation, 0}, std::pair{rotation, 1}}) {
     if (std::isinf(stiffness)) held.push_back(column);
@@ -462,7 +462,7 @@ bool NormalisedModes::follow(const NormalisedModes& near) {
   }
   orient();
 
-  // The modes found are the first ones if they differ, none is below the first of them, and no further one is below the last.
+  // The modes found are the first ones if they differ, no mode is below the first of them, and no other one is below the last.
   constexpr double apart = 1e-7, margin = 1e-8;
   for (int i = 1; i < modes; ++i) {
     if (!(inverse_squares_[i] * (1 + apart) < inverse_squares_[i - 1])) return false;
@@ -474,7 +474,7 @@ bool NormalisedModes::follow(const NormalisedModes& near) {
 }
 
 void NormalisedModes::orient() {
-  constexpr double close_to_the_clamp = 1e-3;  // share of the length: far short of the first zero of forty modes
+  constexpr double close_to_the_clamp = 1e-3;  // share of the length: far below the first zero of the first forty modes
   const bool is_held = beam_.far_clamp || beam_.far_rotation != 0 || beam_.far_translation != 0;
   const Eigen::RowVectorXd positive = shape(is_held ? close_to_the_clamp : 1, 0);
   for (Eigen::Index i = 0; i < shapes_.cols(); ++i) {
@@ -505,7 +505,8 @@ Eigen::RowVectorXd NormalisedModes::shape(const BeamElement& element, double xi,
     const double half = other.half();
     const bool inside = other.begin == element.begin;
     ElementRow local = (inside ? element_integrals(xi, derivative) : ends[derivative]) * (derivative == 0 ? half * half : half);
-    if (!inside && derivative == 0) local += (x - other.end) * half * ends[1];  // the beam continues straight
+    if (!inside && derivative == 0)
+      local += (x - other.end) * half * ends[1];  // beyond the other element the beam continues straight
     row.segment<functions>(functions * static_cast<Eigen::Index>(e)) = local.array() * (orders / (half * other.rigidity)).sqrt();
   }
   if (shift_ > 0) row[bending] = derivative == 0 ? shift_ : 0;
@@ -586,7 +587,8 @@ double curl(const Device& device, double gradient, double x) {
   double offset = 0;
   for (const BeamSection& section : s.is_built() ? built_sections(device, gradient) : beam_sections(device)) {
     if (section.begin >= x) break;
-    const double near = x - section.begin, far = std::max(0.0, x - section.end);  // arms from its begin and its end
+    const double near = x - section.begin,
+                 far = std::max(0.0, x - section.end);  // distances of x from begin and end of the section
     offset += (s.is_built() ? section.curvature : moment / section.rigidity) * (near * near - far * far) / 2;
   }
   return offset;
@@ -604,7 +606,7 @@ double lowest_curl(const Device& device, double gradient) {
   return lowest;
 }
 
-// The moment m of the layer is linear over a stretch: the integral of m phi'' is that of (m phi')' - m' phi'.
+// The moment m of the layer is linear over a stretch, so the integral of m phi'' is that of (m phi')' - m' phi'.
 Eigen::VectorXd piezo_forces(const Device& device, const BeamModes& modes) {
   Eigen::VectorXd forces = Eigen::VectorXd::Zero(modes.count());
   for (const BeamSection& s : beam_sections(device)) {

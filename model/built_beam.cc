@@ -63,7 +63,7 @@ std::optional<PartConflict> layer_conflict(const Device& d, std::size_t i) {
   return std::nullopt;
 }
 
-/// True for anchors that leave the beam free to move as a rigid body.
+/// Returns true when the anchors leave the beam free to move as a rigid body.
 bool is_mechanism(const Anchor& near, const Anchor& far) {
   const auto holds = [](double stiffness) { return stiffness > 0; };
   const bool turns = holds(near.rotation) || holds(far.rotation);
@@ -152,7 +152,7 @@ std::vector<LocalSection> local_sections(const Structure& s) {
     local.density = given_or(part.density, known(beam->density));
     local.holes = part.holes;
   }
-  all.back().end = s.length;  // equal to their sum up to rounding
+  all.back().end = s.length;  // the sum of the lengths, up to rounding
   return all;
 }
 
@@ -207,8 +207,8 @@ std::optional<PartConflict> part_conflict(const Device& d) {
     length += beam.sections[i].length;
   }
   if (!beam.sections.empty() && !(std::abs(length - s.length) <= 1e-9 * s.length))
-    return PartConflict{"sections", fmt::format("have a length of {} together, and the beam one of {}", engineering(length, "m"),
-                                                engineering(s.length, "m"))};
+    return PartConflict{"sections", fmt::format("have a length of {} together, which must be the length of the beam, {}",
+                                                engineering(length, "m"), engineering(s.length, "m"))};
   for (std::size_t i = 0; i < beam.layers.size(); ++i) {
     if (auto conflict = layer_conflict(d, i)) return conflict;
   }

@@ -58,12 +58,12 @@ class Run {
     other.start = asked_open ? StartState::closed : StartState::open;
     if (const auto found = start_of(model_, signals_, other)) out_.other_start = model_.contact_deflection(found->data());
     if (!asked_open) {
-      out_.message = "under what the drives stand at before t = 0 the switch has no stable closed state to begin in";
+      out_.message = "the switch has no stable closed state under the drives' values before t = 0, in which it should begin";
     } else if (model_.rest()) {
-      out_.message = "under what the drives stand at before t = 0 the switch has no stable open state: they close it";
+      out_.message = "the switch has no stable open state under the drives' values before t = 0: they close it";
     } else {
       const bool has_dispersion = model_.device().dispersion.has_value(), is_charged = model_.device().is_charged();
-      out_.message = fmt::format("with every drive at rest the switch has no stable open state: {}",
+      out_.message = fmt::format("the switch has no stable open state with all drives at 0: {}",
                                  has_dispersion && is_charged ? "the dispersion force and the charge on a dielectric close it"
                                  : is_charged                 ? "the charge on a dielectric closes it by itself"
                                                               : "the dispersion force closes it by itself");
@@ -107,7 +107,7 @@ class Run {
     check_interval(step->field);
   }
 
-  // Handles an event: settles the energies, records what it is, and enters the next phase.
+  // Handles an event: computes the energies, records the event, and enters the next phase.
   void pass(const Event& event) {
     FollowedContact& c = parts_.contacts[event.contact];
     TrajectoryPoint& p = c.course.last_waiting();
@@ -129,7 +129,7 @@ class Run {
       c.phase.enter(event.edge->next, event.edge->zone);
     } else {
       change.kind = PhaseChange::Kind::turn;
-      // The remaining velocity still carries it this much deeper.
+      // The remaining velocity carries the contact point this much deeper.
       c.phase.turn(p.position - c.plane - (p.acceleration < 0 ? p.velocity * p.velocity / (2 * p.acceleration) : 0));
     }
     change.after = c.phase.law();
@@ -137,7 +137,7 @@ class Run {
     restart();
   }
 
-  // Handles an impact on a rigid contact: reverses the velocity, or ends the motion where the rebound would be too low.
+  // Handles an impact on a rigid contact: reverses the velocity, or ends the motion when the rebound would be too low.
   void strike() {
     const RestingPlate::Impact impact = parts_.plate.strike(here());
     Touch& touch = parts_.first().touches.last();
@@ -155,7 +155,7 @@ class Run {
     parts_.push(here());
   }
 
-  // Lets the plate rest until its drives no longer press it on.
+  // Keeps the plate at rest until its drives no longer press it on the contact.
   void stay() {
     const RestingPlate::Stay stay = parts_.plate.stay(here(), stop_);
     stepping_.count_step();
@@ -172,7 +172,8 @@ class Run {
     check_interval(field);
   }
 
-  // True where the beam is over the electrode: a beam that lands on the face of a dielectric may swing lower beside it.
+  // Returns true when the point of least gap is over the electrode: a beam that lands on a dielectric's face may swing lower
+  // beside it.
   [[nodiscard]] bool is_over_electrode() {
     const Device& device = model_.device();
     if (!device.lands_along_face() || device.structure.is_rigid()) return true;
@@ -189,7 +190,7 @@ class Run {
     return false;
   }
 
-  // Checks a step, at whose end these figures were found.
+  // Checks a step; `field` are the figures at its end.
   void check_interval(const FieldFigures& field) {
     if (ended_) return;
     if (field.smallest_gap < model_.gap_floor() && is_over_electrode()) {
@@ -215,7 +216,7 @@ class Run {
     }
   }
 
-  // Measures the landing at the first touch under the hold levels, or when they are reached after it.
+  // Computes the landing excess at the first touch or, if that is later, when the drives reach their hold levels.
   void measure_landing() {
     if (ended_ || !parts_.has_touched() || std::isfinite(out_.landing_excess)) return;
     if (!std::isfinite(options_.closed_potential) || !parts_.drives.at_hold()) return;
@@ -248,13 +249,13 @@ class Run {
     gather_contacts();
     const double error = out_.energy_error / model_.bending_energy();
     if (!(error <= not_credible) && out_.status != Status::numerical_failure) {
-      fail(
-          fmt::format("the energy balance is off by {:.3g} of the bending energy: the tolerance {} is too loose for this closing",
-                      error, engineering(options_.tolerance, "")));
+      fail(fmt::format(
+          "the residual of the energy balance is {:.3g} of the bending energy: the tolerance {} is too loose for this closing",
+          error, engineering(options_.tolerance, "")));
     } else if (error > worth_warning) {
-      out_.warnings.push_back(
-          fmt::format("energy balance: off by {:.2g} % of the bending energy: the tolerance {} is too loose for this closing",
-                      100 * error, engineering(options_.tolerance, "")));
+      out_.warnings.push_back(fmt::format(
+          "energy balance: the residual is {:.2g} % of the bending energy: the tolerance {} is too loose for this closing",
+          100 * error, engineering(options_.tolerance, "")));
     }
     for (std::string& warning : gas_warnings(model_.device(), out_.smallest_gap, parts_.first().course.largest_squeeze())) {
       out_.warnings.push_back(std::move(warning));
@@ -270,7 +271,7 @@ class Run {
     }
   }
 
-  // Collects the results of the contacts, and those of their connection where there are several.
+  // Collects the results of the contacts and, if there are several, of their connection.
   void gather_contacts() {
     if (parts_.electrical) {
       if (!parts_.closing_is_over) parts_.electrical->finish(here().time);
@@ -326,7 +327,7 @@ class Recorder final : public ClosingObserver {
 Integrator automatic_integrator(const Switch& model) { return model.film_states() > 0 ? Integrator::esdirk : Integrator::lawson; }
 
 std::string why_always_restarted(const Switch& model) {
-  if (model.rigid_contact() != nullptr) return "an impact on a rigid contact is no force";
+  if (model.rigid_contact() != nullptr) return "an impact on a rigid contact has no contact force";
   if (model.contacts() > 1) return "there are several contacts";
   if (model.has_contact() && has_memory(model.contact())) return "a contact law with memory turns at the deepest point";
   return {};
@@ -334,15 +335,17 @@ std::string why_always_restarted(const Switch& model) {
 
 Trajectory observe_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options,
                            ClosingObserver& observer) {
-  require(drives.size() == model.drives(), fmt::format("{} signals for a switch with {} drives", drives.size(), model.drives()));
+  require(drives.size() == model.drives(),
+          fmt::format("{} signals are given; a switch with {} drives needs one per drive", drives.size(), model.drives()));
   require(options.duration > 0 && options.duration < 1e6,
           fmt::format("duration = {} s: must be greater than 0 s and below 1e6 s", options.duration));
   require(options.tolerance > 0 && options.tolerance <= 0.1,
           fmt::format("tolerance = {}: must be in (0, 0.1]", options.tolerance));
   require(options.begins_closed.empty() ||
               (model.has_contact() && options.begins_closed.size() == static_cast<std::size_t>(model.modes())),
-          fmt::format("begins_closed: {} coordinates for a switch with {} modes and {} contact", options.begins_closed.size(),
-                      model.modes(), model.has_contact() ? "a" : "no"));
+          fmt::format("begins_closed: {} coordinates are given; a closed start needs one per mode and a contact, and the switch "
+                      "has {} modes and {} contact",
+                      options.begins_closed.size(), model.modes(), model.has_contact() ? "a" : "no"));
   require(options.start == StartState::open || model.has_contact(), "start = closed: the switch has no contact to begin on");
   require(options.restart_at_contact || why_always_restarted(model).empty(),
           fmt::format("restart_at_contact = false: {}", why_always_restarted(model)));

@@ -19,7 +19,7 @@ namespace softland {
 namespace {
 
 void positive(double value, const char* unit, const char* name) {
-  require(!std::isnan(value), [&] { return fmt::format("{}: is needed here and not given", name); });
+  require(!std::isnan(value), [&] { return fmt::format("{}: must be given for this device", name); });
   require(value > 0 && value < 1e30,
           [&] { return fmt::format("{} = {}: must be greater than 0 and below 1e30", name, engineering(value, unit)); });
 }
@@ -31,11 +31,11 @@ void span(double begin, double end, double length, const std::string& name) {
   });
 }
 
-/// Checks the numbers of `owner`, a part of the device; those that a scene may leave out may be as they are in `unset`.
+/// Checks the numbers of `owner`, a part of the device; numbers that a scene may leave out may be as in `unset`.
 template <class Owner>
 void check_fields(const std::string& part, Owner owner, Owner unset, std::span<const Field<Owner>> fields) {
   for (const Field<Owner>& field : fields) {
-    // Skip a scene's bound that can be exceeded, and what a separate rule decides.
+    // Skip a scene's bound that may be exceeded, and numbers that a separate rule checks.
     if (field.in == nullptr || !field.beyond.empty() || field.range == Range{}) continue;
     const double value = field.in(owner), missing = field.in(unset);
     const bool may_miss = !field.required || !field.instead_of.empty() || !field.unless.empty();
@@ -111,9 +111,8 @@ void check_dielectric(const Electrode& e, const Gap& gap) {
       require(height < gap.electrode, [&] {
         return fmt::format("{}landing.asperity_height = {}: must be below gap.electrode", name, engineering(height, "m"));
       });
-      require(std::isnan(landing->stiffness) && landing->from == 0 && landing->asperities->damping == 0, [&] {
-        return name + "landing.asperity_height: asperities begin at their height, without a bed and without damping";
-      });
+      require(std::isnan(landing->stiffness) && landing->from == 0 && landing->asperities->damping == 0,
+              [&] { return name + "landing.asperity_height: must not be given with a stiffness, a height `from` or damping"; });
     } else if (!landing->is_wall()) {
       positive(landing->stiffness, "Pa/m", (name + "landing.stiffness").c_str());
     }
@@ -121,7 +120,7 @@ void check_dielectric(const Electrode& e, const Gap& gap) {
       return fmt::format("{}landing.from = {}: must be from 0 m to below gap.electrode", name, engineering(landing->from, "m"));
     });
     require(!std::isnan(landing->stiffness) || landing->from == 0,
-            [&] { return name + "landing.from: a wall begins at the face"; });
+            [&] { return name + "landing.from: must be 0 m without landing.stiffness: the face is then a wall"; });
   }
   require(e.side == Side::near,
           [&] { return fmt::format("electrode.{}.dielectric: belongs to an electrode on the near side alone", e.name); });
@@ -149,7 +148,7 @@ void check_gap_and_electrodes(const Device& d) {
   }
 }
 
-/// Checks that a structure that is not straight at rest touches nothing there.
+/// Checks that a structure with a rest shape touches neither an electrode nor its contact at rest.
 void check_rest_shape(const Device& d) {
   const double lowest = std::visit(
       [&](const auto& kind) {
@@ -158,7 +157,7 @@ void check_rest_shape(const Device& d) {
       },
       d.structure.kind);
   require(lowest > -0.99 * d.gap.electrode, [&] {
-    return fmt::format("structure: rests {} nearer to the electrode than a straight one: it would touch it at rest",
+    return fmt::format("structure: rests {} nearer to the electrode than a straight one: it would touch the electrode at rest",
                        engineering(-lowest, "m", 4));
   });
   require(d.contact_gap() > 0 && d.contact_gap() < 1, [&] {
@@ -194,8 +193,10 @@ void check_place_of_contact(const Device& d, std::size_t i, const std::string& p
                        engineering(length, "m"));
   });
   const double gap = d.contact_gap(i);
-  require(gap > 0 && gap < 1,
-          [&] { return fmt::format("{}.gap: rests {} from its plane, must be positive", path, engineering(gap, "m", 4)); });
+  require(gap > 0 && gap < 1, [&] {
+    return fmt::format("{}.gap: the contact rests {} from its plane; this distance must be positive", path,
+                       engineering(gap, "m", 4));
+  });
   const bool may_reach = c.side == Side::far || c.along_face || (i == 0 && !d.lands_along_face() && d.lands_on_dielectric());
   require(may_reach || gap < d.gap.electrode + d.rest_offset(x), [&] {
     return fmt::format("{}.gap = {}: must be below gap.electrode = {}", path, engineering(gap, "m"),
@@ -215,7 +216,7 @@ void check_contact(const Device& d, std::size_t i) {
   require(!rigid || !d.gas || !is_compressible(*d.gas), [&] {
     return path + ".model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests";
   });
-  // A pad is not needed where only its area would count.
+  // A pad is not needed when only its area would matter.
   const bool no_pad = c.along_face || (s.is_rigid() && !acts_per_area(c.model) && c.pad_length == 0);
   require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {
     return fmt::format("{}.pad_length = {}: must be positive and below structure.length = {}", path,
@@ -307,8 +308,8 @@ const Landing* Device::landing() const {
 
 namespace {
 
-// Returns where a beam that bends under the pads of its faces touches them first: at the free end, or in the middle between two
-// clamps, or at the edge of a pad that lies nearest to it.
+// Returns the place at which a beam that bends under the pads of its faces first touches them: the free end, or the middle
+// between two clamps, or the edge of a pad that is nearest to this place.
 Place first_touch_on(const Device& d) {
   const double length = d.structure.length, aim = d.structure.has_far_clamp() ? length / 2 : length;
   Place nearest;
@@ -418,14 +419,14 @@ std::optional<ElectrodeConflict> electrode_conflict(const Structure& s, const st
   const double rounding = 1e-12 * s.length;
   for (const Side side : {Side::near, Side::far}) {
     const std::string_view side_name = side == Side::near ? "near" : "far";
-    std::vector<Pad> here;  // pads from the clamped end on
+    std::vector<Pad> here;  // pads in order from the clamped end
     for (std::size_t k = 0; k < electrodes.size(); ++k) {
       if (electrodes[k].side != side && electrodes[k].side != Side::both) continue;
       for (const Stretch& pad : electrodes[k].pads(s.length)) here.push_back({k, pad});
     }
     const bool plate = s.is_rigid();
     if (!plate) std::ranges::stable_sort(here, {}, [](const Pad& pad) { return pad.at.begin; });
-    double taken = 0;  // occupied length: up to here on a beam, in total on a plate
+    double taken = 0;  // occupied length: up to this place on a beam, in total on a plate
     for (std::size_t i = 0; i < here.size(); ++i) {
       const Stretch& pad = here[i].at;
       if (i > 0 && (plate ? taken + pad.end - pad.begin > s.length + rounding : pad.begin < taken - rounding)) {
@@ -451,16 +452,16 @@ std::optional<ContactConflict> contact_conflict(const Device& d) {
     return ContactConflict{0, "a back stop closes nothing: a contact of side = \"near\" is missing"};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Contact& c = all[i];
-    if (c.side == Side::both) return ContactConflict{i, "stands on one side, \"near\" or \"far\""};
+    if (c.side == Side::both) return ContactConflict{i, "side must be \"near\" or \"far\""};
     if (c.count > 1 && std::holds_alternative<OwnContact>(c.model))
-      return ContactConflict{i, "a law of one's own is that of all contacts together: count must be 1"};
+      return ContactConflict{i, "a user's own law is the force of all contacts together: count must be 1"};
     if (all.size() == 1) break;
     if (std::holds_alternative<RigidStop>(c.model))
-      return ContactConflict{i, "model = \"rigid\" stands for a contact that is alone"};
+      return ContactConflict{i, "a contact with model = \"rigid\" must be the only one"};
     if (c.distribution == ContactDistribution::pad)
-      return ContactConflict{i, "distribution = \"pad\" stands for a contact that is alone"};
+      return ContactConflict{i, "a contact with distribution = \"pad\" must be the only one"};
     if (i > 0 && c.side == Side::near && !c.along_face && all[i - 1].side == Side::far)
-      return ContactConflict{i, "the contacts of the near side come first"};
+      return ContactConflict{i, "the contacts of the near side must come first"};
     for (std::size_t k = 0; k < i && !d.structure.is_rigid(); ++k) {
       if (all[k].side != c.side || all[k].along_face || c.along_face) continue;
       if (std::abs(d.contact_position(k) - d.contact_position(i)) > 1e-9 * d.structure.length) continue;

@@ -23,10 +23,10 @@ constexpr double longest_angle = 2.5;  // largest norm of A times the length of 
 constexpr int most_parts = 4096;       // largest number of parts of a step
 constexpr int parts_at_edge = 6;       // parts of a step that begins or ends where a contact does
 constexpr Index lane_size = lanes;
-constexpr Index most_unknowns = 2 * most_modes;  // unknowns, in whole lanes
+constexpr Index most_unknowns = 2 * most_modes;  // largest number of unknowns, in whole lanes
 
-// Returns the number of terms after which the exponential of a matrix of this norm is good to rounding; at least as many as the
-// parabola of an input has.
+// Returns the number of terms after which the exponential of a matrix of this norm is accurate to rounding, and at least as
+// many terms as the parabola of an input needs.
 int terms_of_exponential(double norm) {
   constexpr int fewest = 3;
   constexpr double rounding = 1e-13;
@@ -52,7 +52,7 @@ double column_norm(const double* x, Index size, Index stride) {
   return largest.maxCoeff();
 }
 
-// Adds value += gain for very many small gains: the part that rounding cuts off is kept for the next one (Kahan 1965). The sum
+// Adds value += gain for very many small gains: the part that rounding cuts off is kept for the next gain (Kahan 1965). The sum
 // is value - left.
 template <class Value, class Left, class Gain>
 void add_compensated(Value&& value, Left&& left, const Gain& gain) {
@@ -123,8 +123,8 @@ struct ColumnSeries {
   }
 };
 
-// Returns the shares of a step at which its parts end. A contact's stiffness begins and ends like a root of the time from the
-// edge.
+// Returns the shares of a step at which its parts end. A contact's stiffness sets in, and ends, like the root of the time from
+// the edge.
 std::vector<double> shares_of_parts(int parts, bool after_edge, bool before_edge) {
   std::vector<double> ends;
   for (int k = 1; k <= parts; ++k) {
@@ -135,7 +135,7 @@ std::vector<double> shares_of_parts(int parts, bool after_edge, bool before_edge
   return ends;
 }
 
-// Interpolates a step that is known at its ends at a time in it.
+// Interpolates a step, whose ends are known, at a time within it.
 template <class Modal>
 void move_to(double t, const RecordedMotion::Motion& from, const RecordedMotion::Motion& to, Modal& q, Modal& v,
              Modal& accelerations) {
@@ -155,7 +155,7 @@ std::string LinearizedClosing::refusal(const Switch& model) {
   if (model.device().lands_along_face()) return "a landing along the face of a dielectric has no derivatives here";
   if (model.has_contact() && is_own(model.contact()))
     return "a contact law of one's own has derivatives by differences only, which are not exact";
-  return model.modes() > most_modes ? "a closing has fewer modes" : "";
+  return model.modes() > most_modes ? "a closing with so many modes has no derivatives here" : "";
 }
 
 LinearizedClosing::LinearizedClosing(const Switch& model, std::span<const Signal> signals, const RecordedMotion& tape,
@@ -198,7 +198,7 @@ void LinearizedClosing::note_passage(const PhaseChange& change) {
   if (!arcs_.empty() && change.kind == PhaseChange::Kind::turn) arcs_.back().turns = true;
 }
 
-// Enters one set of pieces for each drive that goes on to another piece.
+// Adds one set of pieces for each drive that enters another piece.
 void LinearizedClosing::enter_pieces(double t) {
   for (std::size_t k = 0; k < signals_.size(); ++k) {
     const std::vector<SignalPiece>& all = signals_[k].pieces();
@@ -284,7 +284,7 @@ void LinearizedClosing::begin_at_rest() {
   }
 }
 
-// Sets the present values of the drives.
+// Computes the present values of the drives.
 void LinearizedClosing::set_volts(double t) {
   for (std::size_t k = 0; k < volts_.size(); ++k) volts_[k] = signals_[k].pieces()[pieces_[on_][k]].voltage(t);
 }
@@ -393,7 +393,7 @@ void LinearizedClosing::add_parts(std::size_t step, bool after_edge, bool before
   }
 }
 
-// Adds the jump of f at times that the waveform decides, where drives go on to other pieces.
+// Adds the jump of f at a time that the waveform decides, at which drives enter other pieces.
 void LinearizedClosing::jump_at_pieces(const RecordedMotion::Motion& here, const ContactState& contact, std::size_t entered) {
   if (on_ == entered) return;
   Jump jump{.parts = parts_.size(), .matrix = {}, .moved = {}};
@@ -497,7 +497,7 @@ void LinearizedClosing::add_moved(const std::vector<FigureSlope>& figures, const
   }
 }
 
-// Calls add(input, parameter, its derivative at the begin, in the middle and at the end of a part).
+// Calls add(input, parameter, its derivatives at begin, middle and end of a part).
 template <class Add>
 void LinearizedClosing::for_inputs(const Part& part, const SignalSlopes& slopes, Add&& add) const {
   const std::vector<std::size_t>& on = pieces(arcs_[part.arc]);

@@ -6,7 +6,7 @@
 namespace softland {
 
 ModeShapes mode_shapes(const Switch& model, int places) {
-  require(places >= 2, "mode shapes: there must be at least 2 places");
+  require(places >= 2, "mode shapes: places must be at least 2");
   const Device& device = model.device();
   const Structure& structure = device.structure;
   if (structure.is_rigid())

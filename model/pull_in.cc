@@ -18,8 +18,8 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// A static equilibrium with the contact point held at a given deflection. `unknown` is what holds it there: the strength of the
-// drive (of an electrode [V^2], the factor of the dispersion force), or the reaction of the holder [N].
+// A static equilibrium with the contact point held at a given deflection. `unknown` is the strength of what holds it: that of
+// the drive (V^2 of an electrode, the factor of the dispersion force), or the reaction of a holder [N].
 struct Held {
   Eigen::VectorXd q;
   double unknown = 0;
@@ -33,7 +33,7 @@ class Statics {
         rest_(Eigen::VectorXd::Zero(model.modes())),
         squares_(model.basis().angular_frequencies().cwiseAbs2()) {}
 
-  // Returns the shape under a force at the contact point, scaled to the deflection s there.
+  // Returns the shape of the beam under a force at the contact point, scaled to the deflection s of this point.
   [[nodiscard]] Eigen::VectorXd pushed(double s) const {
     const Eigen::VectorXd shape = model_.basis().contact_shape().cwiseQuotient(squares_);
     return shape * (s / model_.basis().contact_shape().dot(shape));
@@ -42,7 +42,8 @@ class Statics {
   // Finds the equilibrium in which `drive` holds the contact point at s against the contact force P(s - dt), with the other
   // drives at `bias`.
   std::optional<Held> on_branch(std::size_t drive, std::span<const double> bias, double s, Held start) {
-    // The force at unit strength is a difference: taken near the strength sought, where the other forces do not dominate it.
+    // The force at unit strength is a difference of two evaluations, near the strength sought, where the other forces do not
+    // dominate it.
     const double scale = start.unknown > 0 ? start.unknown : 1;
     std::vector<double> some(bias.begin(), bias.end()), none = some;
     some[drive] = model_.value_of_strength(drive, scale);
@@ -63,8 +64,8 @@ class Statics {
                   });
   }
 
-  // Finds the equilibrium in which a holder keeps the contact point at s under constant voltages. unknown is the force with
-  // which the beam presses on it, beyond what a contact along the pad carries.
+  // Finds the equilibrium in which a holder keeps the contact point at s under constant voltages. `unknown` is the force of the
+  // beam on the holder, beyond what a contact along the pad carries.
   std::optional<Held> pinned(std::span<const double> volts, double s) {
     std::optional<Held> h = Held{.q = pushed(s)};
     std::vector<double> part(volts.begin(), volts.end());
@@ -79,7 +80,7 @@ class Statics {
     return h;
   }
 
-  // Finds the same from a state near it.
+  // Finds the equilibrium with a holder from a state near it.
   std::optional<Held> pinned(std::span<const double> volts, double s, Held near) {
     return newton(s, std::move(near),
                   [&](const Held& at, Eigen::VectorXd& residual, Eigen::MatrixXd& by_q, Eigen::VectorXd& by_unknown) {
@@ -89,7 +90,7 @@ class Statics {
                   });
   }
 
-  // Finds an equilibrium on the contact, from a state near it.
+  // Finds an equilibrium on the contact from a state near it.
   std::optional<Eigen::VectorXd> closed(std::span<const double> volts, Eigen::VectorXd near) {
     Eigen::VectorXd force;
     Eigen::MatrixXd by_q;
@@ -154,7 +155,8 @@ class Statics {
   [[nodiscard]] bool has_converged(const Eigen::VectorXd& step) const {
     return step.cwiseProduct(model_.basis().contact_shape()).cwiseAbs().sum() < 1e-13 * model_.device().gap.electrode;
   }
-  // True when the state evaluated last is above the floor; below it the laws do not hold, so that there is no equilibrium.
+  // Returns true when the state evaluated last is above the floor. Below the floor the laws do not hold, and there is no
+  // equilibrium.
   [[nodiscard]] bool is_above_floor() const { return Switch::smallest_gap(work_) > model_.gap_floor(); }
 
   const Switch& model_;
@@ -162,7 +164,7 @@ class Statics {
   Eigen::VectorXd rest_, squares_;
 };
 
-// Returns the drives of a switch at a bias, `drive` itself at 0.
+// Returns the values of the drives at a bias, with `drive` itself at 0.
 std::vector<double> standing(const Switch& model, std::size_t drive, Bias bias) {
   require(bias.empty() || bias.size() == model.drives(), "a bias needs a value for every drive of the switch");
   std::vector<double> values(bias.begin(), bias.end());
@@ -177,8 +179,8 @@ class EquilibriumBranch {
   EquilibriumBranch(const Switch& model, std::size_t drive, Bias bias)
       : statics_(model), drive_(drive), bias_(standing(model, drive, bias)), goes_in_steps_(model.device().lands_along_face()) {}
 
-  // Returns the strength at deflection s; NaN without an equilibrium. It starts from the last one found, so call it in small
-  // steps.
+  // Returns the strength at deflection s; NaN without an equilibrium. The search starts from the last equilibrium found, so
+  // call this in small steps.
   double operator()(double s) {
     if (start_.q.size() == 0) start_ = {.q = statics_.pushed(s)};
     if (!reaches(s) && !(goes_in_steps_ && walks(s))) return nan;
@@ -196,7 +198,8 @@ class EquilibriumBranch {
     return true;
   }
 
-  // Near the face of a thin dielectric the field grows so fast that Newton's method needs short steps.
+  // Finds the equilibrium at s in short steps: near the face of a thin dielectric the field grows so fast that Newton's method
+  // needs them.
   bool walks(double s) {
     constexpr int most_steps = 100;
     constexpr double shortest = 1e-6;  // share of the way
@@ -225,13 +228,13 @@ class EquilibriumBranch {
 
 constexpr int branch_steps = 64;
 
-// Three depths beyond the contact plane, one step apart [m]; at the beginning of a walk `before` and `last` are the same.
+// Three depths beyond the contact plane, one step apart [m]; at the start of a walk `before` and `last` are the same.
 struct Steps {
   double before, last, next;
 };
 
-// Walks from `depth` deeper in growing steps until stop(f there, f one step on). The steps are halved where f ends (NaN: the
-// beam would reach the electrode); the walk returns nothing when it gets there.
+// Walks from `depth` deeper in growing steps until stop(f at a depth, f one step deeper). The steps are halved where f ends
+// (NaN: the beam would reach the electrode); the walk returns nothing when it reaches this end.
 template <class F, class Stop>
 std::optional<Steps> walk(F&& f, double depth, double step, Stop&& stop) {
   constexpr double growth = 1.2;
@@ -263,14 +266,14 @@ template <class F>
 std::optional<Minimum> first_minimum(F&& f, double step) {
   const auto around = walk(f, 0, step, [](double value, double here) { return here > value; });
   if (!around) return std::nullopt;
-  // Depths are in units of the step: Brent's tolerance is partly absolute.
+  // Depths are in units of the step, because Brent's tolerance is partly absolute.
   const auto [at, value] = boost::math::tools::brent_find_minima([&](double x) { return f(x * step); }, around->before / step,
                                                                  around->next / step, 30);
   const double known = f(around->last);
   return value < known ? Minimum{at * step, value} : Minimum{around->last, known};
 }
 
-// Steps of one drive, from rest.
+// Simulations of constant steps of one drive, from rest.
 class StepTrial {
  public:
   StepTrial(const Switch& model, std::size_t drive, const StaticPullIn& static_result, Bias bias, double tolerance)
@@ -285,8 +288,7 @@ class StepTrial {
         work_(model.workspace()) {}
 
   [[nodiscard]] bool has_rest() const { return rest_.has_value(); }
-  // Returns true when a step reaches the contact plane. It calls tell(part) from time to time with the elapsed share of the
-  // time.
+  // Returns true when a step reaches the contact plane. Calls tell(part) from time to time with the elapsed share of the time.
   template <class Tell>
   bool reaches(double value, const std::atomic<bool>* stop, Tell&& tell) {
     std::vector<double> all = bias_;
@@ -317,9 +319,10 @@ class StepTrial {
     double deflection, potential;
   };
 
-  // Friction only takes energy. So a run that is not yet over the pass between rest and contact plane, and whose energy falls
-  // below it, never reaches the plane. The pass is the unstable equilibrium, or the state held at the plane where that comes
-  // first. No shape with the contact point on the pass has less energy, so the deflection there separates the two sides.
+  // Friction only takes energy. So a run that has not crossed the pass between rest and contact plane, and whose energy falls
+  // below that of the pass, never reaches the plane. The pass is the unstable equilibrium, or the state held at the plane if
+  // that comes first. No shape with the contact point on the pass has less energy, so the deflection of the pass separates the
+  // two sides.
   Pass pass(double value, std::span<const double> all) {
     const double plane = model_.contact_gap(), strength = model_.strength(drive_, value);
     if (static_.kind == StaticKind::fold && branch_(plane) < strength) {
@@ -352,7 +355,7 @@ std::string_view to_string(StaticKind kind) { return kind == StaticKind::fold ? 
 
 StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
   if (!pulls_in(model.device(), drive)) return {.status = Status::no_contact};
-  // The branch of an electrode begins where the switch rests without its field, that of the dispersion force at factor 0.
+  // The branch of an electrode begins at the switch's rest without its field, the branch of the dispersion force at factor 0.
   std::vector<double> at_begin = standing(model, drive, bias);
   if (model.neutral_voltage(drive) != 0 && !model.open_equilibrium(at_begin)) return {.status = Status::collapsed_at_rest};
   at_begin[drive] = model.value_of_strength(drive, 0);
@@ -367,11 +370,11 @@ StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
     const double s = place(k), strength = branch(s);
     if (!std::isfinite(strength)) return {.status = Status::numerical_failure};
     if (strength <= best) {
-      // The deflection is in units of the gap: Brent's tolerance is partly absolute. The top is flat, so that the tolerance of
-      // the deflection is far tighter than the voltage needs.
+      // The deflection is in units of the gap, because Brent's tolerance is partly absolute. The maximum is flat, so that the
+      // tolerance of the deflection is far tighter than the voltage needs.
       const auto [at, value] = boost::math::tools::brent_find_minima([&](double x) { return -branch(x * end); },
                                                                      std::max(1e-6, place(k - 2) / end), s / end, 30);
-      // A drive that pulls away from the contact has no pull-in: its branch falls from the beginning.
+      // A drive that pulls away from the contact has no pull-in: the strength falls along its branch from the start.
       if (!(-value > 0)) return {.status = Status::no_contact};
       return {.status = Status::done,
               .voltage = model.value_of_strength(drive, -value),
@@ -386,7 +389,7 @@ StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
 
 namespace {
 
-// Follows the branch from the straight beam up to the contact plane, in small steps.
+// Computes the branch from the straight beam up to the contact plane, in small steps.
 void follow_to_plane(EquilibriumBranch& branch, double plane) {
   for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
 }
@@ -419,7 +422,7 @@ ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
   follow_to_plane(branch, plane);
   if (model.rigid_contact() != nullptr) return released(branch(plane), plane);
   if (model.contact_reach() > 0) {
-    // Adhesion inside may make a deeper well than the first.
+    // Adhesion at larger depth may make a lower minimum than the first.
     constexpr int looks = 256;
     const double step = largest_interference(model.device().contacts.front().model) / looks;
     double best = branch(plane), at = 0;
@@ -427,7 +430,7 @@ ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
       const double value = branch(plane + k * step);
       if (value < best) best = value, at = k * step;
     }
-    // Depths are in units of the step: Brent's tolerance is partly absolute.
+    // Depths are in units of the step, because Brent's tolerance is partly absolute.
     const double low = std::max(0.0, at / step - 1);
     const auto [depth, value] =
         boost::math::tools::brent_find_minima([&](double x) { return branch(plane + x * step); }, low, at / step + 1, 30);
@@ -518,7 +521,7 @@ ClosedEquilibrium closed_at(const Switch& model, const Eigen::VectorXd& q, doubl
           .smallest_eigenvalue = smallest_closed_eigenvalue(model, q, volts)};
 }
 
-// Returns the depths between which f first rises to zero from below. Just before a beam collapses onto the electrode it does so
+// Returns the depths between which f first rises to zero from below. Just before a beam collapses onto the electrode f does so
 // between two steps, and falls again.
 template <class F>
 std::optional<Steps> first_enough(F&& f, double depth, double step) {
@@ -536,8 +539,8 @@ double static_push(const Switch& model, const Eigen::VectorXd& q) {
 }
 
 // Finds how a beam rests on the face of a dielectric: on its first spot, or with most of its length. Newton's method descends
-// the potential from `q`: its step leads downhill along every direction. A step shortens no gap of the field by more than a
-// share, so that it does not jump over the ridge of a soft face.
+// the potential from `q`, downhill along every eigenvector. A step shortens no gap of the field by more than a share, so that
+// it does not jump over the maximum of the potential before a soft face.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts, Eigen::VectorXd q) {
   constexpr int most_steps = 1000;
   constexpr double longest = 0.05, shortest = 1e-9;           // steps, in shares of the gaps of the field
@@ -549,7 +552,7 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
   const Eigen::VectorXd compliance = model.basis().angular_frequencies().cwiseInverse();
   const double depth = model.device().dielectric_depth();
-  // A point contact exerts no force where the beam does not touch it.
+  // A contact at a point exerts no force when the beam does not touch it.
   const auto contact_at = [&](const Eigen::VectorXd& at) -> ContactState {
     return model.has_spread_contact() || model.contact_deflection(at.data()) > model.contact_gap() - model.contact_reach();
   };
@@ -567,7 +570,7 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
                                       .cwiseQuotient(along.values.cwiseAbs().cwiseMax(least_stiffness));
     Eigen::VectorXd step = (along.vectors * parts).cwiseProduct(compliance);
     double reach = reach_of(step);
-    if (along.values[0] < 0 && reach < at_saddle * radius) {  // no force indicates the way down there
+    if (along.values[0] < 0 && reach < at_saddle * radius) {  // no force indicates the direction of descent
       step = along.vectors.col(0).cwiseProduct(compliance);
       step *= radius / reach_of(step);
       reach = radius;
@@ -595,8 +598,8 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
   return found.smallest_eigenvalue > 0 ? std::optional(found) : std::nullopt;
 }
 
-// The beam begins where a force holds it at the plane of its first contact. It begins on the face where another contact closes
-// the switch and the beam leaves it from there.
+// The search begins where a force holds the beam at the plane of its first contact. It begins on the face when another contact
+// closes the switch and the beam moves from the face to that contact.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts) {
   const Eigen::VectorXd squares = model.basis().angular_frequencies().cwiseAbs2();
   const auto held_at = [&](std::size_t c) {
@@ -620,13 +623,14 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
     if (!held || !(held->unknown > 0)) return std::nullopt;
     return closed_at(model, held->q, held->unknown, volts);
   }
-  // Returns the force of the contact at a depth, less the force with which the beam presses there.
+  // Returns the force of the contact at a depth, less the force with which the beam presses on it.
   const auto excess = [&](double depth) {
     const auto held = statics.pinned(volts, plane + depth);
     if (!held) return nan;
     return (model.has_spread_contact() ? 0 : contact_force(model.contact(), depth)) - held->unknown;
   };
-  // The beam must overcome the contact where it presses hardest; the equilibrium is where, deeper, the contact takes over.
+  // The beam must overcome the contact force where the beam presses hardest; the equilibrium lies deeper, where both are equal
+  // again.
   const auto hardest = first_minimum(excess, step);
   if (!hardest || !(hardest->value < 0)) return std::nullopt;
   const std::optional<Steps> over = first_enough(excess, hardest->depth, step);
@@ -639,7 +643,8 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
 
 namespace {
 
-// Finds it by Newton's method from an equilibrium of slightly different voltages, where that ends on a stable one.
+// Finds the closed equilibrium by Newton's method from one of slightly different voltages, if this ends on a stable
+// equilibrium.
 std::optional<ClosedEquilibrium> closed_by_newton(const Switch& model, std::span<const double> volts,
                                                   const ClosedEquilibrium& near) {
   Statics statics(model);
@@ -696,8 +701,9 @@ double pull_through_by_walk(const Switch& model, std::size_t drive, std::vector<
   return high;
 }
 
-// Returns the end of a window that begins at the release voltage and is narrower than one step of the walk above. It searches
-// in steps that double from a hundred-thousandth on. Returns NaN where nothing holds the switch so near its release.
+// Returns the end of a window of voltages with closed equilibria that begins at the release voltage and is narrower than one
+// step of the walk above. The steps of the search double from a hundred-thousandth on. Returns NaN when no equilibrium exists
+// so near the release voltage.
 double pull_through_of_narrow_window(const Switch& model, std::size_t drive, std::vector<double> levels, double release,
                                      double precision) {
   constexpr double first_step = 1e-5;
@@ -753,7 +759,7 @@ std::optional<double> pull_through_from(const Switch& model, std::size_t drive, 
 
 double acting_pull_through(const Switch& model, std::size_t drive, std::span<const double> volts, double precision) {
   const double neutral = model.neutral_voltage(drive);
-  // Nothing holds the switch below its release voltage.
+  // No equilibrium keeps the switch closed below its release voltage.
   const double release = release_voltage(model, drive, volts) - neutral, given = std::abs(volts[drive] - neutral);
   const double start = std::fmax(given, pull_through_factor * release);
   if (!(start > 0)) return nan;
@@ -763,7 +769,7 @@ double acting_pull_through(const Switch& model, std::size_t drive, std::span<con
   const auto found =
       keeps_closed(model, closed) ? pull_through_from(model, drive, levels, start, *closed, precision) : std::nullopt;
   if (found) return *found;
-  const bool is_above = start > given;  // the given level may still hold the switch
+  const bool is_above = start > given;  // the given level may still keep the switch closed
   if (is_above && !keeps_closed(model, closed)) {
     const double narrow = pull_through_of_narrow_window(model, drive, levels, release, precision);
     if (std::isfinite(narrow)) return narrow;
@@ -773,7 +779,7 @@ double acting_pull_through(const Switch& model, std::size_t drive, std::span<con
   return pull_through_of_narrow_window(model, drive, std::move(levels), release, precision);
 }
 
-// Returns true for a rigid face, below which nothing moves.
+// Returns true for a landing on a wall, below whose face the beam does not move.
 bool lands_on_wall(const Switch& model, std::size_t drive) {
   const Device& device = model.device();
   if (drive >= device.electrodes.size() || !device.electrodes[drive].dielectric || device.face_contact() != 0) return false;
@@ -805,7 +811,7 @@ bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias
 
 namespace {
 
-// Returns true when friction at rest prevents oscillation of the first mode.
+// Returns true when damping at rest prevents oscillation of the first mode.
 bool is_overdamped(const Switch& model) {
   if (!model.rest()) return false;
   const Eigen::Index n = model.modes();
@@ -828,7 +834,7 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
   double trials = halvings, done = 0, shown = 0;
   const auto reaches = [&](double value) {
     return steps.reaches(value, watch.stop, [&](double part) {
-      // A bracket that is searched further down takes more trials than expected.
+      // A bracket that has to be extended downwards takes more trials than expected.
       shown = std::max(shown, std::min(1.0, (done + part) / trials));
       watch.tell("dynamic pull-in voltage", shown);
     });
@@ -836,7 +842,7 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
 
   double low = 0.5 * static_result.voltage, high = static_result.voltage;
   if (is_overdamped(model)) {
-    // If friction lets no step overshoot, one trial shows that the static voltage is the least.
+    // If no step overshoots because of damping, one trial shows that the static voltage is the smallest.
     trials = 1;
     if (!reaches(high * (1 - precision))) low = high;
     trials = 1 + halvings;

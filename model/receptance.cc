@@ -41,7 +41,7 @@ struct ElementProducts {
   }
 };
 
-// Functions that leave the right end at rest are even or odd, and an even one does not act on an odd one.
+// Functions that leave the right end at rest are even or odd. The integral of the product of an even and an odd one is 0.
 constexpr bool act_on_each_other(int i, int j) { return i < 4 || j < 4 || (i - j) % 2 == 0; }
 
 // Motions of the right end: 1, 2 and the factors of the first two functions in its deflection, and in half its rotation.
@@ -154,7 +154,7 @@ void Receptance::load(double x) {
   }
 }
 
-// Adds the effect of the stiffness [deflection, both, slope] and the forces at the right end on an element's motions.
+// Adds the effects of the stiffness [deflection, both, slope] and the forces at the right end on the motions of an element.
 void Receptance::add_beyond(Stage& stage, const Kind& kind, const Lane* stiffness, const Lane* force) const {
   const double deflection[kept] = {1, 2, kind.reach * first_at_end, kind.reach * second_at_end};
   const double slope[kept] = {0, 1 / kind.half, kind.reach * first_turn / kind.half, 0};
@@ -166,7 +166,8 @@ void Receptance::add_beyond(Stage& stage, const Kind& kind, const Lane* stiffnes
   }
 }
 
-// Fixes the right end, which then follows from the left one: the first two functions are linear in its deflection and rotation.
+// Fixes the right end: its motion then depends on the left end, as the first two functions are linear in deflection and
+// rotation.
 void Receptance::fix_end(Stage& stage, const Kind& kind) const {
   const double first = -1 / (kind.reach * first_turn), second = -1 / (kind.reach * second_at_end);
   auto& f = stage.form;
@@ -195,7 +196,7 @@ void Receptance::sweep_to_clamp(Answer& answer) {
       fix_end(stage, kind);
     } else {
       add_beyond(stage, kind, stiffness, force);
-      // Eliminate both functions at once: either alone may vanish while nothing beyond is near a pole.
+      // Eliminate both functions at once: one of them alone may have a zero pivot although no pole is near.
       auto& f = stage.form;
       const Lane determinant = f[2][2] * f[3][3] - f[3][2].square(), over = determinant.inverse();
       stage.inverse[0] = f[3][3] * over;

@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 
 constexpr double no_slope = std::numeric_limits<double>::quiet_NaN();
 
-// The static accelerations near an equilibrium, as rows in units of each mode's own stiffness.
+// Static accelerations near an equilibrium; each row is in units of its mode's own stiffness.
 struct Tangent {
   MatrixXd by_q, by_strength;  // unscaled; by_strength: drives at unit strength
   VectorXd scale;              // 1 / omega^2
@@ -106,7 +106,7 @@ bool are_zero(const Switch& model, std::span<const double> values) {
   return !model.device().is_charged() && std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
 }
 
-// Returns the motion of an equilibrium under constant voltages by the strength of a drive.
+// Returns the derivative of an equilibrium by the voltage of a drive.
 VectorXd motion_by_voltage(const Switch& model, const Tangent& tangent, std::size_t drive, double value) {
   const double by_value = model.strength_slope(drive, value);
   const VectorXd force = model.drive_kind(drive) == DriveKind::piezo
@@ -115,7 +115,7 @@ VectorXd motion_by_voltage(const Switch& model, const Tangent& tangent, std::siz
   return -tangent.solved(by_value * force);
 }
 
-// Returns a step of q that is small and still far above rounding.
+// Returns a step along a direction of q that is small but far above rounding.
 double small_step(const Switch& model, const VectorXd& direction) {
   constexpr double share = 1e-5;  // share of the gap
   const double moved = std::abs(model.contact_deflection(direction.data()));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double shear_coefficient = 5.0 / 6;  // kappa of a rectangle
 constexpr double usual_poissons_ratio = 0.3;
-constexpr double most_slender = 1000;  // rounding shows beyond it; the excess grows with (thickness / length)^2
+constexpr double most_slender = 1000;  // beyond this ratio rounding errors show; the excess grows with (thickness / length)^2
 
 // Returns Euler-Bernoulli's wave number beta of a mode, counted from 1: cos(beta) cosh(beta) = 1 between two clamps, -1 with a
 // free end.

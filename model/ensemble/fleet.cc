@@ -90,14 +90,14 @@ std::optional<ElasticContact> lane_contact(const ContactLaw& law) {
   return std::nullopt;
 }
 
-/// True when lanes support every contact, of which there is one at least.
+/// Returns true when there is a contact and lanes support the laws of all contacts.
 bool knows_contacts(const Switch& model) {
   for (std::size_t c = 0; c < model.contacts(); ++c)
     if (model.has_spread_contact(c) || !lane_contact(model.contact(c))) return false;
   return model.has_contact();
 }
 
-/// True when the laws are those of fleet::UsualLaws.
+/// Returns true when the laws are those of fleet::UsualLaws.
 bool is_usual(const Switch& model) {
   const Device& device = model.device();
   const std::vector<Electrode>& all = device.electrodes;
@@ -107,7 +107,7 @@ bool is_usual(const Switch& model) {
   const bool usual_field = model.modes() <= fleet::usual_modes && !device.dispersion && !model.stretching() && film &&
                            std::ranges::all_of(all, alike) && !(is_plate && all.size() > 1) &&
                            !electrode_conflict(device.structure, all);
-  // Several contacts are usual where their laws are.
+  // Several contacts are usual if their laws are.
   if (model.contacts() > 1) return usual_field && device.gas && !all.empty() && all.front().fringing == Fringing::meijs_fokkema;
   return usual_field && !device.structure.is_built() && std::holds_alternative<UniformAsperityContact>(model.contact());
 }
@@ -121,7 +121,7 @@ std::vector<std::pair<Stretch, int>> pads_of(const Device& device) {
   return pads;
 }
 
-/// Returns the points up to each end of an electrode or a stretch, by the electrode that they lie over.
+/// Returns segments of points that end with each electrode or stretch, with the electrode over which they lie.
 std::vector<Segment> segments_between(const Switch& model, const LaneLayout& layout) {
   const std::vector<std::pair<Stretch, int>> pads = pads_of(model.device());
   const auto over = [&](double x) {
@@ -140,7 +140,7 @@ std::vector<Segment> segments_between(const Switch& model, const LaneLayout& lay
   return segments;
 }
 
-/// Returns the faces of every pad that has points.
+/// Returns a segment for the faces of every pad that has points.
 std::vector<Segment> faces_of(const Switch& model) {
   const Eigen::ArrayXd& x = model.quadrature().positions();
   const auto first_at = [&](double place) { return to_int(std::lower_bound(x.begin(), x.end(), place) - x.begin()); };
@@ -159,7 +159,7 @@ std::vector<Segment> faces_of(const Switch& model) {
   return faces;
 }
 
-/// Points under one width and thickness, with the width that holes leave.
+/// Quadrature points under one width and thickness, with the width that holes leave.
 struct LaneStretch {
   fleet::PointStretch points;
   double width, thickness;
@@ -216,7 +216,7 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
   return layout;
 }
 
-// Returns the interference at which the contact has stored this little energy, far below the height of its asperities [m].
+// Returns the interference at which the contact stores this small energy, far below the height of its asperities [m].
 double depth_of_energy(const ElasticContact& contact, double energy) {
   if (contact.law == fleet::LaneContact::linear) return std::sqrt(2 * energy / contact.strength);
   const UniformAsperityContact law{.strength = contact.strength, .height = contact.height};
@@ -277,7 +277,7 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   const std::vector<LaneStretch> stretches = stretches_of(model);
   for (std::size_t k = 0; k < stretches.size(); ++k) {
     s.width[k] = stretches[k].width, s.thickness[k] = stretches[k].thickness;
-    // A film whose ends are open lets out more where it is wide.
+    // A film with open ends loses more gas where it is wide.
     if (!device.structure.is_built() || !device.gas) continue;
     std::visit(
         [&](const auto& film) {
@@ -313,8 +313,8 @@ double steady_depth(const FleetClosing& closing, std::size_t c) {
   return UniformAsperityContact{.strength = contact.strength, .height = contact.height}.interference(closing.steady_force);
 }
 
-/// Passes on the events of a lane, with force and energy of the contact's law; for several contacts the touches of their
-/// connection.
+/// Passes on the events of a lane, with force and energy of the contact's law; for several contacts it passes on the touches of
+/// their connection.
 class Teller final : public fleet::LaneObserver {
  public:
   explicit Teller(const FleetClosing& closing) : model_(closing.model), observer_(closing.observer) {}
@@ -337,7 +337,7 @@ class Teller final : public fleet::LaneObserver {
   void opens(double time) override { touches_.open(time); }
   void rebound(double begin, double end, double height) override { observer_->rebound(begin, end, height); }
 
-  /// Returns the end of a lane that was followed.
+  /// Returns the result of a closing in a lane.
   [[nodiscard]] FleetEnd end(const LaneClosing& lane) {
     tell(touches_.finish());
     std::array<ForceOutcome, fleet::most_contacts> forces;
@@ -364,14 +364,14 @@ class Teller final : public fleet::LaneObserver {
   ConnectionTouches touches_;
 };
 
-/// Returns true when a switch of several contacts rests on one of them as a run begins.
+/// Returns true when a switch of several contacts rests on one of these contacts at the start of a run.
 bool rests_on_contact(const Switch& model, const Eigen::VectorXd& rest) {
   for (std::size_t c = 1; c < model.contacts(); ++c)
     if (model.contact_deflection(rest.data(), c) > model.contact_gap(c)) return true;
   return false;
 }
 
-/// Returns true when the factor of a dispersion force changes; its work is not that of a charge.
+/// Returns true when the factor of a dispersion force changes in the run, whose work is not that of a charge.
 bool drives_dispersion(const FleetClosing& c) {
   for (std::size_t k = 0; k < c.drives.size(); ++k) {
     if (c.model->drive_kind(k) == DriveKind::dispersion && !c.drives[k].is_zero()) return true;
@@ -387,8 +387,8 @@ double field_energy(const Switch& model, std::span<const double> volts, const do
   return energy;
 }
 
-/// Returns the work V dQ of the drives: the energy gained by the field and the work on the modes. A piezo's charge follows the
-/// modes alone.
+/// Returns the work V dQ of the drives: the energy gained by the field and the work on the modes. The charge of a piezo depends
+/// on the modes alone.
 double drive_energy(const FleetClosing& c, const LaneClosing& lane) {
   std::vector<double> at_end;
   for (std::size_t k = 0; k < c.drives.size(); ++k) at_end.push_back(lane.gain[k] * c.drives[k].voltage(lane.end));
@@ -410,8 +410,10 @@ Vectors vectors_in_use() {
   }
   for (const VectorsRow& row : vector_instructions) {
     if (row.name != asked) continue;
-    require(has(row.value),
-            [&] { return fmt::format("{} = {}: this processor, or this build, does not have them", variable, asked); });
+    require(has(row.value), [&] {
+      return fmt::format("{} = {}: this processor or this build does not have these instructions; choose none or narrower ones",
+                         variable, asked);
+    });
     return row.value;
   }
   throw InvalidInput(fmt::format("{} = {}: must be none, avx2 or avx512", variable, asked));
@@ -430,7 +432,7 @@ std::string why_not_in_lanes(const Switch& model) {
   if (!lane_dispersion(device.dispersion)) return "a dispersion force between gold";
   if (!knows_contacts(model)) return "a contact other than linear, hysteretic or asperity-uniform at the contact point";
   if (model.contacts() > fleet::most_contacts) return fmt::format("more than {} contacts", fleet::most_contacts);
-  // An electrical closing is located on the motion of a single closing.
+  // The times of electrical closing are located on the motion of a single closing.
   if (device.electrical.is_asked()) return "a key that says when the connection is electrically closed";
   if (!lane_film(device.gas))
     return model.film_states() > 0 ? "a compressible gas film" : fmt::format("the gas film {}", name_of(*device.gas));
@@ -448,7 +450,7 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
 
   fleet::LaneDrives drives;
   std::optional<LaneLayout> layout;
-  std::vector<std::size_t> places;     // places of the switches that run
+  std::vector<std::size_t> places;     // indices of the switches that run
   std::vector<Eigen::VectorXd> rests;  // equilibria from which they start
   for (std::size_t i = 0; i < closings.size(); ++i) {
     if (!why_not_in_lanes(*closings[i].model).empty() || !drives.go_in_lanes(closings[i].drives)) continue;

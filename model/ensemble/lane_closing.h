@@ -1,5 +1,5 @@
-// The data that fleet.cc passes to the code compiled for each set of vector instructions: numbers only. That code must leave no
-// function behind that the rest of the program could be linked to, since not every processor can run it.
+// The data that fleet.cc passes to the code compiled for each set of vector instructions: numbers only. This code must leave no
+// function behind that the linker could use for the rest of the program, since not every processor can run it.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ enum class LaneFilm { none, strip, strip_slit, veijola, gallis_torczynski, near_
 enum class LaneDispersion { none, van_der_waals, casimir, smaller };
 enum class LaneContact { asperity_uniform, linear };
 
-/// Quadrature points from `begin` up to `end` that lie over the same electrode.
+/// Quadrature points from `begin` up to `end` over the same electrode.
 struct Segment {
   int begin = 0, end = 0;
   int electrode = -1;  ///< -1 without an electrode
@@ -29,7 +29,7 @@ struct Segment {
   [[nodiscard]] bool operator==(const Segment&) const = default;
 };
 
-/// Points from `begin` up to `end`, under one width and thickness.
+/// Quadrature points from `begin` up to `end` under one width and thickness.
 struct PointStretch {
   int begin = 0, end = 0;
   [[nodiscard]] bool operator==(const PointStretch&) const = default;
@@ -41,7 +41,7 @@ struct LaneContactKind {
   bool damped = false;
   bool remembers = false;  ///< true when loading and unloading have different stiffness
   bool near = true;        ///< true on the side of the electrode; false for a back stop
-  bool connects = true;    ///< true when it is one of several that make the connection
+  bool connects = true;    ///< true when the contact is part of the connection of several contacts
   [[nodiscard]] bool operator==(const LaneContactKind&) const = default;
 };
 
@@ -56,7 +56,7 @@ struct LaneLayout {
   LaneDispersion dispersion = LaneDispersion::none;
   int contacts = 1;
   LaneContactKind contact[most_contacts];
-  bool needs_all = true;       ///< true when the connection needs all contacts that make it; false when any closes it
+  bool needs_all = true;       ///< true when the connection needs all of its contacts; false when any of them closes it
   bool measures_work = false;  ///< true when the work of the drives is measured; not by UsualLaws
   Segment segment[most_segments];
   int stretches = 1;  ///< number of stretches: one unless the size changes along the structure; one per point for a width that
@@ -75,7 +75,7 @@ struct LaneContactNumbers {
   double negligible_depth = 0;      // [m]
 };
 
-/// One switch as numbers. Modes that it does not have stand still.
+/// One switch as numbers. Modes that the switch does not have are 0 at all times.
 struct LaneSwitch {
   int modes = 0;
   double open = 0, floor = 0;                                            // the largest rest gap and the least gap [m]
@@ -98,16 +98,17 @@ struct LaneSwitch {
   LaneContactNumbers contact[most_contacts];
 };
 
-/// Receives the events of a lane.
+/// Receives the events in a lane.
 class LaneObserver {
  public:
-  /// A contact has touched [s], [s], [m/s], [m]; for a damped one with its largest force [N].
+  /// Receives a touch of a contact: begin and end [s], impact velocity [m/s], depth [m]; of a damped contact also the largest
+  /// force [N].
   virtual void touch(int contact, double begin, double end, double speed, double depth, double force) = 0;
-  /// The connection of several contacts closes, at the speed of the contact that closes it [s], [m/s].
+  /// Receives the closing of the connection of several contacts: time [s], speed of the contact that closes it [m/s].
   virtual void closes(double time, double speed) = 0;
-  /// The connection opens [s].
+  /// Receives the opening of the connection of several contacts [s].
   virtual void opens(double time) = 0;
-  /// The contact, or the connection of several, has been open, up to this height [s], [s], [m].
+  /// Receives a rebound of the contact, or of the connection of several contacts: begin [s], end [s], height [m].
   virtual void rebound(double begin, double end, double height) = 0;
 
  protected:
@@ -126,8 +127,8 @@ struct LanePiece {
   double value = 0, slope = 0, square = 0, cube = 0;                            // [V], [V/s], [V/s^2], [V/s^3]
   double tail[most_tails] = {}, decay[most_tails] = {};                         // [V], [1/s]
   double amplitude = 0, amplitude_slope = 0, angular_frequency = 0, phase = 0;  // [V], [V/s], [rad/s], [rad]
-  double longest_step = 0;                                                      // longest step that resolves it [s]
-  bool joins = false;  // true when it continues smoothly: steps may pass its begin
+  double longest_step = 0;                                                      // longest step that resolves the piece [s]
+  bool joins = false;  // true when the piece continues the last one smoothly: steps may pass its begin
 };
 
 struct LaneClosing {
@@ -143,7 +144,7 @@ struct LaneClosing {
   LaneObserver* observer = nullptr;
   bool followed = false;
   double end = 0;
-  /// Each contact has its own values, which are NaN where it has not touched, or is not steady at the end [s], [m].
+  /// Each contact has its own values, which are NaN when it has not touched, or its force is not steady at the end [s], [m].
   double steady_from[most_contacts] = {}, least_depth[most_contacts] = {};
 };
 

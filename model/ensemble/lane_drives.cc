@@ -70,14 +70,14 @@ class Run {
   std::span<const LanePiece> pieces_;
   double end_;
   std::vector<double> integrals_;
-  mutable std::size_t near_ = 0;  // the piece used last: times come in succession
+  mutable std::size_t near_ = 0;  // the piece used last: the times asked for increase
 };
 
 struct Knot {
   double time = 0, value = 0, rate = 0;  // [s], [V], [V/s]
 };
 
-/// Returns the mean over the window about a time, and its rate of change; near an end of the run the window shrinks on both
+/// Returns the mean over the window about a time, and its rate of change. Near an end of the run the window shrinks on both
 /// sides.
 Knot mean_about(double time, const Run& run, double window) {
   const double before = time - run.begin(), after = run.end() - time;
@@ -101,13 +101,14 @@ LanePiece between(const Knot& a, const Knot& b) {
           .longest_step = infinite};
 }
 
-/// Returns what the integral of the cubic between two knots lacks; `integral` is that of the run between them [V s].
+/// Returns the integral of the run between two knots, `integral`, less that of the cubic between them [V s].
 double missing(const Knot& a, const Knot& b, double integral) {
   const double h = b.time - a.time;
   return integral - h * ((a.value + b.value) / 2 + h * (a.rate - b.rate) / 12);
 }
 
-/// Restores the integral: a mean cuts corners. The knots between the ends get back what they lose in the integral about them.
+/// Restores the integral, which a mean reduces at corners: corrects the knots between the ends by the missing integral about
+/// them.
 void restore_integral(std::vector<Knot>& knots, const Run& run) {
   const std::size_t last = knots.size() - 1;
   double until = run.integral(knots.front().time);  // integral up to the knot [V s]
@@ -149,7 +150,7 @@ bool goes_in_lanes(const Signal& drive) {
 
 namespace {
 
-/// Returns Signal::resolving_step() of a piece that goes in lanes; the search is skipped where the piece does not oscillate.
+/// Returns Signal::resolving_step() of a piece for lanes; the search is skipped when the piece does not oscillate.
 double longest_step(const Signal& drive, const SignalPiece& piece) {
   if (piece.oscillates()) return drive.resolving_step(piece.begin);
   double step = infinite;

@@ -1,4 +1,4 @@
-// Drives as the lanes of fleet.h take them: numbers of pieces; a finely sampled and filtered signal becomes a smooth course.
+// Drives as numbers of pieces, for lanes; a finely sampled and filtered signal is replaced by a smooth one.
 #pragma once
 
 #include <limits>
@@ -14,20 +14,20 @@ namespace softland::fleet {
 /// True when a signal consists of straight lines, steady sines, cubic polynomials and a few exponentials.
 [[nodiscard]] bool goes_in_lanes(const Signal& drive);
 
-/// Returns the pieces of a signal that goes in lanes.
+/// Returns the pieces of a signal for which goes_in_lanes() is true.
 [[nodiscard]] std::vector<LanePiece> pieces_of(const Signal& drive);
 
-/// Pieces whose runs of short ones are replaced by the mean over a window about each time. A run consists of the pieces between
-/// samples that a filter with a longer time constant lets through. Their ripple is too small for a switch of lower frequencies
-/// to follow, yet each has a breakpoint. The mean keeps the integral of a run; its pieces join with their slopes, so that steps
-/// pass over them.
+/// Pieces in which a mean over a moving window replaces each run of short pieces. A run consists of the pieces between samples
+/// that a filter with a longer time constant lets through. A switch of lower frequencies cannot follow their ripple, yet each
+/// piece has a breakpoint. The mean keeps the integral of a run, and its pieces join with their slopes, so that steps pass over
+/// them.
 struct SmoothedDrive {
   std::vector<LanePiece> pieces = {};
-  double window = 0;  ///< longest window, the pieces of two samples [s]; 0 without such runs
+  double window = 0;  ///< longest window, the duration of two samples [s]; 0 without such runs
 };
 [[nodiscard]] SmoothedDrive smoothed(std::vector<LanePiece> exact);
 
-/// The pieces of drives in lanes, found once however many switches a drive closes.
+/// The pieces of drives in lanes, computed once however many switches a drive closes.
 class LaneDrives {
  public:
   [[nodiscard]] bool go_in_lanes(std::span<const Signal> drives);

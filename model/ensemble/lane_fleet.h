@@ -1,13 +1,14 @@
 // The closings of fleet.h for lanes of a given width: included once for every set of vector instructions.
 //
-// The lanes are std::experimental::simd, and the laws of a closing are those of a single closing, over lanes of parameters.
-// Everything here depends on the type of the lanes or lies in their class, so that its code has names of its own.
+// The lanes are std::experimental::simd, and the laws of a closing are those of a single closing, over lanes of parameters. All
+// code here depends on the type of the lanes or belongs to a class that does, so that each set of vector instructions has its
+// own names.
 //
-// Forced inlining, or its prevention, has a reason: the compiler fuses products and sums depending on their neighbours. The
+// Inlining is forced, or prevented, for a reason: the compiler fuses products and sums depending on their neighbours, and the
 // last bits of a closing must not depend on how many callers a function has.
 //
-// Width matters: with two registers to a lane GCC spills and is several times slower. A law that is not inlined has the same
-// effect: it keeps the sums over points in memory.
+// Width matters: with two registers per lane GCC spills registers and the code is several times slower. A law that is not
+// inlined has the same effect: it keeps the sums over points in memory.
 #pragma once
 
 #include <cmath>
@@ -23,7 +24,7 @@
 
 namespace softland::fleet {
 
-/// The switches have up to `room` contacts. For one contact the code for several is left out at compile time.
+/// The switches have up to `room` contacts. Code for several contacts is left out at compile time when there is one.
 template <class V, class Laws, int room = 1>
 class Lanes {
   using M = typename V::mask_type;
@@ -69,42 +70,42 @@ class Lanes {
   struct Followed {
     bool touched = false, touching = false;
     double begin = 0, left = 0, speed = 0;  // begin and end of the touch [s], impact velocity [m/s]
-    double extreme = 0;                     // deepest or highest place since the last event [m]
-    double hardest = 0;                     // largest force of a damped contact since then [N]
+    double extreme = 0;                     // deepest or highest position since the last event [m]
+    double hardest = 0;                     // largest force of a damped contact since the last event [N]
     // Phase of a contact with a memory: see model/closing/contact_phase.h.
     bool unloading = false, in_dent = false;
-    bool to_turn = false;                   // true while it steps to its deepest point
-    double level = 0;                       // level of another event that it steps to [m]
-    double low = 0, high = 0, deepest = 0;  // edges of its phase, and the deepest place of this touch [m]
-    double steady = nothing;                // time from which it has been at the steady depth [s]
+    bool to_turn = false;                   // true while the lane steps to the deepest point of the contact
+    double level = 0;                       // level of another event to which the lane steps [m]
+    double low = 0, high = 0, deepest = 0;  // edges of the phase, and the deepest position of this touch [m]
+    double steady = nothing;                // time since which the contact has been at the steady depth [s]
     double least = infinite;                // least depth after the first maximum [m]
   };
   // The connection that several contacts make.
   struct Connected {
-    int touching = 0;  // number of touching contacts among those that make it
+    int touching = 0;  // number of touching contacts in the connection
     bool closed = false, was_closed = false;
-    double left = 0, highest = 0;  // time from which it has been open [s], and the largest separation since then [m]
+    double left = 0, highest = 0;  // start [s] and largest separation [m] of the present opening
   };
 
   // The state of a lane.
   struct Lane {
     LaneClosing* closing = nullptr;  // null while idle
     const LanePiece* drive[most_drives] = {};
-    int count[most_drives] = {};    // number of its pieces
-    int piece[most_drives] = {};    // index of the piece that holds
+    int count[most_drives] = {};    // number of pieces of each drive
+    int piece[most_drives] = {};    // index of the present piece
     bool runs[most_drives] = {};    // true over pieces that join, without a stop
     bool curves[most_drives] = {};  // true for more than a cubic
     int corrections = 0;            // corrections of a target on the plane
     double stop = 0;                // next breakpoint, or the end of the window [s]
     double longest = 0;             // longest step that resolves the drives [s]
-    double gain[most_drives] = {};  // factors of its drives
-    bool landed = false;            // true once a contact of the near side has touched
-    int at = 0;                     // contact whose event it steps to
+    double gain[most_drives] = {};  // factors of the drives
+    bool landed = false;            // true after the first touch of a contact of the near side
+    int at = 0;                     // contact whose event the lane steps to
     Followed contact[room];
     Connected connected;
   };
 
-  // --- the equations -----------------------------------------------------------------------------------------------------------
+  // --- the equations ---
 
   void set_drives(V time) {
     for (int k = 0; k < layout_.drives; ++k) {
@@ -113,7 +114,7 @@ class Lanes {
     }
   }
 
-  // Adds the parts of a drive beyond straight lines.
+  // Adds the parts of a drive other than straight lines.
   void add_curves(int k, V time) {
     const V s = time - begin_[k];
     volts_[k] += s * s * (bend_[k] + s * twist_[k]);
@@ -133,7 +134,7 @@ class Lanes {
     }
   }
 
-  // Finds the piece that holds at this time, near the one that held before.
+  // Finds the piece of drive k at this time, near the previous one.
   static void find_piece(Lane& lane, int k, double t) {
     const LanePiece* const all = lane.drive[k];
     int& at = lane.piece[k];
@@ -145,7 +146,7 @@ class Lanes {
     if (piece.tail[1] != 0) sum += piece.tail[1] * std::exp(-piece.decay[1] * elapsed);
     return sum;
   }
-  // Returns a drive of pieces that join, at any time among them.
+  // Returns the value of drive k at any time within pieces that join.
   [[nodiscard]] double running(int k, std::size_t l, double t) {
     find_piece(lane_[l], k, t);
     const LanePiece& piece = lane_[l].drive[k][lane_[l].piece[k]];
@@ -160,7 +161,7 @@ class Lanes {
     return power * volts_[layout_.drives - 1];
   }
 
-  // Computes modal accelerations; `least` becomes the smallest gap.
+  // Computes modal accelerations; sets `least` to the smallest gap.
   [[gnu::always_inline]] void rates(const V* __restrict q, const V* __restrict v, V* __restrict a, V& least) {
     V sum[capacity];
     for (int i = 0; i < modes; ++i) sum[i] = -(square_[i] * q[i]) - friction_[i] * v[i];
@@ -199,7 +200,7 @@ class Lanes {
     return false;
   }
 
-  // --- a step ------------------------------------------------------------------------------------------------------------------
+  // --- a step ---
 
   struct Turn {
     V cosine, sine, slack;
@@ -251,7 +252,7 @@ class Lanes {
     }
   }
 
-  // Makes one attempt of every lane.
+  // Attempts one step in every lane.
   void round() {
     const V wanted = min(h_, max_step_);
     const V h = min(wanted, limit_);
@@ -295,11 +296,10 @@ class Lanes {
     settle(h, end, error);
   }
 
-  // --- a contact point within a step
-  // -------------------------------------------------------------------------------------------
+  // --- a contact point within a step ---
 
-  // Finds knots of a contact point between the ends of the step, as integrators/modal_motion.h; marks lanes whose point may
-  // cross the plane, or turns.
+  // Finds knots of a contact point between the ends of the step, as integrators/modal_motion.h does. Marks lanes whose contact
+  // point may cross the plane, or turns.
   [[gnu::always_inline]] void follow(Number at, V h) {
     constexpr double share = 1.0 / pieces;
     V* const knot_p = knot_p_[at];
@@ -348,7 +348,7 @@ class Lanes {
   struct Reach {
     V least, most;
   };
-  // Returns bounds of the curve of a piece, from its control points in Bernstein form; `g` is the duration of the piece.
+  // Returns bounds of the curve in a piece, from its control points in Bernstein form; `g` is the duration of the piece.
   [[nodiscard]] [[gnu::always_inline]] Reach reach(Number c, int k, V g) const {
     const V b0 = knot_p_[c][k], b5 = knot_p_[c][k + 1], s0 = g * knot_s_[c][k], s1 = g * knot_s_[c][k + 1];
     const V c0 = g * g * knot_c_[c][k], c1 = g * g * knot_c_[c][k + 1];
@@ -356,7 +356,7 @@ class Lanes {
     return {.least = min(min(min(b0, b1), min(b2, b3)), min(b4, b5)), .most = max(max(max(b0, b1), max(b2, b3)), max(b4, b5))};
   }
 
-  // Returns the lanes whose point may leave the phase of a contact with a memory; loading ends where the point turns.
+  // Returns the lanes whose contact point may leave the phase of a contact with a memory; loading ends where the point turns.
   [[nodiscard]] M leaves_phase(Number c, V h) const {
     constexpr double share = 1.0 / pieces;
     const V g = h * share;
@@ -411,24 +411,25 @@ class Lanes {
              6 * d - 3 * (v0 + v1) - 0.5 * (a0 - a1)}};
   }
 
-  // Returns the share of the step at which a lane leaves its side of the plane; above 1 where it does not.
+  // Returns the share of the step at which a lane leaves its side of the plane; above 1 when it stays.
   [[nodiscard]] double crossing(Number c, std::size_t l, double length) const {
     return crossing(c, l, length, lane_[l].contact[c].touching ? 1 : -1, plane_[c][l]);
   }
-  // Returns the same for a level; its inside is side * (position - level) > 0.
+  // Returns the share of the step at which a lane leaves the inside of a level, side * (position - level) > 0; above 1 when it
+  // stays.
   [[nodiscard]] double crossing(Number c, std::size_t l, double length, double side, double level) const {
     bool inside = side * (position_[c][l] - level) > 0;
     for (int k = 0; k < pieces; ++k) {
       const double p1 = knot_p_[c][k + 1][l], v0 = knot_s_[c][k][l], v1 = knot_s_[c][k + 1][l];
       const bool ends_inside = side * (p1 - level) >= 0;
-      if (side * v0 < 0 && side * v1 > 0 && inside) {  // the motion dips
+      if (side * v0 < 0 && side * v1 > 0 && inside) {  // the motion leaves the inside and returns
         const Curve path = curve(c, k, l, length);
         const double turn = path.turn();
         if (side * (path.position(turn) - level) < 0) return (k + path.meets(level, 0, turn)) / pieces;
       } else if (!ends_inside) {
         const Curve path = curve(c, k, l, length);
         if (inside) return (k + path.meets(level, 0, 1)) / pieces;
-        if (side * v0 > 0 && side * v1 < 0) {  // it begins on the plane, goes in and comes back
+        if (side * v0 > 0 && side * v1 < 0) {  // the motion begins on the plane, enters the inside and returns
           const double turn = path.turn();
           if (side * (path.position(turn) - level) > 0) return (k + path.meets(level, turn, 1)) / pieces;
         }
@@ -439,8 +440,8 @@ class Lanes {
     return 2;
   }
 
-  // Returns the share of the step at which a lane leaves its phase of a contact with a memory, and where to; above 1 where it
-  // does not.
+  // Returns the share of the step at which a lane leaves its phase of a contact with a memory, and sets the level; above 1 when
+  // it stays in the phase.
   [[nodiscard]] double phase_end(Number c, std::size_t l, double length) {
     Followed& one = lane_[l].contact[c];
     const double by_low = one.low > -infinite ? crossing(c, l, length, 1, one.low) : 2;
@@ -451,7 +452,7 @@ class Lanes {
     const double edge = by_low < by_high ? by_low : by_high;
     return edge < by_turn ? edge : by_turn;
   }
-  // Returns the share of the step at which a lane turns back; above 1 where it does not.
+  // Returns the share of the step at which a lane's contact point turns back; above 1 when it does not turn.
   [[nodiscard]] double turning(Number c, std::size_t l, double length) const {
     for (int k = 0; k < pieces; ++k) {
       if (!(knot_s_[c][k + 1][l] < 0)) continue;
@@ -460,7 +461,7 @@ class Lanes {
     return 2;
   }
 
-  // Updates the deepest, or highest, place of a lane in the step.
+  // Updates the deepest, or highest, position of a lane's contact point in the step.
   [[gnu::noinline]] void deepen(Number c, std::size_t l, double length) {
     Lane& lane = lane_[l];
     Followed& one = lane.contact[c];
@@ -483,7 +484,7 @@ class Lanes {
     }
   }
 
-  // Returns the depth at which a loaded contact carries what this one carries at its depth.
+  // Returns the depth at which a contact on its loading curve has the force that this contact has at its depth.
   [[nodiscard]] double depth_of_force([[maybe_unused]] Number c, [[maybe_unused]] std::size_t l, double depth) const {
     if constexpr (Contact::has_memory) {
       const Followed& one = lane_[l].contact[c];
@@ -497,7 +498,7 @@ class Lanes {
     return depth;
   }
 
-  // Finds where a lane has last come to the steady depth in the step that ends here.
+  // Finds the time at which a lane has last reached the steady depth, in the step that ends here.
   [[gnu::noinline]] void rise(Number c, std::size_t l, double length) {
     const double level = steady_[c][l];
     const auto reach = [&](int k, double share) {
@@ -516,15 +517,14 @@ class Lanes {
     }
   }
 
-  // --- the connection of several contacts: see model/closing/connection.h
-  // ------------------------------------------------------------------------------------------------
+  // --- the connection of several contacts: see model/closing/connection.h ---
 
   static void rise_to(Lane& lane, double separation) {
     if (separation > lane.connected.highest) lane.connected.highest = separation;
   }
 
-  // Updates the highest place in the step of an open connection that any contact closes: that of the contact nearest to its
-  // plane.
+  // Updates the largest separation in the step of an open connection that any contact closes: that of the contact nearest to
+  // its plane.
   void climb(std::size_t l, double length) {
     Lane& lane = lane_[l];
     for (int k = 0; k < pieces; ++k) {
@@ -537,7 +537,7 @@ class Lanes {
         Curve ahead = path;
         for (int i = 0; i < 6; ++i) ahead.c[i] -= other.c[i];
         at = ahead.meets(plane_[first][l] - plane_[last][l], 0, 1);
-        if (other.speed(at) < 0) {  // it still rises where it takes over
+        if (other.speed(at) < 0) {  // this contact still rises when it becomes the nearest
           rise_to(lane, plane_[last][l] - other.position(other.turn_between(at, 1)));
           continue;
         }
@@ -558,7 +558,7 @@ class Lanes {
     return best;
   }
 
-  // Handles a contact that makes the connection and touches, or leaves.
+  // Handles a touch, or its end, of a contact of the connection.
   void connect(std::size_t l, bool touches, double speed) {
     Lane& lane = lane_[l];
     Connected& all = lane.connected;
@@ -578,7 +578,7 @@ class Lanes {
     apart_[l] = !closed && !layout_.needs_all;
   }
 
-  // Reports the rebound that is under way at the end of a run.
+  // Reports the rebound that has not ended at the end of a run.
   void finish_connection(std::size_t l) {
     Lane& lane = lane_[l];
     if (!lane.connected.was_closed || lane.connected.closed) return;
@@ -591,8 +591,7 @@ class Lanes {
     tell_rebound(lane, lane.connected.left, nothing, lane.connected.highest);
   }
 
-  // --- what follows from a step
-  // --------------------------------------------------------------------------------------------------
+  // --- after a step: its error, the next step length, and events ---
 
   // Computes binary logarithms and powers to the digits that a step size needs. Loops without branches: the compiler vectorises
   // them.
@@ -623,7 +622,7 @@ class Lanes {
   [[gnu::always_inline]] void settle(V h, V end, V error) {
     control(error);
     rounds_ += V(1);
-    // Most lanes just continue; other lanes are handled one by one.
+    // Most lanes just continue; the other lanes are handled one by one.
     const M plain = error <= V(1) && !special_ && !suspect_ && h < limit_ && end < until_ && smallest_ >= laws_.floor() &&
                     rounds_ < V(most_rounds);
     M rises[room];
@@ -674,7 +673,7 @@ class Lanes {
       if (taken[l] && !plain[l]) go_on(l, h[l]);
   }
 
-  // Integrates the work of the drives on the modes in the step, as one more unknown of the pair.
+  // Integrates the work of the drives on the modes in the step, as a further unknown of the Runge-Kutta pair.
   void do_work(const M& taken, V h) {
     V mean = 0;
     for (int j = 0; j < 6; ++j) mean += Pair::tableau[6][j] * powers_[j];
@@ -683,7 +682,7 @@ class Lanes {
   }
 
   // Finds the largest force of a damped contact in the step: at the top of the parabola through both ends and the middle, as
-  // model/closing/touch_record.h.
+  // model/closing/touch_record.h does.
   void press(Number at, const M& taken, V h) {
     static_assert(pieces % 2 == 1);
     constexpr int half = pieces / 2;
@@ -704,7 +703,7 @@ class Lanes {
         lane_[l].contact[at].hardest = most_push[l];
   }
 
-  // Returns true when a lane takes its step; otherwise sets its next attempt.
+  // Returns true when a lane accepts its step; otherwise sets its next attempt.
   bool consider(std::size_t l, double h, double error) {
     Lane& lane = lane_[l];
     if (lane.closing == nullptr) return false;
@@ -768,7 +767,8 @@ class Lanes {
     return remembers(c) && lane_[l].contact[c].to_turn;
   }
 
-  // Returns true when a step that should end on the plane does: moves its end there where that is near, else the target.
+  // Returns true when a step that should end on the plane does so. Moves the end of the step onto the plane when it is near,
+  // and corrects the target otherwise.
   [[gnu::always_inline]] bool arrives(std::size_t l, double h) {
     constexpr double short_of_a_radian = 1e-3;
     constexpr int most_corrections = 8;
@@ -784,7 +784,7 @@ class Lanes {
         const double v = trial_v_[i][l], a = trial_a_[i][l];
         trial_q_[i][l] = trial_q_[i][l] + later * (v + later / 2 * a);
         trial_v_[i][l] = v + later * a;
-        trial_a_[i][l] = a - later * square_[i][l] * v;  // the change of the forces in it is smaller
+        trial_a_[i][l] = a - later * square_[i][l] * v;  // the change of the forces within `later` is smaller
       }
       moved_[l] = later;
       if constexpr (has_several) move_others(at, l);
@@ -803,7 +803,7 @@ class Lanes {
     return false;
   }
 
-  // Moves the other contacts of a lane to the moved end of its step.
+  // Moves the other contacts of a lane to the corrected end of its step.
   void move_others(int at, std::size_t l) {
     for (int c = 0; c < layout_.contacts; ++c) {
       if (c == at) continue;
@@ -816,7 +816,7 @@ class Lanes {
     }
   }
 
-  // Handles a step that ends with more than a plain continuation.
+  // Handles a step after which a lane does not just continue.
   void go_on(std::size_t l, double h) {
     Lane& lane = lane_[l];
     if (smallest_[l] < laws_.floor()[l]) {
@@ -862,7 +862,7 @@ class Lanes {
       if (remembers(c)) enter_phase(c, l, false, false);
     }
   }
-  // Returns true when another contact has left its phase at the same time, which the step has not searched for.
+  // Returns true when another contact, whose events the step has not searched for, has left its phase at the same time.
   bool is_beyond(int c, std::size_t l) {
     Followed& one = lane_[l].contact[c];
     const double low = remembers(c) ? one.low : one.touching ? plane_[c][l] : -infinite;
@@ -881,7 +881,8 @@ class Lanes {
     if (!one.touching) return false;
     if (one.to_turn) {
       const double speed = speed_[c][l], acceleration = acceleration_[c][l];
-      const double left = acceleration < 0 ? speed * speed / (2 * acceleration) : 0;  // further way by the velocity
+      const double left =
+          acceleration < 0 ? speed * speed / (2 * acceleration) : 0;  // remaining way of the contact point by its velocity
       const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
       const double depth = position_[c][l] - plane_[c][l] - left;
       one.deepest = depth;
@@ -983,7 +984,7 @@ class Lanes {
     limit_[l] = target - t_[l];
   }
 
-  // Moves the drives to the pieces that hold from here on.
+  // Moves the drives to the pieces that are valid from now on.
   void enter_stretch(std::size_t l) {
     Lane& lane = lane_[l];
     const double t = t_[l];
@@ -1091,10 +1092,10 @@ class Lanes {
     for_contacts([&](Number c) { take(s.contact[c], c, l); });
     apart_[l] = false;
     enter_stretch(l);
-    if (idle) lane.closing = nullptr;  // and the lane stays special
+    if (idle) lane.closing = nullptr;  // an idle lane stays special
   }
 
-  // Resets a contact that the lane has not touched.
+  // Sets the numbers of a contact of the lane's new switch, before its first touch.
   void take(const LaneContactNumbers& numbers, Number c, std::size_t l) {
     contact_[c].take(layout_.contact[c], numbers, l);
     plane_[c][l] = numbers.plane;
@@ -1114,7 +1115,7 @@ class Lanes {
   [[gnu::always_inline]] static double clamped(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
 
   const LaneLayout layout_;
-  [[no_unique_address]] const typename Laws::Modes modes;  // a constant where the laws fix it
+  [[no_unique_address]] const typename Laws::Modes modes;  // a constant if the laws fix the number of modes
   Laws laws_;
   Contact contact_[room];
   int connecting_ = 0;  // number of contacts that make the connection
@@ -1123,29 +1124,29 @@ class Lanes {
   int busy_ = 0;
   Lane lane_[width];
 
-  // Numbers of the switches.
+  // The numbers of the switches.
   V omega_[capacity], inverse_[capacity], square_[capacity], piezo_[capacity], friction_[capacity];
   V q_weight_[capacity], v_weight_[capacity], per_unknown_, fastest_, most_turn_;
   V at_contact_[room][capacity], plane_[room], steady_[room];
-  // State of the drives.
+  // The state of the drives.
   V begin_[most_drives], value_[most_drives], slope_[most_drives], volts_[most_drives];
   V bend_[most_drives], twist_[most_drives];  // coefficients of s^2 and s^3
   bool curves_[most_drives] = {};             // true once any lane has had more than straight lines
-  // State of the motion.
+  // The state of the motion.
   V q_[capacity], v_[capacity], a_[capacity], trial_q_[capacity], trial_v_[capacity], trial_a_[capacity];
   V slope_q_[7][capacity], slope_v_[7][capacity];
   V t_, h_, max_step_, limit_, target_, smallest_;
   V position_[room], speed_[room], acceleration_[room];
   V knot_p_[room][pieces + 1], knot_s_[room][pieces + 1], knot_c_[room][pieces + 1];
   M touching_[room]{}, touched_[room]{}, turns_[room]{}, suspect_{false};
-  M apart_{false};     // lanes whose connection, which any contact closes, has opened
-  M starting_{false};  // lanes that spend a round to find their accelerations
+  M apart_{false};     // lanes whose connection, which any contact closes, is open
+  M starting_{false};  // lanes that spend a round on computing their accelerations
   M to_event_{false};  // lanes whose target is a crossing of the plane
-  M special_{false};   // lanes with either of both, or idle
-  // Phases of a contact with a memory.
+  M special_{false};   // lanes that are starting, step to an event, or are idle
+  // The phases of a contact with a memory.
   M loading_[room]{}, unloading_[room]{}, in_dent_[room]{};
   V low_[room], high_[room], shift_[room];  // edges of the phase, and the depth of the dent [m]
-  V until_;                                 // a lane ends with the first step beyond [s]
+  V until_;                                 // time that ends a lane's closing with the first step beyond [s]
   V last_step_;                             // last step that no stop cut short [s]
   V growth_, most_growth_, rounds_;
   V power_, powers_[7], work_{0};  // power of the drives on the modes [W], at the stages of a step [W], and work until now [J]

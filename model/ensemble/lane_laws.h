@@ -1,12 +1,14 @@
-// The laws of a closing over lanes: forces from coordinates and velocities, in two variants.
+// The laws of a closing over lanes, in two variants: forces from coordinates and velocities.
 //
 // UsualLaws: up to four modes, electrodes on the near side that do not overlap, a strip film or none, an undamped contact of
-// asperities. Everything is chosen at compile time, each point is visited once and stays in registers. With room for several
+// asperities. All choices are made at compile time, and each point is visited once, in registers. With room for several
 // stretches they are the laws of a beam of sections with several contacts of any law.
-// AnyLaws: more modes, other laws and several contacts, chosen by the layout. Points are visited law by law.
-// Each variant comes with the law of a contact.
 //
-// Everything here depends on the type of the lanes: see lane_fleet.h.
+// AnyLaws: more modes, other laws and several contacts, chosen by the layout. The points are visited law by law.
+//
+// Each variant has its own law of a contact.
+//
+// All code here depends on the type of the lanes: see lane_fleet.h.
 #pragma once
 
 #include <cstddef>
@@ -35,13 +37,13 @@ class UsualContact {
  public:
   static constexpr bool has_damping = false, has_memory = false;
 
-  /// Assigns this contact to lane `l` from here on.
+  /// Sets the numbers of this contact for lane `l`.
   void take(const LaneContactKind&, const LaneContactNumbers& numbers, std::size_t l) {
     strength_[l] = numbers.strength, height_[l] = numbers.height;
     law_ = {.strength = strength_, .height = height_};
   }
 
-  /// Returns its force [N]; `rate()` gives the speed into the contact [m/s].
+  /// Returns the contact force [N]; `rate()` gives the speed into the contact [m/s].
   template <class Rate>
   [[gnu::always_inline]] V push(V depth, Rate&&) const {
     return law_.force(depth);
@@ -55,7 +57,7 @@ class UsualContact {
 template <class V>
 class AnyContact {
  public:
-  static constexpr bool has_damping = true, has_memory = true;  // used where its kind has them
+  static constexpr bool has_damping = true, has_memory = true;  // used when its kind has them
 
   void take(const LaneContactKind& kind, const LaneContactNumbers& numbers, std::size_t l) {
     kind_ = kind;
@@ -68,7 +70,8 @@ class AnyContact {
     if (kind_.law == LaneContact::linear) return push_of(LinearContactOf<V>{.stiffness = strength_}, depth, rate);
     return push_of(UniformAsperityContactOf<V>{.strength = strength_, .height = height_}, depth, rate);
   }
-  /// Returns the force of a contact with a memory while unloading, at this distance from where it carries nothing [N].
+  /// Returns the force of a contact with a memory while unloading, at this distance from the position at which the force is 0
+  /// [N].
   V pull_back(V depth) const { return LinearContactOf<V>{.stiffness = unloading_}.force(depth); }
 
  private:
@@ -86,7 +89,7 @@ template <class V, template <class> class FringingOf, bool has_film, int most_st
 class UsualLaws {
   using Force = ElectrostaticForce<FringingOf<V>>;
   using Film = StripSqueezeFilmOf<V>;
-  /// The field's law is written in powers of h^(-1/4), which a film beside it can reuse.
+  /// True when the field's law is written in powers of h^(-1/4), which the law of a film can reuse.
   static constexpr bool has_root = requires(const FringingOf<V>& law, V h) { law.factor_over_square(h); };
 
  public:
@@ -97,7 +100,7 @@ class UsualLaws {
 
   explicit UsualLaws(const LaneLayout& layout) : layout_(layout) {}
 
-  /// Assigns this switch to lane `l` from here on.
+  /// Sets the numbers of this switch for lane `l`.
   void take(const LaneSwitch& s, std::size_t l) {
     for (int p = 0; p < layout_.points; ++p) {
       weight_[p][l] = s.weight[p], rest_gap_[p][l] = s.rest_gap[p];
@@ -117,7 +120,7 @@ class UsualLaws {
 
   [[nodiscard]] const V& floor() const { return floor_; }
 
-  /// Adds the modal forces of fields and film; `least` becomes the smallest gap.
+  /// Adds the modal forces of fields and film; sets `least` to the smallest gap.
   [[gnu::always_inline]] void add(const V* __restrict q, const V* __restrict v, const V* volts, V* sum, V& least) {
     V smallest = open_;
     const auto field = [&](int p, V& gap, V& velocity) __attribute__((always_inline)) {
@@ -168,7 +171,7 @@ class UsualLaws {
     least = smallest;
   }
 
-  /// Returns the power of the electrodes on the modes, where it is measured [W].
+  /// Returns the power of the electrodes on the modes, if it is measured [W].
   [[nodiscard]] V power() const { return 0; }
 
  private:
@@ -200,7 +203,7 @@ class AnyLaws {
     open_[l] = s.open, floor_[l] = s.floor, most_gap_[l] = s.most_gap;
     for (int k = 0; k < layout_.stretches; ++k) {
       width_[k][l] = s.width[k], thickness_[k][l] = s.thickness[k], viscosity_[k][l] = s.viscosity[k];
-      // Roots of the width are computed once here, not at every call.
+      // Roots of the width are computed once here, and not at every call.
       if (has_meijs_fokkema_) meijs_fokkema_[k] = {.width = width_[k], .thickness = thickness_[k]};
     }
     mean_free_path_[l] = s.mean_free_path;
@@ -260,7 +263,7 @@ class AnyLaws {
       smallest = min(smallest, gap), largest = max(largest, gap);
       gap_[p] = max(gap, floor), velocity_[p] = velocity, load_[p] = 0;
     }
-    least = min(smallest, floor + (most_gap_ - largest));  // is below the floor where the far side is near
+    least = min(smallest, floor + (most_gap_ - largest));  // the sum is below the floor when the far side is near
   }
 
   void look_far(int begin, int end, const V& both, const V& floor) {
@@ -291,7 +294,7 @@ class AnyLaws {
     }
   }
 
-  // Adds a film; one on the far side takes the same from the velocity, which it sees from there, and pulls the other way.
+  // Adds a film. A film on the far side has the opposite velocity and the opposite force.
   void add_film(const V* gap) {
     on_stretches(0, layout_.points, [&](int begin, int end, int k) { add_film(gap, begin, end, k); });
   }

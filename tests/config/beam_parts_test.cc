@@ -359,7 +359,7 @@ TEST(RestShapeOfAScene, ThatCannotBeIsRefusedWithItsPlace) {
               AllOf(StartsWith("x.toml:5: structure.rest_shape = {"), HasSubstr("needs stretching = false")));
   EXPECT_EQ(bent_refusal("\"cantilever\"", "\"clamped-clamped\"\nstretching = false"), "");
   EXPECT_THAT(bent_refusal("\"-200 nm\"", "\"-2.1 um\""), HasSubstr("it would be closed at rest"));
-  EXPECT_THAT(bent_refusal("\"30 nm\"", "\"-3.49 um\""), HasSubstr("it would touch it at rest"));
+  EXPECT_THAT(bent_refusal("\"30 nm\"", "\"-3.49 um\""), HasSubstr("it would touch the electrode at rest"));
   EXPECT_THAT(message("[structure]\nkind = \"plate\"\nrest_shape = { positions = [], heights = [] }\n"),
               HasSubstr("belongs to kind = \"cantilever\" or \"clamped-clamped\", not to \"plate\""));
 }

@@ -442,7 +442,7 @@ TEST(ThroughContact, IsRefusedWhereTheContactIsNoFunctionOfTheState) {
   device = test::full_plate();
   device.electrodes.pop_back();
   device.contacts = {Contact{.model = RigidStop{.restitution = 0.5}}};
-  test::expect_refused(run(device), "restart_at_contact = false: an impact on a rigid contact is no force");
+  test::expect_refused(run(device), "restart_at_contact = false: an impact on a rigid contact has no contact force");
 }
 
 TEST(Closing, RefusesBadArguments) {
@@ -450,8 +450,8 @@ TEST(Closing, RefusesBadArguments) {
     return [=] { (void)simulate_closing(gold(), drives, {.duration = duration, .tolerance = tolerance}); };
   };
   using test::expect_refused;
-  expect_refused(run({}, 1e-4, 1e-6), "0 signals for a switch with 1 drives");
-  expect_refused(run({Signal(), Signal()}, 1e-4, 1e-6), "2 signals for a switch with 1 drives");
+  expect_refused(run({}, 1e-4, 1e-6), "0 signals are given; a switch with 1 drives needs one per drive");
+  expect_refused(run({Signal(), Signal()}, 1e-4, 1e-6), "2 signals are given; a switch with 1 drives needs one per drive");
   expect_refused(run(step(), 0, 1e-6), "duration = 0 s: must be greater than 0 s and below 1e6 s");
   expect_refused(run(step(), -1, 1e-6), "duration = -1 s: must be greater than 0 s and below 1e6 s");
   expect_refused(run(step(), 1e6, 1e-6), "duration = 1000000 s: must be greater than 0 s and below 1e6 s");

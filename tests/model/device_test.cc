@@ -96,7 +96,7 @@ TEST(Device, RefusesElectrodesThatOverlapOnOneSideOfABeam) {
 TEST(Device, NamesWhatIsWrongWithIt) {
   expect_message([](Device& d) { d.structure.length = 0; }, "structure.length = 0 m: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.structure.width = -1e-6; }, "structure.width = -1 um: must be greater than 0 and below 1e30");
-  expect_message([](Device& d) { d.structure.thickness = std::nan(""); }, "structure.thickness: is needed here and not given");
+  expect_message([](Device& d) { d.structure.thickness = std::nan(""); }, "structure.thickness: must be given for this device");
   expect_message([](Device& d) { part_of<Beam>(d.structure).youngs_modulus = INFINITY; },
                  "structure.youngs_modulus = inf Pa: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { part_of<Beam>(d.structure).density = 0; },

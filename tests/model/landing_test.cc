@@ -457,14 +457,15 @@ TEST(Landing, RefusesWhatItCannotMean) {
           "electrode.main.dielectric.landing.stiffness = -1 Pa/m: must be greater than 0 and below 1e30");
   refused([&](Device& d) { landing(d).from = -1e-9; },
           "electrode.main.dielectric.landing.from = -1 nm: must be from 0 m to below gap.electrode");
-  refused([&](Device& d) { landing(d) = {.from = 1_nm}; }, "electrode.main.dielectric.landing.from: a wall begins at the face");
+  refused([&](Device& d) { landing(d) = {.from = 1_nm}; },
+          "electrode.main.dielectric.landing.from: must be 0 m without landing.stiffness: the face is then a wall");
   const auto asperities = [&](Device& d) -> UniformAsperities& { return *(landing(d) = rough).asperities; };
   refused([&](Device& d) { asperities(d).summits.radius = 0; },
           "electrode.main.dielectric.landing.asperity_radius = 0 m: must be greater than 0 and below 1e30");
   refused([&](Device& d) { asperities(d).height = 3_um; },
           "electrode.main.dielectric.landing.asperity_height = 3 um: must be below gap.electrode");
   const std::string no_bed =
-      "electrode.main.dielectric.landing.asperity_height: asperities begin at their height, without a bed and without damping";
+      "electrode.main.dielectric.landing.asperity_height: must not be given with a stiffness, a height `from` or damping";
   refused([&](Device& d) { asperities(d).damping = 1; }, no_bed);
   refused([&](Device& d) { asperities(d), landing(d).from = 1_nm; }, no_bed);
   refused([&](Device& d) { asperities(d), landing(d).stiffness = 1e15; }, no_bed);

@@ -71,8 +71,9 @@ TEST(RestShape, IsRefusedWhereItWouldTouchAtRest) {
   test::expect_refused([] { validate(curled(test::gold_cantilever(), -6e12)); },
                        "structure: its contact point rests 2.356 um nearer to the contact than that of a straight one, "
                        "gap.contact = 2 um: it would be closed at rest");
-  test::expect_refused([] { validate(curled(test::gold_cantilever(), -15e12)); },
-                       "structure: rests 6.01 um nearer to the electrode than a straight one: it would touch it at rest");
+  test::expect_refused(
+      [] { validate(curled(test::gold_cantilever(), -15e12)); },
+      "structure: rests 6.01 um nearer to the electrode than a straight one: it would touch the electrode at rest");
   Device along_pad = curled(test::gold_cantilever());
   along_pad.contacts.front().distribution = ContactDistribution::pad;
   test::expect_refused(

@@ -292,7 +292,8 @@ TEST(SeveralContacts, RefusesWhatCannotStandTogether) {
         d.contacts[1].gap = d.gap.contact;
       },
       "contact.inner: stands at the place of contact.tip, with the same gap: one contact with count = 2 says the same");
-  refused([](Device& d) { std::swap(d.contacts[1], d.contacts[2]); }, "contact.inner: the contacts of the near side come first");
+  refused([](Device& d) { std::swap(d.contacts[1], d.contacts[2]); },
+          "contact.inner: the contacts of the near side must come first");
   refused([](Device& d) { std::swap(d.contacts[0], d.contacts[2]); },
           "contact.stop: a back stop closes nothing: a contact of side = \"near\" is missing");
   refused([](Device& d) { d.contacts[1].gap = 3.6_um; }, "contact.inner.gap = 3.6 um: must be below gap.electrode = 3.5 um");

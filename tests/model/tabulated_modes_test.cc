@@ -247,7 +247,7 @@ TEST(TabulatedModes, AreRefusedWithTheRule) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<double>(i);
     return [=] { (void)ModalTable(x, {1}, {y}, {}, {}, SplineEnd::clamped); };
   };
-  expect_refused_with(clamped({0, 1, 1}), "a far end that is clamped must stand still in every mode");
+  expect_refused_with(clamped({0, 1, 1}), "a clamped far end must not move in any mode");
   expect_refused_with(clamped({0, 1, 4, 9, 16, 25, 36, 49, 56, 48, 32, 16, 0}), "must leave a clamped far end without a slope");
   device = by_modes(test::gold_cantilever(), table);
   part_of<ModalStructure>(device.structure).axial_stiffness = 1e4;

@@ -97,7 +97,7 @@ TEST(Effects, OfEverySceneNameTheLawsThatItCannotHave) {
   };
   const Effects plate = compare_effects(prepare(scene("two-electrodes.toml")));
   EXPECT_THAT(not_compared(plate), ElementsAre("guo-alexeenko"));
-  EXPECT_EQ(plate.not_compared[0].reason, "structure.thickness: is needed here and not given");
+  EXPECT_EQ(plate.not_compared[0].reason, "structure.thickness: must be given for this device");
   std::vector<std::string> left = compared_laws();
   std::erase(left, "guo-alexeenko");
   EXPECT_EQ(choices(plate), left);
