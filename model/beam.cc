@@ -505,8 +505,8 @@ Eigen::RowVectorXd NormalisedModes::shape(const BeamElement& element, double xi,
     const double half = other.half();
     const bool inside = other.begin == element.begin;
     ElementRow local = (inside ? element_integrals(xi, derivative) : ends[derivative]) * (derivative == 0 ? half * half : half);
-    if (!inside && derivative == 0)
-      local += (x - other.end) * half * ends[1];  // beyond the other element the beam continues straight
+    // Beyond the other element the beam continues straight.
+    if (!inside && derivative == 0) local += (x - other.end) * half * ends[1];
     row.segment<functions>(functions * static_cast<Eigen::Index>(e)) = local.array() * (orders / (half * other.rigidity)).sqrt();
   }
   if (shift_ > 0) row[bending] = derivative == 0 ? shift_ : 0;
@@ -587,8 +587,7 @@ double curl(const Device& device, double gradient, double x) {
   double offset = 0;
   for (const BeamSection& section : s.is_built() ? built_sections(device, gradient) : beam_sections(device)) {
     if (section.begin >= x) break;
-    const double near = x - section.begin,
-                 far = std::max(0.0, x - section.end);  // distances of x from begin and end of the section
+    const double near = x - section.begin, far = std::max(0.0, x - section.end);  // distances of x from both ends
     offset += (s.is_built() ? section.curvature : moment / section.rigidity) * (near * near - far * far) / 2;
   }
   return offset;

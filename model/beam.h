@@ -40,11 +40,11 @@ struct BeamSection {
   double end = 0;              ///< [m]
   double rigidity = 0;         ///< EI [N m^2]
   double mass_per_length = 0;  ///< mu [kg/m]
-  double taper =
-      0;  ///< relative growth of rigidity and mass from the middle, where they are given, to the end; linear in between
+  /// Relative growth of rigidity and mass from the middle, where they are given, to the end; linear in between.
+  double taper = 0;
   double curvature = 0;  ///< curvature at rest of a beam with sections or layers, positive away from the near electrode [1/m]
-  double piezo_moment =
-      0;  ///< moment per volt of a piezo layer on a beam with sections or layers, in the middle of the stretch [N m / V]
+  /// Moment per volt of a piezo layer on a beam with sections or layers, in the middle of the stretch [N m / V].
+  double piezo_moment = 0;
 };
 
 /// Bending of a two-layer section about its own neutral axis.
@@ -145,8 +145,8 @@ class NormalisedModes {
   Eigen::MatrixXd shapes_;  // functions x modes
   Eigen::VectorXd inverse_squares_;
   double moving_place_ = 1;
-  double shift_ = 0,
-         turn_ = 0;  // factors of the two rigid motions, after the elements' functions; 0 when x = 0 cannot move in this way
+  // Factors of the two rigid motions, after the elements' functions; 0 when x = 0 cannot move in this way.
+  double shift_ = 0, turn_ = 0;
   // All motions of a general beam by Ritz's method, with unit elastic energy, and omega^-2 of each.
   Eigen::MatrixXd all_motions_;
   Eigen::VectorXd all_inverse_squares_;

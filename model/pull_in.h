@@ -34,8 +34,7 @@ struct StaticPullIn {
   Status status = Status::not_run;
   double voltage = std::numeric_limits<double>::quiet_NaN();     ///< Vsp [V]; for the dispersion force its factor minus 1
   double deflection = std::numeric_limits<double>::quiet_NaN();  ///< deflection of the contact point at this voltage [m]
-  StaticKind kind =
-      StaticKind::fold;  ///< fold of the branch, or contact when the contact point reaches the contact plane before the fold
+  StaticKind kind = StaticKind::fold;  ///< fold of the branch, or contact when the contact plane comes before the fold
 };
 
 /// Constant values of the other drives: one value per drive, as in Switch::drives(); the value of the drive in question is
@@ -63,8 +62,8 @@ struct HeldEquilibrium {
 /// The stable open equilibria through which one drive moves the contact point from rest to the contact plane, with the other
 /// drives at a bias. The path of an electrode on the near side ends at the fold when the contact plane lies beyond the fold.
 struct StablePath {
-  std::vector<double>
-      deflections;             ///< deflections of the contact point, from rest under the bias to the plane, evenly spaced [m]
+  /// Deflections of the contact point, from rest under the bias to the plane, evenly spaced [m].
+  std::vector<double> deflections;
   std::vector<double> values;  ///< values of the drive at these deflections, from 0 V on, monotone [V]
   [[nodiscard]] double reaches() const { return values.back(); }
   /// Returns the slope of the deflection by the drive's value at the contact plane [m/V].

@@ -279,8 +279,8 @@ class Switch {
   std::shared_ptr<const ContactLaw> contact_;
   std::vector<FurtherContact> further_;
   std::shared_ptr<const PadQuadrature> pad_;  // set for a contact along the pad
-  std::shared_ptr<const DistributedLaw>
-      face_;  // pressure of a contact along the face of a dielectric; null without such a contact
+  // Pressure of a contact along the face of a dielectric; null without such a contact.
+  std::shared_ptr<const DistributedLaw> face_;
   std::size_t face_at_ = std::numeric_limits<std::size_t>::max();  // number of the contact along the face
   std::shared_ptr<const GasLaw> gas_;
   std::shared_ptr<const ReynoldsFilm> film_;

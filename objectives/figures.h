@@ -46,9 +46,8 @@ struct Figure {
   /// Figure whose derivative this figure has: the end of the last rebound for the permanent contact. Null when the figure has
   /// no derivative.
   double Metrics::*slope = nullptr;
-  bool of_results = true,
-       of_devices = false;  ///< true when results show the figure for one closing; true when they show it for varied devices
-  bool AskedFigures::*asked = nullptr;  ///< request of a scene that makes results show the figure; null: always shown
+  bool of_results = true, of_devices = false;  ///< true when results show the figure for one closing, or for varied devices
+  bool AskedFigures::*asked = nullptr;         ///< request of a scene that makes results show the figure; null: always shown
   double worst = std::numeric_limits<double>::infinity();  ///< value that counts for a device that does not close
 
   [[nodiscard]] constexpr bool is_count() const { return std::holds_alternative<int Metrics::*>(member); }

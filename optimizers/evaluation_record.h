@@ -160,8 +160,8 @@ class EvaluationRecord {
   std::chrono::steady_clock::time_point begin_;
   std::vector<std::size_t> free_;  ///< indices of the variables with lower < upper
   std::vector<Point> starts_;
-  std::unordered_map<Point, std::vector<double>, PointHash>
-      exact_;  ///< exact values of the user's starts, which scaling would round
+  /// Exact values of the user's starts, which scaling would round.
+  std::unordered_map<Point, std::vector<double>, PointHash> exact_;
 
   // These change between rounds only.
   std::vector<Known> known_;

@@ -28,8 +28,8 @@ void ContactPhase::turn(double deepest) {
 }
 
 void ContactPhase::begin_closed(double interference) {
-  constexpr double rounding =
-      1e-9;  // relative; the law is loaded a little deeper than the contact rests, so that the rest does not load it further
+  // The law is loaded a little deeper than the contact rests, so that the rest does not load it further.
+  constexpr double rounding = 1e-9;  // relative
   if (model_.rigid_contact() != nullptr) return enter(Phase::rest);
   if (!(interference > 0)) return enter(interference > -reach_ ? above() : Phase::flight);
   if (remembers_) return turn(interference * (1 + rounding));

@@ -59,11 +59,10 @@ struct Contact {
   std::optional<Place> at = {};                                 ///< centre of the pad; none: see Device::contact_position()
   /// Rest distance of the contact to its plane [m]; Device::gap has that of the first contact.
   double gap = std::numeric_limits<double>::quiet_NaN();
-  Side side = Side::near;  ///< far: a back stop
-  bool along_face =
-      false;             ///< true for the face of a dielectric, at all points of the beam beyond the plane; its law is per area
-  double count = 1;      ///< number of such contacts side by side across the beam
-  bool connects = true;  ///< true when the contact is part of the connection
+  Side side = Side::near;   ///< far: a back stop
+  bool along_face = false;  ///< true when it acts at all points of a dielectric's face; its law is per area
+  double count = 1;         ///< number of such contacts side by side across the beam
+  bool connects = true;     ///< true when the contact is part of the connection
   Conduction conduction = {};
 };
 

@@ -881,8 +881,8 @@ class Lanes {
     if (!one.touching) return false;
     if (one.to_turn) {
       const double speed = speed_[c][l], acceleration = acceleration_[c][l];
-      const double left =
-          acceleration < 0 ? speed * speed / (2 * acceleration) : 0;  // remaining way of the contact point by its velocity
+      // Remaining way of the contact point by its velocity.
+      const double left = acceleration < 0 ? speed * speed / (2 * acceleration) : 0;
       const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
       const double depth = position_[c][l] - plane_[c][l] - left;
       one.deepest = depth;

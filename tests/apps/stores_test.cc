@@ -212,7 +212,7 @@ TEST_F(Stores, KeepTheNamesOfTheirCompanions) {
   const std::vector<std::string> explore = with({"explore", "gold.toml"}, {vary[0], vary[1]});
   for (const char* ending : {"-wal", "-shm", "-journal", ".lock"}) {
     const std::string name = std::string("a.sqlite") + ending;
-    const std::string reason = name + ": has the name that the store ";
+    const std::string reason = name + ": is the name of a file that the store ";
     expect_bad({"table", "b.sqlite", "--out", name}, reason);
     expect_bad({"table", "a.sqlite", "--out", name}, reason);
     expect_bad({"modes", "gold.toml", "--json", name}, reason);
