@@ -46,7 +46,7 @@ struct Dielectric {
   double roughness = 0;     ///< air gap that remains when its summits touch [m]
   double charge = 0;        ///< charge per area on its face [C/m^2], of either sign
   /// Landing on the face. A moving part that reaches a face without a landing has failed, unless it is a plate on a contact
-  /// there. there.
+  /// there.
   std::optional<Landing> landing = {};
 
   /// Returns the contribution of the dielectric to the gap of the field, t / eps_r + roughness [m].
