@@ -233,7 +233,8 @@ TEST_F(ModalScene, RefusesListsThatAreNoTable) {
   EXPECT_EQ(refusal(held(right + "rest_offsets = [\"0 m\", \"10 nm\", \"30 nm\"]\n")), "accepted");
   EXPECT_THAT(refusal(held(right + "rest_offsets = [\"0 m\"]\n")), HasSubstr("must hold a number per position"));
   EXPECT_THAT(refusal(held(edited(right, "3e5, ", ""))), HasSubstr("must hold 1 lists of 3 numbers"));
-  EXPECT_THAT(refusal(held(edited(right, "\"50 um\"", "\"150 um\""))), HasSubstr("at least three positions that increase from 0"));
+  EXPECT_THAT(refusal(held(edited(right, "\"50 um\"", "\"150 um\""))),
+              HasSubstr("at least three positions that increase from 0"));
   EXPECT_THAT(refusal(held(edited(right, "[[0,", "[[1,"))), HasSubstr("a shape must be finite and 0 at the clamp"));
   EXPECT_THAT(refusal(held(right + "axis = \"x\"\n")), HasSubstr("the scene holds its modes itself"));
   EXPECT_THAT(refusal(held(right + "file = \"modes.csv\"\n")), HasSubstr("cannot stand beside"));
