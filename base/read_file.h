@@ -21,7 +21,7 @@ inline constexpr std::size_t largest_file = std::size_t{64} << 20;
 void mark_as_read(const std::filesystem::path& path);
 
 /// Returns true for a file that this process has read with read_file() or passed to mark_as_read(), and that still has the name
-/// under which it was read: results must not replace such an input.
+/// under which it was read. Results must not replace such an input.
 [[nodiscard]] bool was_read(const std::filesystem::path& path);
 
 }  // namespace softland

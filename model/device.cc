@@ -308,8 +308,8 @@ const Landing* Device::landing() const {
 
 namespace {
 
-// Returns the place at which a beam that bends under the pads of its faces first touches them: the free end, or the middle
-// between two clamps, or the edge of a pad that is nearest to this place.
+// Returns the place at which a beam that bends under the pads of its faces first touches them. This is the free end, or the
+// middle between two clamps, or the edge of the pad that is nearest to it.
 Place first_touch_on(const Device& d) {
   const double length = d.structure.length, aim = d.structure.has_far_clamp() ? length / 2 : length;
   Place nearest;

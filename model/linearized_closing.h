@@ -15,7 +15,7 @@
 // vectors, by its Taylor series, and never form the exponential itself.
 //
 // A parameter of the device adds F_p (model/switch_slopes.h) to the inputs of the equations. It also adds the derivative of the
-// rest position at the start, and shifts the times of events at fixed q: an edge is crossed at a certain interference, which
+// rest position at the start, and shifts the times of events at fixed q. An edge is crossed at a certain interference, which
 // depends on the shape of the modes at the contact and on the contact gap.
 #pragma once
 

@@ -115,9 +115,9 @@ struct ClosedEquilibrium {
 [[nodiscard]] bool keeps_closed(const Switch& model, const std::optional<ClosedEquilibrium>& closed);
 
 /// Returns the voltage of `drive`, above V0, from which the closed switch collapses onto the electrode [V], with the other
-/// drives at `volts`: above this voltage the closed equilibrium is unstable or does not exist. The search covers a tenth to ten
-/// times the value of `drive` in `volts`, or of the release voltage if that is larger, both counted from V0; the result is NaN
-/// if the voltage is not in this range. The relative precision is `precision`.
+/// drives at `volts`: above this voltage the closed equilibrium is unstable or does not exist. The search begins at the value
+/// of `drive` in `volts`, or at the release voltage if that is larger, and covers a tenth to ten times this value, counted from
+/// V0. The result is NaN if the voltage is not in this range. The relative precision is `precision`.
 [[nodiscard]] double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts,
                                           double precision = 1e-6);
 

@@ -4,8 +4,8 @@
 //
 // Its poles are the natural frequencies, its zeros those of the beam that is also held at x. Units and functions are those of
 // NormalisedModes (model/beam.h). The quadratic form of elastic less kinetic energy is eliminated element by element from the
-// far end to the clamp at x = 0, as in a linear-quadratic control problem: the part beyond a node acts as a stiffness of two by
-// two at the node, and short elements cost no digits. The time is proportional to the number of elements. There are as many
+// far end to the clamp at x = 0, as in a linear-quadratic control problem. The part beyond a node acts as a stiffness of two by
+// two at the node, so that short elements cost no digits. The time is proportional to the number of elements. There are as many
 // negative pivots as natural frequencies below lambda (Sylvester's law of inertia; Wittrick & Williams, Q. J. Mech. Appl. Math.
 // 24 (1971) 263). When the motion is nearly a mode, a over its derivative is the step to the Rayleigh quotient.
 #pragma once

@@ -4,9 +4,9 @@
 //   F_p = [F(q + h r, v; p + h) - F(q - h r, v; p - h)] / 2h - F_q r          at fixed q and v
 //
 // p is the parameter [its SI unit], h half the step between the two switches, F modal accelerations, F_q their derivative by q
-// in the switch itself. r is 0 when no contact acts. If a contact acts, its depth is nanometres and must not change because the
-// step moves its plane. r is then the motion along the contact's static deflection that leaves the interference as it is; the
-// effect of the plane's motion on the force comes from F_q, which is exact. So all properties of a device are included:
+// in the switch itself. r is 0 when no contact acts. The depth of a contact that acts is nanometres and must not change because
+// the step moves its plane. r is then the motion along the contact's static deflection that leaves the interference as it is.
+// The effect of the plane's motion on the force comes from F_q, which is exact. So all properties of a device are included:
 // frequencies and shapes of the modes, which keep their normalisation and sign, places of electrodes and contact, laws of
 // forces and gas.
 //

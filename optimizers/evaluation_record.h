@@ -3,7 +3,7 @@
 // Work comes in rounds of tasks. A task is sequential and has a fixed budget; the tasks of a round run in parallel. The order
 // of evaluations is (round, task, position within the task), whatever thread made them when. "First", "best so far" and
 // "already seen" refer to this order, so that results do not depend on the number of jobs. When a task reaches the target,
-// later tasks of the round are cut and left out, and earlier tasks complete: running the tasks one after the other would give
+// later tasks of the round are cut and left out, and earlier tasks complete. A run of the tasks one after the other would give
 // the same result.
 #pragma once
 

@@ -119,11 +119,11 @@ struct OptimizerResult {
 /// max_seconds and stop. The time budget, the stop flag and the target are checked before every evaluation; a running
 /// evaluation is never interrupted.
 ///
-/// `auto` searches near the best of the starts, samples the box, runs local searches from well separated good points, lets the
-/// promising ones continue and polishes the best, with the problem's gradient when there is one; it uses several jobs. The
-/// methods with a gradient continue from the best points of such a search after its first two fifths. Another local method runs
-/// from the starts in turn and then from random points, each time until it converges, as long as the budget lasts; infeasible
-/// points are skipped. A global method runs once.
+/// `auto` searches near the best of the starts, samples the box and runs local searches from well separated good points. It
+/// lets the promising ones continue and polishes the best, with the problem's gradient when there is one; it uses several jobs.
+/// The methods with a gradient continue from the best points of such a search after its first two fifths. Another local method
+/// runs from the starts in turn and then from random points, each time until it converges, as long as the budget lasts;
+/// infeasible points are skipped. A global method runs once.
 ///
 /// Without a gradient of the problem central differences are used, which count as evaluations; a gradient of the problem counts
 /// as three, with those of its conditions. Ipopt solves one problem at a time in a process; others wait, so an objective must

@@ -4,9 +4,10 @@
 //   total         T_i = 1 - V(E(y | u_~i)) / V(y),              1/(2n) sum (f(A) - f(A_B^i))^2 / V
 //
 // The variables u_i are independent and uniform; u_~i are all but u_i. Row j of A and of B is two points of the unit cube,
-// A_B^i is A with coordinate i of B, and V is the variance of f over A and B together. S_i is the variance that would disappear
-// if u_i were known; T_i is what would remain if all but u_i were known. 0 <= S_i <= T_i; the sum of S_i is at most 1, and 1
-// without interactions. f is centred by its mean, which changes no expectation and takes most of the noise out of S_i.
+// A_B^i is A with coordinate i of B, and V is the variance of f over A and B together. S_i is the share of the variance that
+// would disappear if u_i were known. T_i is the share that would remain if all variables but u_i were known. 0 <= S_i <= T_i;
+// the sum of S_i is at most 1, and 1 without interactions. f is centred by its mean, which changes no expectation and takes
+// most of the noise out of S_i.
 //
 // Estimates may leave these bounds: a first-order index near zero is as often below zero as above. Each index has a bootstrap
 // interval over the rows, which takes them for independent: it is too wide for Sobol' points. An index is distinguishable from

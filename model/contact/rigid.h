@@ -7,7 +7,7 @@
 // plate [N].
 //
 // Under a constant force the rebounds are a geometric series: infinitely many in the finite time (1 + e) / (1 - e) v / a. So a
-// rebound that would rise less than h_r = 1e-6 of the contact gap, u^2 / (2 a) under that force, is not simulated: the plate
+// rebound that would rise less than h_r = 1e-6 of the contact gap, u^2 / (2 a) under that force, is not simulated. The plate
 // loses the remaining velocity and rests on the plane, held there by N, until N would have to pull. An impact has an impulse
 // (1 + e) m v- but no force. Validity: the impact lasts much shorter than anything else, and e is a property of the pair of
 // bodies; for a beam, whose other modes take up energy at every impact, it is not. Source: Newton's law of impact; e.g.
