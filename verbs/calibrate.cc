@@ -1,4 +1,4 @@
-// Verb `calibrate`: measurable figures of a device, ranked by how well they pin its waveform.
+// Verb `calibrate`: ranks measurable figures of a device by how well they predict its waveform.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ void read_errors(const std::string& option, const std::string& list, Identificat
           visible(list));
     });
     require_request(seen.insert(row->first).second,
-                    [&] { return fmt::format("{} {}: {} stands twice", option, visible(list), row->first); });
+                    [&] { return fmt::format("{} {}: {} is given twice; give it once", option, visible(list), row->first); });
     *row->second = q.value;
   }
 }
@@ -62,25 +62,29 @@ void read_steps(const std::string& option, const std::string& list, std::vector<
     require_request(error == std::errc() && end == one.data() + one.size() && value >= 1 && value <= most &&
                         (steps.empty() || value > steps.back()),
                     [&] {
-                      return fmt::format("{} {}: must be rising multiples of Vdp from 1 to {:g}, such as 1.1,1.25,1.5", option,
-                                         visible(list), most);
+                      return fmt::format("{} {}: must be increasing multiples of Vdp from 1 to {:g}, such as 1.1,1.25,1.5",
+                                         option, visible(list), most);
                     });
     steps.push_back(value);
   }
   constexpr std::size_t most_steps = 8;
-  require_request(steps.size() <= most_steps, [&] { return fmt::format("{} {}: at most {} of them", option, list, most_steps); });
+  require_request(steps.size() <= most_steps,
+                  [&] { return fmt::format("{} {}: must be at most {} steps", option, list, most_steps); });
   all = std::move(steps);
 }
 
 Outcome shown(const MeasurementsRecord& record) { return {.json = json_of(record), .text = text_of(record)}; }
 
 struct CalibrateRequest : Usual {
-  static constexpr auto name = "calibrate", about = "which measurable figures of a device pin its waveform best",
-                        python = "calibrate", scene = varied_scene, changes = "change one key: --set spread.gaps.cov=\"1 %\"";
+  static constexpr auto name = "calibrate",
+                        about = "rank measurable figures of a device by how well they predict its best waveform",
+                        python = "calibrate", scene = varied_scene,
+                        changes = "change one key of the scene, such as --set spread.gaps.cov=\"1 %\"";
   static constexpr auto remarks =
-      "The scene's drive is the recipe: a landing, not the plain step. Every device is closed with the recipe's voltages and\n"
-      "times multiplied by factors that each measured figure predicts, and each pair of them. The voltages of a piezo have a\n"
-      "factor of their own.\n"
+      "The scene must hold a waveform that lands softly, not the plain step. "
+      "For every simulated device, its voltages and times\n"
+      "are multiplied by factors that are predicted from each measured figure, and from each pair of figures. The voltages of\n"
+      "a piezo have a factor of their own.\n"
       "Example:\n  softland calibrate softland-out --error \"Vdp:0.2 %,frequency:0.1 %\"";
 
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_measurements(json)); }
@@ -90,15 +94,17 @@ struct CalibrateRequest : Usual {
 
 template <class Archive>
 void options(Archive& a, CalibrateRequest& r) {
-  samples_option(a, r.options.samples, {.least = fewest_measured, .most = most_measured}, "devices (default: 256)");
+  samples_option(a, r.options.samples, {.least = fewest_measured, .most = most_measured},
+                 "number of simulated devices (default: 256)");
   a.parsed("steps", r.options.steps, read_steps, "LIST",
-           "steps whose closing times are measured, in multiples of the nominal Vdp (default: 1.1,1.25,1.5)", "steps",
-           "Sequence[float]");
+           "voltage steps whose closing times are measured, as multiples of the nominal dynamic pull-in voltage Vdp (default: "
+           "1.1,1.25,1.5)",
+           "steps", "Sequence[float]");
   a.parsed("error", r.options, read_errors, "LIST",
-           "standard deviation of each measurement: \"Vdp:1 %,frequency:0.5 %\"; there are Vdp, Vsp, release, frequency, "
-           "piezo and time (default: exact)",
+           "standard deviation of each measurement, such as \"Vdp:1 %,frequency:0.5 %\", of Vdp, Vsp, release, frequency, "
+           "piezo and time (default: exact measurements)",
            "errors", "Mapping[str, float | str] | None");
-  seed_option(a, r.options.seed, "same devices");
+  seed_option(a, r.options.seed, "the same devices");
   jobs_option(a, r.options.jobs);
 }
 

@@ -43,34 +43,38 @@ std::string dispersion_words(const PreparedScene& p, const Watch& watch) {
   const auto factor = [](double value) { return plain_number(1 + value, 4); };
   const bool known = std::isfinite(statically.voltage);
   if (!p.model.rest() || statically.status == Status::collapsed_at_rest) {
-    return "no open state: " +
-           (known ? fmt::format("closes by itself from {} of its nominal strength on", factor(statically.voltage))
-                  : std::string("closes by itself"));
+    return "no open state: the switch " +
+           (known
+                ? fmt::format("closes by itself if the force has at least {} of its nominal strength", factor(statically.voltage))
+                : std::string("closes by itself"));
   }
   const std::string rest =
-      fmt::format("tip at rest {} down; ", quantity(p.model.contact_deflection(p.model.rest()->data()), "m"));
-  if (!known) return rest + "no strength was found at which it closes by itself";
+      fmt::format("the tip rests {} lower; ", quantity(p.model.contact_deflection(p.model.rest()->data()), "m"));
+  if (!known) return rest + "no strength of the force was found at which the switch closes by itself";
   const DynamicPullIn dynamically = dynamic_pull_in(p.model, k, statically, bias, watch);
   const std::string step =
-      std::isfinite(dynamically.voltage) ? fmt::format(" or a step to {} (dynamic)", factor(dynamically.voltage)) : "";
-  return fmt::format("{}closes by itself at {} (static){} of its nominal strength", rest, factor(statically.voltage), step);
+      std::isfinite(dynamically.voltage) ? fmt::format(", or after a step to {} (dynamic)", factor(dynamically.voltage)) : "";
+  return fmt::format("{}the switch closes by itself if the force rises to {} (static){} of its nominal strength", rest,
+                     factor(statically.voltage), step);
 }
 
-// Describes the state under the hold levels, and the voltage up to which it exists.
+// Describes the closed state at the hold voltages, and the voltage up to which it exists.
 std::string closed_state_words(const ClosedState& state) {
-  std::string words = !state.exists   ? "no equilibrium under the hold levels"
-                      : !state.stable ? "stable or not is not judged: one mode of a beam clamped at both ends cannot tell"
-                      : *state.stable ? "stable under the hold levels"
-                      : state.flips   ? "stable or not under the hold levels depends on the number of modes"
-                                      : "unstable under the hold levels";
+  std::string words =
+      !state.exists ? "no equilibrium at the hold voltages"
+      : !state.stable
+          ? "stability is not known: one mode of a beam clamped at both ends does not suffice; set structure.modes higher"
+      : *state.stable ? "stable at the hold voltages"
+      : state.flips   ? "stability at the hold voltages depends on the number of modes"
+                      : "unstable at the hold voltages";
   for (const auto& [electrode, volts] : state.pulled_through) {
     words += std::isfinite(volts)
-                 ? fmt::format("; electrode {} pulls the beam through from {} on", electrode, quantity(volts, "V", 4))
-                 : fmt::format("; electrode {} pulls the beam through at no voltage tried", electrode);
+                 ? fmt::format("; the beam collapses onto electrode {} from {} on", electrode, quantity(volts, "V", 4))
+                 : fmt::format("; the beam collapses onto electrode {} at no voltage tried", electrode);
     const auto more = state.pulled_through_by_modes.find(electrode);
     if (more == state.pulled_through_by_modes.end()) continue;
     if (const std::string shift = shift_words(more->second); !shift.empty())
-      words += fmt::format(" (more modes move it by {})", shift);
+      words += fmt::format(" (more modes shift this voltage by {})", shift);
   }
   return words;
 }
@@ -82,7 +86,7 @@ std::string capacitance_words(const PreparedScene& p) {
   const double own = found.values.begin()->second;
   if (std::isnan(own)) return "its capacitance is not known";
   return "its capacitance is " + engineering(own, "F", 4) +
-         (ladder.exists() ? "; more modes move it by " + shift_words(found, "F") : "");
+         (ladder.exists() ? "; more modes shift it by " + shift_words(found, "F") : "");
 }
 
 // Returns the message about a key, with its place.
@@ -94,8 +98,8 @@ std::string said_of(const SceneFile& file, const std::string& key, std::string_v
   }
 }
 
-// A step of a switch with a compressible film takes a thousand times longer to follow: this verb finds its pull-in voltage to
-// this precision, by coarser runs. `pull-in` finds it as well as any other.
+// A switch with a compressible gas film takes a thousand times longer to simulate. The verb `check` finds the dynamic pull-in
+// voltage of such a switch to this relative precision only; the verb `pull-in` finds it to full precision.
 constexpr double film_precision = 1e-3;
 
 double precision_of(const Switch& model) { return model.film_states() > 0 ? film_precision : dynamic_pull_in_precision; }
@@ -117,7 +121,7 @@ std::string end_words(const Anchor& anchor) {
   return fmt::format("rotation {}, translation {}", stiffness(anchor.rotation, "N m/rad"), stiffness(anchor.translation, "N/m"));
 }
 
-// Lists sections, layers and anchors of a beam that has any.
+// Lists the sections, layers and anchors of a beam.
 void add_parts(CheckRecord& record, const Device& device) {
   const Structure& s = device.structure;
   const Beam* const beam = s.find<Beam>();
@@ -130,7 +134,7 @@ void add_parts(CheckRecord& record, const Device& device) {
     std::string words = fmt::format("{}, {}{} wide, {} thick", span(local.begin, local.end), length(local.width),
                                     local.is_even() ? "" : " to " + length(local.end_width), length(local.thickness));
     if (local.holes.exist())
-      words += fmt::format(", holes of {} every {}: {} % of the area and {} % of the stiffness are left",
+      words += fmt::format(", holes of {} every {}, which leave {} % of the area and {} % of the stiffness",
                            length(local.holes.size), length(local.holes.pitch), plain_number(100 * area_left(local.holes), 3),
                            plain_number(100 * ligament_efficiency(local.holes), 3));
     record.lines.push_back({fmt::format("section {}", ++number), words});
@@ -140,7 +144,7 @@ void add_parts(CheckRecord& record, const Device& device) {
     record.lines.push_back({fmt::format("layer {}", ++number),
                             fmt::format("{} face, {}, {} thick, {}", name_of(sides, layer.face),
                                         span(layer.begin.on(s.length), layer.end.on(s.length)), length(layer.thickness),
-                                        layer.stress == 0 ? "without stress" : given_quantity(layer.stress, "Pa", 4))});
+                                        layer.stress == 0 ? "stress-free" : given_quantity(layer.stress, "Pa", 4))});
   if (beam->anchor || beam->far_anchor)
     record.lines.push_back(
         {"anchors", fmt::format("near end {}; far end {}", end_words(s.near_hold()), end_words(s.far_hold()))});
@@ -174,15 +178,15 @@ void add_rest_shape(CheckRecord& record, const Device& device) {
   }
   rest.least_gap = gap + lowest;
   const auto words = [](double rise) {
-    if (rise == 0) return std::string("as a straight one");
-    return fmt::format("{} {} the near electrode than a straight one", quantity(std::abs(rise), "m", 4),
+    if (rise == 0) return std::string("as high as that of a straight structure");
+    return fmt::format("{} {} the near electrode than that of a straight structure", quantity(std::abs(rise), "m", 4),
                        rise > 0 ? "further from" : "nearer to");
   };
-  record.lines.push_back({"rest shape", fmt::format("the far end rests {}, {} from the electrode's plane",
+  record.lines.push_back({"rest shape", fmt::format("the far end rests {}, {} above the plane of the electrode",
                                                     words(rest.far_end_rise), quantity(rest.far_end_gap, "m", 4))});
   record.lines.push_back({"", fmt::format("the contact point rests {}: contact gap {}", words(rest.contact_rise),
                                           quantity(rest.contact_gap, "m", 4))});
-  record.lines.push_back({"", fmt::format("the least gap over an electrode is {}", quantity(rest.least_gap, "m", 4))});
+  record.lines.push_back({"", fmt::format("the smallest gap over an electrode is {}", quantity(rest.least_gap, "m", 4))});
   record.rest_shape = rest;
 }
 
@@ -190,8 +194,8 @@ Outcome shown(const CheckRecord& record) { return {.json = json_of(record), .tex
 
 struct CheckRequest : Usual {
   static constexpr bool is_explorable = true;
-  static constexpr auto name = "check", about = "validate a scene and print derived numbers and warnings", python = "checked",
-                        leaves = "folder for beam.svg, a drawing of a beam as it is built",
+  static constexpr auto name = "check", about = "validate a scene file; print derived numbers and warnings", python = "checked",
+                        leaves = "folder for beam.svg, a drawing of the beam with its sections, layers and anchors",
                         remarks =
                             "Examples:\n  softland check my-switch.toml\n  softland check my-switch.toml --json -\n"
                             "  softland check my-switch.toml --out drawn";
@@ -223,11 +227,11 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   add_rest_shape(record, p.scene.device);
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   if (p.model.has_contact()) add("in-contact period", quantity(p.model.basis().in_contact_period(), "s", 4));
-  std::map<std::string, PullInVoltages> searched_to;  // a search takes these as the limit where the scene has none
+  std::map<std::string, PullInVoltages> searched_to;  // a search takes its voltage limit from these where the scene has none
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     const std::string& name = p.scene.device.electrodes[k].name;
     if (!pulls_in(p.scene.device, k)) {
-      add("electrode " + name, "on the far side, pulls away from the contact");
+      add("electrode " + name, "is on the far side and pulls away from the contact");
       continue;
     }
     const auto known = p.pull_in.find(name);
@@ -237,7 +241,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     if (std::isfinite(v.static_pull_in) && std::isfinite(v.dynamic_pull_in))
       searched_to[name] = {.static_pull_in = v.static_pull_in, .dynamic_pull_in = v.dynamic_pull_in};
     if (found.status == Status::no_contact) {
-      add("electrode " + name, "pulls away from the contact where the switch rests: no pull-in voltage");
+      add("electrode " + name, "pulls away from the contact in the rest position: no pull-in voltage");
       warnings.push_back(said_of(setting.scene, "electrode." + name + ".gap", pulls_away));
       continue;
     }
@@ -246,7 +250,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     const std::string bias = bias_words(found);
     const std::string roughly =
         p.model.film_states() > 0 && std::isfinite(v.static_pull_in) && v.dynamic_pull_in != v.static_pull_in
-            ? " (to 0.1 %, as levels in Vdp below)"
+            ? " (known to 0.1 %, as are levels in Vdp below)"
             : "";
     add("electrode " + name, (found.status == Status::collapsed_at_rest
                                   ? no_open_state
@@ -256,9 +260,9 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     if (const std::string charge = charge_words(v); !charge.empty()) add("", "its charge " + charge);
     if (sticks_by_charge(v))
       warnings.push_back(
-          said_of(setting.scene, "electrode." + name + ".dielectric.charge", "keeps the switch closed at 0 V once it is closed"));
+          said_of(setting.scene, "electrode." + name + ".dielectric.charge", "keeps a closed switch closed at 0 V"));
     if (v.by_modes) {
-      std::string shifts = "more modes move Vsp by " + shift_words(v.by_modes->static_pull_in);
+      std::string shifts = "more modes shift Vsp by " + shift_words(v.by_modes->static_pull_in);
       if (std::isfinite(v.release)) shifts += ", release by " + shift_words(v.by_modes->release);
       add("", shifts);
     }
@@ -270,7 +274,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   }
   if (p.scene.device.dispersion) {
     add("dispersion force", dispersion_words(p, watch));
-    add("drive dispersion", "hold factor " + plain_number(1 + p.signals()[p.scene.device.electrodes.size()].hold_level(), 5));
+    add("drive dispersion", "hold level " + plain_number(1 + p.signals()[p.scene.device.electrodes.size()].hold_level(), 5));
   }
   if (const FilmState* const film = p.scene.device.gas ? film_of(*p.scene.device.gas) : nullptr) {
     const double g = p.scene.device.gap.electrode;
@@ -278,11 +282,12 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     const double omega = p.model.basis().angular_frequencies()[0], width = width_at(s, p.scene.device.contact_position());
     const double most = limits_of(*p.scene.device.gas).most_squeeze;
     const std::string holds =
-        std::isfinite(most) ? fmt::format("; {} holds below about {}", name_of(*p.scene.device.gas), plain_number(most)) : "";
-    add("squeeze number",
-        fmt::format("{} at the rest gap, {} closed (first mode{})", plain_number(squeeze_number(*film, width, g, omega)),
-                    plain_number(squeeze_number(*film, width, closed, omega)), holds));
-    add("Knudsen number", fmt::format("{} at the rest gap, {} closed (mean free path {})", plain_number(lambda / g),
+        std::isfinite(most) ? fmt::format("; the law {} holds below about {}", name_of(*p.scene.device.gas), plain_number(most))
+                            : "";
+    add("squeeze number", fmt::format("{} at the rest gap, {} in the closed state (first mode{})",
+                                      plain_number(squeeze_number(*film, width, g, omega)),
+                                      plain_number(squeeze_number(*film, width, closed, omega)), holds));
+    add("Knudsen number", fmt::format("{} at the rest gap, {} in the closed state (mean free path {})", plain_number(lambda / g),
                                       plain_number(lambda / closed), given_quantity(lambda, "m", 3)));
   }
   for (const auto& [name, signal] : named_signals(p)) {
@@ -293,12 +298,13 @@ Outcome run(const Setting& setting, const CheckRequest&) {
       driver = fmt::format("driver {} to {}", given_quantity(drive.limits->min_voltage, "V"),
                            given_quantity(drive.limits->max_voltage, "V"));
     } else if (searched != searched_to.end()) {
-      driver = fmt::format("no [driver.{}]: a search takes 0 V to {}, {}", name, default_limit_words(searched->second),
-                           quantity(default_limit(searched->second), "V", 5));
+      driver = fmt::format("no [driver.{}]: a search limits the voltage to 0 V to {}, {}", name,
+                           default_limit_words(searched->second), quantity(default_limit(searched->second), "V", 5));
       if (signal.peak() > default_limit(searched->second))
         warnings.push_back(
-            fmt::format("[waveform.{}] reaches {}, beyond what a search takes for its limit without [driver.{}]: "
-                        "optimize, release, limit and robustness refuse the scene as it is",
+            fmt::format("[waveform.{0}] reaches {1}, above the voltage limit of a search without [driver.{2}]. "
+                        "optimize, release, limit and robustness refuse this scene: add [driver.{2}] with max_voltage, "
+                        "or lower the waveform",
                         name, given_quantity(signal.peak(), "V"), name));
     }
     if (drive.amplifier)
@@ -319,8 +325,8 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   for (std::string& warning : gas_warnings(p.scene.device, closed_gap, 0)) warnings.push_back(std::move(warning));
   if (const std::string start = start_words(p); !start.empty()) add("start", start);
   if (!p.start_equilibrium() && (p.scene.begins_closed || p.model.rest()))
-    warnings.push_back("a run does not begin: " + start_words(p));
-  if (!p.model.has_contact()) add("contact", "none: a run ends at first touch");
+    warnings.push_back("the simulation cannot start: " + start_words(p));
+  if (!p.model.has_contact()) add("contact", "none: the simulation ends at first touch");
   if (p.model.contacts() > 1) {
     std::vector<std::string> connecting;
     for (std::size_t c = 0; c < p.model.contacts(); ++c) {
@@ -334,7 +340,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
                       contact.side == Side::far ? ", a back stop" : ""));
       if (contact.connects) connecting.push_back(contact.name);
     }
-    add("connection", fmt::format("closed while {} {} closed; static figures are those of {}",
+    add("connection", fmt::format("closed while {} {} closed; static figures are those of contact {}",
                                   fmt::join(connecting, p.scene.device.connection == Connection::all ? " and " : " or "),
                                   connecting.size() > 1 && p.scene.device.connection == Connection::all ? "are" : "is",
                                   p.scene.device.contacts.front().name));
@@ -345,7 +351,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     add("stable path", words_of(record.stable_path));
     if (const auto command = open_command(p, p.signals()))
       add("command to open", fmt::format("at {}{}", given_quantity(command->time, "s", 4),
-                                         std::isfinite(p.scene.simulate.open_at) ? "" : ", as the drives tell it"));
+                                         std::isfinite(p.scene.simulate.open_at) ? "" : ", given by the waveforms"));
     const std::vector<Signal> held = until_command(p, p.signals());
     const ClosedState state = closed_state(p, held);
     record.closed_state = state;

@@ -28,17 +28,17 @@ Outcome shown(CycleRecord found) {
 
 struct CycleRequest : Usual {
   static constexpr auto name = "cycle",
-                        about = "close and open the switch at a rate: how high it may be, and what every cycle does",
+                        about = "simulate repeated closing and opening at a rate, and find the largest steady rate",
                         python = "cycle",
                         leaves = "folder for report.html, cycle.json and cycle.svg, and with --search best.toml and best.csv";
   static constexpr auto remarks =
-      "A cycle is the closing waveform of the scene and, from duty / rate on, the drives at 0 V. A RESULT that begins closed, "
-      "as\n"
-      "that of release does, gives the opening waveform, any other one the closing waveform. A scene whose own\n"
-      "waveform opens the switch on command gives both. The rates of plain switching are found beside them.\n"
-      "A rate is steady where all cycles close and open, and land within 5 % as fast and as high as the first one.\n"
-      "With --search both waveforms are found for one rate, at which a cycle begins with the vibration that the one before has\n"
-      "left. best.toml then has one cycle of both.\n"
+      "A cycle is the closing waveform of the scene, followed at time duty / rate by the command to open: "
+      "all drives go to 0 V.\n"
+      "A RESULT that begins closed, such as that of release, gives the opening waveform; any other RESULT gives the closing\n"
+      "waveform. A scene whose waveform opens the switch on command gives both. Plain switching is simulated for comparison.\n"
+      "A rate is steady if all cycles close and open, with impact velocity and highest rebound within 5 % of the first cycle.\n"
+      "With --search, both waveforms are found for one rate, at which every cycle begins with the residual vibration of the\n"
+      "previous cycle. best.toml then holds one cycle of both waveforms.\n"
       "Examples:\n  softland cycle scenes/mem-gold.toml\n"
       "  softland cycle optimized opened --rate \"2 kHz\" --duty \"40 %\" --out cycled\n"
       "  softland cycle scenes/mem-gold.toml --rate \"2 kHz\" --search --out cycled";
@@ -56,31 +56,32 @@ struct CycleRequest : Usual {
 template <class Archive>
 void options(Archive& a, CycleRequest& r) {
   CyclingOptions& o = r.options;
-  a.results("RESULT", r.results, "scene or result that gives the closing or the opening waveform");
+  a.results("RESULT", r.results, "further scene or result that gives the closing or the opening waveform");
   a.quantity("rate", o.rate, {dimension::frequency, positive, "a rate above 0 Hz such as \"1 kHz\""}, "RATE",
-             "cycles per second that are told (default: the largest steady rate)");
+             "cycles per second to simulate and report (default: the largest steady rate)");
   a.quantity("duty", o.duty,
              {dimension::none,
               {.least = 0, .most = 1, .least_open = true, .most_open = true},
               "a share of a cycle above 0 % and below 100 %, such as \"40 %\""},
              "SHARE", "share of a cycle before the command to open (default: 50 %)");
-  a.unless("no-scan", o.scans, "omit the search for the largest steady rate, for cycles at one --rate alone");
-  a.whole("cycles", o.cycles, {.least = 2, .most = 1000}, "cycles at every rate (default: 10)");
-  a.flag("search", r.searches,
-         "search the closing and the opening waveform for this --rate together: what optimize --cycle RATE does");
-  a.text("target", r.target, "NAME", "what a search minimises in the worst cycle, as optimize has it (default: bounce)");
-  a.choice("actuator", r.actuator, actuators, "drives that a search may shape");
-  a.text("waveform", r.waveform, "NAME", "family of the closing that is searched, as optimize has it (default: the usual ones)");
+  a.unless("no-scan", o.scans, "omit the search for the largest steady rate and simulate the cycles at --rate only");
+  a.whole("cycles", o.cycles, {.least = 2, .most = 1000}, "number of cycles at every rate (default: 10)");
+  a.flag("search", r.searches, "search the closing and the opening waveform for --rate together, as optimize --cycle RATE does");
+  a.text("target", r.target, "NAME",
+         "quantity that --search minimises in the worst cycle, a name as in optimize (default: bounce)");
+  a.choice("actuator", r.actuator, actuators, "drives that --search may shape");
+  a.text("waveform", r.waveform, "NAME",
+         "waveform family that --search uses for the closing, a name as in optimize (default: as in optimize)");
   a.whole("budget", r.budget, {.least = 30},
-          "evaluations of a search: a third each for the closing, the opening, and both (default: 3000)");
+          "number of evaluations of --search: a third each for the closing, the opening, and both together (default: 3000)");
   samples_option(a, o.devices, {.least = 0, .most = SamplePoints::largest_size},
-                 "devices of [spread] whose rates are found too (default: 50; 0: none)");
-  seed_option(a, o.seed, "same devices");
+                 "number of devices varied by [spread] whose largest steady rates are found too (default: 50; 0: none)");
+  seed_option(a, o.seed, "the same devices");
   jobs_option(a, o.jobs);
 }
 
-// Takes the waveforms of a scene: of its closing, or of its opening where it begins closed, or of both where it opens on
-// command.
+// Takes the waveforms of a scene: the opening waveform if the scene begins closed, both waveforms if it opens on command, else
+// the closing waveform.
 void take(CycleWaveforms& waveforms, const PreparedScene& scene) {
   std::vector<Signal> told = scene.told(scene.waveforms());
   if (scene.start() == StartState::closed) {
@@ -95,12 +96,12 @@ void take(CycleWaveforms& waveforms, const PreparedScene& scene) {
 }
 
 Outcome searched(const Setting& setting, const CycleRequest& request) {
-  require_request(request.options.rate.has_value(), [] { return requested("search") + " needs " + requested("rate"); });
-  require_request(request.results.empty(), [] { return requested("search") + " finds both waveforms, and takes no RESULT"; });
+  require_request(request.options.rate.has_value(), [] { return requested("search") + " requires " + requested("rate"); });
+  require_request(request.results.empty(), [] { return requested("search") + " finds both waveforms: omit RESULT"; });
   const CyclingOptions usual;
   require_request(request.options.scans && request.options.devices == usual.devices, [] {
-    return fmt::format("{}, {}: a search tells the cycles at one rate of the nominal design", requested("no-scan"),
-                       requested("samples"));
+    return fmt::format("{}, {}: must not be given with a search, which simulates the nominal design at one rate",
+                       requested("no-scan"), requested("samples"));
   });
   const CycleSearchOptions options{.rate = *request.options.rate,
                                    .duty = request.options.duty,
@@ -120,7 +121,7 @@ Outcome searched(const Setting& setting, const CycleRequest& request) {
   return outcome;
 }
 
-// True if something is told that only a search takes.
+// Returns true if an option is given that only a search takes.
 bool is_about_search(const CycleRequest& r) {
   const CycleRequest usual;
   return r.target != usual.target || r.actuator != usual.actuator || !r.waveform.empty() || r.budget != usual.budget;
@@ -129,8 +130,8 @@ bool is_about_search(const CycleRequest& r) {
 Outcome run(const Setting& setting, const CycleRequest& request) {
   if (request.searches) return searched(setting, request);
   require_request(!is_about_search(request), [] {
-    return fmt::format("{}, {}, {}, {}: belong to {}", requested("target"), requested("actuator"), requested("waveform"),
-                       requested("budget"), requested("search"));
+    return fmt::format("{}, {}, {}, {}: must be given together with {}", requested("target"), requested("actuator"),
+                       requested("waveform"), requested("budget"), requested("search"));
   });
   require_request(request.options.scans || request.options.rate,
                   [] { return requested("no-scan") + " needs " + requested("rate"); });
@@ -140,7 +141,7 @@ Outcome run(const Setting& setting, const CycleRequest& request) {
   for (const std::string& result : request.results) {
     const PreparedScene other = prepare(setting.load(result), false, {.stop = setting.watch.stop});
     require(other.drive_names() == given->drive_names(),
-            [&] { return result + ": its switch has other drives than " + setting.name; });
+            [&] { return result + ": must have the same drives as " + setting.name; });
     take(waveforms, other);
     waveforms.name += " and " + result;
   }

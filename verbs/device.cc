@@ -10,12 +10,15 @@ namespace softland::verbs {
 namespace {
 
 struct DeviceVerb : Usual, DeviceRequest {
-  static constexpr auto name = "device", about = "a simulated device that answers as one in a laboratory, to practise on",
-                        python = "device", returns = "PracticeDevice";
+  static constexpr auto name = "device", about = "simulate a device in a laboratory, to practise tuning on", python = "device",
+                        returns = "PracticeDevice";
   static constexpr Takes takes{.json = false};
   static constexpr auto remarks =
-      "Reads shots from standard input, one JSON object a line, and answers each by what a laboratory sees of the closing: when\n"
-      "the contact closed and opened. Ends at {\"done\":true} or with the input. docs/tune.md has the lines.\n"
+      "Reads shots from standard input, one JSON object a line. "
+      "The answer to each shot holds what a laboratory records of the\n"
+      "closing: the times at which the contact closed and opened. "
+      "The verb ends at {\"done\":true} or at the end of the input.\n"
+      "docs/tune.md describes the lines.\n"
       "Examples:\n  softland tune scenes/mem-gold.toml --device \"softland device scenes/mem-gold.toml --seed 7\"\n"
       "  softland device scenes/mem-gold.toml --seed 7 --model \"modes=+1|stiffness=1.1\" < shots.jsonl";
 };
@@ -27,7 +30,7 @@ double signed_quantity(const std::string& option, const std::string& text, const
   return is_negative ? -size : size;
 }
 
-// Reads "1 %/1000": the share by which the volts change in so many shots, or in one.
+// Reads "1 %/1000", the share by which all voltages change in that number of shots; "1 %" is the share in one shot.
 void read_drift(const std::string& option, const std::string& text, double& drift) {
   const std::size_t stroke = text.find('/');
   const int shots =
@@ -54,8 +57,8 @@ void read_model_part(const std::string& option, PracticeModel& model, const std:
     model.set.push_back(part);
   } else {
     throw InvalidRequest(
-        fmt::format("{} {}: '{}' must be modes=+N, gas=NAME, stiffness=FACTOR or a key of the scene with its value, such as "
-                    "gap.contact=\"2.05 um\"",
+        fmt::format("{} {}: '{}' must be modes=+N, gas=NAME, stiffness=FACTOR or a key of the scene with its value, "
+                    "such as gap.contact=\"2.05 um\"",
                     option, visible(given), part));
   }
 }
@@ -70,28 +73,32 @@ void read_model(const std::string& option, const std::string& text, PracticeMode
 template <class Archive>
 void options(Archive& a, DeviceVerb& r) {
   PracticeOptions& p = r.practice;
-  seed_option(a, p.seed, "same device and same errors; the device differs from the scene as [spread] says");
-  a.object("errors", "Mapping[str, float | str] | None", "None",
-           "one standard deviation of the errors of instruments, by name: edge_error [s], unseen [s], gain_error and shot_error");
+  seed_option(a, p.seed, "the same device with the same errors; the device is drawn from [spread]");
+  a.object(
+      "errors", "Mapping[str, float | str] | None", "None",
+      "standard deviations of the errors of the instruments, by name: edge_error [s], unseen [s], gain_error and shot_error");
   laboratory_options(a, r.laboratory);
   a.as({.type = "float | str | None", .told = "_quantity({}, \"\")"})
-      .parsed("drift", p.drift, read_drift, "SHARE/N", "change of all volts in N shots, such as \"1 %/1000\" (default: none)",
-              "drift", "float | str | None");
+      .parsed("drift", p.drift, read_drift, "SHARE/N",
+              "relative change of all voltages in N shots, such as \"1 %/1000\" (default: none)", "drift", "float | str | None");
   a.as({.told = "_quantity({}, \"s\")"})
       .parsed("trigger-delay", p.trigger_delay, read_delay, "TIME",
-              "by how much its records begin later than the drives, \"-1 us\": earlier (default: 0 s)", "trigger_delay",
-              "float | str | None");
-  a.program().parsed("model", p.model, read_model, "CHANGES",
-                     "what the device has beside its scene: modes=+1, gas=NAME, stiffness=1.1 of the contact, or a key of the "
-                     "scene, gap.contact=\"2.05 um\"; several are joined by |",
-                     "model", "str");
-  a.python().whole("more-modes", p.model.more_modes, {.least = 0}, "modes that the device has beside those of its scene");
-  a.python().text("gas", p.model.gas, "", "law of its gas film, where it is not that of its scene");
+              "delay of the records behind the drives; negative if records begin earlier, such as \"-1 us\" (default: 0 s)",
+              "trigger_delay", "float | str | None");
+  a.program().parsed(
+      "model", p.model, read_model, "CHANGES",
+      "differences of the device from its scene: modes=+1, gas=NAME, stiffness=1.1 (factor on the contact stiffness), "
+      "or a key of the scene such as gap.contact=\"2.05 um\"; several differences are joined by |",
+      "model", "str");
+  a.python().whole("more-modes", p.model.more_modes, {.least = 0},
+                   "number of modes that the device has in addition to those of its scene");
+  a.python().text("gas", p.model.gas, "", "gas law of the device, if not that of its scene");
   a.python().quantity("stiffness", p.model.stiffness, {dimension::none, positive, "a factor above 0"}, "",
-                      "factor of the stiffness of its contact (default: 1)");
+                      "factor on the contact stiffness of the device (default: 1)");
   a.python()
       .as({.type = "Mapping[str, str] | None"})
-      .assignments("set", p.model.set, "", "keys of its scene that differ, {\"gap.contact\": \"2.05 um\"}");
+      .assignments("set", p.model.set, "",
+                   "keys in which the device differs from its scene, such as {\"gap.contact\": \"2.05 um\"}");
 }
 
 }  // namespace

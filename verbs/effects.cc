@@ -11,7 +11,8 @@ Outcome shown(const EffectsRecord& record) { return {.json = json_of(record), .t
 
 struct EffectsRequest : Usual {
   static constexpr bool is_explorable = true;
-  static constexpr auto name = "effects", about = "which effects matter in a scene, by how much, and what each costs",
+  static constexpr auto name = "effects",
+                        about = "show which effects of the model matter in a scene, by how much, and their computing time",
                         python = "effects",
                         remarks = "Example:\n  softland effects scenes/mem-gold.toml --set gas.pressure=\"1 kPa\"";
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_effects(json)); }

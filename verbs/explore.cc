@@ -16,14 +16,17 @@ namespace softland::verbs {
 namespace {
 
 struct ExploreVerb : Usual, ExploreRequest {
-  static constexpr auto name = "explore", about = "compute many points of a design space into a store", python = "explore",
-                        returns = "Store", scene = scene_alone;
-  static constexpr auto in_python = "Ctrl-C raises KeyboardInterrupt; the rows that are done are in the store.";
+  static constexpr auto name = "explore", about = "simulate many points of a design space and store their figures",
+                        python = "explore", returns = "Store", scene = scene_alone;
+  static constexpr auto in_python = "Ctrl-C raises KeyboardInterrupt; the store keeps the rows that are done.";
   static constexpr auto remarks =
-      "SCENE is a scene, a plan file (docs/explore.md), or with --resume or --point a store, which holds its plan.\n"
-      "Ctrl-C ends a run with what there is; --resume goes on, after a power cut too.\n"
-      "Examples:\n  softland explore scenes/mem-gold.toml --vary \"structure.length=245 um:275 um:7\" --vary \"gap.contact=1.6 "
-      "um:2.4 um:20\"\n"
+      "SCENE is a scene file or a plan file (docs/explore.md). "
+      "With --resume or --point it may also be a store, which holds its\n"
+      "plan.\n"
+      "Ctrl-C ends a run and keeps the rows that are done. --resume continues the run, also after a power cut.\n"
+      "Examples:\n"
+      "  softland explore scenes/mem-gold.toml --vary \"structure.length=245 um:275 um:7\" --vary \"gap.contact=1.6 um:2.4 "
+      "um:20\"\n"
       "  softland explore scenes/mem-gold.toml --vary \"waveform.main.level=1.05 Vdp:1.6 Vdp:40\" --out level.sqlite\n"
       "  softland explore scenes/mem-gold.toml --vary \"gap.electrode*gap.contact=0.9:1.1\" --sample sobol:256 --study "
       "robustness\n"
@@ -47,35 +50,41 @@ void options(Archive& a, ExploreVerb& r) {
   listed_studies.insert(listed_studies.find(','), " (default)");
   a.as({.type = "Mapping[str, str] | Sequence[str]", .value = "", .told = "_settings({})", .is_positional = true})
       .repeated("vary", r.vary, "KEY=VALUES",
-                "what varies: KEY=LOW:HIGH:N, with :log in equal ratios, or KEY=A,B,C; KEY*KEY=... by one factor; KEY[2] is an "
-                "element of a list; may be repeated: all combinations");
-  a.text("sample", r.sample, "SET", "sobol:N or lhs:N points in the box of --vary KEY=LOW:HIGH");
+                "key to vary and its values: KEY=LOW:HIGH:N (KEY=LOW:HIGH:N:log for equal ratios) or KEY=A,B,C. "
+                "KEY*KEY=VALUES multiplies several keys by one factor; KEY[2] is an element of a list. "
+                "If repeated, all combinations are computed");
+  a.text("sample", r.sample, "SET",
+         "draw N points from the box given by --vary KEY=LOW:HIGH: sobol:N or lhs:N (Latin hypercube)");
   a.as({.type = "Sequence[str]", .value = "()", .told = "_text(\",\".join({}))"})
       .text("pareto", r.pareto, "FIGURES",
-            "search the points that no other one beats in all of these figures, \"initial_contact_time,impact_velocity\", in the "
-            "box of --vary KEY=LOW:HIGH by NSGA-II; max:FIGURE is to be large; --sample nsga2:N for N points (default: 2000)");
-  a.program().text("list", r.list, "FILE", "points of a CSV file, whose header names keys with units: structure.length [um]");
+            "search the Pareto front of these figures, such as \"initial_contact_time,impact_velocity\", "
+            "by NSGA-II in the box given by --vary KEY=LOW:HIGH. max:FIGURE maximises a figure; "
+            "--sample nsga2:N sets the number of points (default: 2000)");
+  a.program().text("list", r.list, "FILE",
+                   "read the points from a CSV file, whose header holds keys with units, such as structure.length [um]");
   a.as({.type = fmt::format("Literal[\"{}\"]", fmt::join(studies, "\", \"")), .value = "\"simulate\""})
-      .text("study", r.study, "NAME", "study at every point: " + listed_studies);
+      .text("study", r.study, "NAME", "study to run at every point: " + listed_studies);
   a.as({.keyword = "options", .type = "Mapping[str, Any] | None", .value = "None", .told = "_settings({})"})
-      .repeated("option", r.options, "NAME=VALUE",
-                "option of the study, as its verb has it, where explore has none: \"impact-velocity=1 mm/s\"; may be repeated");
-  a.flag("certify", r.certify, "simulate: the errors of the figures too");
-  a.as({.type = "int | None"}).text("samples", r.samples, "N", "robustness: devices (default: 500)");
-  a.text("target", r.target, "NAME", "optimize: as there");
-  a.text("actuator", r.actuator, "NAME", "optimize: as there");
-  a.text("waveform", r.waveform, "NAME", "optimize: as there");
-  a.text("optimizer", r.optimizer, "NAME", "optimize: as there");
-  a.as({.type = "int | None"}).text("budget", r.budget, "N", "optimize: evaluations of every search (default: as there)");
+      .repeated(
+          "option", r.options, "NAME=VALUE",
+          "option of the verb of --study that explore itself does not have, such as \"impact-velocity=1 mm/s\"; may be repeated");
+  a.flag("certify", r.certify, "with --study simulate: compute the errors of the figures too");
+  a.as({.type = "int | None"}).text("samples", r.samples, "N", "with --study robustness: number of devices (default: 500)");
+  a.text("target", r.target, "NAME", "with --study optimize: --target of optimize");
+  a.text("actuator", r.actuator, "NAME", "with --study optimize: --actuator of optimize");
+  a.text("waveform", r.waveform, "NAME", "with --study optimize: --waveform of optimize");
+  a.text("optimizer", r.optimizer, "NAME", "with --study optimize: --optimizer of optimize");
+  a.as({.type = "int | None"})
+      .text("budget", r.budget, "N", "with --study optimize: evaluations of every search (default: as in optimize)");
   a.as({.type = "str | os.PathLike[str]", .value = "\"softland-out.sqlite\"", .told = "_path({})", .is_positional = true})
-      .text("out", r.out, "FILE", "store for the rows (default: softland-out.sqlite); with --point the scene");
+      .text("out", r.out, "FILE", "store for the rows (default: softland-out.sqlite); with --point, file for the scene");
   a.flag("resume", r.resume,
-         "go on with a store: points that it holds are not computed again, nor, of another plan, those of the same content");
-  a.text("shard", r.shard, "I/N", "part I of N of the points, for as many stores, which softland merge makes one");
-  a.program().whole("point", r.point, {.least = 0}, "print the scene of point K, as simulate takes it, instead of exploring",
-                    "K");
-  seed_option(a, r.seed, "same rows, whatever --jobs is");
-  jobs_option(a, r.jobs, "threads (default: one per core)");
+         "continue a store. Points that it holds are not computed again, "
+         "even if they come from another plan and have the same content");
+  a.text("shard", r.shard, "I/N", "compute part I of N of the points; softland merge joins the stores of all parts");
+  a.program().whole("point", r.point, {.least = 0}, "print the scene of point K for simulate, and compute nothing", "K");
+  seed_option(a, r.seed, "the same rows, whatever --jobs is");
+  jobs_option(a, r.jobs, "number of threads (default: one per core)");
 }
 
 }  // namespace
@@ -127,13 +136,13 @@ PlanRequest ExploreRequest::plan(SceneFile scene, const Spelling& spelling) cons
   plan.seed = seed.value_or(plan.seed);
   if (!list.empty()) {
     require(vary.empty() && plan.sample.empty(), [&] {
-      return fmt::format("{} {}: gives the points: {} and {} are not for it, nor is {}", spelling("list"), list, spelling("vary"),
+      return fmt::format("{} {}: gives all points: omit {}, {} and {}", spelling("list"), list, spelling("vary"),
                          spelling("sample"), spelling("pareto"));
     });
     read_list(plan, list);
   }
   require(!plan.vary.empty() || !plan.columns.empty(), [&] {
-    return fmt::format("nothing varies: give {0} KEY=LOW:HIGH:N, {1} with {0} KEY=LOW:HIGH, {2} FILE.csv, or a plan file",
+    return fmt::format("no key varies: give {0} KEY=LOW:HIGH:N, {1} with {0} KEY=LOW:HIGH, {2} FILE.csv, or a plan file",
                        spelling("vary"), spelling("sample"), spelling("list"));
   });
   return plan;

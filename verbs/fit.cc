@@ -25,16 +25,16 @@ Outcome shown(FitRecord found) {
 }
 
 struct FitRequest : Usual {
-  static constexpr auto name = "fit", about = "fit a scene to what was measured on devices", python = "fit", scene = scene_alone,
-                        leaves = "folder for fitted.toml, fit.json and fit.html (default: softland-fit)", place = "softland-fit";
+  static constexpr auto name = "fit", about = "fit the parameters of a scene to measurements on devices", python = "fit",
+                        scene = scene_alone, leaves = "folder for fitted.toml, fit.json and fit.html (default: softland-fit)",
+                        place = "softland-fit";
   static constexpr auto remarks =
-      "fitted.toml is the scene with the fitted values; comments, sources and units stay. The report gives standard errors, 95 "
-      "%\n"
-      "intervals and correlations. It names the unknowns that the data cannot separate, and the measurement that would tell "
-      "most.\n"
-      "Status 3: at no start do the devices have what was measured.\n"
-      "Status 4: the fit is not to be believed, and no interval is given. An unknown is 4 standard deviations away from what\n"
-      "was known of it, the data are off by more than 3 of their errors, or another minimum describes them as well.\n"
+      "fitted.toml is the scene with the fitted values; its comments, sources and units are kept. The report gives standard\n"
+      "errors, 95 % intervals and correlations. It names the unknowns that the data cannot separate, and the most valuable\n"
+      "further measurement.\n"
+      "Exit status 3: the simulated devices do not have the measured figures at any start.\n"
+      "Exit status 4: the fit is not reliable, and no interval is given: an unknown is 4 standard deviations away from its\n"
+      "prior, the RMS residual exceeds 3 sigma, or another minimum describes the data equally well.\n"
       "Examples:\n  softland fit my.toml --data bench.toml\n"
       "  softland fit my.toml --data bench.toml --unknown structure.youngs_modulus --unknown gaps --out device-17\n"
       "  softland fit my.toml --data wafer.toml --shared structure.youngs_modulus --loss cauchy";
@@ -48,17 +48,19 @@ struct FitRequest : Usual {
 template <class Archive>
 void options(Archive& a, FitRequest& r) {
   FitOptions& o = r.options;
-  a.measurements("data", r.data, "file of measurements and their errors: a bench.toml (docs/fit.md)");
-  a.repeated("unknown", o.unknowns, "KEY",
-             "quantity to fit: an entry of [spread], which is its prior, or any key of the scene, without one (default: all of "
-             "[spread])",
-             "unknowns", true);
-  a.repeated("shared", o.shared, "KEY", "unknown that all devices of the file have in common; the others belong to each device",
-             "shared");
-  a.choice("loss", o.loss, losses, "loss function for data that do not agree");
-  a.whole("starts", o.starts, {.least = 1},
-          fmt::format("searches, the first one from the scene as it is (default: {})", FitOptions{}.starts));
-  seed_option(a, o.seed, "same searches, whatever --jobs is");
+  a.measurements("data", r.data, "file with the measurements and their errors, such as bench.toml (docs/fit.md)");
+  a.repeated(
+      "unknown", o.unknowns, "KEY",
+      "parameter to fit: an entry of [spread], which is its prior, or any other key of the scene, without a prior (default: "
+      "all entries of [spread])",
+      "unknowns", true);
+  a.repeated("shared", o.shared, "KEY",
+             "unknown with one value for all devices of the file; every other unknown has a value for each device", "shared");
+  a.choice("loss", o.loss, losses, "loss function, which limits the weight of outliers");
+  a.whole(
+      "starts", o.starts, {.least = 1},
+      fmt::format("number of searches; the first one starts from the values of the scene (default: {})", FitOptions{}.starts));
+  seed_option(a, o.seed, "the same fit, whatever --jobs is");
   jobs_option(a, o.jobs);
 }
 

@@ -22,19 +22,20 @@ struct ToldErrors {
 template <class Archive>
 void laboratory_options(Archive& a, ToldErrors& r) {
   a.program().quantity("edge-error", r.edge_error, {dimension::time}, "TIME",
-                       "error of the time of an edge of the contact, one standard deviation (default: 50 ns, at most "
-                       "a 200th of the period of the first mode)");
-  a.program().quantity("unseen", r.unseen, {dimension::time}, "TIME",
-                       "openings of the contact shorter than this are not seen (default: 100 ns, "
-                       "at most a 100th of that period)");
+                       "standard deviation of the recorded time at which the contact closes or opens (default: 50 ns, "
+                       "at most 1/200 of the period of the first mode)");
+  a.program().quantity(
+      "unseen", r.unseen, {dimension::time}, "TIME",
+      "contact openings shorter than this are not detected (default: 100 ns, at most 1/100 of the period of the first mode)");
   a.program().quantity("gain-error", r.gain_error, {dimension::none}, "SHARE",
-                       "error of the gain of a source, constant but unknown, one standard deviation (default: 0.5 %)");
+                       "standard deviation of the gain error of a source, which is constant but unknown (default: 0.5 %)");
   a.program().quantity("shot-error", r.shot_error, {dimension::none}, "SHARE",
-                       "scatter of the gain from shot to shot, one standard deviation (default: 0.02 %)");
+                       "standard deviation of the gain from shot to shot (default: 0.02 %)");
   a.quantity(
-      "capacitance", r.capacitance, {dimension::capacitance, positive, "a capacitance above 0 F"}, "THRESHOLD",
-      "records tell when the capacitance of the electrode that closes the switch is above this, \"1.2 pF\", instead of when "
-      "its contact is closed: for a switch that lands on a dielectric (docs/tune.md)");
+      "capacitance", r.capacitance, {dimension::capacitance, positive, "a capacitance above 0 F, such as \"1.2 pF\""},
+      "THRESHOLD",
+      "for a switch that lands on a dielectric: records give the times when the capacitance of the closing electrode is above "
+      "this threshold, such as \"1.2 pF\", instead of the times when the contact is closed (docs/tune.md)");
 }
 
 }  // namespace softland::verbs

@@ -1,4 +1,4 @@
-// Verb `limit`: the least time in which any waveform can close the switch.
+// Verb `limit`: computes the least time in which any waveform can close the switch softly.
 #include "studies/search/limit.h"
 
 #include <memory>
@@ -25,13 +25,13 @@ Outcome shown(LimitRecord found) {
 
 struct LimitRequest : Usual {
   static constexpr bool is_explorable = true;
-  static constexpr auto name = "limit", about = "the least time in which any waveform can close the switch softly",
+  static constexpr auto name = "limit", about = "compute the least time in which any waveform can close the switch softly",
                         python = "limit", leaves = "folder for limit.json, limit.svg and the landing as best.toml and best.csv";
   static constexpr auto remarks =
-      "The least time belongs to the best waveform of any shape within the limits of [driver.*]. Direct collocation finds it.\n"
-      "It bounds every searched waveform from below: landings with these volts at that impact velocity, in the model that the\n"
-      "scene describes. A beam with more modes may touch a little earlier (--set structure.modes=6). The reported landing has\n"
-      "been simulated. It may take longer where a beam must come to rest.\n"
+      "The least time is that of the best waveform of any shape within the limits of [driver.*], found by direct collocation.\n"
+      "It is a lower bound for every waveform with these voltage limits and this impact velocity, in the model of the scene.\n"
+      "A beam with more modes may touch a little earlier (--set structure.modes=6). The reported landing is simulated. It may\n"
+      "take longer than the least time if a beam must also come to rest.\n"
       "Examples:\n  softland limit scenes/mem-gold.toml\n"
       "  softland limit scenes/mem-gold-pzt.toml --actuator both --impact-velocity \"1 mm/s\" --out limit\n"
       "  softland limit scenes/mem-gold-pzt.toml --actuator pzt --start softland-out --no-curves";
@@ -46,11 +46,12 @@ template <class Archive>
 void options(Archive& a, LimitRequest& r) {
   a.choice("actuator", r.options.actuator, actuators, "drives that may be shaped");
   a.quantity("impact-velocity", r.options.impact_velocity,
-             {dimension::velocity, positive, "a speed above 0 m/s such as \"1 mm/s\""}, "SPEED",
-             "largest impact velocity at the first touch, such as \"1 mm/s\" (default: a hundredth of the plain step's)");
+             {dimension::velocity, positive, "a velocity above 0 m/s, such as \"1 mm/s\""}, "SPEED",
+             "largest permitted impact velocity at first touch, such as \"1 mm/s\" (default: 1/100 of that of the plain step)");
   a.file("start", r.start,
-         "scene or result whose waveform is a further starting point, for a switch that one swing does not close");
-  a.unless("no-curves", r.options.curves, "omit the least times over the peak voltage and over the permitted impact velocity");
+         "scene or result whose waveform is an additional starting point, for a switch that does not close in one swing");
+  a.unless("no-curves", r.options.curves,
+           "omit the curves of least time against peak voltage and against permitted impact velocity");
 }
 
 Outcome run(const Setting& setting, const LimitRequest& request) {

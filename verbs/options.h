@@ -288,7 +288,7 @@ class OptionReader {
 // Several verbs have the following options.
 template <class Archive, class Seed>
 void seed_option(Archive& a, Seed& seed, const std::string& same) {
-  const std::string about = "whole number from 0 on (default 1): same seed, " + same;
+  const std::string about = "random seed, a whole number from 0 on (default: 1); the same seed gives " + same;
   if constexpr (std::is_same_v<Seed, std::optional<std::string>>)  // such a seed is read elsewhere
     a.text("seed", seed, "N", about);
   else
@@ -296,7 +296,7 @@ void seed_option(Archive& a, Seed& seed, const std::string& same) {
 }
 template <class Archive>
 void jobs_option(Archive& a, int& jobs,
-                 const std::string& about = "threads (default: one per core); the result does not depend on them") {
+                 const std::string& about = "number of threads (default: one per core); the result does not depend on it") {
   a.whole("jobs", jobs, {.least = 1}, about);
 }
 template <class Archive>

@@ -40,7 +40,7 @@ void read_sweep(const std::string& option, const std::string& text, std::optiona
   constexpr int most_points = 100'000;
   const auto refuse = [&](std::string_view rule) { throw InvalidRequest(fmt::format("{} {}: {}", option, visible(text), rule)); };
   const std::size_t first = text.find(':'), second = first == std::string::npos ? first : text.find(':', first + 1);
-  if (second == std::string::npos) refuse("not of the form FIRST:LAST:N, such as \"0 V:40 V:81\"");
+  if (second == std::string::npos) refuse("must be of the form FIRST:LAST:N, such as \"0 V:40 V:81\"");
   const auto voltage = [&](const std::string& part) {
     Quantity given;
     try {
@@ -54,8 +54,8 @@ void read_sweep(const std::string& option, const std::string& text, std::optiona
   const SweepRange range{.first = voltage(text.substr(0, first)),
                          .last = voltage(text.substr(first + 1, second - first - 1)),
                          .points = whole_number<int>(option, text.substr(second + 1), {.least = 2})};
-  if (range.points > most_points) refuse(fmt::format("there may be {} points each way", most_points));
-  if (range.first == range.last) refuse("begins where it ends");
+  if (range.points > most_points) refuse(fmt::format("N must be at most {}", most_points));
+  if (range.first == range.last) refuse("FIRST and LAST must differ");
   asked = range;
 }
 
@@ -65,12 +65,13 @@ void set_bias(PreparedScene& p, const std::string& assignment) {
     throw InvalidRequest(fmt::format("{} {}: {}", requested("bias"), visible(assignment), rule));
   };
   const std::size_t equals = assignment.find('=');
-  if (equals == std::string::npos) refuse("not of the form NAME=VOLTAGE, such as \"piezo=-1.5 V\"");
+  if (equals == std::string::npos) refuse("must be of the form NAME=VOLTAGE, such as \"piezo=-1.5 V\"");
   const std::vector<std::string> names = p.drive_names();
   const std::string name = assignment.substr(0, equals);
   const auto drive = std::find(names.begin(), names.end(), name);
-  if (drive == names.end()) refuse("no such drive" + internal::hint(name, {names.begin(), names.end()}));
-  if (names.size() == 1) refuse("the scene has no other drive: a bias is what the others stand at");
+  if (drive == names.end()) refuse("unknown drive" + internal::hint(name, {names.begin(), names.end()}));
+  if (names.size() == 1)
+    refuse("must not be given for a scene with one drive: the bias is the constant voltage of another drive");
   const bool is_factor = name == dispersion_drive;
   const Dimension& due = is_factor ? dimension::none : dimension::voltage;
   Quantity given;
@@ -87,7 +88,7 @@ void set_bias(PreparedScene& p, const std::string& assignment) {
 
 // Names in a sentence the results that are missing because the verb was asked to stop.
 std::string left_out_words(const std::vector<std::string>& left_out) {
-  return wrapped(fmt::format("interrupted: not found yet: {}.", fmt::join(left_out, "; "))) + "\n";
+  return wrapped(fmt::format("interrupted before these results were found: {}.", fmt::join(left_out, "; "))) + "\n";
 }
 
 Outcome shown(PullInsRecord found) {
@@ -101,11 +102,12 @@ Outcome shown(PullInsRecord found) {
 }
 
 struct PullInRequest : Usual {
-  static constexpr auto name = "pull-in", about = "static and dynamic pull-in voltage and release voltage of every electrode",
+  static constexpr auto name = "pull-in",
+                        about = "compute static pull-in, dynamic pull-in and release voltage of every electrode",
                         python = "pull_in", leaves = "folder for sweep.csv and sweep.svg", leaving = "sweep";
   static constexpr auto remarks =
-      "The stable path says whether one drive alone carries the switch to its contact without a jump, and for what share of\n"
-      "256 devices of [spread]. With a stable path softland optimize approaches the contact slowly.\n"
+      "The stable path says whether one drive alone can carry the switch to its contact through stable equilibria, without a\n"
+      "jump, and for what share of 256 devices of [spread]. If so, softland optimize approaches the contact slowly.\n"
       "Examples:\n  softland pull-in scenes/mem-gold.toml --set structure.thickness=\"2.1 um\"\n"
       "  softland pull-in scenes/mem-gold-pzt.toml --bias piezo=\"0.5 V\"\n"
       "  softland pull-in scenes/mem-gold.toml --sweep \"0 V:20 V:201\" --out swept";
@@ -119,17 +121,17 @@ struct PullInRequest : Usual {
 template <class Archive>
 void options(Archive& a, PullInRequest& r) {
   a.assignments("bias", r.bias, "NAME=VOLTAGE",
-                "constant voltage of another drive, in place of its hold level where that is in volts");
+                "constant voltage of another drive (default: its hold voltage in the scene, if that is given in volts)");
   a.parsed("sweep", r.sweep, read_sweep, "FIRST:LAST:N",
-           "static deflection and capacitance at N voltages from the first to the last and back, for --out: the closing\n"
-           "electrode, open up to its pull-in voltage, closed on the way back down to the release voltage",
+           "static deflection and capacitance at N voltages from FIRST to LAST and back, written to --out: the closing\n"
+           "electrode on the open branch up to pull-in, and on the closed branch back down to release",
            "sweep", "str | None");
 }
 
 // Sweeps the electrode that closes the switch.
 void add_sweep(PullInsRecord& record, const PreparedScene& p, const SweepRange& range, const Watch& watch) {
   require_request(has_pulling_electrode(p.scene.device),
-                  [] { return requested("sweep") + ": there is no electrode that pulls towards the contact"; });
+                  [] { return requested("sweep") + ": requires an electrode that pulls towards the contact"; });
   const std::size_t drive = searched_drive(p.scene.device);
   record.swept = p.scene.device.electrodes[drive].name;
   record.sweep = static_sweep(p.model, drive, bias_of(p.scene, drive), range, watch);
@@ -182,7 +184,8 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   const bool leaves_choices = scene.auto_modes || scene.simulate.automatic_effects;
   PreparedScene prepared = leaves_choices ? prepare_and_choose(file, false, watch) : prepare_statics(file);
   for (const std::string& assignment : request.bias) set_bias(prepared, assignment);
-  require(!prepared.scene.device.electrodes.empty(), fmt::format("{}: there is no electrode to pull in", setting.name));
+  require(!prepared.scene.device.electrodes.empty(),
+          fmt::format("{}: the scene has no electrode; add [electrode.NAME]", setting.name));
   PullInsRecord record;
   add_electrodes(record, prepared, find_pull_in, watch);
   try {

@@ -21,15 +21,15 @@ Outcome shown(ReleaseRecord found) {
 
 struct ReleaseRequest : Usual {
   static constexpr bool is_explorable = true;
-  static constexpr auto name = "release",
-                        about = "search the drive waveform that opens the closed switch without leaving it to swing",
-                        python = "opening",
-                        leaves =
-                            "folder for release.json, release.svg, the drives as release.csv and as release.toml, for export";
+  static constexpr auto
+      name = "release",
+      about = "search a drive waveform that opens the closed switch without residual vibration", python = "opening",
+      leaves = "folder for release.json, release.svg, and the waveforms as release.csv and as release.toml (for export)";
   static constexpr auto remarks =
-      "The switch rests on its contact under the scene's hold levels, and the command to open comes at t = 0. Drives that go\n"
-      "to 0 V at once leave the switch swinging about its open position. The search finds two pulses of every drive that stop\n"
-      "it there, within the limits of [driver.*].\n"
+      "The switch is closed at the hold voltages of the scene, and the command to open comes at t = 0. "
+      "If all drives go to 0 V\n"
+      "at once, the switch vibrates about its open position. The search finds two pulses of every drive that bring it to rest\n"
+      "there, within the limits of [driver.*].\n"
       "Examples:\n  softland release scenes/mem-gold.toml\n"
       "  softland release scenes/mem-gold-pzt.toml --actuator both --out opened";
   static std::vector<std::string> files() { return {"release.json", "release.svg", "release.csv", "release.toml"}; }
@@ -46,11 +46,12 @@ void options(Archive& a, ReleaseRequest& r) {
              {dimension::none,
               {.least = 0, .most = 1, .least_open = true, .most_open = true},
               "a share of the contact gap above 0 % and below 100 %, such as \"5 %\""},
-             "SHARE", "share of the contact gap within which the switch counts as open (default: 5 %)");
-  a.whole("budget", o.max_evaluations, {.least = 1}, "evaluations (default: 3000)");
-  samples_option(a, o.devices, {.least = 0, .most = SamplePoints::largest_size},
-                 "devices of [spread] on which both openings are evaluated (default: 200; 0: none)");
-  seed_option(a, o.seed, "same waveform");
+             "SHARE", "the switch counts as open within this share of the contact gap about its rest position (default: 5 %)");
+  a.whole("budget", o.max_evaluations, {.least = 1}, "number of evaluations (default: 3000)");
+  samples_option(
+      a, o.devices, {.least = 0, .most = SamplePoints::largest_size},
+      "number of devices varied by [spread] on which the abrupt and the found opening are simulated (default: 200; 0: none)");
+  seed_option(a, o.seed, "the same waveform");
   jobs_option(a, o.jobs);
 }
 

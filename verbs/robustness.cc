@@ -36,14 +36,14 @@ Outcome shown(const RobustnessRecord& record) {
 }
 
 struct RobustnessRequest : Usual {
-  static constexpr auto name = "robustness", about = "how drives do on devices that differ as [spread] says",
+  static constexpr auto name = "robustness", about = "evaluate drive waveforms under the process variation of [spread]",
                         python = "robustness", scene = varied_scene,
                         leaves = "folder for robustness.html, robustness.json, devices.csv and the worst devices as scenes",
-                        changes = "change one key of the first: --set spread.gaps.cov=\"1 %\"";
+                        changes = "change one key of the first scene, such as --set spread.gaps.cov=\"1 %\"";
   static constexpr auto remarks =
-      "The plain step to the same hold levels is evaluated beside every drive. Every device gets the volts of the nominal\n"
-      "design, or the same waveform in its own units where it is calibrated. Exact derivatives of the nominal figures by what\n"
-      "varies stand beside the sample. They do not know of rebounds that come or go.\n"
+      "The plain step to the same hold voltages is evaluated for comparison. Every device gets the voltages of the nominal\n"
+      "design or, with per-device calibration, the waveform scaled by its own measurements. The report adds exact derivatives\n"
+      "of the nominal figures by the varied parameters. They do not account for rebounds that appear or vanish.\n"
       "Examples:\n  softland robustness scenes/mem-gold.toml --samples 500\n"
       "  softland robustness scenes/mem-gold.toml --other-ways --out box\n"
       "  softland robustness scenes/mem-gold.toml softland-out --out robust";
@@ -54,7 +54,7 @@ struct RobustnessRequest : Usual {
     return all;
   }
 
-  // Diagrams need all devices, which stand in devices.csv.
+  // Diagrams need all devices, which only devices.csv holds.
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_robustness(json)); }
 
   RobustnessOptions options{.jobs = one_per_core(), .worth_of_measuring = true, .opens_on_command = true};
@@ -65,16 +65,19 @@ struct RobustnessRequest : Usual {
 
 template <class Archive>
 void options(Archive& a, RobustnessRequest& r) {
-  a.results("RESULT", r.results, "further results whose drives are evaluated on the devices of the first");
-  samples_option(a, r.options.samples, {.least = 1, .most = SamplePoints::largest_size}, "devices (default: 2000)");
+  a.results("RESULT", r.results, "further results whose waveforms are evaluated on the devices of the first scene");
+  samples_option(a, r.options.samples, {.least = 1, .most = SamplePoints::largest_size},
+                 "number of simulated devices (default: 2000)");
   a.choice("points", r.options.points, point_sets, "point set of the devices");
-  a.text("calibrate", r.calibration, "LIST",
-         "measurements made on every device before it is driven, as for optimize; the report says what each is worth");
+  a.text(
+      "calibrate", r.calibration, "LIST",
+      "per-device calibration, as in optimize: figures measured on every device; the report gives the value of each measurement");
   a.flag("other-ways", r.box_and_chaos,
-         fmt::format("add the worst and the best device of a box, by search, and polynomial chaos, for the last drive: {} more "
-                     "closings",
+         fmt::format("add, for the last waveform, the worst and the best device of a box (found by search) "
+                     "and polynomial chaos: "
+                     "{} more closings",
                      2 * explained_figures.size() * BoxAndChaosOptions{}.closings_per_search));
-  seed_option(a, r.options.seed, "same devices");
+  seed_option(a, r.options.seed, "the same devices");
   jobs_option(a, r.options.jobs);
 }
 
@@ -107,9 +110,9 @@ std::vector<Outcome::File> files_of(const std::shared_ptr<const Judged>& judged)
   };
   const std::vector<std::size_t>& worst = judged->found.drives.back().worst;
   for (std::size_t i = 0; i < std::min(most_worst, worst.size()); ++i)
-    add(worst_file(i), worst[i], i == 0 ? "worst-*.toml (the worst devices of the last drive, for `softland simulate`)" : "");
+    add(worst_file(i), worst[i], i == 0 ? "worst-*.toml (the worst devices of the last waveform, for `softland simulate`)" : "");
   if (!report.box_and_chaos) return files;
-  const char* listed = "box-*.toml (those of the box)";
+  const char* listed = "box-*.toml (the worst devices of the box)";
   for (const FigureRange& range : report.box_and_chaos->ranges) {
     if (range.most.values.empty()) continue;
     add(box_file(range.key), range.most, std::exchange(listed, ""));

@@ -20,10 +20,10 @@ namespace softland::verbs {
 namespace {
 
 struct SimulateVerb : Usual, SimulateRequest {
-  static constexpr auto name = "simulate", about = "simulate the closing that a scene describes", python = "simulate",
+  static constexpr auto name = "simulate", about = "simulate one closing of the switch in a scene", python = "simulate",
                         returns = "Closing", progress = "False",
                         leaves = "folder for report.html, gap.svg, result.json and trajectory.csv";
-  static constexpr auto in_python = "Numerical trouble is the status of the closing.";
+  static constexpr auto in_python = "A numerical failure is the status of the closing, not an exception.";
   static constexpr auto remarks =
       "Example:\n  softland simulate scenes/mem-gold.toml --set waveform.main.level=\"1.1 Vdp\" --json -";
   static std::vector<std::string> files() { return {"report.html", "gap.svg", "result.json", "trajectory.csv"}; }
@@ -32,13 +32,14 @@ struct SimulateVerb : Usual, SimulateRequest {
 
 template <class Archive>
 void options(Archive& a, SimulateVerb& r) {
-  a.python().unless(
-      "no-errors", r.errors,
-      "omit the second, tighter run, which measures the errors and refines the first run where the scene asks for it");
-  a.flag("certify", r.certified, "errors that cover the true ones, and clouds of runs for ill-conditioned figures");
+  a.python().unless("no-errors", r.errors,
+                    "omit the second run with a tighter tolerance, which measures the errors and, if the scene asks for it, "
+                    "refines the first run");
+  a.flag("certify", r.certified,
+         "certify the figures: bounds of their errors, and clouds of perturbed runs for ill-conditioned figures");
   a.object("waveforms", "Mapping[str, Waveform] | None", "None",
-           "waveforms of some drives in the place of the scene's, in volts; own waveforms too");
-  jobs_option(a, r.jobs, "threads of --certify (default: one per core); the result does not depend on them");
+           "waveforms of some drives in volts, instead of those of the scene; own waveforms too");
+  jobs_option(a, r.jobs, "number of threads of --certify (default: one per core); the result does not depend on it");
 }
 
 // Says how much time effects = "auto" has saved by leaving effects out.
@@ -48,8 +49,9 @@ std::string time_saved(const PreparedScene& chosen) {
   whole.model = Switch(whole.scene.device, whole.quadrature);
   const auto seconds = [](const PreparedScene& p) { return right_hand_side_seconds(p.model, p.signals(), p.duration); };
   const double with = seconds(whole), without = seconds(chosen);
-  return fmt::format("effects = \"auto\": a right-hand side takes {} instead of {}, {} less", internal::quantity(without, "s"),
-                     internal::quantity(with, "s"), internal::percent(std::max(0.0, 1 - without / with)));
+  return fmt::format("effects = \"auto\": one evaluation of the equations of motion takes {} instead of {}, {} less",
+                     internal::quantity(without, "s"), internal::quantity(with, "s"),
+                     internal::percent(std::max(0.0, 1 - without / with)));
 }
 
 Outcome run(const Setting& setting, const SimulateVerb& request) {

@@ -90,10 +90,10 @@ struct Study {
   [[nodiscard]] std::string keyword(std::string_view option) const;
 };
 
-inline constexpr auto scene_or_result = "scene file (TOML), folder that --out named, or result.json";
-inline constexpr auto varied_scene = "scene file with [spread], folder that --out named, or result.json";
+inline constexpr auto scene_or_result = "scene file (TOML), result folder (the --out of an earlier run), or result.json";
+inline constexpr auto varied_scene = "scene file with [spread], result folder (the --out of an earlier run), or result.json";
 inline constexpr auto scene_alone = "scene file (TOML)";
-inline constexpr auto usual_change = "change one key: --set gap.contact=\"1.8 um\"";
+inline constexpr auto usual_change = "change one key of the scene, such as --set gap.contact=\"1.8 um\"";
 
 /// Defaults for the members of a request that describe its verb.
 struct Usual {

@@ -17,21 +17,23 @@ namespace softland::verbs {
 namespace {
 
 struct TuneVerb : Usual, TuneRequest {
-  static constexpr auto name = "tune", about = "tune the waveform on a device, by nothing but the state of its contact",
+  static constexpr auto name = "tune",
+                        about =
+                            "tune the waveform on a real device, "
+                            "using only the measured state of its contact",
                         python = "tuning", returns = "Tuning",
-                        leaves = "folder for the page, the waveform kept and all closings (default: softland-tune)",
+                        leaves = "folder for the report, the final waveform and all closings (default: softland-tune)",
                         place = "softland-tune";
   static std::vector<std::string> files() { return {"tune.html", "tune.json"}; }
   static Outcome shown_again(const nlohmann::json& json);
   static constexpr auto in_python =
-      "The tuning is ready for its first shot: the waveform for the drawing is searched, which takes half a minute "
-      "or so.";
+      "The tuning is ready for its first shot: it has searched the waveform for the nominal design, "
+      "which takes about half a minute.";
   static constexpr auto remarks =
-      "Every closing is open loop, and what is seen of it is when the contact was closed. After each the device is known "
-      "better,\n"
-      "and the waveform that lands it best is proposed next. No shot leaves the limits of [driver.*]. The last one is of the\n"
-      "waveform kept; status 4: it did not land then. docs/tune.md says how to practise, what a command reads and writes, and\n"
-      "has one for instruments.\n"
+      "Every closing is open loop, and only the times at which the contact is closed are observed. Each record improves the\n"
+      "model of the device; the next shot is the waveform that lands this model best. No shot exceeds the limits of\n"
+      "[driver.*]. The last shot uses the final waveform; exit status 4: it bounced. docs/tune.md describes how to practise,\n"
+      "what a command reads and writes, and a command for instruments.\n"
       "Examples:\n  softland tune scenes/mem-gold.toml --device \"softland device scenes/mem-gold.toml --seed 7\"\n"
       "  softland tune my.toml --device \"python3 scpi_device.py --generator 192.168.1.10 --oscilloscope 192.168.1.11\"\n"
       "  softland tune my.toml --by-hand --closings 12 --out device-17\n"
@@ -68,60 +70,64 @@ template <class Archive>
 void options(Archive& a, TuneVerb& r) {
   TunerOptions& t = r.tuner;
   a.program().text("device", r.device, "COMMAND",
-                   "what fires the shots: the shell runs it, it reads one JSON object a line and answers each by one");
-  a.program().flag("by-hand", r.by_hand, "write each waveform to a file, and ask what the oscilloscope showed");
-  a.program().text("format", r.format, "NAME",
-                   "of these files: csv (default), spice-pwl, codes, keysight-arb, siglent-csv, tektronix-csv, rigol-csv or "
-                   "digilent-csv, as export writes them; a file for a generator holds one drive, shot-1-main.arb");
+                   "shell command that fires the shots: it reads one JSON object a line, and answers each by one line");
+  a.program().flag("by-hand", r.by_hand, "write each waveform to a file, and ask what the oscilloscope recorded");
   a.program().text(
-      "sample-rate", r.sampling.rate, "RATE",
-      "samples at this rate, by hand, instead of what [driver] says: \"27 MHz\"; they are what the belief expects, too");
-  a.program().text("bits", r.sampling.bits, "N",
-                   "by hand, rounded to 2^N voltages between the limits of [driver], instead of what it says");
+      "format", r.format, "NAME",
+      "with --by-hand, format of the files: csv (default), spice-pwl, codes, keysight-arb, siglent-csv, tektronix-csv, "
+      "rigol-csv or digilent-csv, as in export; a file for a generator holds one drive, such as shot-1-main.arb");
+  a.program().text("sample-rate", r.sampling.rate, "RATE",
+                   "with --by-hand, sample rate such as \"27 MHz\" (default: that of [driver]); "
+                   "the model of the device uses the same samples");
+  a.program().text(
+      "bits", r.sampling.bits, "N",
+      "with --by-hand, round the samples to 2^N voltages between the limits of [driver] (default: the bits of [driver])");
   a.program().text("amplifier", r.sampling.amplifier, "K",
-                   "by hand, an amplifier between generator and switch, instead of the amplifier of [driver]: volts of the files "
-                   "are those at the switch over K");
+                   "with --by-hand, gain of the amplifier between generator and switch (default: that of [driver]); "
+                   "the files hold the voltages at the switch divided by K");
   a.program().repeated(
       "contact", r.contact, "KEY=VALUE",
-      "how the voltage of the contact is read from files of an oscilloscope, by hand: threshold=\"1.5 V\", closed=below, "
-      "hysteresis=\"0.2 V\", merge=\"100 ns\", and column, shift and the like (docs/files.md); may be repeated");
-  a.program().whole("closings", r.closings, {.least = 1},
-                    fmt::format("closings at most (default: {}); it ends before where {} in a row were without a bounce",
-                                usual_closings, Tuner::enough_in_a_row));
+      "with --by-hand, how the contact is read from the voltage in an oscilloscope file: threshold=\"1.5 V\", closed=below, "
+      "hysteresis=\"0.2 V\", merge=\"100 ns\", and others such as column and shift (docs/files.md); may be repeated");
+  a.program().whole(
+      "closings", r.closings, {.least = 1},
+      fmt::format("largest number of closings (default: {}); the tuning ends earlier after {} bounce-free closings in a row",
+                  usual_closings, Tuner::enough_in_a_row));
   a.flag("resume", r.resume,
-         "go on with the closings in the folder of --out, none of which is fired again; scene and options as before");
+         "continue the tuning in the folder of --out; its closings are not fired again. Scene and options must be as before");
   a.as({.type = "Sequence[str | os.PathLike[str]]", .told = "_paths({})"})
       .repeated("wafer", r.wafer, "FOLDER",
-                "tuning of another device of the same wafer, in the folder that its --out named: what they all tell of the next "
-                "device is known before its first closing; may be repeated");
-  a.choice("actuator", t.actuator, actuators, "drives that are shaped");
+                "result folder of a tuning of another device of the same wafer; "
+                "what these devices have in common is known before the first closing; may be repeated");
+  a.choice("actuator", t.actuator, actuators, "drives that the tuning may shape");
   a.as({.value = "\"\"", .told = "_text({})"})
       .parsed("constrain", t.touch, read_touch, "CONDITION",
-              "when the contact is to touch, such as \"initial_contact_time < 33 us\", or beside a plain step on the drawing, "
-              "\"initial_contact_time < 1.1 step\"",
+              "condition on the time of first contact, such as \"initial_contact_time < 33 us\" or, "
+              "relative to the plain step on the nominal design, \"initial_contact_time < 1.1 step\"",
               "constrain", "str");
   a.object("errors", "Mapping[str, float | str] | None", "None",
-           "one standard deviation of the errors of instruments, by name: edge_error [s], unseen [s], gain_error, shot_error, "
-           "and trigger_delay [s], by which records may begin later or earlier than the drives; default: the usual ones "
-           "(docs/tune.md)");
+           "standard deviations of the errors of the instruments, by name: edge_error [s], unseen [s], gain_error, shot_error, "
+           "and trigger_delay [s] between drives and records; default: see docs/tune.md");
   laboratory_options(a, r.laboratory);
-  a.program().quantity("trigger-delay", r.laboratory.trigger_delay, {dimension::time}, "TIME",
-                       "by how much records may begin later or earlier than the drives, constant but unknown, one standard "
-                       "deviation (default: 2 us, at most a 48th of that period); \"0 s\": t = 0 of a record is that of the "
-                       "drives");
+  a.program().quantity(
+      "trigger-delay", r.laboratory.trigger_delay, {dimension::time}, "TIME",
+      "standard deviation of the delay between drives and records, which is constant but unknown (default: 2 us, "
+      "at most 1/48 of the period of the first mode); \"0 s\": records and drives begin together");
   a.whole("recipes", t.most_recipes, {.least = 1},
-          fmt::format("waveforms that are searched before the first closing, each for devices of another pull-in voltage, 1 to 5 "
-                      "(default: {})",
+          fmt::format("number of waveforms searched before the first closing, 1 to 5, "
+                      "each for devices of another pull-in voltage (default: {})",
                       TunerOptions{}.most_recipes));
-  a.quantity("effort", t.effort, {dimension::none}, "FACTOR",
-             "evaluations of every search, over the usual (default: 1); less of it is sooner, and lands less surely");
-  a.program().parsed("timeout", r.patience, read_patience, "TIME", "how long the command may take for an answer (default: 60 s)",
-                     "timeout", "str");
-  seed_option(a, t.seed, "same records, same proposals, whatever --jobs is");
+  a.quantity(
+      "effort", t.effort, {dimension::none}, "FACTOR",
+      "factor on the number of evaluations of every search (default: 1); a smaller factor is faster but lands less reliably");
+  a.program().parsed("timeout", r.patience, read_patience, "TIME",
+                     "longest time to wait for an answer of the command (default: 60 s)", "timeout", "str");
+  seed_option(a, t.seed, "the same waveforms for the same records, whatever --jobs is");
   jobs_option(a, t.jobs);
-  a.object("out", "str | os.PathLike[str] | None", "None",
-           "folder for closings.jsonl, where each closing is before the next is fired, and for the files of the program, which "
-           "may go on with the tuning");
+  a.object(
+      "out", "str | os.PathLike[str] | None", "None",
+      "folder for closings.jsonl, to which each closing is written before the next is fired, and for the files of the program, "
+      "which can continue the tuning");
 }
 
 }  // namespace
