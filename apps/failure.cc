@@ -16,9 +16,11 @@ namespace softland::apps {
 namespace {
 
 Failure internal_error(std::string_view what) {
-  return {exit_internal_error, fmt::format("internal error: {}. This is a fault of softland {}, not of your input: please report "
-                                           "it with this message, the command and the scene file",
-                                           what, version)};
+  return {
+      exit_internal_error,
+      fmt::format("internal error: {}. This is a fault of softland {}, not of your input: please report it with this message, "
+                  "the command and the scene file",
+                  what, version)};
 }
 
 }  // namespace
@@ -35,9 +37,9 @@ Failure failure_of(const std::exception_ptr& exception) {
   } catch (const OutputLost& error) {
     return {exit_output_lost, error.what()};
   } catch (const std::bad_alloc&) {
-    return {exit_system_error, "the system gives no more memory"};
+    return {exit_system_error, "not enough memory; use fewer --jobs or a smaller study"};
   } catch (const std::system_error& error) {
-    return {exit_system_error, fmt::format("the system refused: {}", error.what())};
+    return {exit_system_error, fmt::format("the operating system refused a request: {}", error.what())};
   } catch (const std::exception& error) {
     return internal_error(error.what());
   } catch (...) {

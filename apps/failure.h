@@ -1,4 +1,4 @@
-// A failure says why a run did not succeed, as the exit status and in words.
+// A failure gives the reason why a run did not succeed, as an exit status and as a message.
 #pragma once
 
 #include <exception>
@@ -11,8 +11,8 @@ struct Failure {
   std::string message;
 };
 
-/// Returns the meaning of an exception that ends the program: every kind has its exit status. An unexpected one is a fault of
-/// the program that asks to be reported.
+/// Returns exit status and message for an exception that ends the program. An unexpected exception is an internal error, and
+/// its message asks the user to report it.
 [[nodiscard]] Failure failure_of(const std::exception_ptr& exception);
 
 }  // namespace softland::apps

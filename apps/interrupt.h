@@ -7,13 +7,13 @@
 
 namespace softland::apps {
 
-/// These signals ask: Ctrl-C, a scheduler or `kill`, a terminal that is gone.
+/// Signals that ask the program to end: Ctrl-C, a scheduler, `kill`, or a closed terminal.
 inline constexpr std::array stopping_signals{SIGINT, SIGTERM, SIGHUP, SIGXCPU};
 
-/// Each of these signals sets stop_requested(); a second SIGINT ends the program at once. The others may come again before the
-/// results so far are written: a terminal that closes sends SIGHUP twice, `timeout` SIGTERM, the kernel SIGXCPU every second. A
-/// signal that the program was started to ignore, as by nohup, stays ignored. Writing to a closed pipe or beyond the limit of a
-/// file's size is an error of that write, not a signal.
+/// Makes each of these signals set stop_requested(); a second SIGINT ends the program at once. The other signals may come again
+/// before the results so far are written: a closing terminal sends SIGHUP twice, `timeout` sends SIGTERM, the kernel sends
+/// SIGXCPU every second. A signal that was ignored at the start, as under nohup, stays ignored. Writing to a closed pipe, or
+/// beyond the limit of file sizes, is an error of that write and not a signal.
 void catch_signals();
 
 [[nodiscard]] const std::atomic<bool>& stop_requested();

@@ -1,4 +1,4 @@
-// Lines of text come through a pipe or from a terminal.
+// Reads lines of text from a pipe or a terminal.
 #pragma once
 
 #include <chrono>
@@ -10,8 +10,8 @@ namespace softland::apps {
 
 class LineReader {
  public:
-  /// Reads from a descriptor, which stays open. A line of more than `longest` bytes is cut there, so that its reader refuses
-  /// it; the rest of the line is skipped.
+  /// Reads from a descriptor, which stays open. A line of more than `longest` bytes is cut after one more byte, so that its
+  /// length shows that it is too long; the rest of the line is skipped.
   explicit LineReader(int descriptor, std::size_t longest);
 
   enum class End { line, closed, late };
@@ -19,18 +19,18 @@ class LineReader {
     End end = End::closed;
     std::string text = {};  ///< text without the line feed
   };
-  /// Returns the next line; the last one may lack its line feed. `late` when none has come in `patience`; without `patience` it
-  /// waits for ever. Throws Interrupted where a signal asks to stop.
+  /// Returns the next line; the last line may lack its line feed. Returns `late` if no line came within `patience`; without
+  /// `patience`, waits without limit. Throws Interrupted after a signal to stop.
   [[nodiscard]] Line next(std::optional<std::chrono::milliseconds> patience = {});
 
  private:
   [[nodiscard]] std::optional<std::string> complete_line();
-  [[nodiscard]] bool fill();  // returns false at the end
+  [[nodiscard]] bool fill();  // reads more bytes; returns false at the end of the input
 
   int descriptor_;
   std::size_t longest_;
   std::string read_;
-  std::size_t searched_ = 0;  // length of the part of read_ that has no line feed
+  std::size_t searched_ = 0;  // length of the first part of read_, which is known to have no line feed
   bool ended_ = false;
 };
 

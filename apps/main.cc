@@ -1,4 +1,4 @@
-// The command line is parsed here, and nothing else.
+// Main program: parses the command line and runs the requested verb.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ namespace {
 using namespace softland;
 using namespace softland::apps;
 
-// Quotes the words so that the line can be pasted into a shell.
+// Returns the command line, with every word quoted for a shell.
 std::string command_line(const std::vector<std::string>& words) {
   std::string line = "softland";
   for (const std::string& word : words) line += " " + shell_word(word);
@@ -45,16 +45,18 @@ void describe(CLI::App& app) {
       "  softland check my-switch.toml\n"
       "  softland simulate my-switch.toml --set gap.contact=\"1.8 um\" --out closing\n"
       "  softland optimize my-switch.toml --actuator electrostatic --waveform pulse --budget \"90 s\"\n"
-      "\nExit status: 0 done, 2 bad input, 3 numerical failure, 4 done but without success, 70 internal error (please report),\n"
-      "71 no memory or threads, 74 output lost (disk full, pipe closed, store removed), 130 interrupted (what there is is "
-      "written).");
+      "\n"
+      "Exit status: 0 done, 2 bad input, 3 numerical failure, 4 done but the goal was not reached, 70 internal error (please\n"
+      "report), 71 no memory or threads, 74 output lost (disk full, pipe closed, store removed), "
+      "130 interrupted (the results so\n"
+      "far are written).");
 }
 
-// Parses the words of the command line into the options of `app`. Prints help or the version where they ask for nothing else;
-// then there is no verb to run.
+// Parses the words of the command line into the options of `app`. Returns false after printing the help or the version, since
+// there is no verb to run then.
 bool parse(CLI::App& app, std::vector<std::string> words, const std::vector<std::string>& names) {
   if (!words.empty() && !words.front().starts_with("-") && std::ranges::find(names, words.front()) == names.end())
-    throw InvalidInput("there is no verb '" + words.front() + "' (see softland --help)");
+    throw InvalidInput("unknown verb '" + words.front() + "' (see softland --help)");
   try {
     std::reverse(words.begin(), words.end());  // CLI11 takes the words from the back
     app.parse(words);
@@ -80,8 +82,8 @@ int run(int argc, char** argv) {
 
   Common common{.command = command_line(words), .stop = &stop_requested()};
   CLI::App app{
-      "softland lands MEMS switches softly: it simulates the closing of a described switch and searches the open-loop drive\n"
-      "waveform that closes it fast and without bounce.\n"};
+      "softland simulates the closing of a MEMS switch, and searches open-loop drive waveforms that close it fast and without\n"
+      "bounce.\n"};
   describe(app);
   std::deque<Verb> declared;
   std::vector<std::string> names;
@@ -102,7 +104,7 @@ int run(int argc, char** argv) {
   } catch (const OutputInterrupted&) {
     throw;
   } catch (const Interrupted&) {
-    // Nothing was found yet, and the JSON says so.
+    // There are no results yet; the JSON has the status "interrupted" alone.
     if (!common.json.empty())
       print_json_or(common, {{"status", "interrupted"}, {"version", version}, {"command", common.command}}, "");
     throw;

@@ -40,7 +40,7 @@ void Verb::with_scene(const char* word, const char* what, bool required) { posit
 
 void Verb::with_set(const std::string& about) { repeated("--set", common_.set, "KEY=VALUE", about + "; may be repeated"); }
 
-void Verb::with_quiet() { flag("--quiet", common_.quiet, "no progress and no notes on standard error"); }
+void Verb::with_quiet() { flag("--quiet", common_.quiet, "print no progress and no notes on standard error"); }
 
 void Verb::with_json() {
   option("--json", common_.json, "FILE", "write the result as JSON to this file, or - for standard output");

@@ -19,22 +19,21 @@ namespace softland::apps {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Checks the places that --json alone must avoid: standard output, which may be the same file, and the files of a run in its
-// folder.
+// Checks that --json names neither standard output by its path nor a file of this run in the folder of --out.
 void check_json_place(const std::string& file, const fs::path& folder) {
   if (!folder.empty()) {
     const fs::path inside =
         fs::weakly_canonical(fs::absolute(file)).lexically_relative(fs::weakly_canonical(fs::absolute(folder)));
     const std::string first = inside.empty() ? std::string() : inside.begin()->string();
     require(first != "softland.lock" && !first.starts_with("unfinished"),
-            fmt::format("--json {}: lies where a run keeps its unfinished results; name another file", file));
+            fmt::format("--json {}: this name is reserved for unfinished results of a run; name another file", file));
   }
   check_writable(file);
   struct stat out {
   }, there{};
   const bool is_output = ::fstat(STDOUT_FILENO, &out) == 0 && ::stat(file.c_str(), &there) == 0 && out.st_dev == there.st_dev &&
                          out.st_ino == there.st_ino;
-  require(!is_output, fmt::format("--json {}: is this run's standard output; use --json -", file));
+  require(!is_output, fmt::format("--json {}: is the standard output of this run; use --json -", file));
 }
 
 std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std::string>& files,
@@ -48,7 +47,7 @@ std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std:
     require(!has_file || fs::weakly_canonical(c.json) != fs::weakly_canonical(file),
             fmt::format("--json {}: is the {} that --out writes; name another file", c.json, name));
     require(!has_file || file.extension() != ".sqlite" || !is_companion(c.json, file),
-            fmt::format("--json {}: is a file that {} has beside it; name another", c.json, file.string()));
+            fmt::format("--json {}: is a companion file of the store {}; name another file", c.json, file.string()));
   }
   return folder;
 }

@@ -1,4 +1,4 @@
-// An overview summarises all rows of a store.
+// An overview of a store: the number of rows by status, and the extremes of every figure.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ struct Overview {
     std::int64_t least_at = 0, most_at = 0;
   };
   std::map<std::string, std::int64_t> by_status;
-  std::map<std::string, std::string> first_reasons;  // first reason by status that has one
-  std::vector<Extent> extents;                       // extents by column
+  std::map<std::string, std::string> first_reasons;  // first reason of failure, by status
+  std::vector<Extent> extents;                       // smallest and largest value, by column
   bool has_figures = false;
 };
 

@@ -1,5 +1,5 @@
-// A pace estimates the remaining time of a computation. The first class is for an exploration that computes some of its points
-// and takes others over from earlier plans, which is quick.
+// A pace estimates the remaining time of a computation. The first class below is for an exploration, which computes some of its
+// points and copies others from rows of earlier plans in almost no time.
 #pragma once
 
 #include <cstdint>
@@ -9,24 +9,25 @@
 namespace softland::apps {
 
 struct Pace {
-  std::int64_t remaining = 0;  ///< points that are neither stored nor taken yet
+  std::int64_t remaining = 0;  ///< points that are neither computed nor copied yet
   std::int64_t computed = 0, reused = 0;
-  std::int64_t earlier = 0;  ///< rows of earlier plans: at most as many points can be taken over
+  std::int64_t earlier = 0;  ///< rows of earlier plans, an upper bound of the points that can still be copied
   double seconds = 0;        ///< time since the first computed point began [s]
 
-  /// Returns the number of points still to compute. Some of the remaining ones are taken over: as many as earlier rows are
-  /// left, or the same share as until now, whichever is less. NaN before anything was taken.
+  /// Returns the estimated number of points still to compute. The estimate assumes that the share of copied points stays as it
+  /// is, and that no more are copied than earlier rows are left. NaN before the first point is done.
   [[nodiscard]] double to_compute() const;
-  /// Returns the remaining time [s]; NaN before anything was computed.
+  /// Returns the remaining time [s]; NaN before the first point is computed.
   [[nodiscard]] double seconds_left() const;
 };
 
-/// The progress of a computation that consists of several, one after the other.
+/// The progress of a computation that consists of several stages in sequence.
 class WorkPace {
  public:
-  /// Notes that `part`, 0 to 1, of `what` is done `elapsed` [s] after the whole began; another `what` begins anew.
+  /// Notes that the share `part`, 0 to 1, of stage `what` is done at `elapsed` [s] after the start. A new name begins a new
+  /// stage.
   void note(std::string_view what, double part, double elapsed);
-  /// Returns "closing: 43 %, 12 s, about 16 s left". The last part appears when it is known, for the current computation alone.
+  /// Returns "closing: 43 %, 12 s, about 16 s left". The remaining time is that of the current stage, and appears when known.
   [[nodiscard]] std::string words(double elapsed) const;
 
  private:

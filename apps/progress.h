@@ -1,5 +1,5 @@
-// The progress of a verb appears on standard error: a bar that is rewritten in place on a terminal, elsewhere a line after five
-// seconds, and every ten from then on.
+// Shows the progress of a verb on standard error: on a terminal a bar that is rewritten in place, elsewhere a line after five
+// seconds and then every ten seconds.
 #pragma once
 
 #include <chrono>
@@ -19,11 +19,11 @@ class Bar {
  public:
   explicit Bar(bool quiet);
 
-  /// A state is the part that is done, 0 to 1, and words.
+  /// A state of the computation: the done share, 0 to 1, and a text.
   using State = std::function<std::pair<double, std::string>(double elapsed)>;
-  /// Prints `state` if it is due; it is called only then.
+  /// Calls `state` and prints its result if an update is due.
   void show(const State& state);
-  /// Leaves the last state of the bar on the screen.
+  /// Ends the display; the last state of the bar stays on the screen.
   void close(const State& state);
 
  private:
@@ -36,7 +36,7 @@ class Bar {
   std::chrono::steady_clock::time_point start_, shown_;
 };
 
-/// A computation that ends when the program is asked to stop and shows its progress; the destructor removes the bar.
+/// Watches a computation: shows its progress, and stops it after a signal to stop. The destructor removes the bar.
 class WatchedWork {
  public:
   WatchedWork(bool quiet, const std::atomic<bool>* stop);
@@ -58,7 +58,7 @@ class WatchedWork {
 /// The progress of a search.
 class SearchProgress {
  public:
-  /// `counted` names the unit of the budget, "evaluations"; `of` are words before that.
+  /// `counted` names the unit of the budget, such as "evaluations"; `of` is the text in front of the progress.
   SearchProgress(bool quiet, const OptimizeOptions& options, std::string counted, std::string of = {});
 
   void show(const OptimizeProgress& progress);

@@ -39,13 +39,14 @@ SceneFile scene_of_result(const std::string& result) {
       std::error_code ignored;
       return fs::exists(path / name, ignored);
     });
-    require(found != names.end(), fmt::format("{}: holds none of {}", result, fmt::join(names, ", ")));
+    require(found != names.end(),
+            fmt::format("{}: must hold one of {}; name the folder of --out", result, fmt::join(names, ", ")));
     path /= *found;
   }
   if (path.extension() != ".json") return SceneFile::load(path);
   const nlohmann::json j = load_result(path);
   require(j.contains("scene_toml") && j["scene_toml"].is_string(),
-          fmt::format("{}: holds no text of the scene; give the result.json in the folder that --out named", path.string()));
+          fmt::format("{}: does not hold the scene; name the result.json in the folder of --out", path.string()));
   return SceneFile::parse(j["scene_toml"].get<std::string>(), path.string());
 }
 
@@ -64,7 +65,7 @@ fs::path shipped_scene(const std::string& name) {
   for (fs::path up = here; up.has_relative_path(); up = up.parent_path()) {
     if (fs::exists(up / "scenes" / name, error)) return up / "scenes" / name;
   }
-  throw InvalidInput(fmt::format("scenes/{} was not found beside the program; name a scene file", name));
+  throw InvalidInput(fmt::format("scenes/{} was not found with the program; name a scene file", name));
 }
 
 }  // namespace softland::apps

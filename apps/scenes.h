@@ -1,4 +1,4 @@
-// Verbs load scenes here: from files, from results, and those that are shipped.
+// Loads scenes from files, from results, and from the scenes shipped with the program.
 #pragma once
 
 #include <filesystem>
@@ -13,11 +13,11 @@ namespace softland::apps {
 /// Returns the scene file with the changes of --set.
 [[nodiscard]] SceneFile load_scene(const Common& common);
 
-/// Returns the scene of a result: a folder that --out named, a result.json, or a scene file itself. The newest file of a folder
-/// is its result.json, whichever verb left it; a search that is not done has only its best.toml.
+/// Returns the scene of a result: a folder of --out, a result.json, or a scene file. In a folder, the first existing one of
+/// result.json, best.toml and release.toml is read; an unfinished search has only its best.toml.
 [[nodiscard]] SceneFile scene_of_result(const std::string& result);
 
-/// Does the same with the changes of --set.
+/// Returns the scene of a result, as above, with the changes of --set.
 [[nodiscard]] SceneFile load_scene_or_result(const Common& common);
 
 /// Returns the path of the shipped scene: installed with the program, in the tree it was built from, or in an unpacked tree

@@ -42,7 +42,7 @@ std::string families_in_words(const std::string& families) {
   return words;
 }
 
-// Returns the drives of "knots.main.level_1_V" or "main.level_1_V", each once.
+// Returns the drives in variable names such as "knots.main.level_1_V" or "main.level_1_V", each drive once.
 std::vector<std::string> shaped_in(const std::vector<std::string>& variables) {
   std::vector<std::string> drives;
   for (const std::string& name : variables) {
@@ -57,7 +57,9 @@ std::vector<std::string> shaped_in(const std::vector<std::string>& variables) {
 
 StoredSearch asked_or_known(const Common& c, const verbs::OptimizeRequest& request, std::optional<KnownSearch>& known) {
   const std::vector<fs::path> stores = request.resume ? ResultFolder::places(c.out, evaluations_file) : std::vector<fs::path>();
-  require(!stores.empty() || !c.scene.empty(), [&] { return fmt::format("--resume: {} holds no search to go on with", c.out); });
+  require(!stores.empty() || !c.scene.empty(), [&] {
+    return fmt::format("--resume: {} holds no search to continue; name its folder by --out, or omit --resume", c.out);
+  });
   return stored_search(asked(c, request), stores, known);
 }
 
@@ -84,7 +86,7 @@ SearchRun::SearchRun(const Common& c, StoredSearch& search, const std::optional<
     preparation_.emplace(common_.quiet, common_.stop);
     session_.begin(columns);
     if (is_told)
-      say(search_words(common_, search) + fmt::format("; it shapes {}; results go to {}{}",
+      say(search_words(common_, search) + fmt::format("; shaped drives: {}; results go to {}{}",
                                                       fmt::join(shaped_in(columns.names()), " and "), common_.out,
                                                       duration_words(search.options.jobs, search.options.max_seconds)));
   };
@@ -103,7 +105,7 @@ SearchRun::SearchRun(const Common& c, StoredSearch& search, const std::optional<
   }
 }
 
-// Estimates the duration of the search, and its number of closings.
+// Estimates the duration of the search and its number of closings.
 std::string SearchRun::duration_words(int jobs, double max_seconds) const {
   if (!estimate_) return {};
   const SearchEstimate& e = *estimate_;
@@ -118,10 +120,10 @@ std::string SearchRun::duration_words(int jobs, double max_seconds) const {
               ? fmt::format(": {} evaluations and {} closings of devices", e.evaluations, e.closings)
           : e.closings > 0 ? fmt::format(": {} closings of devices", e.closings)
                            : fmt::format(": {} evaluations", e.evaluations);
-  return text + ", fewer than usual, since its closings are slow";
+  return text + ", fewer than usual, because its closings are slow to simulate";
 }
 
-// Prints the first table; every better waveform becomes a row of it.
+// Prints the head of a table of the best waveforms so far; every better waveform adds a row.
 void SearchRun::tell(const Leading& leading) {
   const auto row = [&](const std::string& name, const std::vector<DeviceOutcome>& outcomes, const std::string& after) {
     const auto figure = [](double value, std::string_view unit) {
@@ -136,8 +138,10 @@ void SearchRun::tell(const Leading& leading) {
     say(text + internal::right_aligned(figure(waited(outcomes, leading.waited_for), "s"), 14) + after);
   };
   if (!std::exchange(has_table_, true)) {
-    say(fmt::format("On {} simulated devices so far; the search goes on, and this gets better.", leading.own.size()));
-    say(fmt::format("  {:16}{:>24}{:>24}{:>14}   {}", "95 % (99 %)", "impact", "rebound", "steady from", "found after"));
+    say(fmt::format("Best waveforms so far, on {} simulated devices; the search continues. Columns: 95th (99th) percentile.",
+                    leading.own.size()));
+    say(fmt::format("  {:16}{:>24}{:>24}{:>14}   {}", "waveform", "impact velocity", "rebound height", "settled after",
+                    "found after"));
     row("plain step", leading.of_step, "");
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
@@ -155,9 +159,9 @@ std::string search_words(const Common& c, const StoredSearch& search) {
   const std::string scene = c.scene.empty() ? c.out : c.scene;
   const std::string aim = fmt::format("actuator {}, target {}", name_of(actuators, o.actuator), o.target.text());
   if (search.for_devices)
-    return fmt::format("{}: searching waveforms for devices that differ, and one for the nominal design, {}", scene, aim);
+    return fmt::format("{}: searching waveforms under process variation, and one for the nominal design, {}", scene, aim);
   const std::string devices =
-      search.robust ? fmt::format(", over devices of the spread ({})", search.robust->aim.measure.text) : std::string();
+      search.robust ? fmt::format(", over devices of [spread] ({})", search.robust->aim.measure.text) : std::string();
   return fmt::format("{}: searching a {} waveform, {}{}", scene, families_in_words(o.family), aim, devices);
 }
 

@@ -1,4 +1,4 @@
-// A search on the command line continues the one in its folder, and shows its progress.
+// Runs a search from the command line: keeps the search in a folder, can continue it there, and shows its progress.
 #pragma once
 
 #include <chrono>
@@ -13,23 +13,22 @@
 
 namespace softland::apps {
 
-/// Returns the search of the command line. With --resume it continues one in the folder of --out, if there is one, which is
-/// then `known`. Throws InvalidInput with option, value and rule. Throws it also where no search in the folder is the requested
-/// one, with the difference.
+/// Returns the search that the command line describes. With --resume, the search in the folder of --out is continued; its stores
+/// are then `known`. Throws InvalidInput with option, value and rule, or with the difference if the folder holds another search.
 [[nodiscard]] StoredSearch asked_or_known(const Common& common, const verbs::OptimizeRequest& request,
                                           std::optional<KnownSearch>& known);
 
 /// Returns the folder of --out.
 [[nodiscard]] SearchOutput output_of(const Common& common);
 
-/// A search that is kept in its folder and shows its progress.
+/// A search that stores its evaluations in a folder and shows its progress.
 class SearchRun {
  public:
-  /// `places`: see SearchSession. Sets the callbacks of search.options, which must outlive it.
+  /// `places`: see SearchSession. Sets the callbacks of search.options; `search` must outlive this object.
   SearchRun(const Common& common, StoredSearch& search, const std::optional<KnownSearch>& known, const SearchOutput& output,
             SearchPlaces* places = nullptr);
 
-  /// Call it when the search has ended: reports the end, and closes the store.
+  /// Reports the end of the search and closes its store; call it when the search has ended.
   void close();
   [[nodiscard]] SearchSession& session() { return session_; }
 

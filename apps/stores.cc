@@ -19,7 +19,7 @@ void tell_of_other_programs(const std::string& store) {
   const auto is_other = [&](const StoredSession& s) { return s.program != ours.program || s.processor != ours.processor; };
   const auto other = std::find_if(sessions.begin(), sessions.end(), is_other);
   if (other == sessions.end()) return;
-  say(fmt::format("{}: some of its rows come from {} on {}: their last digits may differ from those of {}", store, other->program,
+  say(fmt::format("{}: some rows were computed by {} on {}: their last digits may differ from those of {}", store, other->program,
                   other->host, ours.program));
 }
 

@@ -9,7 +9,8 @@
 
 namespace softland::apps {
 
-/// Warns where rows come from another program, or from one on another processor, whose last digits may differ.
+/// Warns if rows of a store were computed by another version of the program or on another processor: their last digits may
+/// differ.
 void tell_of_other_programs(const std::string& store);
 
 /// Returns a count of rows or points with all its digits.

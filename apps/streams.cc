@@ -18,7 +18,7 @@
 namespace softland::apps {
 namespace {
 
-// A failure to write notes is ignored: the result goes first.
+// A failure to write notes is ignored, so that the result is still written.
 void write_to_standard_error(std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
@@ -42,10 +42,10 @@ void print(std::string_view text) {
   constexpr int check_interval = 200, patience = 600;  // [ms]
   int waited = 0;
   for (std::string_view rest = clean; !rest.empty();) {
-    // A pipe that can be written to takes PIPE_BUF bytes without waiting for its reader.
+    // A writable pipe takes PIPE_BUF bytes without waiting for the reader.
     pollfd output{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
     if (const int ready = ::poll(&output, 1, check_interval); ready <= 0) {
-      // Count only the time after the request to stop; a signal cuts a wait short.
+      // Only the time after the request to stop counts; a signal ends a wait early.
       if (ready == 0 && stop_requested()) waited += check_interval;
       if (waited >= patience) throw OutputInterrupted();
       continue;
@@ -54,7 +54,7 @@ void print(std::string_view text) {
     const ssize_t written = ::write(STDOUT_FILENO, rest.data(), std::min<std::size_t>(rest.size(), PIPE_BUF));
     if (written < 0) {
       if (errno == EINTR || errno == EAGAIN) continue;
-      throw OutputLost(fmt::format("standard output: cannot be written: {}", std::generic_category().message(errno)));
+      throw OutputLost(fmt::format("standard output: could not be written: {}", std::generic_category().message(errno)));
     }
     rest.remove_prefix(static_cast<std::size_t>(written));
   }

@@ -25,10 +25,10 @@ namespace {
 using verbs::Ending;
 using verbs::OptionRow;
 
-// CLI11 sets these values, by the name of the option.
+// Values that CLI11 sets, by the name of the option.
 struct Given {
   std::map<std::string, std::string> texts;
-  std::map<std::string, std::optional<std::string>> optional;  // these may be empty
+  std::map<std::string, std::optional<std::string>> optional;  // values that may be empty texts
   std::map<std::string, bool> flags;
   std::map<std::string, std::vector<std::string>> repeated;
 
@@ -59,7 +59,7 @@ DriveWaveforms waveforms_of(const std::string& result, const PreparedScene& nomi
   return drives.waveforms();
 }
 
-// Writes the files, lists them, and says what to do with them.
+// Writes the files of an outcome, lists them, and prints the commands that use them.
 std::string leave(ResultFolder& folder, const verbs::Outcome& outcome) {
   const bool interrupted = outcome.ending == Ending::interrupted;
   std::vector<std::string> listed;
@@ -100,11 +100,12 @@ void declare(Verb& verb, const OptionRow& option, Given& given) {
 int run_study(const verbs::Study& study, const Common& c, const verbs::Told& told) {
   const auto run = study.ask(told);
   if (study.leaving != nullptr)
-    require(told.contains(study.leaving) == !c.out.empty(),
-            [&] { return fmt::format("--{0} and --out belong together: the {0} is written into that folder", study.leaving); });
+    require(told.contains(study.leaving) == !c.out.empty(), [&] {
+      return fmt::format("--{0} and --out must be given together: the {0} is written to the folder of --out", study.leaving);
+    });
   const bool takes_results = study.scene != verbs::scene_alone;
   const SceneFile file = takes_results ? load_scene_or_result(c) : load_scene(c);
-  static_cast<void>(read_scene(file));  // an output must not replace a table that it names
+  static_cast<void>(read_scene(file));  // checks the scene; an output must not replace a table that the scene names
   std::optional<ResultFolder> folder = claim_places(c, study.files);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const Watch& watch = work->watch();

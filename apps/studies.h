@@ -1,4 +1,4 @@
-// The verbs of verbs/study.h on the command line.
+// Runs the verbs of verbs/study.h from the command line.
 #pragma once
 
 #include "apps/options.h"
@@ -6,13 +6,14 @@
 
 namespace softland::apps {
 
-/// Such a function runs a verb that differs between the doors.
+/// Runs a verb whose computation differs between the command line and Python.
 using RunTold = int (*)(const Common&, const verbs::Told&);
 
-/// Runs a verb that is the same for all doors; returns the exit status.
+/// Runs a verb that is the same for the command line and Python; returns the exit status.
 [[nodiscard]] int run_study(const verbs::Study& study, const Common& common, const verbs::Told& told);
 
-/// Declares the options of the verb, and runs it: by `run` where the study has no computation. Keeps a reference to `study`.
+/// Declares the options of the verb and its action: `run` if the study has no computation of its own. Keeps a reference to
+/// `study`.
 void add_study(Verb& verb, const verbs::Study& study, RunTold run = nullptr);
 
 }  // namespace softland::apps

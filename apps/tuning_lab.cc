@@ -40,14 +40,14 @@ class CommandLab final : public TuningLab {
   std::optional<ContactRecord> fire(const ToldShot& shot, const SentSignals&) override {
     // A closed pipe is not an error yet: the answer may be buffered.
     const ChildProcess::Told told = child_.tell(line_text(shot_json(shot)), patience_);
-    if (told == ChildProcess::Told::late) throw late(fmt::format("did not take shot {}", shot.number));
+    if (told == ChildProcess::Told::late) throw late(fmt::format("did not read shot {}", shot.number));
     const LineReader::Line line = child_.next_line(patience_);
     if (line.end == LineReader::End::closed) throw ended_before(shot.number);
     if (line.end == LineReader::End::late) throw late(fmt::format("did not answer shot {}", shot.number));
     try {
       return read_record(read_line(line.text), shot.number, shot.duration());
     } catch (const InvalidInput& error) {
-      throw InvalidInput(fmt::format("{}: its answer to shot {}: {}", name_, shot.number, error.what()));
+      throw InvalidInput(fmt::format("{}: invalid answer to shot {}: {}", name_, shot.number, error.what()));
     }
   }
 
@@ -61,7 +61,7 @@ class CommandLab final : public TuningLab {
                                     ending.empty() ? "closed its standard input or output" : ending, shot));
   }
   [[nodiscard]] InvalidInput late(const std::string& what) const {
-    return InvalidInput(fmt::format("{}: {} in {}; --timeout says how long to wait", name_, what,
+    return InvalidInput(fmt::format("{}: {} within {}; a longer --timeout waits longer", name_, what,
                                     quantity(static_cast<double>(patience_.count()) / 1000, "s")));
   }
 
@@ -70,12 +70,12 @@ class CommandLab final : public TuningLab {
   ChildProcess child_;
 };
 
-// The user wants to stop.
+// Thrown when the user answers "stop".
 struct Stopped {};
 
 class HandLab final : public TuningLab {
  public:
-  // Remove shots that an earlier tuning has left, unless it continues.
+  // Remove the files of shots of an earlier tuning, unless that tuning is continued.
   HandLab(HandLabRequest request, const PreparedScene& scene) : request_(std::move(request)), scene_(scene) {
     if (request_.goes_on) return;
     const std::vector<std::string> endings = sent_endings(scene_);
@@ -96,11 +96,11 @@ class HandLab final : public TuningLab {
     std::string before;
     for (const auto& [drive, amplifier] : sent.amplifiers) {
       if (request_.format != "codes")
-        before += fmt::format(", {} in volts before an amplifier of {}", drive, plain_number(amplifier, 6));
+        before += fmt::format(", {} in volts at the input of an amplifier of gain {}", drive, plain_number(amplifier, 6));
     }
     say(
-        fmt::format("shot {}: load {} into the generator{}, close the switch by it once, and record the contact for {} from the "
-                    "start of the waveform",
+        fmt::format("shot {}: load {} into the generator{}, play the waveform once, "
+                    "and record the contact for {} from the start of the waveform",
                     shot.number, fmt::join(files, " and "), before, quantity(shot.duration(), "s")));
     try {
       return asked(shot);
@@ -110,7 +110,7 @@ class HandLab final : public TuningLab {
   }
 
  private:
-  // Tells whether a name is one of "shot-12.csv", "shot-12-main.arb".
+  // Returns true for a file name of a shot, such as "shot-12.csv" or "shot-12-main.arb".
   [[nodiscard]] static bool is_shot(std::string_view name, const std::vector<std::string>& endings) {
     constexpr std::string_view before = "shot-";
     if (!name.starts_with(before)) return false;
@@ -120,12 +120,12 @@ class HandLab final : public TuningLab {
   }
   [[nodiscard]] ContactRecord asked(const ToldShot& shot) {
     ContactRecord record = answer<ContactRecord>(
-        R"(when did the contact first close, from the start of the waveform? A time such as "36.1 us"; "never"; )"
-        R"("file NAME" with all edges; "failed" to fire it again; "stop" to end)",
+        R"(at what time after the start of the waveform did the contact first close? Answer a time such as "36.1 us"; "never"; )"
+        R"("file NAME" for a file with all edges; "failed" to repeat the shot; "stop" to end)",
         [&](const std::string& text) { return closing(text, shot.duration()); });
     if (record.closing_time) {
       record.bounce_count = answer<std::optional<int>>(
-          R"(how often did it open again after that? A number such as 0; "?" where you do not know; "stop" to end)", count);
+          R"(how often did the contact open again after that? Answer a number such as 0; "?" if unknown; "stop" to end)", count);
     }
     return record;
   }
@@ -139,10 +139,10 @@ class HandLab final : public TuningLab {
     }
     const Quantity time = parse_quantity(text);
     if (time.dimension != dimension::time || !(time.value > 0))
-      throw InvalidInput(fmt::format("{} is no time; write it with its unit, such as \"36.1 us\"", visible(text)));
+      throw InvalidInput(fmt::format("{}: must be a time with its unit, such as \"36.1 us\"", visible(text)));
     if (time.value > duration)
       throw InvalidInput(
-          fmt::format("{} is after the end of the record, which is {} long", visible(text), quantity(duration, "s")));
+          fmt::format("{}: must not be after the end of the record, which is {} long", visible(text), quantity(duration, "s")));
     return {.closing_time = time.value};
   }
 

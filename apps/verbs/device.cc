@@ -1,4 +1,4 @@
-// A simulated device answers as a laboratory device does, to practise on.
+// Verb `device`: a simulated device that answers shots as a laboratory does, to practise tuning on.
 #include "verbs/device.h"
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-// Returns the answer of the device to a line, or the fault of a line that it cannot use.
+// Returns the answer of the device to a line, or a message about an invalid line.
 json answer(const PracticeDevice& device, const json& line) {
   try {
     const ToldShot shot = read_shot(line);
@@ -51,7 +51,7 @@ int run_device(const Common& c, const verbs::Told& told) {
       if (is_end(told)) break;
       print(line_text(answer(device, told)));
     } catch (const InvalidInput& error) {
-      print(line_text({{"shot", nullptr}, {"error", fmt::format("the line {}", error.what())}}));
+      print(line_text({{"shot", nullptr}, {"error", fmt::format("invalid line: {}", error.what())}}));
     }
   }
   return exit_done;

@@ -47,14 +47,14 @@ int status_of(const Overview& found, bool interrupted) {
   return found.has_figures ? exit_done : exit_no_success;
 }
 
-// Returns the plan of a scene and options, of a plan file, or of a store that is continued.
+// Returns the plan: that of a scene and its options, of a plan file, or of a store that is continued.
 PlanRequest plan_request(const Common& c, const ExploreRequest& r) {
   const bool of_store = is_store(c.scene);
   if (!of_store && !is_plan(SceneFile::load(c.scene)))
     return r.plan(load_scene(c), [](std::string_view option) { return "--" + std::string(option); });
   const std::map<std::string, std::string> given = r.of_plan();
   require(given.empty() && c.set.empty(), [&] {
-    return fmt::format("{}: holds the whole plan: --{} is not for it", c.scene, given.empty() ? "set" : given.begin()->first);
+    return fmt::format("{}: holds a complete plan: omit --{}", c.scene, given.empty() ? "set" : given.begin()->first);
   });
   return of_store ? exploration_in(StudyReader(c.scene)) : read_plan(SceneFile::load(c.scene));
 }
@@ -69,17 +69,22 @@ PlanRequest completed_request(const Common& c, const ExploreRequest& r) {
 int print_point(const Common& c, const ExploreRequest& r) {
   const std::uint64_t k = r.point.value();
   const Plan plan(completed_request(c, r));
-  require(k < plan.points(), [&] { return fmt::format("--point {}: the plan has {} points, counted from 0", k, plan.points()); });
+  require(k < plan.points(), [&] {
+    return fmt::format("--point {}: must be below {}, the number of points in the plan, which are counted from 0", k,
+                       plan.points());
+  });
   const bool is_optimized = plan.study() == name_of(point_studies, PointStudy::optimize);
   std::optional<StoredRow> found;
   if (is_store(c.scene) && (is_optimized || plan.is_search())) {
     StudyReader(c.scene).read([&](const StoredRow& row) { found = row; }, {.where = fmt::format("point = {}", k)});
-    require(found.has_value(), [&] { return fmt::format("--point {}: {} does not hold it yet", k, c.scene); });
+    require(found.has_value(),
+            [&] { return fmt::format("--point {}: {} does not hold this point yet; compute it by --resume", k, c.scene); });
   }
   std::string text;
   if (found && is_optimized) {
-    require(!found->extra.empty(),
-            [&] { return fmt::format("--point {}: its search found no waveform: {} ({})", k, found->reason, found->status); });
+    require(!found->extra.empty(), [&] {
+      return fmt::format("--point {}: the search at this point found no waveform: {} ({})", k, found->reason, found->status);
+    });
     text = json::parse(found->extra).at("scene_toml").get<std::string>();
   } else {
     std::vector<double> values = found ? found->values : plan.values(k);
@@ -90,7 +95,8 @@ int print_point(const Common& c, const ExploreRequest& r) {
     print(text);
     return exit_done;
   }
-  require(!is_store(r.out), [&] { return fmt::format("--out {}: is a store; name another file for the scene", r.out); });
+  require(!is_store(r.out),
+          [&] { return fmt::format("--out {}: is a store and is not replaced; name another file for the scene", r.out); });
   write_whole(r.out, text);
   if (!c.quiet) say(fmt::format("wrote {}: softland simulate {}", r.out, shell_word(r.out)));
   return exit_done;
@@ -113,7 +119,7 @@ std::pair<double, std::string> state_of(const FrontFound& f, double elapsed) {
           fmt::format("{} of {} points, {:.0f} s", f.asked, f.points, elapsed)};
 }
 
-// Shows the progress, and at last the state at the end.
+// Shows the progress of an exploration, and its last state at the end.
 template <class State>
 class ShownProgress {
  public:
@@ -143,8 +149,8 @@ json explored_json(const Explored& e, const Plan& plan, const ExploringOptions& 
 std::string explored_text(const Explored& e, const std::string& out) {
   std::string words = fmt::format("{} of {} points in {}: {} computed", whole(e.there()), whole(e.points), printable_line(out),
                                   whole(e.computed));
-  if (e.known > 0) words += fmt::format(", {} were there", whole(e.known));
-  if (e.reused > 0) words += fmt::format(", {} taken over from an earlier plan", whole(e.reused));
+  if (e.known > 0) words += fmt::format(", {} known before", whole(e.known));
+  if (e.reused > 0) words += fmt::format(", {} copied from an earlier plan", whole(e.reused));
   return words + fmt::format(", {}\n", internal::quantity(e.seconds, "s"));
 }
 
@@ -153,14 +159,14 @@ StudyStore opened(const std::string& out, const Exploration& exploration, const 
           resume ? StudyStore::Opening::resume : StudyStore::Opening::fresh};
 }
 
-// Searches a front; its points become known only during the search.
+// Searches a Pareto front; its points are not known before the search.
 int search_the_front(const Common& c, const ExploreRequest& r, Exploration& exploration, const std::string& out) {
   const Plan& plan = exploration.plan();
   const std::vector<ExploredAim> aims = aims_of(exploration);
   KnownRows known = r.resume ? known_rows(out) : KnownRows{};
   StudyStore store = opened(out, exploration, {}, c, r.resume);
   if (!c.quiet) {
-    say(fmt::format("{}: searching the front of {} with {} points, {} of them known, study {}; rows go to {}", c.scene,
+    say(fmt::format("{}: searching the Pareto front of {} with {} points ({} known), study {}; rows go to {}", c.scene,
                     plan.pareto(), whole(static_cast<std::int64_t>(plan.points())),
                     whole(static_cast<std::int64_t>(known.size())), plan.study(), out));
   }
@@ -184,8 +190,8 @@ int search_the_front(const Common& c, const ExploreRequest& r, Exploration& expl
             {"made_with", made_with_json()}});
   print_json_or(c, j,
                 terminal_text(exploration_document(report)) +
-                    fmt::format("\n{} computed. The scene of a point: softland explore {} --point K\n"
-                                "The page: softland report {}\n",
+                    fmt::format("\n{} computed. To print the scene of a point: softland explore {} --point K\n"
+                                "To write the report page: softland report {}\n",
                                 whole(front.computed), shell_word(out), shell_word(out)));
   return status_of(found, interrupted);
 }
@@ -199,13 +205,13 @@ int run_explore(const Common& c, const verbs::Told& told) {
   const Shard shard = goes_on && r.shard.empty() ? StudyReader(c.scene).plan().shard : r.part();
   const Plan plan(completed_request(c, r));
   require(!goes_on || (r.resume && r.out.empty()),
-          [&] { return fmt::format("{}: is a store already: --resume goes on with it, and --out is not for that", c.scene); });
+          [&] { return fmt::format("{}: is a store: give --resume to continue it, and omit --out", c.scene); });
   const std::string out = goes_on ? c.scene : r.out.empty() ? "softland-out.sqlite" : r.out;
   static_cast<void>(claim_places(c, {}));
   require(c.json.empty() || std::filesystem::weakly_canonical(c.json) != std::filesystem::weakly_canonical(out),
-          [&] { return fmt::format("--json {}: is the store; name another file", c.json); });
+          [&] { return fmt::format("--json {}: is the store itself; name another file", c.json); });
   require(c.json.empty() || !is_companion(c.json, out),
-          [&] { return fmt::format("--json {}: is a file that the store {} has beside it; name another", c.json, out); });
+          [&] { return fmt::format("--json {}: is a companion file of the store {}; name another file", c.json, out); });
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   Exploration exploration = exploration_for(plan, out, work->watch(), verbs::studies_of_points());
   work.reset();

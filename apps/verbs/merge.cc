@@ -1,4 +1,4 @@
-// The verb joins parts of a study into one store.
+// Verb `merge`: joins the stores of the parts of a study into one store.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -28,11 +28,12 @@ struct MergeRequest {
 };
 
 int merge_verb(const Common& c, const MergeRequest& request) {
-  require(!c.out.empty(), "--out is required: the store that the parts become");
+  require(!c.out.empty(), "--out is required: it names the merged store");
   std::vector<std::filesystem::path> parts{request.part};
   parts.insert(parts.end(), request.more.begin(), request.more.end());
   for (const std::filesystem::path& part : parts) {
-    if (!c.quiet && writer_of(part)) say(fmt::format("{}: is still being written: {}", part.string(), *writer_of(part)));
+    if (!c.quiet && writer_of(part))
+      say(fmt::format("{}: another process is still writing to it: {}", part.string(), *writer_of(part)));
   }
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const Merged merged =
@@ -40,7 +41,7 @@ int merge_verb(const Common& c, const MergeRequest& request) {
   work.reset();
   for (const std::string& note : merged.notes) say(note);
   if (!merged.written) return exit_no_success;
-  print(fmt::format("{} of {} points of {} {} in {}\n", internal::whole(static_cast<double>(merged.rows)),
+  print(fmt::format("{} of {} points from {} {} in {}\n", internal::whole(static_cast<double>(merged.rows)),
                     internal::whole(static_cast<double>(merged.plan.points)), parts.size(), parts.size() == 1 ? "part" : "parts",
                     printable_line(c.out)));
   return exit_done;
@@ -51,12 +52,12 @@ int merge_verb(const Common& c, const MergeRequest& request) {
 void add_merge(Verb& verb) {
   const auto request = std::make_shared<MergeRequest>();
   verb.positional("PART", request->part, "store of a part of a study");
-  verb.more("PARTS", request->more, "more of them");
-  verb.with_out_file("store to write; one that exists is not replaced");
-  verb.flag("--complete", request->complete, "write nothing, and end with status 4, while points are missing");
+  verb.more("PARTS", request->more, "further stores of parts");
+  verb.with_out_file("store to write; an existing file is not replaced");
+  verb.flag("--complete", request->complete, "if points are missing, write nothing and end with exit status 4");
   verb.with_quiet();
   verb.footer(
-      "Parts have to be of one plan. A point that several hold must have the same bits in all of them.\n"
+      "All parts must have the same plan. A point that several parts hold must be identical to the last bit in all of them.\n"
       "Example:\n  softland merge map-parts/*.sqlite --out map.sqlite");
   verb.runs([request](const Common& common) { return merge_verb(common, *request); });
 }

@@ -1,4 +1,4 @@
-// The verb shows the natural frequencies of a scene, or writes modes of another program as a table that a scene reads.
+// Verb `modes`: shows the natural frequencies of a scene, or converts the modes of another program into a table for a scene.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -43,7 +43,7 @@ int frequencies_of_scene(const Common& c) {
   return exit_done;
 }
 
-/// Returns the size of a unit in SI; the option gives the unit alone, such as "mm".
+/// Returns the value of a unit in SI; `unit` is the symbol alone, such as "mm".
 std::optional<double> unit_of(const char* option, const std::string& unit, const Dimension& due) {
   if (unit.empty()) return std::nullopt;
   const double size = told_quantity(option, "1 " + unit, due);
@@ -55,7 +55,7 @@ ModeKeys keys_of(const ModesRequest& r) {
   ModeKeys keys{
       .axis = r.axis, .direction = r.direction, .mass_normalised = r.mass_normalised, .prefix = "--", .word_separator = '-'};
   keys.length_unit = unit_of("--length-unit", r.length_unit, dimension::length);
-  // Models in mm, s and N have masses in tonnes.
+  // A model in mm, s and N has masses in tonnes.
   keys.mass_unit = r.mass_unit == "t" ? std::optional(1e3) : unit_of("--mass-unit", r.mass_unit, dimension::mass);
   if (!r.mass.empty()) {
     keys.mass = told_quantity("--mass", r.mass, dimension::mass);
@@ -83,8 +83,8 @@ void claim_file(const char* option, const std::string& file, const std::vector<s
 }
 
 int table_of_file(const Common& c, const ModesRequest& r) {
-  require(c.scene.empty(), [&] { return fmt::format("--from {}: stands instead of the scene {}", r.from, c.scene); });
-  require(c.set.empty(), "--set: changes a scene, and --from stands instead of one");
+  require(c.scene.empty(), [&] { return fmt::format("--from {}: replaces a scene: omit {}", r.from, c.scene); });
+  require(c.set.empty(), "--set: changes a scene, which --from replaces: omit --set");
   const ModeTable table = read_mode_table(r.from, keys_of(r));
   const std::string json = c.json == "-" ? std::string() : c.json;
   claim_file("--json", json, {});
@@ -102,7 +102,7 @@ int table_of_file(const Common& c, const ModesRequest& r) {
   }
   if (!r.plot.empty()) {
     write_whole(r.plot, mode_table_svg(table));
-    text += wrapped(fmt::format("In {}: a picture of the modes", r.plot)) + "\n";
+    text += wrapped(fmt::format("In {}: a plot of the modes", r.plot)) + "\n";
   }
   print_json_or(c, json_of(record), text);
   return exit_done;
@@ -110,9 +110,9 @@ int table_of_file(const Common& c, const ModesRequest& r) {
 
 int modes_verb(const Common& c, const ModesRequest& r) {
   if (!r.from.empty()) return table_of_file(c, r);
-  require(!c.scene.empty(), "modes: a scene is needed, or --from with a file of modes");
+  require(!c.scene.empty(), "modes: requires a scene, or --from with a file of modes");
   const auto refuse = [](bool is_given, const char* option) {
-    require(!is_given, [&] { return fmt::format("{}: says something about the file of --from, which is missing", option); });
+    require(!is_given, [&] { return fmt::format("{}: describes the file of --from: give --from too", option); });
   };
   for (const auto& [option, value] : {std::pair{"--axis", &r.axis},
                                       {"--direction", &r.direction},
@@ -141,17 +141,21 @@ void add_modes(Verb& verb) {
   verb.with_set(verbs::usual_change);
   verb.with_quiet();
   verb.option("--from", r->from, "FILE",
-              "instead of a scene: modes of a table of softland, CalculiX .frd, an export of COMSOL, UFF 55 or ANSYS .rom "
-              "(docs/modes.md)");
-  verb.option("--axis", r->axis, "AXIS", "of FILE, from the clamp to the far end: x, -y and so on");
-  verb.option("--direction", r->direction, "AXIS", "of FILE, towards the near electrode: -z and so on");
-  verb.option("--length-unit", r->length_unit, "UNIT", "of the positions in FILE, where it does not say: m (default), mm, um");
-  verb.option("--mass-unit", r->mass_unit, "UNIT", "of the model behind FILE, where it does not say: kg (default), g, t");
-  verb.option("--mass", r->mass, "MASS", "of the structure, even along its axis: normalises modes that are not");
-  verb.flag("--mass-normalised", r->mass_normalised, "the modes of FILE are mass-normalised, though it does not say so");
-  verb.option("--clamp", r->clamp, "PLACE", "of the clamp on the axis, where FILE has no node there: \"0 um\"");
-  verb.option("--frequencies", r->frequencies, "LIST", "of the modes, where FILE does not hold them: \"27.5 kHz,172 kHz\"");
-  verb.option("--plot", r->plot, "FILE", "write a picture of the modes of --from, as SVG");
+              "file of modes, instead of a scene: a table of softland, CalculiX .frd, a COMSOL export, "
+              "UFF 55 or ANSYS .rom (docs/modes.md)");
+  verb.option("--axis", r->axis, "AXIS", "axis of FILE that points from the clamp to the far end: x, -y and so on");
+  verb.option("--direction", r->direction, "AXIS", "axis of FILE that points towards the near electrode: -z and so on");
+  verb.option("--length-unit", r->length_unit, "UNIT",
+              "length unit of FILE, if the file does not give it: m (default), mm or um");
+  verb.option("--mass-unit", r->mass_unit, "UNIT",
+              "mass unit of the model of FILE, if the file does not give it: kg (default), g or t (tonnes)");
+  verb.option("--mass", r->mass, "MASS",
+              "mass of a structure whose mass per length is constant; normalises modes that are not mass-normalised");
+  verb.flag("--mass-normalised", r->mass_normalised, "the modes of FILE are mass-normalised, although the file does not say so");
+  verb.option("--clamp", r->clamp, "PLACE", "position of the clamp on the axis, such as \"0 um\", if FILE has no node there");
+  verb.option("--frequencies", r->frequencies, "LIST",
+              "natural frequencies of the modes, such as \"27.5 kHz,172 kHz\", if FILE does not hold them");
+  verb.option("--plot", r->plot, "FILE", "write a plot of the modes of --from (SVG)");
   verb.with_out_file("write the modes of --from as a table for [structure] kind = \"modes\" (CSV)");
   verb.with_json();
   verb.footer(

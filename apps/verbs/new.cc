@@ -1,4 +1,4 @@
-// The verb writes scenes to start from: each can be checked, simulated, searched and judged under process variation.
+// Verb `new`: prints commented scenes to start from. Each has all that `check`, `simulate`, `optimize` and `robustness` need.
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ int new_verb(const std::string& name) {
 
 void add_new(Verb& verb) {
   const auto kind = std::make_shared<std::string>(kinds.front().name);
-  verb.positional("KIND", *kind, names_of_kinds() + "; the first one where none is named", false);
+  verb.positional("KIND", *kind, names_of_kinds() + " (default: the first)", false);
   verb.footer("Example:\n  softland new cantilever > my-switch.toml");
   verb.runs([kind](const Common&) { return new_verb(*kind); });
 }

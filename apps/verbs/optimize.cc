@@ -1,4 +1,4 @@
-// The verb searches a waveform for the nominal device or under process variation.
+// Verb `optimize`: searches a waveform for the nominal design or under process variation.
 #include "studies/search/optimize.h"
 
 #include <fmt/format.h>
@@ -49,8 +49,8 @@ namespace fs = std::filesystem;
 using internal::percent;
 using internal::quantity;
 
-// Compares a winner with the plain step on devices of its scene's spread, in a sentence; empty where nothing varies, or when
-// asked to stop.
+// Returns a sentence that compares the found waveform with the plain step on devices of [spread]; empty if nothing varies, or
+// after a request to stop.
 std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, const fs::path& place) {
   if (winner.scene.spread.empty()) return {};
   constexpr std::uint64_t devices = 200;
@@ -65,17 +65,17 @@ std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, c
     };
     const auto words = [&](const DriveRobustness& drive) {
       if (drive.closing.value < 0.95) return fmt::format("{} close", percent(drive.closing.value));
-      return fmt::format("95 % have rebounds up to {} and touches at up to {}",
+      return fmt::format("95th percentile: rebound height {}, impact velocity {}",
                          at_95_percent(drive, key_of(&Metrics::major_bounce_height)),
                          at_95_percent(drive, key_of(&Metrics::largest_impact_velocity)));
     };
     const DriveRobustness &step = found.drives[0], &own = found.drives[1];
     return "\n" +
-           wrapped(fmt::format("On {} devices that differ as [spread] says, with the same volts: {} land without a rebound, and "
-                               "{} (plain step: {}, {}).{} "
-                               "More: softland robustness {}",
-                               devices, percent(own.bounce_free.value), words(own), percent(step.bounce_free.value), words(step),
-                               internal::outside_words(found), shell_word((place / "best.toml").string()))) +
+           wrapped(fmt::format(
+               "On {} devices varied by [spread], with the same waveform: {} bounce-free, {} (plain step: {}, {}).{} More: "
+               "softland robustness {}",
+               devices, percent(own.bounce_free.value), words(own), percent(step.bounce_free.value), words(step),
+               internal::outside_words(found), shell_word((place / "best.toml").string()))) +
            "\n";
   } catch (const Interrupted&) {
     return {};
@@ -87,19 +87,19 @@ int status_of(const FoundSearch& found) {
   return found.is_success() ? exit_done : exit_no_success;
 }
 
-// A search whose result is reported; among several searches the best.
+// The search whose result is reported: the best one among several seeds.
 struct Asked {
   const Common& c;
   StoredSearch& search;
   const std::optional<KnownSearch>& known;
   const SearchOutput& output;
-  SearchPlaces* places = nullptr;           // places that a study of seeds shares
-  std::optional<SeedsFindings> seeds = {};  // searches that are done
-  bool limit = false;                       // true: find the least time however long it takes
+  SearchPlaces* places = nullptr;           // folders shared by the searches of a study of seeds
+  std::optional<SeedsFindings> seeds = {};  // the completed searches of several seeds
+  bool limit = false;                       // true: compute the least time, even if that takes minutes
 };
 
-// Tells whether finding the least time takes a small part of the search's own time: a second or two. It takes many times that
-// with a slew limit, and with more modes than four of a cantilever, whose frequencies are 34 to 1.
+// Returns true if the least time (softland limit) takes a small part of the time of the search, a second or two. It takes many
+// times longer with a slew limit, and with more than four modes of a cantilever, whose frequencies span a ratio of 34.
 bool takes_little(const Asked& asked, const OptimizeResult& result) {
   constexpr double widest_band = 40;  // largest ratio of the highest natural frequency to the lowest
   const Eigen::VectorXd& omega = result.best_scene->model.basis().angular_frequencies();
@@ -109,7 +109,8 @@ bool takes_little(const Asked& asked, const OptimizeResult& result) {
                               [](const Drive& one) { return one.limits && std::isfinite(one.limits->max_slew); });
 }
 
-// Finds the least time of any waveform of the winner's drives at its impact velocity; none where the scene does not allow it.
+// Computes the least time of any waveform that shapes the drives of the found waveform and has its impact velocity; none if the
+// scene does not permit that.
 std::optional<TouchLimit> limit_of(const Asked& asked, const OptimizeResult& result) {
   if (!result.best || result.search.termination == Termination::interrupted) return std::nullopt;
   if (!asked.limit && !takes_little(asked, result)) return std::nullopt;
@@ -130,7 +131,7 @@ std::optional<TouchLimit> limit_of(const Asked& asked, const OptimizeResult& res
   }
 }
 
-// Returns the text below the table of a result: how the winner does on devices.
+// Returns the text below the table of a result: the figures of the found waveform on devices.
 std::string words_on_devices(const Asked& asked, const SearchReport& report, const fs::path& place) {
   const FoundSearch& found = report.found;
   if (asked.search.robust && report.devices) return "\n" + terminal_text(robustness_document(*report.devices));
@@ -139,7 +140,7 @@ std::string words_on_devices(const Asked& asked, const SearchReport& report, con
   return on_devices(asked.c, *found.best().best_scene, asked.search.options.jobs, place);
 }
 
-// Lists the pages and the waveforms of a search over devices, and says how many other files there are.
+// Lists the pages and the waveforms of a search over devices, with the number of other files.
 std::vector<std::string> foremost(std::vector<std::string> files) {
   const auto others = std::ranges::stable_partition(
       files, [](const std::string& name) { return name.ends_with(".html") || name.ends_with(".toml"); });
@@ -173,14 +174,15 @@ int run_search(const Asked& asked) {
     for (std::string& name : left) name += name == "best.toml" ? " (run it with `softland simulate`)" : "";
   }
   if (search.devices() == 0 && !c.quiet) {
-    for (const std::string& broken : best.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
+    for (const std::string& broken : best.broken_conditions)
+      say(fmt::format("the found waveform violates --constrain \"{}\"", broken));
   }
   print_json_or(c, summary_json(json_of(result)),
                 terminal_text(closing_document(result)) + words_on_devices(asked, report, place) + left_in(place, left));
   return status_of(report.found);
 }
 
-// Returns the searches that are done, ranked.
+// Returns the completed searches, best first.
 SeedsFindings ranked(const SeedStudy& study, const StoredSearch& search, double significant) {
   SeedsFindings seeds{.planned = search.seeds, .searches = study.searches()};
   if (!seeds.searches.empty()) rank(seeds, search.options.target, significant, search.robust.has_value());
@@ -194,12 +196,12 @@ int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, 
   const std::string best = seeds.searches.empty() ? std::string() : study.scene_of(seeds.searches[seeds.best].seed);
   if (!best.empty()) {
     places.folder().write("best.toml", best);
-    left += left_in(places.folder().place("best.toml").parent_path(), {"best.toml (of the best that is done)"});
+    left += left_in(places.folder().place("best.toml").parent_path(), {"best.toml (best waveform of the completed seeds)"});
   }
   const SeedsRecord record{.origin = origin_of("optimize", c.command), .seeds = seeds};
   print_json_or(c, json_of(record),
                 text_of(record) + left + "\n" +
-                    wrapped(fmt::format("--resume goes on with the {} that are missing.", study.missing())) + "\n");
+                    wrapped(fmt::format("--resume continues with the {} missing seeds.", study.missing())) + "\n");
   return exit_interrupted;
 }
 
@@ -245,32 +247,32 @@ int run_seeds(const Common& c, StoredSearch& search, const std::optional<KnownSe
     places.evaluations().close();
     return tell_of_part(c, places, study, seeds);
   }
-  // Run the best search once more for the report; all of its evaluations are known.
+  // Repeat the best search for the report, without new simulations: all of its evaluations are stored.
   search.options.seed = seeds.searches.at(seeds.best).seed;
   return run_search(
       {.c = c, .search = search, .known = known, .output = output, .places = &places, .seeds = seeds, .limit = limit});
 }
 
-// Warns where the folder holds results for another scene: the results of this search will replace all of them.
+// Warns if the folder holds results of another scene, which the results of this search will replace.
 void tell_of_another_scene(const fs::path& folder, const SceneFile& scene) {
   try {
     const fs::path best = folder / "best.toml";
     const std::optional<std::string> held = SceneFile::parse(look_into(best), best.string()).written("title");
     if (held && held != scene.written("title"))
-      say(fmt::format("{} holds results of another scene, \"{}\": those of this search will replace them", folder.string(),
-                      *held));
-  } catch (const InvalidInput&) {  // it holds no result
+      say(fmt::format("{} holds results of another scene, \"{}\", which this search will replace; --out names another folder",
+                      folder.string(), *held));
+  } catch (const InvalidInput&) {  // the folder holds no readable result
   }
 }
 
-// `cycle` searches pairs of waveforms.
+// Runs `softland cycle --search`, which searches the closing and the opening waveform together.
 int run_cycle_search(const Common& c, const verbs::Told& told) {
   static const verbs::Study cycle = verbs::cycle_study();
   verbs::Told own{{"search", {""}}};
   for (const auto& [name, words] : told) {
     const std::string as = name == "cycle" ? "rate" : name;
     require(std::ranges::find(cycle.options, as, &verbs::OptionRow::name) != cycle.options.end(),
-            [&] { return fmt::format("--cycle takes no --{}", name); });
+            [&] { return fmt::format("--cycle must not be combined with --{}", name); });
     own[as] = words;
   }
   return run_study(cycle, c, own);
@@ -283,7 +285,7 @@ int run_optimize(const Common& given, const verbs::Told& told) {
   Common c = given;
   if (c.scene.empty() && !request.resume) c.scene = shipped_scene("mem-gold-pzt.toml").string();
   if (!request.cycle.empty()) return run_cycle_search(c, told);
-  require(request.duty.empty(), "--duty belongs to --cycle");
+  require(request.duty.empty(), "--duty must be given together with --cycle");
   std::optional<KnownSearch> known;
   StoredSearch search = asked_or_known(c, request, known);
   const SearchOutput output = output_of(c);

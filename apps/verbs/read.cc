@@ -1,4 +1,4 @@
-// The verb shows the content of an instrument's file, without a scene.
+// Verb `read`: shows the content of a file of an instrument; needs no scene.
 #include <memory>
 #include <string>
 
@@ -20,7 +20,7 @@ struct ReadRequest {
 };
 
 int read_verb(const Common& c, const ReadRequest& request) {
-  require(!request.plot || c.json != "-", "--plot --json -: both would be written to standard output; give --json a file");
+  require(!request.plot || c.json != "-", "--plot --json -: both write to standard output; give --json a file name");
   const ReadKeys keys = read_keys(c.set);
   Recording recording = read_recording(request.file, keys);
   if (!keys.column.empty() || keys.column_number > 0) recording.channels = {channel_of(recording, keys, "")};
@@ -38,11 +38,12 @@ int read_verb(const Common& c, const ReadRequest& request) {
 
 void add_read(Verb& verb) {
   const auto request = std::make_shared<ReadRequest>();
-  verb.positional("FILE", request->file,
-                  "of an oscilloscope, a logger or a simulator: columns of numbers, SPICE PWL, UFF 58 and 58b (docs/files.md)");
-  verb.flag("--plot", request->plot, "print a picture of the channels against time, as SVG");
+  verb.positional(
+      "FILE", request->file,
+      "file of an oscilloscope, a data logger or a simulator: columns of numbers, SPICE PWL, VCD, UFF 58 or 58b (docs/files.md)");
+  verb.flag("--plot", request->plot, "print a plot of the channels against time, as SVG");
   verb.with_set(
-      "a key of [waveform.NAME] that says how the file is read: column, time_column, interval, skip, time_unit or decimal");
+      "key of [waveform.NAME] that says how to read the file: column, time_column, interval, skip, time_unit or decimal");
   verb.with_json();
   verb.footer(
       "Examples:\n  softland read scope.csv\n  softland read scope.csv --plot > scope.svg\n"

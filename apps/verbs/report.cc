@@ -1,4 +1,4 @@
-// The verb makes the report of a study's findings again, or that of an exploration.
+// Verb `report`: makes text, pages and plots again from the JSON of a verb or from the store of an exploration.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -34,8 +34,8 @@ namespace {
 
 struct ReportRequest {
   std::string result;
-  std::string pareto;  ///< figures of the front of an exploration
-  std::string map;     ///< figure of the picture of an exploration, and its two variables
+  std::string pareto;  ///< figures of the Pareto front of an exploration
+  std::string map;     ///< figure of the map of an exploration, and the two variables on its axes
 };
 
 // Returns the column that an option names.
@@ -47,12 +47,13 @@ std::size_t column_named(const ExplorationReport& report, const std::string& nam
     if (goes_by(column, name)) return c;
     there += (there.empty() ? "" : ", ") + (is_variable ? column.name : column.key);
   }
-  throw InvalidInput(fmt::format("--map {}: is no {} of this exploration: {}", name, is_variable ? "variable" : "figure", there));
+  throw InvalidInput(
+      fmt::format("--map {}: must be a {} of this exploration: {}", name, is_variable ? "variable" : "figure", there));
 }
 
 std::string folder_of(const std::filesystem::path& file) { return file.has_parent_path() ? file.parent_path().string() : "."; }
 
-// Draws the picture that --map asks for, FIGURE or FIGURE:ACROSS:UP.
+// Draws the map of a figure over two variables that --map asks for: FIGURE or FIGURE:ACROSS:UP.
 std::string map_of(const ExplorationReport& report, const std::string& words) {
   std::vector<std::string> parts{""};
   for (const char letter : words) {
@@ -67,7 +68,7 @@ std::string map_of(const ExplorationReport& report, const std::string& words) {
   if (parts.size() == 3)
     return exploration_map_svg(report, column_named(report, parts[1], true), column_named(report, parts[2], true), figure);
   const std::vector<std::size_t> axes = grid_variables(report);
-  require(axes.size() >= 2, [&] { return fmt::format("--map {}: the points lie on no grid of two variables or more", words); });
+  require(axes.size() >= 2, [&] { return fmt::format("--map {}: requires points on a grid of two or more variables", words); });
   return exploration_map_svg(report, axes[0], axes[1], figure);
 }
 
@@ -102,7 +103,7 @@ int report_exploration(const Common& given, const ReportRequest& request, const 
   return exit_done;
 }
 
-// Returns the JSON that a verb left in a folder.
+// Returns the JSON file that a verb wrote to a folder.
 std::filesystem::path record_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   for (const verbs::Study& study : verbs::all_studies()) {
@@ -112,10 +113,10 @@ std::filesystem::path record_in(const std::filesystem::path& folder) {
     std::error_code ignored;
     if (std::filesystem::exists(folder / name, ignored)) return folder / name;
   }
-  throw InvalidInput(fmt::format("{}: holds no result: none of {}", folder.string(), fmt::join(names, ", ")));
+  throw InvalidInput(fmt::format("{}: must hold one of {}; name the folder of --out", folder.string(), fmt::join(names, ", ")));
 }
 
-// Writes those files that --out has, and prints the findings.
+// Writes the files of an outcome to --out, and prints its text.
 int leave(Common c, const std::filesystem::path& record, std::vector<verbs::Outcome::File> all, const std::string& text) {
   std::erase_if(all, [](const auto& file) { return file.name.ends_with(".json"); });
   std::vector<std::string> files;
@@ -135,11 +136,11 @@ std::string store_of(const nlohmann::json& j, const std::filesystem::path& recor
   for (const std::filesystem::path& place : {record.parent_path() / named, named}) {
     if (!named.empty() && is_store(place.string())) return place.string();
   }
-  throw InvalidInput(fmt::format("{}: \"store\" must name the store of the exploration, and '{}' is none", record.string(),
+  throw InvalidInput(fmt::format("{}: \"store\" must name the store of the exploration, but '{}' is not a store", record.string(),
                                  shortened(printable_line(named.string()))));
 }
 
-// Returns the figures of its front, as --pareto names them.
+// Returns the figures of the Pareto front in the JSON, in the form of --pareto.
 std::string aims_of(const nlohmann::json& j) {
   std::string aims;
   for (const nlohmann::json& one : internal::JsonReader(internal::JsonReader(j).at("pareto")).at("aims")) {
@@ -168,10 +169,10 @@ int report_verb(const Common& given, const ReportRequest& request) {
     return report_exploration(given, {.result = store_of(j, path), .pareto = pareto, .map = request.map}, path);
   }
   require(request.pareto.empty() && request.map.empty(),
-          [&] { return fmt::format("{}: --pareto and --map are for an exploration", request.result); });
+          [&] { return fmt::format("{}: --pareto and --map require an exploration", request.result); });
   const auto shown_again = reader_of(kind);
   require(shown_again != nullptr, [&] {
-    return fmt::format("{}: is of kind '{}', of which no report is made", path.string(), shortened(printable_line(kind)));
+    return fmt::format("{}: no report is made for JSON of kind '{}'", path.string(), shortened(printable_line(kind)));
   });
   require_version(j, path.string());
   const verbs::Outcome found = [&] {
@@ -188,14 +189,16 @@ int report_verb(const Common& given, const ReportRequest& request) {
 
 void add_report(Verb& verb) {
   const auto request = std::make_shared<ReportRequest>();
-  verb.positional("RESULT", request->result, "folder that --out named, or the JSON of any verb; or the store of an exploration");
-  verb.with_out("folder to write them to (default: beside the result; STORE-report for a store)");
+  verb.positional("RESULT", request->result,
+                  "result folder (the --out of an earlier run), JSON of any verb, or store of an exploration");
+  verb.with_out("folder for the files (default: that of the result; STORE-report for a store)");
   verb.with_quiet();
   verb.option("--pareto", request->pareto, "FIGURES",
-              "of a store: mark the points that no other one beats in all of these figures, \"initial_contact_time,"
-              "impact_velocity\"; max:FIGURE is to be large");
+              "for a store: mark the Pareto front of these figures, such as \"initial_contact_time,impact_velocity\"; "
+              "max:FIGURE maximises a figure");
   verb.option("--map", request->map, "FIGURE",
-              "of a store: also map.svg, the figure over the first two variables of a grid, or over those of FIGURE:ACROSS:UP");
+              "for a store: also write map.svg, the figure over the first two variables of a grid, "
+              "or over ACROSS and UP of FIGURE:ACROSS:UP");
   verb.footer(
       "Examples:\n  softland report softland-out\n"
       "  softland report map.sqlite --map impact_velocity --pareto initial_contact_time,impact_velocity");

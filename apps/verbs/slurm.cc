@@ -1,4 +1,4 @@
-// The verb writes a job script for a cluster.
+// Verb `slurm`: prints the job script of a study for a cluster.
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -34,7 +34,7 @@ struct SlurmRequest {
 Plan plan_of(const std::string& file) {
   const auto of_file = [&] {
     const SceneFile text = SceneFile::load(file);
-    require(is_plan(text), [&] { return fmt::format("{}: is neither a plan, which has a section [plan], nor a store", file); });
+    require(is_plan(text), [&] { return fmt::format("{}: must be a store, or a plan file, which has a section [plan]", file); });
     return read_plan(text);
   };
   PlanRequest request = is_store(file) ? exploration_in(StudyReader(file)) : of_file();
@@ -42,7 +42,7 @@ Plan plan_of(const std::string& file) {
   return Plan(request);
 }
 
-// Returns the beginning of the script, which is specific to this study; the rest is the same for all.
+// Returns the beginning of the script, which depends on the study; the rest of the script does not.
 std::string head(const Common& c, const Plan& plan, std::uint64_t tasks, std::uint64_t processors, const fs::path& out) {
   const std::string digest = content_key(plan.text()).hexadecimal();
   const fs::path parts = out.parent_path() / (out.stem().string() + "-parts");
@@ -50,21 +50,21 @@ std::string head(const Common& c, const Plan& plan, std::uint64_t tasks, std::ui
       "#!/bin/bash\n"
       "# {} points in {} parts (plan {}), by: {}\n"
       "#   bash THIS          submits all parts, and a merge that begins when all of them are done\n"
-      "#   bash THIS 3,7-9    submits these again, and the merge; points that they hold are not computed again\n"
+      "#   bash THIS 3,7-9    submits these parts again, and the merge; points that they hold are not computed again\n"
       "#   sbatch THIS        submits the parts alone; bash THIS merge merges them here\n"
-      "# What the cluster wants to know goes into the environment: SBATCH_PARTITION, SBATCH_ACCOUNT, SBATCH_TIMELIMIT (man "
-      "sbatch).\n"
+      "# Settings of the cluster are taken from the environment: SBATCH_PARTITION, SBATCH_ACCOUNT, "
+      "SBATCH_TIMELIMIT (man sbatch).\n"
       "#SBATCH --job-name=softland\n"
       "#SBATCH --array=1-{}\n"
       "#SBATCH --cpus-per-task={}\n"
       "#SBATCH --requeue\n"
       "#SBATCH --open-mode=append\n"
-      "# shellcheck disable=SC2016 # names of files stand as they are\n"
+      "# shellcheck disable=SC2016 # file names are literal\n"
       "set -eu\n\n"
       "softland={}\n"
-      "parts={} # a folder that all machines see\n"
+      "parts={} # folder that all machines can access\n"
       "out={}\n"
-      "count={} # of this study: a part that is submitted alone is still one of so many\n\n"
+      "count={} # number of parts of this study, even if only some are submitted\n\n"
       "write_plan() {{\n"
       "  cat <<'end of plan {}'\n{}{}end of plan {}\n"
       "}}\n",
@@ -83,7 +83,7 @@ if [ -n "${SLURM_ARRAY_TASK_ID:-}" ]; then
   status=0
   "$softland" explore "$plan" --shard "$SLURM_ARRAY_TASK_ID/$count" --resume --jobs "${SLURM_CPUS_PER_TASK:-1}" \
     --out "$(part "$SLURM_ARRAY_TASK_ID")" || status=$?
-  [ "$status" != 4 ] || status=0 # a part in which no switch closes is done too
+  [ "$status" != 4 ] || status=0 # a part is done even if no switch closes in it
   exit "$status"
 fi
 
@@ -107,14 +107,15 @@ printf 'parts: job %s, merge: job %s, logs in %s\n' "$array" "${merge%%;*}" "$pa
 )bash";
 
 int slurm_verb(const Common& c, const SlurmRequest& request) {
-  require(request.tasks.has_value(), "--tasks is required: how many parts the study has");
+  require(request.tasks.has_value(), "--tasks is required: it gives the number of parts of the study");
   const auto tasks = verbs::whole_number<std::uint64_t>("--tasks", *request.tasks, {.least = 1});
   const auto processors =
       request.processors ? verbs::whole_number<std::uint64_t>("--cpus", *request.processors, {.least = 1}) : 1;
   const Plan plan = plan_of(request.plan);
-  require(tasks == 1 || !plan.is_search(), "--tasks: a search for a front goes from point to point and cannot be divided");
+  require(tasks == 1 || !plan.is_search(),
+          "--tasks: a search for a Pareto front depends on its earlier points and cannot be divided");
   require(tasks <= most_tasks && tasks <= plan.points(), [&] {
-    return fmt::format("--tasks {}: a study of {} points has at most {} parts", tasks, plan.points(),
+    return fmt::format("--tasks {0}: must be at most {2} for a study of {1} points", tasks, plan.points(),
                        std::min(most_tasks, plan.points()));
   });
   const fs::path out = fs::absolute(c.out.empty() ? "softland-out.sqlite" : c.out).lexically_normal();
@@ -129,12 +130,12 @@ int slurm_verb(const Common& c, const SlurmRequest& request) {
 void add_slurm(Verb& verb) {
   const auto request = std::make_shared<SlurmRequest>();
   verb.positional("PLAN", request->plan, "plan file, or a store, which holds its plan");
-  verb.optional("--tasks", request->tasks, "N", "parts, each a task of the job array");
-  verb.optional("--cpus", request->processors, "N", "processors, and threads, of each task (default: 1)");
-  verb.with_out_file("store that the parts become (default: softland-out.sqlite); the parts are in a folder beside it");
+  verb.optional("--tasks", request->tasks, "N", "number of parts, each a task of the job array");
+  verb.optional("--cpus", request->processors, "N", "number of processors and threads of each task (default: 1)");
+  verb.with_out_file("merged store (default: softland-out.sqlite); the folder of the parts lies beside it");
   verb.footer(
-      "The script submits itself and, depending on that, the merge. It names this program by its path, which all machines have\n"
-      "to see. See docs/scale.md.\n"
+      "The script submits the parts and a merge that runs after all of them. It calls this program by its path, which all\n"
+      "machines must be able to access. See docs/scale.md.\n"
       "Example:\n  softland slurm map.toml --tasks 100 --out map.sqlite > map.sh && bash map.sh");
   verb.runs([request](const Common& common) { return slurm_verb(common, *request); });
 }

@@ -1,4 +1,4 @@
-// The verb shows the progress of studies.
+// Verb `status`: shows the progress of studies.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ struct StatusRequest {
   std::vector<std::string> more;
 };
 
-/// The state that a store reports.
+/// The state of a study, as its store gives it.
 struct State {
   std::string file;
   StoredPlan plan;
@@ -77,7 +77,7 @@ std::string text_of(const State& s) {
                       s.sessions.size());
   text += fmt::format("  command              {}\n", shortened(printable_line(last.command), 200));
   text += fmt::format("  program              {}\n", printable_line(last.program));
-  return text + fmt::format("  writes now           {}\n", s.writer ? printable_line(*s.writer) : "nobody");
+  return text + fmt::format("  written now by       {}\n", s.writer ? printable_line(*s.writer) : "nobody");
 }
 
 json json_of(const State& s) {
@@ -129,8 +129,8 @@ int status_verb(const Common& c, const StatusRequest& request) {
 
 void add_status(Verb& verb) {
   const auto request = std::make_shared<StatusRequest>();
-  verb.positional("STORE", request->store, "store of a study, whether or not somebody writes into it");
-  verb.more("STORES", request->more, "more of them");
+  verb.positional("STORE", request->store, "store of a study, even while another process writes to it");
+  verb.more("STORES", request->more, "further stores");
   verb.with_json();
   verb.footer("Example:\n  softland status map-parts/*.sqlite");
   verb.runs([request](const Common& common) { return status_verb(common, *request); });

@@ -1,4 +1,4 @@
-// The verb prints the rows of a store, as CSV or for people.
+// Verb `table`: prints the rows of a store as CSV or as an aligned table.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -67,7 +67,7 @@ Column number_column(const StoredColumn& column, std::size_t place) {
           }};
 }
 
-// Returns all columns of a store, in the order of the table.
+// Returns all columns of a store, in the order in which the verb prints them.
 std::vector<Column> columns_of(const StoredPlan& plan) {
   std::vector<Column> all{text_column("point", [](const StoredRow& row) { return std::to_string(row.point); })};
   for (std::size_t i = 0; i < plan.columns.size(); ++i) all.push_back(number_column(plan.columns[i], i));
@@ -79,7 +79,7 @@ std::vector<Column> columns_of(const StoredPlan& plan) {
 std::vector<Column> selected(const StoredPlan& plan, const std::string& select) {
   std::vector<Column> all = columns_of(plan);
   if (select.empty()) return all;
-  // These columns appear only when they are asked for.
+  // The columns below are printed only if --select names them.
   all.push_back(text_column("content", [](const StoredRow& row) { return row.content.hexadecimal(); }));
   all.push_back(text_column("extra", [](const StoredRow& row) { return row.extra; }));
   std::vector<Column> chosen;
@@ -91,7 +91,7 @@ std::vector<Column> selected(const StoredPlan& plan, const std::string& select) 
     require(found != all.end(), [&] {
       std::vector<std::string_view> keys;
       for (const Column& column : all) keys.push_back(column.key);
-      return fmt::format("--select {}: there is no column \"{}\"; there are {}", shortened(select), shortened(name),
+      return fmt::format("--select {}: unknown column \"{}\"; choose from {}", shortened(select), shortened(name),
                          fmt::join(keys, ", "));
     });
     chosen.push_back(*found);
@@ -101,7 +101,7 @@ std::vector<Column> selected(const StoredPlan& plan, const std::string& select) 
 
 using Sink = std::function<void(std::string_view)>;
 
-// Writes the same bytes to a terminal, on which they cannot act, and to a file.
+// Writes the same bytes to a file and to a terminal, where control characters could act: they are escaped in both.
 void write_csv(const StudyReader& store, const TableRequest& request, const std::vector<Column>& columns, const Watch& watch,
                const Sink& sink) {
   constexpr std::size_t most = 1 << 16;
@@ -146,7 +146,7 @@ int table_verb(const Common& c, const TableRequest& request) {
   } else if (c.out.empty()) {
     write_csv(store, request, columns, watch, print);
   } else {
-    require(!is_store(c.out), [&] { return fmt::format("--out {}: is a store; name another file", c.out); });
+    require(!is_store(c.out), [&] { return fmt::format("--out {}: is a store and is not replaced; name another file", c.out); });
     write_whole(c.out, [&](const Sink& sink) { write_csv(store, request, columns, watch, sink); });
   }
   return exit_done;
@@ -157,9 +157,10 @@ int table_verb(const Common& c, const TableRequest& request) {
 void add_table(Verb& verb) {
   const auto request = std::make_shared<TableRequest>();
   verb.positional("STORE", request->store, "store of a study");
-  verb.flag("--csv", request->csv, "as CSV: a header of names with SI units, every digit, nothing for what is not known");
-  verb.option("--where", request->where, "EXPRESSION", "rows for which it holds: comparisons of columns in SQL");
-  verb.option("--select", request->select, "LIST", "these columns, in this order; content and extra are shown only so");
+  verb.flag("--csv", request->csv, "print CSV: a header of names with SI units, numbers with all digits, unknown values empty");
+  verb.option("--where", request->where, "EXPRESSION", "print only the rows that fulfil this SQL expression of columns");
+  verb.option("--select", request->select, "LIST",
+              "print these columns in this order; content and extra are printed only if named here");
   verb.with_out_file("write CSV to this file");
   verb.footer(
       "Examples:\n  softland table map.sqlite --csv > map.csv\n"

@@ -1,4 +1,4 @@
-// The verb tunes a waveform on a device, closing after closing.
+// Verb `tune`: tunes a waveform on a real device, closing after closing.
 #include "verbs/tune.h"
 
 #include <fmt/format.h>
@@ -39,7 +39,8 @@ constexpr const char* log_file = "closings.jsonl";
 
 using verbs::TuneRequest;
 
-// Puts the options about the sources into [driver], and refuses a format that cannot hold their shots before any search.
+// Writes the options about the sources into [driver] of the scene. Refuses, before any search, a file format that cannot hold
+// the shots.
 void set_sources(SceneFile& file, const TuneRequest& request, Actuator actuator) {
   const PreparedScene drawn = prepare_and_choose(file, true);
   std::vector<std::string> shaped;
@@ -48,8 +49,9 @@ void set_sources(SceneFile& file, const TuneRequest& request, Actuator actuator)
   }
   if (request.sampling.amplifier) {
     require(shaped.size() == 1, [&] {
-      return fmt::format("--amplifier {}: several drives are shaped, {}: give each [driver.NAME] its amplifier",
-                         *request.sampling.amplifier, fmt::join(shaped, ", "));
+      return fmt::format(
+          "--amplifier {}: must not be given when several drives are shaped ({}): set the key amplifier of each [driver.NAME]",
+          *request.sampling.amplifier, fmt::join(shaped, ", "));
     });
     file.assign(fmt::format("driver.{}.amplifier", shaped.front()),
                 amplification(drawn.drives.at(shaped.front()), request.sampling));
@@ -58,16 +60,17 @@ void set_sources(SceneFile& file, const TuneRequest& request, Actuator actuator)
   require_shots(request.format.value_or("csv"), prepare_and_choose(file, true), shaped);
 }
 
-/// A tuning, and the files that describe it.
+/// A tuning and its files.
 class Tuning {
  public:
   Tuning(const Common& common, const SceneFile& file, const TuneRequest& request);
 
-  /// Learns the closings that were recorded before.
+  /// Reads the closings that were recorded before.
   void learn_log();
-  /// Fires shots until the switch has landed often enough, `closings` are used, or the lab wants no more.
+  /// Fires shots until enough closings in a row are bounce-free, the largest number of closings is reached, or the laboratory
+  /// stops.
   TuningEnd run(TuningLab& lab, int closings);
-  /// Writes the files as they stand.
+  /// Writes the files for the current state of the tuning.
   void write(TuningEnd end);
   [[nodiscard]] TuningReport report(TuningEnd end) const { return session_.report(end, common_.command); }
   [[nodiscard]] const ResultFolder& folder() const { return *folder_; }
@@ -83,7 +86,7 @@ Tuning::Tuning(const Common& common, const SceneFile& file, const TuneRequest& r
     : common_(common), session_(request.session(file)) {
   folder_ = claim_places(common, {"best.toml", "best.csv", "tune.json", "tune.html", log_file}, {log_file});
   const std::filesystem::path aside = session_.keep(folder_->path() / log_file, request.resume);
-  if (!aside.empty() && !common_.quiet) say(fmt::format("the closings of an earlier run are now in {}", aside.string()));
+  if (!aside.empty() && !common_.quiet) say(fmt::format("the closings of an earlier run were moved to {}", aside.string()));
   const WatchedWork work(common_.quiet, common_.stop);
   session_.begin(work.watch());
 }
@@ -120,14 +123,13 @@ void Tuning::write(TuningEnd end) {
 
 int run_tune(const Common& c, const verbs::Told& told) {
   const TuneRequest request = verbs::tune_request(told);
-  require(request.by_hand == request.device.empty(),
-          "--device COMMAND or --by-hand says where the shots are fired: give one of them");
-  require(request.contact.empty() || request.by_hand, "--contact says how files are read that --by-hand is told of");
+  require(request.by_hand == request.device.empty(), "give either --device COMMAND or --by-hand: it says how shots are fired");
+  require(request.contact.empty() || request.by_hand, "--contact requires --by-hand: it says how to read the recorded files");
   std::optional<ContactTraceKeys> contact;
   if (!request.contact.empty()) contact = contact_trace_keys(request.contact);
   const bool says_sources = request.format || request.sampling.rate || request.sampling.bits || request.sampling.amplifier;
   require(request.by_hand || !says_sources,
-          "--format, --sample-rate, --bits and --amplifier are of the files that --by-hand writes; a command is told volts");
+          "--format, --sample-rate, --bits and --amplifier require --by-hand: they describe its files; a command receives volts");
   SceneFile file = load_scene_or_result(c);
   if (says_sources) set_sources(file, request, request.tuner.actuator);
   Tuning tuning(c, file, request);

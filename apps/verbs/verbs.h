@@ -1,5 +1,5 @@
-// The command line alone runs these: the verbs of verbs/study.h without a computation, and its own verbs in the order of
-// --help. Each of the latter is a file here that declares its options and runs it.
+// Verbs whose action is specific to the command line: those of verbs/study.h that have no computation there, and the verbs of
+// the program alone, in the order of --help. Each of these has a file in this folder with its options and its action.
 #pragma once
 
 #include <array>
@@ -18,11 +18,10 @@ void add_new(Verb& verb);
 void add_report(Verb& verb);
 void add_read(Verb& verb);
 
-/// Shows the JSON of `modes` again, as `report` does; verbs/study.h does not list that verb. Throws InvalidInput for other
-/// JSON.
+/// Makes the text of the verb `modes` again from its JSON, for the verb `report`. Throws InvalidInput for other JSON.
 [[nodiscard]] verbs::Outcome modes_shown_again(const nlohmann::json& json);
 
-// The program runs these verbs of verbs/study.h in its own way.
+// Verbs of verbs/study.h whose action the command line provides.
 [[nodiscard]] int run_optimize(const Common& common, const verbs::Told& told);
 [[nodiscard]] int run_explore(const Common& common, const verbs::Told& told);
 [[nodiscard]] int run_tune(const Common& common, const verbs::Told& told);
@@ -38,19 +37,19 @@ inline constexpr std::array runs{RunRow{"optimize", run_optimize}, RunRow{"explo
 struct VerbRow {
   const char* name;
   const char* about;
-  void (*add)(Verb& verb);  ///< declares the options of the verb, and its action
+  void (*add)(Verb& verb);  ///< declares the options and the action of the verb
 };
 
-/// These verbs stand behind those of verbs/study.h in --help.
+/// Verbs of the program alone; --help lists them after those of verbs/study.h.
 inline constexpr std::array other_verbs{
-    VerbRow{"modes", "natural frequencies; modes of another program as a table for a scene", add_modes},
-    VerbRow{"table", "print the rows of a store, as CSV or for people", add_table},
-    VerbRow{"status", "how far studies are, and who writes into their stores", add_status},
-    VerbRow{"merge", "make one store of the parts of a study", add_merge},
-    VerbRow{"slurm", "print the script of a study for a cluster with Slurm", add_slurm},
-    VerbRow{"new", "print a commented scene to start from", add_new},
-    VerbRow{"report", "make text, pages and pictures again: of the JSON of a verb, or of an exploration", add_report},
-    VerbRow{"read", "what a file of an oscilloscope or another instrument holds", add_read},
+    VerbRow{"modes", "compute natural frequencies, or convert modes of another program into a table for a scene", add_modes},
+    VerbRow{"table", "print the rows of a store as a table or as CSV", add_table},
+    VerbRow{"status", "show the progress of studies, and the processes that write to their stores", add_status},
+    VerbRow{"merge", "merge the parts of a study into one store", add_merge},
+    VerbRow{"slurm", "print the job script of a study for a Slurm cluster", add_slurm},
+    VerbRow{"new", "print a commented example scene to start from", add_new},
+    VerbRow{"report", "make text, pages and plots again from the JSON of a verb or from the store of an exploration", add_report},
+    VerbRow{"read", "show the channels in a file of an oscilloscope or another instrument", add_read},
 };
 
 }  // namespace softland::apps
