@@ -1,4 +1,4 @@
-// The aim of a search, read from text: a target ("bounce"), or a weighted sum of several ("0.7 bounce + 0.3 energy").
+// Reads the aim of a search from text: a target ("bounce"), or a weighted sum of targets ("0.7 bounce + 0.3 energy").
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// The assumed process variation of a scene that gives none, so that a search considers varied devices at all.
+// The process variation that a search assumes for a scene without [spread].
 //
 //   thickness and all gaps, by one factor       normal, 2 %
 //   Young's modulus                             normal, 3 %
@@ -11,11 +11,11 @@
 
 namespace softland {
 
-/// Words for an assumed spread.
-inline constexpr std::string_view assumed_words = "The scene has no [spread]: a usual one is assumed.";
+/// Note about an assumed spread.
+inline constexpr std::string_view assumed_words = "The scene has no [spread]: a typical process variation is assumed.";
 
-/// Gives a scene without [spread] the assumed one. Returns true when it had none. A section that exists and is empty stays, and
-/// is refused when it is read.
+/// Adds the assumed [spread] to a scene that has none, and returns true in that case. An existing empty section is kept; it is
+/// refused when the scene is read.
 bool assume_spread(SceneFile& file);
 
 }  // namespace softland

@@ -35,7 +35,7 @@ class MeasurementReader {
  public:
   MeasurementReader(const toml::table& table, const std::string& file, const std::filesystem::path& directory)
       : table_(table), file_(file), directory_(directory) {}
-  /// Reads the keys of an option.
+  /// Reads the keys that a command-line option gives.
   MeasurementReader(const toml::table& table, const std::string& option)
       : table_(table), file_(option), directory_(option), is_option_(true) {}
 
@@ -46,13 +46,13 @@ class MeasurementReader {
     if (has("drive")) m.drive = text("drive");
     if (has("device")) m.device = text("device");
     if (has("mode")) m.mode = whole("mode", 1, 64);
-    refuse_where(has("mode") && kind.name != "frequency", "mode", "is of a frequency only");
-    refuse_where(has("edges") && kind.name != of_contact, "edges", "is of a contact record only");
+    refuse_where(has("mode") && kind.name != "frequency", "mode", "applies to a frequency only");
+    refuse_where(has("edges") && kind.name != of_contact, "edges", "applies to a contact record only");
     check_trace_keys(kind);
     read_drive(kind, m);
-    if (has("value") == has("file")) fail(fmt::format("must have one of 'value' and 'file' with the {}", noun(kind.dimension)));
+    if (has("value") == has("file")) fail(fmt::format("needs either 'value' or 'file' with the {}", noun(kind.dimension)));
     if (has("value")) {
-      refuse_where(kind.is_over_time, "value", fmt::format("a {} is given by rows of time: name a file", kind.name));
+      refuse_where(kind.is_over_time, "value", fmt::format("a {} is given over time: name a file with its rows", kind.name));
       for (const Quantity& one : quantities("value", kind.dimension)) {
         refuse_where(kind.is_positive && !(one.value > 0), "value", fmt::format("a {} must be above 0", kind.name));
         m.values.push_back(one.value);
@@ -82,11 +82,12 @@ class MeasurementReader {
   }
   void check_trace_keys(const BenchQuantity& kind) const {
     for (const char* key : of_file)
-      refuse_where(has(key) && !(kind.is_over_time && has("file")), key, "is of a file over time only");
-    for (const char* key : of_threshold) refuse_where(has(key) && kind.name != of_contact, key, "is of a contact record only");
+      refuse_where(has(key) && !(kind.is_over_time && has("file")), key, "applies to a file of values over time only");
+    for (const char* key : of_threshold)
+      refuse_where(has(key) && kind.name != of_contact, key, "applies to a contact record only");
     refuse_where(has("per_volt") && (!kind.is_over_time || kind.name == of_contact), "per_volt",
                  "is of a position or velocity only");
-    refuse_where(has("per_volt") && has("unit"), "per_volt", "must not stand beside a unit");
+    refuse_where(has("per_volt") && has("unit"), "per_volt", "must not be given together with unit");
   }
   [[nodiscard]] const BenchQuantity& kind_of(const std::string& name) const {
     std::vector<std::string_view> known;
@@ -94,25 +95,25 @@ class MeasurementReader {
       if (one.name == name) return one;
       known.push_back(one.name);
     }
-    refuse("quantity", "is none that is measured" + hint(name, known));
+    refuse("quantity", "unknown quantity" + hint(name, known));
   }
   void read_drive(const BenchQuantity& kind, BenchMeasurement& m) {
-    refuse_where(has("level") && !kind.has_level, "level", fmt::format("a {} has none", kind.name));
-    refuse_where(has("waveform") && !kind.has_waveform, "waveform", fmt::format("a {} has none", kind.name));
-    refuse_where(has("waveform") && has("level"), "waveform", "must not stand beside a level");
+    refuse_where(has("level") && !kind.has_level, "level", fmt::format("must not be given for a {}", kind.name));
+    refuse_where(has("waveform") && !kind.has_waveform, "waveform", fmt::format("must not be given for a {}", kind.name));
+    refuse_where(has("waveform") && has("level"), "waveform", "must not be given together with level");
     if (!has("waveform")) return;
     const std::string name = text("waveform");
     refuse_where(name.empty() || name.find('\0') != std::string::npos, "waveform", "must be \"scene\" or the name of a file");
     m.waveform = name == "scene" ? name : (directory_ / name).string();
   }
 
-  // ---- rows of a file
+  // ---- Rows of a file
 
   struct Column {
-    std::string name;  // name in the header
-    double unit = 1;   // size of the unit of its numbers [SI unit]
+    std::string name;  // name of the column in the header
+    double unit = 1;   // size of the unit of the column [SI unit]
   };
-  // Returns the column of a name such as "closing_time_us", "capacitance [fF]", "time_s".
+  // Returns the column whose name is `stem` with a unit, such as "closing_time_us", "capacitance [fF]" or "time_s".
   [[nodiscard]] std::optional<Column> column_of(const std::vector<std::string>& header, std::string_view stem,
                                                 const Dimension& due) const {
     for (const std::string& name : header) {
@@ -179,7 +180,7 @@ class MeasurementReader {
            : kind.has_level  ? fmt::format("voltage_V and {}", value)
                              : value;
   }
-  // True when a header has softland's own form, perhaps with another quantity.
+  // Returns true if a header has the form that softland writes, even with columns of another quantity.
   [[nodiscard]] bool is_own(const std::vector<std::string>& header) const {
     return std::ranges::any_of(bench_quantities(), [&](const BenchQuantity& one) {
       return column_of(header, one.name, one.name == of_contact ? dimension::none : one.dimension).has_value();
@@ -215,7 +216,7 @@ class MeasurementReader {
     if (kind.name == of_contact) find_edges(m);
   }
 
-  // ---- files of instruments
+  // ---- Files of instruments
 
  public:
   [[nodiscard]] ContactTraceKeys contact_keys() const {
@@ -276,7 +277,7 @@ class MeasurementReader {
       const std::vector<LevelEdge> edges = contact_edges(path, contact_keys());
       const auto due = static_cast<std::size_t>(has("edges") ? whole("edges", 1, 3) : 1);
       refuse_where(edges.size() < due, "file",
-                   fmt::format("its voltage has {} edges from t = 0 on, fewer than the {} that count", edges.size(), due));
+                   fmt::format("its voltage has {} edges from t = 0 on, but at least {} are needed", edges.size(), due));
       for (std::size_t k = 0; k < due; ++k) m.values.push_back(edges[k].time);
       return;
     }
@@ -286,16 +287,16 @@ class MeasurementReader {
     shift_times(trace, time_shift());
     const double unit = unit_of_trace(kind, channel_of(recording, keys, std::string(kind.name)));
     for (std::size_t k = 0; k < trace.times.size(); ++k) {
-      if (trace.times[k] < 0) continue;  // leave out rows before the drives begin
+      if (trace.times[k] < 0) continue;  // skip rows before the drives begin
       require(m.values.size() < most_rows, [&] { return fmt::format("{}: more than {} rows from t = 0 on", path, most_rows); });
       require(m.times.empty() || trace.times[k] > m.times.back(),
               [&] { return fmt::format("{}: times must rise from row to row", path); });
       m.times.push_back(trace.times[k]);
       m.values.push_back(unit * trace.values[k]);
     }
-    require(!m.values.empty(), [&] { return fmt::format("{}: all rows are before t = 0; shift moves them", path); });
+    require(!m.values.empty(), [&] { return fmt::format("{}: all rows are before t = 0; give shift to move them", path); });
   }
-  // Returns the unit of the numbers of a trace [SI unit]: those in volts are volts.
+  // Returns the size of the unit of a trace [SI unit]; 1 for a trace in volts.
   [[nodiscard]] double unit_of_trace(const BenchQuantity& kind, const Channel& channel) const {
     if (has("per_volt")) {
       refuse_where(!channel.is_voltage && !channel.unit.empty(), "per_volt",
@@ -303,7 +304,7 @@ class MeasurementReader {
       return quantity("per_volt", {kind.dimension}).value;
     }
     const std::string unit = has("unit") ? text("unit") : channel.unit;
-    if (unit.empty()) fail("the file names no unit: say unit = \"...\", or per_volt = \"...\" where it is in volts");
+    if (unit.empty()) fail("the file names no unit: give unit = \"...\", or per_volt = \"...\" for a file in volts");
     Quantity one;
     try {
       one = parse_quantity("1 " + unit);
@@ -312,23 +313,23 @@ class MeasurementReader {
     }
     if (one.dimension != kind.dimension)
       refuse(has("unit") ? "unit" : "file",
-             fmt::format("the {} is in {}: expected {}; per_volt = \"...\" says what a volt stands for", kind.name, unit,
+             fmt::format("the {} is in {}: expected {}; per_volt = \"...\" gives the size of one volt", kind.name, unit,
                          describe(kind.dimension)));
     return one.value * (has("unit") ? channel.per_si : 1);
   }
 
-  // Leaves out the rows after `until`.
+  // Removes the rows after the time `until`.
   void cut(const BenchQuantity& kind, BenchMeasurement& m) const {
     refuse_where(kind.name == of_contact || !kind.is_over_time, "until", "is of a position or velocity only");
     const double end = quantity("until", {dimension::time}).value;
-    refuse_where(!(end >= m.times.front()), "until", "leaves no row");
+    refuse_where(!(end >= m.times.front()), "until", "must not be before the first row");
     const auto rows = static_cast<std::size_t>(std::ranges::upper_bound(m.times, end) - m.times.begin());
     m.times.resize(rows);
     m.values.resize(rows);
     m.has_end = true;
   }
 
-  // Finds each edge halfway between the rows on either side, which are open and closed.
+  // Finds the edges of the contact: each lies halfway between a row in which the contact is open and one in which it is closed.
   void find_edges(BenchMeasurement& m) const {
     const int edges = has("edges") ? whole("edges", 1, 3) : 1;
     std::vector<double> found;
@@ -340,7 +341,7 @@ class MeasurementReader {
       closed = now;
     }
     refuse_where(found.size() < static_cast<std::size_t>(edges), "file",
-                 fmt::format("its contact column has {} edges from open (0) to closed (1) and back, fewer than the {} that count",
+                 fmt::format("its contact column has {} edges from open (0) to closed (1) and back, but at least {} are needed",
                              found.size(), edges));
     m.values = std::move(found);
     m.times.clear();
@@ -356,7 +357,7 @@ class MeasurementReader {
     }
   }
 
-  // ---- keys
+  // ---- Keys
 
   [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
   [[nodiscard]] std::string place_of(const toml::node& node) const {
@@ -501,11 +502,14 @@ Bench parse_bench(std::string_view text, const std::string& name, const std::fil
                                      hint(key.str(), {"measurement", "device"})));
     }
   }
-  require(!bench.measurements.empty(), [&] { return fmt::format("{}: there is no [[measurement]]", name); });
+  require(!bench.measurements.empty(), [&] { return fmt::format("{}: must have at least one [[measurement]]", name); });
   for (const auto& [device, changes] : bench.changes) {
     const bool is_measured = std::ranges::any_of(bench.measurements, [&](const auto& m) { return m.device == device; });
-    require(is_measured,
-            [&] { return fmt::format("{}: [device.{}]: no measurement is of this device", name, shortened(device)); });
+    require(is_measured, [&] {
+      return fmt::format(
+          "{}: [device.{}]: no measurement belongs to this device; remove the section or give a measurement this device", name,
+          shortened(device));
+    });
   }
   return bench;
 }

@@ -2,31 +2,31 @@
 //
 //   [[measurement]]
 //   quantity = "closing_time"        # pull_in, release, frequency, capacitance, closing_time, contact, position or velocity
-//   drive = "main"                   # its drive; not needed where the scene has one electrode
-//   level = "22 V"                   # commanded voltage: of a closing time, a capacitance, a resonance under voltage
-//   waveform = "drive.csv"           # instead of a level: time_s and a column for each drive, or "scene" for that of the scene
+//   drive = "main"                   # driven electrode or piezo; not needed if the scene has one electrode
+//   level = "22 V"                   # commanded voltage, for a closing time, a capacitance, or a frequency under voltage
+//   waveform = "drive.csv"           # instead of a level: time_s and a column for each drive; "scene": that of the scene
 //   value = "38.2 us"                # one number, or a list of repeated measurements
-//   file = "times.csv"               # instead of a value: rows, with a header line
+//   file = "times.csv"               # instead of a value: file of rows, with a header line
 //   error = "50 ns"                  # one standard deviation, absolute or a percentage of the value
-//   mode = 1                         # of a resonance
-//   until = "60 us"                  # of a position or velocity: rows after it are left out
-//   edges = 1                        # of a contact record: how many edges count from the first touch on, 1 to 3
-//   device = "A7"                    # its device; all measurements without one are of one device
+//   mode = 1                         # number of the mode, for a frequency
+//   until = "60 us"                  # for a position or velocity: rows after this time are skipped
+//   edges = 1                        # for a contact record: number of edges used from the first touch on, 1 to 3
+//   device = "A7"                    # measured device; measurements without this key belong to one device
 //
 //   [device.A7]
 //   set = ["gap.electrode=3.4 um"]   # known differences of this device from the scene
 //
-// A file in softland's own form has the columns VALUE, LEVEL (voltage, level) or TIME (time). Their names begin with the
-// quantity, with "level" or "voltage", and with "time", and end in the unit: "closing_time_us", "capacitance [fF]", "time_s".
+// A file in the form of softland has a column of values, and one of levels or of times. The names of the columns begin with the
+// quantity, with "level" or "voltage", and with "time". They end in the unit: "closing_time_us", "capacitance [fF]", "time_s".
 // The column of a contact record is "contact", 0 open and 1 closed. Contact, position and velocity are also read from the files
 // of instruments (exchange/recording.h), by the keys of a waveform's file (column, time_column, interval, skip, time_unit,
 // decimal, shift) and
 //
-//   unit = "mm/s"                    # of a position or velocity, where the file names none, or
-//   per_volt = "50 mm/s"             # size of one volt of it
-//   threshold = "1.5 V"              # of a contact: closed where the voltage is above
-//   closed = "below"                 # or below
-//   hysteresis = "0.2 V"             # about the threshold
+//   unit = "mm/s"                    # unit of a position or velocity, if the file names none, or
+//   per_volt = "50 mm/s"             # size of one volt of the channel
+//   threshold = "1.5 V"              # for a contact: it is closed where the voltage is above the threshold
+//   closed = "below"                 # or where the voltage is below
+//   hysteresis = "0.2 V"             # width of the band about the threshold
 //   merge = "100 ns"                 # shorter states are ignored
 #pragma once
 
@@ -43,7 +43,7 @@
 
 namespace softland {
 
-/// The dimension of a quantity of a bench file, and its properties.
+/// A quantity that a bench file may hold: its dimension and the keys that it may have.
 struct BenchQuantity {
   std::string_view name;
   Dimension dimension;
@@ -75,8 +75,8 @@ struct Bench {
 
 [[nodiscard]] const std::vector<BenchQuantity>& bench_quantities();
 
-/// Reads how the voltage of a contact becomes its state, from assignments KEY=VALUE such as `threshold=1.5 V` with the keys
-/// above. Throws InvalidInput with the option `--contact`, the value and the rule.
+/// Reads how the state of a contact follows from its recorded voltage, from assignments such as `threshold=1.5 V`. The keys are
+/// those of a contact in a bench file. Throws InvalidInput with the option `--contact`, the value and the rule.
 [[nodiscard]] ContactTraceKeys contact_trace_keys(const std::vector<std::string>& assignments);
 
 /// Reads a bench file. Throws InvalidInput with file, line, key, value and rule.

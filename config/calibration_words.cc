@@ -25,10 +25,11 @@ void set_calibration(SceneFile& file, const std::string& words) {
                                                            : name == measured_time    ? "0 s"
                                                                                       : "0 %";
     require_field(std::ranges::find(measurement_names, name) != measurement_names.end(), "calibrate", words, [&] {
-      return fmt::format("'{}' is no measurement; there are {}, with an error such as {}:1 % or {}:50 ns", name,
+      return fmt::format("unknown measurement '{}'; choose from {}, with an error such as {}:1 % or {}:50 ns", name,
                          in_words(measurement_names), measured_pull_in, measured_time);
     });
-    require_field(seen.insert(name).second, "calibrate", words, [&] { return fmt::format("{} stands twice", name); });
+    require_field(seen.insert(name).second, "calibrate", words,
+                  [&] { return fmt::format("{} is given twice; give it once", name); });
     file.set(fmt::format("calibration.{}.error=\"{}\"", name, error));
   }
   if (in == std::string::npos) return;

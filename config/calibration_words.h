@@ -1,4 +1,4 @@
-// The per-device calibration, from words: "Vdp,frequency:0.5 %", and " in 8 classes" where devices are sorted.
+// Reads a per-device calibration from text: "Vdp,frequency:0.5 %", with " in 8 classes" to sort devices into classes.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace softland {
 
-/// Replaces the [calibration] of the scene: "none" removes it, and an empty text leaves it. Throws InvalidRequest of the field
-/// `calibrate`.
+/// Replaces the [calibration] of the scene. "none" removes the section, and an empty text keeps it. Throws InvalidRequest about
+/// the option `calibrate`.
 void set_calibration(SceneFile& file, const std::string& words);
 
 }  // namespace softland

@@ -20,7 +20,7 @@ struct Sign {
   std::string_view text;
   Comparison comparison;
 };
-// Longer signs stand before those they begin with.
+// A sign stands before the shorter sign that it begins with: "<=" before "<".
 constexpr auto signs = std::to_array<Sign>({{"<=", Comparison::at_most},
                                             {">=", Comparison::at_least},
                                             {"==", Comparison::equal},
@@ -73,7 +73,7 @@ Criterion parse_criterion(std::string_view text, std::span<const Figure> figures
   const std::string_view all = unquoted(text);
   const std::size_t at = all.find_first_of("<>=");
   require(at != std::string_view::npos,
-          [&] { return fmt::format("'{}' is no condition: write a figure, <, <=, ==, >= or >, and a value", all); });
+          [&] { return fmt::format("'{}' must be a condition: a figure, then <, <=, ==, >= or >, then a value", all); });
   const auto sign = std::find_if(signs.begin(), signs.end(), [&](const Sign& s) { return all.substr(at).starts_with(s.text); });
   const std::string_view name = unquoted(all.substr(0, at)), value = unquoted(all.substr(at + sign->text.size()));
 
@@ -83,7 +83,7 @@ Criterion parse_criterion(std::string_view text, std::span<const Figure> figures
   while (k < figures.size() && name != names[k] && name != figures[k].key &&
          (figures[k].symbol.empty() || name != figures[k].symbol))
     ++k;
-  require(k < figures.size(), [&] { return fmt::format("'{}' is no figure of merit{}", name, internal::hint(name, names)); });
+  require(k < figures.size(), [&] { return fmt::format("unknown figure of merit '{}'{}", name, internal::hint(name, names)); });
   constexpr std::string_view step_unit = "step";
   if (value.ends_with(step_unit)) {
     const std::string_view number = unquoted(value.substr(0, value.size() - step_unit.size()));
@@ -94,7 +94,7 @@ Criterion parse_criterion(std::string_view text, std::span<const Figure> figures
       throw InvalidInput(fmt::format("{} in '{}'", error.what(), all));
     }
     require(times.dimension == dimension::none && times.value > 0,
-            [&] { return fmt::format("'{}' in '{}' must be a number above 0 of the plain step's figure", number, all); });
+            [&] { return fmt::format("'{}' in '{}' must be a factor above 0 on the figure of the plain step", number, all); });
     return {
         .figure = figures[k], .comparison = sign->comparison, .limit = times.value, .text = std::string(all), .of_step = true};
   }
@@ -107,14 +107,14 @@ Criterion parse_criterion(std::string_view text, std::span<const Figure> figures
   const Dimension due = figures[k].unit.empty() ? dimension::none : parse_quantity("1 " + std::string(figures[k].unit)).dimension;
   require(limit.dimension == due, [&] { return fmt::format("{} in '{}' must be {}", names[k], all, describe(due)); });
   require(limit.value != 0 || figures[k].unit.empty(),
-          [&] { return fmt::format("the limit of {} in '{}' must not be 0: give what is small enough", names[k], all); });
+          [&] { return fmt::format("the limit of {} in '{}' must not be 0: give a small value with its unit", names[k], all); });
   return {.figure = figures[k], .comparison = sign->comparison, .limit = limit.value, .text = std::string(all)};
 }
 
 Criterion beside_step(Criterion criterion, double of_step) {
   if (!criterion.of_step) return criterion;
   require(std::isfinite(of_step) && of_step != 0,
-          [&] { return fmt::format("'{}': the plain step has no such figure", criterion.text); });
+          [&] { return fmt::format("'{}': the plain step does not have this figure: give a limit in units", criterion.text); });
   criterion.limit *= of_step;
   criterion.of_step = false;
   return criterion;
@@ -143,8 +143,8 @@ RobustMeasure parse_robust_measure(std::string_view text, std::span<const Figure
     measure.yield = parse_criterion(after("yield:"), figures);
   } else {
     throw InvalidInput(
-        fmt::format("'{}' is no measure: there are cvar:0.9, quantile:0.95, mean+2sigma, worst, yield and "
-                    "yield:\"bounce_count == 0\"",
+        fmt::format("unknown statistic '{}': choose one of cvar:0.9, quantile:0.95, mean+2sigma, worst, "
+                    "yield and yield:\"bounce_count == 0\"",
                     text));
   }
   return measure;

@@ -1,5 +1,5 @@
-// The requests of a robust search, from text: a measure of risk ("cvar:0.9"), or a condition on a figure of merit
-// ("permanent_contact_time < 60 us").
+// Reads from text what a search under process variation minimises or requires: a statistic ("cvar:0.9"), or a condition on a
+// figure of merit ("permanent_contact_time < 60 us").
 #pragma once
 
 #include <cstddef>
@@ -19,27 +19,28 @@ enum class Comparison { below, at_most, equal, at_least, above };
 struct Criterion {
   Figure figure;
   Comparison comparison = Comparison::below;
-  double limit = 0;      ///< limit [SI unit of the figure, or that figure of the plain step]
+  double limit = 0;      ///< limit [SI unit of the figure, or a factor on the figure of the plain step]
   std::string text;      ///< the text as given
-  bool of_step = false;  ///< true when the limit counts in the plain step's figure: see beside_step()
+  bool of_step = false;  ///< true if the limit is a factor on the figure of the plain step: see beside_step()
 
-  /// Returns the violation as a share of the limit (absolute where the limit is 0); 0 or less where the condition holds. It is
-  /// infinity for a value that is not finite: that of a switch that failed.
+  /// Returns the violation relative to the limit (absolute if the limit is 0); 0 or less if the condition holds. Returns
+  /// infinity for a value that is not finite, as a failed closing has.
   [[nodiscard]] double violation(double value) const;
   [[nodiscard]] bool holds(double value) const;
 };
 
-/// Reads "t_p < 60 us", or beside the plain step: "t_i < 3 step". Throws InvalidInput with the broken rule.
+/// Reads a condition such as "t_p < 60 us", or one relative to the plain step such as "t_i < 3 step". Throws InvalidInput with
+/// the broken rule.
 [[nodiscard]] Criterion parse_criterion(std::string_view text, std::span<const Figure> figures);
 
-/// Returns a condition beside the plain step with an absolute limit, given the step's value of the figure. Throws InvalidInput
-/// where the step has none, or 0.
+/// Makes the limit of a condition relative to the plain step absolute; `of_step` is the figure of the step. Throws InvalidInput
+/// if the step does not have the figure, or if it is 0.
 [[nodiscard]] Criterion beside_step(Criterion criterion, double of_step);
 
-/// The measure that a search minimises over the devices of a spread.
+/// The statistic over simulated devices that a search minimises.
 struct RobustMeasure {
-  Risk risk;                       ///< risk of the cost of a closing; where `yield` is given, over the devices that break it
-  std::optional<Criterion> yield;  ///< condition whose share of devices is maximised
+  Risk risk;  ///< statistic of the cost of a closing; with `yield`, over the devices that violate that condition
+  std::optional<Criterion> yield;  ///< condition that as many devices as possible shall fulfil
   std::string text;                ///< the text as given
 };
 

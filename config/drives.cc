@@ -25,7 +25,8 @@ enum class LimitChecks { without_pull_in, all };
 void check_names(const SceneFile::Impl& file, const std::string& section, const Device& device) {
   for (const std::string& name : file.names_in(section)) {
     const std::string path = join_path(section, name);
-    if (name == dispersion_drive && section == "driver") file.fail_section(path, "a force factor has no driver limits");
+    if (name == dispersion_drive && section == "driver")
+      file.fail_section(path, "the dispersion force has no driver: remove this section");
     if (const std::string why = why_no_drive(device, name); !why.empty()) file.fail_section(path, why);
   }
 }
@@ -57,7 +58,7 @@ std::vector<double> volts(const std::vector<Quantity>& quantities, const PullInV
   return values;
 }
 
-/// The values that a waveform's keys may refer to.
+/// The values that relative levels of a waveform refer to.
 struct References {
   std::string_view drive;
   const PullInVoltages& pull_in;
@@ -66,16 +67,18 @@ struct References {
   double before = 0;                                          ///< value before t = 0 [V]
 };
 
-/// Returns volts, or a percentage of the base or, for the piezo, of the main hold level.
+/// Returns a level in volts. A percentage refers to the base level or, for the piezo, to the hold voltage of the main electrode.
 double swing(const SectionReader& in, std::string_view key, const Quantity& given, const References& to, double base) {
   if (given.dimension != dimension::none || to.drive == dispersion_drive) return volts(given, to.pull_in);
   if (to.drive != piezo_drive) {
-    in.require(base != 0, key, "is a percentage of the base, which is 0 V");
+    in.require(base != 0, key, "is a percentage of the base level, which is 0 V: give volts");
     return given.value * base;
   }
-  in.require(to.main_hold.has_value(), key,
-             "is a percentage of the main hold level, but there is neither an electrode 'main' nor only one electrode");
-  in.require(*to.main_hold != 0, key, "is a percentage of the main hold level, which is 0 V");
+  in.require(
+      to.main_hold.has_value(), key,
+      "is a percentage of the hold voltage of the main electrode, but no electrode is called 'main' and there are several: "
+      "give volts");
+  in.require(*to.main_hold != 0, key, "is a percentage of the hold voltage of the main electrode, which is 0 V: give volts");
   return given.value * *to.main_hold;
 }
 
@@ -91,7 +94,7 @@ void read_list(const SectionReader& in, std::string_view key, ParameterKind kind
 template <class Family>
 Waveform read_parameters(const SectionReader& in, const References& to) {
   Family waveform;
-  double base = 0;  // level before a swing
+  double base = 0;  // level from which a relative level is counted
   for (const Parameter<Family>& p : FamilyOf<Family>::parameters) {
     const auto* one = std::get_if<double Family::*>(&p.member);
     if (one == nullptr) {
@@ -105,7 +108,7 @@ Waveform read_parameters(const SectionReader& in, const References& to) {
       value = swing(in, p.name, in.quantities(p.name).front(), to, base);
     } else if (p.kind == ParameterKind::angular_frequency && in.is_given(frequency_key)) {
       value = 2 * std::numbers::pi * in.number(frequency_key);
-    } else if (in.is_word(p.name)) {  // the word is steepest_rise
+    } else if (in.is_word(p.name)) {  // the only word is steepest_rise: the rise time at max_slew
       value = std::abs(base - to.before) / to.max_slew;
     } else if (in.has_value(p.name)) {
       value = in.number(p.name);
@@ -116,7 +119,7 @@ Waveform read_parameters(const SectionReader& in, const References& to) {
 
 Waveform read_waveform(const SectionReader& in, const References& to) {
   for (const std::string_view key : file_keys::all)
-    in.require(!in.is_given(key), key, "says something about a file, and there is no file");
+    in.require(!in.is_given(key), key, "describes a file: give the key file too, or omit this key");
   std::optional<Waveform> waveform;
   for_each_family([&]<class Family>(const Family&) {
     if (in.text("family") == FamilyOf<Family>::name) waveform = read_parameters<Family>(in, to);
@@ -141,7 +144,7 @@ const Range& any_voltage() {
   return range;
 }
 
-/// Reads the limits; nothing when the drive has no limits. Without a pull-in voltage there is no default limit.
+/// Reads the limits of a driver; none if the drive is unlimited. Without a pull-in voltage there is no default limit.
 std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_view drive, const PullInVoltages& known) {
   DriverLimits limits{.min_voltage = 0, .max_voltage = std::numeric_limits<double>::infinity()};
   if (known.dynamic_pull_in > 0 && drive != piezo_drive) {
@@ -160,7 +163,7 @@ std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_vie
   return limits;
 }
 
-/// Reads the source that applies a waveform; its load is the capacitance of the switch, which is not known here.
+/// Reads the source of a drive. The load of the source, the capacitance of the switch, is set later.
 DriverModel read_model(const SectionReader& in, std::string_view drive) {
   DriverModel model;
   if (!in.is_present()) return model;
@@ -172,15 +175,15 @@ DriverModel read_model(const SectionReader& in, std::string_view drive) {
   read("source_resistance", model.source_resistance);
   if (in.is_given("bits")) {
     model.bits = in.integer("bits");
-    in.require(model.sample_rate.has_value(), "bits", "needs a sample_rate: samples are what is rounded");
+    in.require(model.sample_rate.has_value(), "bits", "needs sample_rate, because samples are rounded");
     in.require(in.is_given("max_voltage"), "bits", "needs max_voltage: it divides the voltages from min_voltage to max_voltage");
   }
   in.require(!model.source_resistance || drive != piezo_drive, "source_resistance",
-             "charges an electrode; a piezo layer is driven without one");
+             "must not be given for a piezo layer: it is the resistance that charges an electrode");
   if (in.is_given("parallel_capacitance")) {
     model.parallel_capacitance = in.number("parallel_capacitance");
     in.require(model.parallel_capacitance == 0 || model.source_resistance, "parallel_capacitance",
-               "needs a source_resistance: a source without one charges it at once");
+               "needs source_resistance, through which this capacitance is charged");
   }
   return model;
 }
@@ -202,12 +205,12 @@ void check_order(const SectionReader& in, const DriverLimits& limits) {
              fmt::format("min_voltage of {} V must be less than max_voltage of {} V", limits.min_voltage, limits.max_voltage));
 }
 
-// Returns advice for a step that is faster than its driver, where nothing else is wrong with it.
+// Returns advice for a step that breaks no rule but the slew limit of its driver; else an empty text.
 std::string missing_rise(const Waveform& waveform, double before, const DriverLimits& limits) {
   const Step* const step = std::get_if<Step>(&waveform);
   if (step == nullptr || std::max(step->level, before) > limits.max_voltage || std::min(step->level, before) < limits.min_voltage)
     return {};
-  return fmt::format("; rise_time = \"{}\" makes it as steep as that permits, in {}", steepest_rise,
+  return fmt::format("; rise_time = \"{}\" gives the fastest permitted rise, {}", steepest_rise,
                      engineering(std::abs(step->level - before) / limits.max_slew, "s", 3));
 }
 
@@ -220,7 +223,7 @@ std::string_view main_electrode(const Device& device) {
   return {};
 }
 
-/// Reads all drives. Remarks on files that were read go to `notes`, unless that is null.
+/// Reads all drives. Notes on the files that are read are added to `notes`, if not null.
 Drives read_all(const SceneFile::Impl& file, const Device& device, const std::map<std::string, PullInVoltages>& pull_in,
                 LimitChecks checks, std::vector<std::string>* notes = nullptr) {
   std::vector<Drive> drives;
@@ -280,8 +283,8 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
   return Drives(std::move(drives));
 }
 
-/// Returns the hold levels of all drives, in order, where every pull-in voltage that a scene needs is `volt` [V]. Remarks on
-/// files that were read go to `notes`, unless that is null.
+/// Returns the hold voltages of all drives, in order, computed as if every needed pull-in voltage were `volt` [V]. Notes on the
+/// files that are read are added to `notes`, if not null.
 std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene, double volt, std::vector<std::string>* notes) {
   std::map<std::string, PullInVoltages> pull_in;
   for (const std::string& drive : scene.need_pull_in) pull_in[drive] = {.static_pull_in = volt, .dynamic_pull_in = volt};
@@ -291,22 +294,21 @@ std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene,
   return levels;
 }
 
-/// Returns true when runs begin closed; checks that all waveforms name one state.
+/// Returns true if simulations begin with the switch closed; checks that all drives name the same state.
 bool begins_closed(const SceneFile::Impl& file, const Device& device) {
   std::string closed;  // key of a drive whose before_state is closed
   for (const std::string& drive : drive_names(device)) {
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present() || !in.is_given(before_state_key) || in.text(before_state_key) != closed_state_word) continue;
-    in.require(device.has_contact(), before_state_key, "needs a [contact]: without one nothing is closed");
+    in.require(device.has_contact(), before_state_key, "needs a [contact]: a switch without a contact cannot be closed");
     closed = join_path(in.path(), before_state_key);
   }
   if (closed.empty()) return false;
   for (const std::string& drive : drive_names(device)) {
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present() || !in.is_given(before_state_key)) continue;
-    in.require(
-        in.text(before_state_key) == closed_state_word, before_state_key,
-        fmt::format("contradicts {} = \"closed\": a run begins in one state of the switch, whichever drive names it", closed));
+    in.require(in.text(before_state_key) == closed_state_word, before_state_key,
+               fmt::format("contradicts {} = \"closed\": all drives must name the same initial state of the switch", closed));
   }
   return true;
 }
@@ -350,9 +352,9 @@ Waveform raised(Waveform waveform, double by) {
 std::string why_no_drive(const Device& device, const std::string& name) {
   const std::vector<std::string> known = drive_names(device);
   if (std::find(known.begin(), known.end(), name) != known.end()) return {};
-  if (name == piezo_drive) return "there is no [piezo] layer to drive";
-  if (name == dispersion_drive) return "there is no [dispersion] force to drive";
-  return "no such electrode" + hint(name, {known.begin(), known.end()});
+  if (name == piezo_drive) return "the scene has no [piezo] layer";
+  if (name == dispersion_drive) return "the scene has no [dispersion] force";
+  return "unknown electrode" + hint(name, {known.begin(), known.end()});
 }
 
 void check_drive_name(const SceneFile::Impl& file, const std::string& electrode) {
@@ -363,7 +365,7 @@ void check_drive_name(const SceneFile::Impl& file, const std::string& electrode)
   constexpr std::size_t longest = 64;
   if (electrode == "time_s") file.fail_section(path, "the name 'time_s' is reserved for the time in CSV files");
   if (!is_bare_key(electrode) || electrode.size() > longest) {
-    file.fail_section(path, fmt::format("a name may hold letters, digits, '_' and '-', at most {} of them", longest));
+    file.fail_section(path, fmt::format("a name must consist of at most {} letters, digits, '_' and '-'", longest));
   }
 }
 
@@ -387,7 +389,7 @@ void check_drives(const SceneFile::Impl& file, Scene& scene) {
       if (waveform.keys_in_pull_in_units().empty()) scene.limits_in_pull_in.emplace_back(drive);
     }
   }
-  // The rules of a family do not depend on the size of a volt, so any pull-in voltage serves to check them. Levels that change
+  // The rules of waveform families do not depend on the pull-in voltage, so 1 V is used to check them. Levels that change
   // with it are not given in volts.
   scene.standing = levels_held(file, scene, 1, &scene.file_notes);
   scene.begins_closed = begins_closed(file, device);

@@ -13,10 +13,10 @@
 
 namespace softland::internal {
 
-/// Keys that may replace a parameter's own key.
+/// Keys that may be given instead of the key of a parameter.
 inline constexpr std::string_view frequency_key = "frequency";  ///< replaces the key of an angular frequency
 inline constexpr std::string_view file_key = "file";            ///< replaces the key of the rows of a table
-/// Keys beside `file`, for what a file of an instrument does not contain.
+/// Keys used together with `file`: they give what a file of an instrument does not contain.
 namespace file_keys {
 inline constexpr std::string_view column = "column", time_column = "time_column", interval = "interval", skip = "skip",
                                   unit = "unit", time_unit = "time_unit", decimal = "decimal", scale = "scale", shift = "shift";
@@ -25,12 +25,12 @@ inline constexpr std::string_view first = "first";    ///< value of `shift`: the
 inline constexpr std::array all{column, time_column, interval, skip, unit, time_unit, decimal, scale, shift};
 }  // namespace file_keys
 inline constexpr std::string_view before_key = "before";  ///< key of every family: the value before t = 0
-/// Key of every family that names the equilibrium under the values before t = 0 in which a run begins.
+/// Key of every family. Its value, open or closed, names the equilibrium at t = 0 in which a simulation begins.
 inline constexpr std::string_view before_state_key = "before_state", open_state = "open", closed_state_word = "closed";
-/// Word for the rise time of a step at the driver's max_slew.
+/// Value of rise_time that selects the shortest rise permitted by max_slew of the driver.
 inline constexpr std::string_view steepest_rise = "driver";
 
-/// Returns the unit of a parameter in a scene; the drive decides that of a level.
+/// Returns the dimension of a waveform parameter in a scene. That of a level depends on the drive.
 [[nodiscard]] Dimension dimension_of(ParameterKind kind);
 
 /// Returns the waveform with every level raised by `by`.

@@ -15,7 +15,7 @@ namespace {
 
 using internal::toml_string;
 
-// Places in a text by line and column, as TOML counts them: from 1, columns in characters.
+// Converts line and column, which TOML counts from 1 and in characters, to a place in the text.
 class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text), begins_{0} {
@@ -44,7 +44,7 @@ class Lines {
   std::vector<std::size_t> begins_;
 };
 
-// Returns the end of the number or quoted text that begins there.
+// Returns the end of the number or quoted text that begins at `begin`.
 std::size_t end_of_value(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   if (quote == '"' || quote == '\'') {
@@ -64,7 +64,7 @@ const toml::node* node_at(const toml::table& root, const std::vector<std::string
   return node;
 }
 
-// Writes the value in the unit of the previous text.
+// Writes a value in the unit of the text that it replaces.
 std::string in_unit_of(const std::string& written, const Quantity& value) {
   constexpr const char* number_begins = "0123456789.eE+-−_";
   std::size_t end = 0;
@@ -100,7 +100,7 @@ std::string edited_scene(std::string_view text, const std::string& name, const s
   const toml::table root = internal::parse_toml(text, name);
   const Lines lines(text);
   std::vector<Replacement> all;
-  std::map<std::size_t, std::string> remarks;  // remarks by the end of their line
+  std::map<std::size_t, std::string> remarks;  // comments to add, by the end of their line
   for (const SceneEdit& edit : edits) {
     const std::vector<std::string> path = internal::split_path(edit.path);
     const toml::node* node = node_at(root, path);
@@ -117,7 +117,7 @@ std::string edited_scene(std::string_view text, const std::string& name, const s
         remarks[lines.end(end)] += fmt::format("{}{}, was {}", remarks[lines.end(end)].empty() ? "" : "; ", edit.remark, was);
       continue;
     }
-    require(edit.element == 0, [&] { return fmt::format("{}: {} is no list there", name, edit.path); });
+    require(edit.element == 0, [&] { return fmt::format("{}: {} must be a list", name, edit.path); });
     const std::vector<std::string> section(path.begin(), path.end() - 1);
     std::string header;
     for (const std::string& part : section) header = internal::join_path(header, part);
@@ -126,8 +126,10 @@ std::string edited_scene(std::string_view text, const std::string& name, const s
                                          edit.remark.empty() ? "" : "  # " + edit.remark);
     if (const toml::node* there = node_at(root, section); there != nullptr) {
       const std::size_t begin = lines.place(there->source().begin);
-      require(there->is_table() && begin < text.size() && text[begin] == '[',
-              [&] { return fmt::format("{}: [{}] is not written under a header: a key cannot be added to it", name, header); });
+      require(there->is_table() && begin < text.size() && text[begin] == '[', [&] {
+        return fmt::format("{}: [{}] must be written as a section with a header: a key cannot be added to an inline table", name,
+                           header);
+      });
       const std::size_t end = lines.end(begin);
       all.push_back({.begin = end, .end = end, .text = "\n" + line});
     } else {
@@ -160,12 +162,12 @@ std::optional<std::pair<std::size_t, std::size_t>> spread_of(std::string_view te
 std::string with_spread_of(std::string_view text, const std::string& name, const SceneFile& other) {
   const std::string whole = other.text();
   const auto theirs = spread_of(whole);
-  require(theirs.has_value(), [&] { return fmt::format("{}: there is no [spread]", other.name()); });
+  require(theirs.has_value(), [&] { return fmt::format("{}: the scene must have a section [spread]", other.name()); });
   const std::string section = whole.substr(theirs->first, theirs->second - theirs->first);
   const toml::table root = internal::parse_toml(text, name);
   if (!root.contains("spread")) return fmt::format("{}\n{}", text, section);
   const auto own = spread_of(text);
-  require(own.has_value(), [&] { return fmt::format("{}: spread is not written under a header", name); });
+  require(own.has_value(), [&] { return fmt::format("{}: spread must be written as a section with a header", name); });
   return replaced(text, {{.begin = own->first, .end = own->second, .text = section + (own->second < text.size() ? "\n" : "")}});
 }
 

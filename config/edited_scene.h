@@ -1,4 +1,4 @@
-// The text of a scene with some numbers replaced: comments, sources, order and units stay as written.
+// Replaces numbers in the text of a scene and keeps its comments, order and units.
 #pragma once
 
 #include <string>
@@ -22,8 +22,8 @@ struct SceneEdit {
 /// text that is not TOML, and where a key cannot be added because its section is an inline table.
 [[nodiscard]] std::string edited_scene(std::string_view text, const std::string& name, const std::vector<SceneEdit>& edits);
 
-/// Returns the text with the section [spread] of another scene in the place of its own, or at the end. Throws InvalidInput
-/// where its own is not a section under a header.
+/// Returns the text of a scene with the section [spread] of another scene, which replaces an existing one or is added at the
+/// end. Throws InvalidInput if an existing spread is not a section with a header.
 [[nodiscard]] std::string with_spread_of(std::string_view text, const std::string& name, const SceneFile& other);
 
 }  // namespace softland

@@ -26,7 +26,7 @@ bool says_something(const SectionReader& in) {
   return std::any_of(file_keys::all.begin(), file_keys::all.end(), [&](std::string_view key) { return in.is_given(key); });
 }
 
-/// True when the header line, the first that is not a comment, has the column of times that softland writes.
+/// Returns true if the header, the first line that is not a comment, has the column of times that softland writes.
 bool is_own(std::string_view content) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (content.starts_with(byte_order_mark)) content.remove_prefix(byte_order_mark.size());
@@ -44,13 +44,13 @@ bool is_own(std::string_view content) {
   }
 }
 
-/// Returns the smallest and largest value.
+/// Returns the smallest and the largest of the first `count` values.
 std::pair<double, double> extremes(const std::vector<double>& values, std::size_t count) {
   const auto [least, most] = std::minmax_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
   return {*least, *most};
 }
 
-// Shifts the times; a row that rounding leaves beside t = 0 is put at 0.
+// Shifts the times. A row within rounding of t = 0 is set to 0.
 void shift_times(std::vector<double>& times, double shift) {
   constexpr double rounding = 1e-6;  // share of the mean step
   const double step = (times.back() - times.front()) / static_cast<double>(times.size());
@@ -66,11 +66,10 @@ double level_before(const SectionReader& in, const Trace& trace, std::size_t cou
   const auto [least, most] = extremes(trace.values, count);
   const auto [smallest, largest] = extremes(trace.values, trace.values.size());
   if (most - least > noise * (largest - smallest)) {
-    in.fail(
-        fmt::format("the {} rows before t = 0 run from {} to {}, which is no rest; shift = \"first\" begins with the first row, "
-                    "shift = \"...\" moves "
-                    "t = 0, before = \"...\" says what the switch rests under",
-                    count, engineering(least, "V", digits), engineering(most, "V", digits)));
+    in.fail(fmt::format(
+        "the {} rows before t = 0 range from {} to {}, but must be constant: shift = \"first\" starts at the first row, "
+        "shift = \"...\" moves t = 0, before = \"...\" gives the voltage before t = 0",
+        count, engineering(least, "V", digits), engineering(most, "V", digits)));
   }
   double sum = 0;
   for (std::size_t i = 0; i < count; ++i) sum += trace.values[i];
@@ -101,7 +100,7 @@ FileRows from_zero(const SectionReader& in, const Trace& trace) {
   voltage.insert(voltage.end(), trace.values.begin() + static_cast<std::ptrdiff_t>(count), trace.values.end());
   if (count == 0) return rows;
   if (in.is_given(before_key)) {
-    rows.told += fmt::format("; left out: {} rows before t = 0, for which before is given", count);
+    rows.told += fmt::format("; {} rows before t = 0 are skipped, because before is given", count);
   } else {
     rows.before = level_before(in, trace, count);
     rows.told += fmt::format("; before t = 0: {}, the mean of {} rows", engineering(*rows.before, "V", digits), count);
@@ -125,8 +124,8 @@ void thin(FileRows& rows, const SectionReader& driver) {
   Thinned made = thinned(table, time_constant, relative_error * (most - least));
   if (2 * made.table.time.size() > count) return;  // hardly any row can be left out
   table = std::move(made.table);
-  rows.told += fmt::format("; thinned from {} to {} rows: behind {} of {} they differ by less than {}", count, table.time.size(),
-                           has_bandwidth ? "the bandwidth" : "a bandwidth",
+  rows.told += fmt::format("; thinned from {} to {} rows: after filtering with {} of {} they differ by less than {}", count,
+                           table.time.size(), has_bandwidth ? "the bandwidth" : "a bandwidth",
                            engineering(1 / (2 * std::numbers::pi * time_constant), "Hz", 3), engineering(made.error, "V", 2));
 }
 

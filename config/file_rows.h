@@ -13,11 +13,12 @@ namespace softland::internal {
 struct FileRows {
   Table table;                        ///< rows from t = 0 on
   std::optional<double> before = {};  ///< mean of the rows before t = 0, if the file has some [V]
-  std::string told = {};              ///< one line about a file that softland did not write; empty for its own files
+  std::string told = {};              ///< one line of notes about a file of another program; empty for a file of softland
 };
 
-/// Reads the file that [waveform.NAME] names. A file of softland (a column time_s) is taken to the bit unless a key describes
-/// it. exchange/ reads others; long ones are thinned to what the source of [driver.NAME] can pass. Throws InvalidInput with key
+/// Reads the file that [waveform.NAME] names. The numbers of a file written by softland (column time_s) are kept to the bit,
+/// unless a key describes the file. Other files are read by exchange/; a long one is thinned to what the bandwidth of
+/// [driver.NAME] passes. Throws InvalidInput with key
 /// and file.
 [[nodiscard]] FileRows read_file_rows(const SectionReader& waveform, std::string_view drive, const SectionReader& driver);
 

@@ -1,4 +1,4 @@
-// Invalid input of a scene file, for programs that point at it.
+// An invalid key of a scene file, with its place, for programs that show the place.
 #pragma once
 
 #include <source_location>
@@ -9,7 +9,7 @@
 
 namespace softland {
 
-/// Thrown for a key or section of a scene that breaks a rule: its message says all of this in words.
+/// Thrown for a key or section of a scene that breaks a rule. The message contains key, file and line as well.
 class InvalidKey : public InvalidInput {
  public:
   struct Place {

@@ -46,7 +46,8 @@ ModeKeys mode_keys(const SectionReader& in) {
   return made;
 }
 
-// Takes the width of the file, of the key, or of both where they agree. Returns the widths at the positions where they differ.
+// Sets the width from the file, from the key, or from both if they agree. Returns the widths at the positions if the width is
+// not constant.
 std::vector<double> take_width(Structure& s, const ModeTable& table, const SectionReader& in) {
   constexpr double even = 1e-3;
   double low = std::numeric_limits<double>::infinity(), high = 0;
@@ -68,10 +69,10 @@ std::vector<double> take_width(Structure& s, const ModeTable& table, const Secti
     return table.widths;
   }
   in.require(is_even, "width",
-             fmt::format("the width of the file runs from {} to {} along the axis: leave the key out to take it from there",
+             fmt::format("must be omitted: the width in the file varies from {} to {} along the axis, and is used",
                          engineering(low, "m", digits), engineering(high, "m", digits)));
   in.require(std::abs(s.width - high) <= even * high, "width",
-             fmt::format("the file says that the width is {}", engineering(high, "m", digits)));
+             fmt::format("must equal the width in the file, {}, or be omitted", engineering(high, "m", digits)));
   return {};
 }
 
@@ -79,7 +80,7 @@ SplineEnd far_end_of(const SectionReader& in) {
   return in.is_given(keys::far_anchor) && in.text(keys::far_anchor) == clamped ? SplineEnd::clamped : SplineEnd::free;
 }
 
-// Returns the offsets; empty where the face is straight.
+// Returns the offsets of the face at rest; empty if the face is straight.
 std::vector<double> offsets_of(ModeTable& table) {
   const bool is_straight = std::ranges::all_of(table.rest_offsets, [](double offset) { return offset == 0; });
   return is_straight ? std::vector<double>() : std::move(table.rest_offsets);
@@ -100,7 +101,7 @@ std::shared_ptr<const ModalTable> table_of_file(Scene& scene, const SectionReade
   std::vector<double> offsets = offsets_of(table);
   const SplineEnd far_end = far_end_of(in);
   in.require(far_end == SplineEnd::free || table.far_end == SplineEnd::clamped, keys::far_anchor,
-             "the far end of the file does not stand still in every mode, as at a clamp");
+             "requires a far end that does not move in any mode of the file");
   return std::make_shared<const ModalTable>(std::move(table.positions), std::move(table.frequencies), std::move(table.shapes),
                                             std::move(offsets), std::move(widths), far_end);
 }
@@ -108,7 +109,7 @@ std::shared_ptr<const ModalTable> table_of_file(Scene& scene, const SectionReade
 std::shared_ptr<const ModalTable> table_of_scene(Structure& s, const SectionReader& in) {
   for (const std::string_view key :
        {keys::axis, keys::direction, keys::length_unit, keys::mass_unit, keys::mass, keys::mass_normalised, keys::clamp})
-    in.require(!in.is_given(key), key, "says how a file is read, and the scene holds its modes itself");
+    in.require(!in.is_given(key), key, "describes a file of modes, but this scene holds its modes itself: omit the key");
   for (const std::string_view key : {keys::frequencies, keys::shapes, std::string_view("width")}) {
     if (!in.is_given(key) && !(key == "width" && in.is_given(keys::widths)))
       in.fail(fmt::format("missing key '{}': beside positions there must be frequencies, shapes and width", key));
@@ -146,32 +147,34 @@ std::vector<Key> modal_table_keys() {
   constexpr std::string_view rest_is_of_file = "it belongs to the modes";
   Key shapes = numbers(keys::shapes, {dimension::none}, any, "a list per mode: mass-normalised, in 1/sqrt(kg), at the positions");
   shapes.is_nested = true;
-  Key normalised{
-      .name = keys::mass_normalised, .type = KeyType::flag, .about = "the modes of the file are, though it does not say so"};
+  Key normalised{.name = keys::mass_normalised,
+                 .type = KeyType::flag,
+                 .about = "the modes of the file are mass-normalised, although the file does not say so"};
   return {
       words(keys::file, "table of modes, CalculiX .frd, export of COMSOL, UFF 55 or ANSYS .rom, relative to the scene")
           .needed()
           .instead(keys::positions),
-      words(keys::axis, "of the file, from the clamp to the far end: x, -y"),
-      words(keys::direction, "of the file, towards the near electrode: -z"),
-      words(keys::length_unit, "of the file's positions, where it does not say").such_as("mm"),
-      words(keys::mass_unit, "of the model behind the file").such_as("t"),
-      number(keys::mass, {dimension::mass}, positive, "of the structure, even along its axis: normalises modes that are not")
+      words(keys::axis, "axis of the file that points from the clamp to the far end: x, -y"),
+      words(keys::direction, "axis of the file that points towards the near electrode: -z"),
+      words(keys::length_unit, "unit of the positions, if the file does not give it").such_as("mm"),
+      words(keys::mass_unit, "mass unit of the model in the file").such_as("t"),
+      number(keys::mass, {dimension::mass}, positive,
+             "mass of a structure with constant mass per length; normalises modes that are not mass-normalised")
           .fixed("it normalises the modes of a file; vary structure.frequency_factor"),
       std::move(normalised),
-      number(keys::clamp, {dimension::length}, any, "where the clamp is on the axis of the file, if there is no node")
+      number(keys::clamp, {dimension::length}, any, "position of the clamp on the axis of the file, if there is no node")
           .fixed("it is a place in the file"),
       numbers(keys::positions, {dimension::length}, not_negative,
-              "instead of a file: places from the clamp on, which is the first")
+              "instead of a file: positions along the axis; the first is the clamp")
           .instead(keys::file),
       numbers(keys::frequencies, {dimension::frequency}, positive,
-              "of the modes at these positions, or of a file that does not hold them"),
+              "natural frequencies of the modes, given with positions or for a file without frequencies"),
       std::move(shapes),
       numbers(keys::rest_offsets, {dimension::length}, any,
-              "of the face at the positions, towards the near electrode; absent: it is straight at rest")
+              "offset of the face at the positions, towards the near electrode; absent: straight at rest")
           .fixed(rest_is_of_file),
       numbers(keys::widths, {dimension::length}, positive,
-              "across the axis at the positions, straight between them; instead of width")
+              "width across the axis at the positions, linear between them; instead of width")
           .instead("width")
           .fixed("it belongs to the modes"),
       one_of(keys::far_anchor, {"free", clamped},
@@ -186,11 +189,11 @@ void read_modal_table(Scene& scene, const SectionReader& in) {
     table = table_of_scene(s, in);
   } else {
     for (const std::string_view key : {keys::shapes, keys::rest_offsets, keys::widths})
-      in.require(!in.is_given(key), key, "stands beside positions, not beside a file");
+      in.require(!in.is_given(key), key, "must be given with positions, not with a file: omit it");
     table = table_of_file(scene, in);
   }
   if (!table->has_far_clamp() && table->is_held_at_both_ends())
-    in.fail("the far end stands still in every mode: far_anchor = \"clamped\" says that it is held");
+    in.fail("the far end does not move in any mode: set far_anchor = \"clamped\"");
   if (in.is_given("axial_stiffness")) {
     in.require(table->has_far_clamp(), "axial_stiffness",
                "needs far_anchor = \"clamped\": a structure stretches between two clamps only");

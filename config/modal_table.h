@@ -9,7 +9,7 @@
 
 namespace softland::internal {
 
-/// Names of the keys for the place of the modes, and for the reading of their file.
+/// Names of the keys that give the source of the modes and the way to read their file.
 namespace modal_keys {
 inline constexpr std::string_view file = "file", axis = "axis", direction = "direction", length_unit = "length_unit",
                                   mass_unit = "mass_unit", mass = "mass", mass_normalised = "mass_normalised", clamp = "clamp",
@@ -17,16 +17,15 @@ inline constexpr std::string_view file = "file", axis = "axis", direction = "dir
                                   rest_offsets = "rest_offsets", widths = "widths", far_anchor = "far_anchor";
 }  // namespace modal_keys
 
-/// Returns these keys, which stand before the fields of a ModalStructure.
+/// Returns the keys of the table of modes; in a scene they precede the fields of a ModalStructure.
 [[nodiscard]] std::vector<Key> modal_table_keys();
 
-/// Sets table, length, width and the number of modes of the structure; data from a file of another program becomes a note of
-/// the scene. Throws InvalidInput with key, file and rule for unreadable data, and for a structure that is not a beam of
-/// constant width.
+/// Sets the table, length, width and number of modes of the structure. A file of another program adds a note to the scene. Throws
+/// InvalidInput with key, file and rule for unreadable data, and for a structure that is not a beam of constant width.
 void read_modal_table(Scene& scene, const SectionReader& in);
 
-/// Puts the table itself where a scene names its file, so that the scene needs no other file: it reads back to the same bits.
-/// Other structures stay as they are.
+/// Replaces the name of a file of modes in a scene by the table itself, so that the scene needs no other file. The table reads
+/// back to the same bits. Scenes with other structures are not changed.
 void hold_table(toml::table& root, const Structure& structure);
 
 }  // namespace softland::internal

@@ -40,7 +40,7 @@ std::vector<std::string> split_trimmed(std::string_view text, char at) {
   return parts;
 }
 
-/// Reads digits alone.
+/// Reads a whole number that consists of digits only; none for any other text.
 std::optional<std::uint64_t> whole_number(std::string_view text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -48,7 +48,7 @@ std::optional<std::uint64_t> whole_number(std::string_view text) {
   return value;
 }
 
-/// Reads as parse_quantity(); the space before the unit may be missing, as it easily is in a shell.
+/// Reads a quantity as parse_quantity() does, but also without the space before the unit, as typed in a shell.
 Quantity plan_quantity(std::string_view given) {
   const std::string_view text = trimmed(given);
   double ignored = 0;
@@ -67,7 +67,7 @@ double in_few_digits(double value) {
   return rounded;
 }
 
-/// Returns the value at the share `t` of the range, 0 to 1.
+/// Returns the value of a variable at the share `t` of its range, 0 to 1.
 double between(const PlanVariable& variable, double t) {
   const double low = variable.low, high = variable.high;
   if (t == 0) return low;
@@ -92,12 +92,13 @@ class KeyFinder {
     std::optional<Quantity> base = {};  ///< its value in the scene
   };
 
-  /// Throws InvalidInput with the rule only.
+  /// Finds the keys of an entry by its name. Throws InvalidInput with the rule only.
   [[nodiscard]] Found find(const std::string& name) const {
     Found found{.key = {.path = name}};
     if (const std::size_t bracket = name.rfind('['); bracket != std::string::npos && name.ends_with(']')) {
       const auto element = whole_number(std::string_view(name).substr(bracket + 1, name.size() - bracket - 2));
-      require(element && *element >= 1, [&] { return fmt::format("'{}' is no element of a list such as span[2]", name); });
+      require(element && *element >= 1,
+              [&] { return fmt::format("'{}' must name an element of a list, such as span[2]", name); });
       found.key = {.path = name.substr(0, bracket), .element = *element};
     }
     const std::vector<std::string> parts = internal::split_path(found.key.path);
@@ -111,11 +112,12 @@ class KeyFinder {
     const bool named = file_.is_named(*section);
     const std::size_t depth = named ? 3 : 2;
     const auto is_no_key = [&] {
-      return fmt::format("'{}' is no key; one of this section is {}.{}KEY", shortened(name), parts.front(), named ? "NAME." : "");
+      return fmt::format("'{}' must name a key of the section, in the form {}.{}KEY", shortened(name), parts.front(),
+                         named ? "NAME." : "");
     };
     require(parts.size() == depth || (parts.size() > depth && internal::find_key(parts) != nullptr), is_no_key);
     require(section->always_in_force || file_.find({parts.begin(), parts.end() - 1}) != nullptr,
-            [&] { return fmt::format("'{}': the scene has no such section (--set puts one in)", shortened(name)); });
+            [&] { return fmt::format("'{}': the scene does not have this section; --set adds one", shortened(name)); });
     const SectionReader whole(file_, parts.front(), named ? std::string_view(entry) : std::string_view());
     const auto holder = whole.holder(std::span(parts).subspan(depth - 1));
     require(holder.has_value(), is_no_key);
@@ -139,13 +141,13 @@ class KeyFinder {
     const bool is_one = key.may_be_one && found.key.element == 0 && in.has_value(key.name) && in.quantities(key.name).size() == 1;
     const bool is_list = key.type == KeyType::quantities && !is_one && (!key.may_be_one || in.is_list(key.name));
     require(key.type != KeyType::text && key.type != KeyType::texts,
-            [&] { return fmt::format("{} is a text, which cannot vary", found.key.path); });
-    require(key.part == nullptr, [&] { return fmt::format("{} has keys of its own: name one of them", found.key.path); });
-    require(is_list || found.key.element == 0, [&] { return fmt::format("{} is no list", found.key.path); });
+            [&] { return fmt::format("{} is a text and cannot vary", found.key.path); });
+    require(key.part == nullptr, [&] { return fmt::format("{} is a table: name one of its keys", found.key.path); });
+    require(is_list || found.key.element == 0, [&] { return fmt::format("{} must be a list", found.key.path); });
     if (is_list) {
       const std::size_t size = in.has_value(key.name) ? in.quantities(key.name).size() : 0;
       require(found.key.element >= 1 && found.key.element <= size, [&] {
-        return fmt::format("{} is a list of {}: name one of them, such as {}[1]", found.key.path, size, found.key.path);
+        return fmt::format("{} is a list of {}: name one element, such as {}[1]", found.key.path, size, found.key.path);
       });
       require(!in.is_nested(key.name),
               [&] { return fmt::format("{} holds several pads, of which none can vary alone", found.key.path); });
@@ -169,11 +171,11 @@ class EntryReader {
       require(names.insert(key).second, [&] { return fmt::format("names {} twice", key); });
     const KeyType type = keys_.front().schema->type;
     if (type == KeyType::choice || type == KeyType::flag)
-      require(keys_.size() == 1, [&] { return fmt::format("{} is no number: no factor can multiply it", name); });
+      require(keys_.size() == 1, [&] { return fmt::format("{} must be a number, because a factor multiplies it", name); });
     variable_.is_whole = type == KeyType::integer;
   }
 
-  /// Reads the words of a choice, or the numbers of a list.
+  /// Reads the values A,B,C: words of a choice, or numbers.
   PlanVariable of_list(const std::vector<std::string>& texts) && {
     const KeyType type = keys_.front().schema->type;
     if (type == KeyType::choice || type == KeyType::flag) {
@@ -184,11 +186,12 @@ class EntryReader {
     return finish();
   }
 
-  /// Reads LOW:HIGH, LOW:HIGH:N, each with :log behind it; `is_sample`: without N.
+  /// Reads a range LOW:HIGH:N of a grid or, if `is_sample`, LOW:HIGH of a box. The suffix :log selects equal ratios.
   PlanVariable of_range(std::vector<std::string> parts, bool is_sample) && {
     const KeyType type = keys_.front().schema->type;
-    require(type != KeyType::choice && type != KeyType::flag,
-            [&] { return fmt::format("{} is no number: list its values, a,b,c", variable_.name); });
+    require(type != KeyType::choice && type != KeyType::flag, [&] {
+      return fmt::format("{} must be a number to have a range: list its values instead, as in A,B,C", variable_.name);
+    });
     if (parts.back() == "log") {
       variable_.is_logarithmic = true;
       parts.pop_back();
@@ -200,8 +203,8 @@ class EntryReader {
     variable_.low = ends[0].value;
     variable_.high = ends[1].value;
     if (variable_.is_logarithmic) {
-      require(variable_.low * variable_.high > 0, "equal ratios need two ends above 0");
-      require(!variable_.is_whole, "a whole number goes in equal steps");
+      require(variable_.low * variable_.high > 0, "equal ratios (log) require two ends other than 0, of the same sign");
+      require(!variable_.is_whole, "a whole number must vary in equal steps: omit log");
     }
     if (!is_sample) fill(parts[2]);
     return finish();
@@ -230,7 +233,7 @@ class EntryReader {
     if (variable_.is_whole) require_whole(*count);
   }
 
-  /// Requires that equal steps from one whole number to another give whole numbers: the number of steps must divide the range.
+  /// Checks that equal steps from one whole number to another give whole numbers: the number of steps must divide the range.
   void require_whole(std::uint64_t count) const {
     if (count == 1) return;
     const auto way = static_cast<std::uint64_t>(std::abs(variable_.high - variable_.low));
@@ -239,13 +242,14 @@ class EntryReader {
     for (std::uint64_t steps = 1; steps <= std::min(way, most_values - 1) && counts.size() < 12; ++steps) {
       if (way % steps == 0) counts.push_back(steps + 1);
     }
-    throw InvalidInput(counts.empty() ? std::string("there are not as many whole numbers in the range")
-                                      : fmt::format("{} values in equal steps from {} to {} are not whole numbers; {} values are",
+    throw InvalidInput(counts.empty() ? std::string("the range holds fewer whole numbers: give a smaller number of values")
+                                      : fmt::format("{} values in equal steps from {} to {} are not whole numbers; "
+                                                    "{} values are",
                                                     count, variable_.low, variable_.high, fmt::join(counts, ", ")));
   }
 
-  /// Reads quantities of one dimension that the key may have; plain numbers and percentages are factors where the key has a
-  /// unit.
+  /// Reads quantities of one of the dimensions that the key may have. If the key has a unit, plain numbers and percentages are
+  /// factors on its value.
   std::vector<Quantity> read(const std::vector<std::string>& texts) {
     std::vector<Quantity> all;
     bool is_percent = false;
@@ -267,7 +271,7 @@ class EntryReader {
     const Dimension given = all.front().dimension;
     const std::vector<Dimension>& allowed = keys_.front().schema->dimensions;
     const std::optional<Quantity>& base = keys_.front().base;
-    // A percentage of a place that is written as a length is a percentage of that length.
+    // A position on the beam may be a length in the scene; a percentage is then a factor on that length.
     const bool is_of_value = keys_.front().schema->bound.place != nullptr && given == dimension::none && is_percent && base &&
                              base->dimension != dimension::none;
     const bool fits = variable_.is_whole
@@ -316,7 +320,7 @@ class EntryReader {
   std::vector<KeyFinder::Found> keys_;
 };
 
-/// Adds the place before errors about an entry.
+/// Puts the place of an entry in front of messages about it.
 template <class Read>
 auto at_place(const PlanRequest& request, std::string_view key, std::size_t number, Read&& read) {
   try {
@@ -330,7 +334,7 @@ auto at_place(const PlanRequest& request, std::string_view key, std::size_t numb
 std::pair<std::string, std::string> name_and_values(const std::string& entry) {
   const std::size_t equals = entry.find('=');
   require(equals != std::string::npos && equals > 0,
-          "must be KEY=LOW:HIGH:N, KEY=LOW:HIGH:N:log or KEY=A,B,C, or KEY*KEY=... of one factor");
+          "must be KEY=LOW:HIGH:N, KEY=LOW:HIGH:N:log or KEY=A,B,C, or KEY*KEY=VALUES with the values of one factor");
   std::string name;
   for (const std::string& key : split_trimmed(std::string_view(entry).substr(0, equals), '*'))
     name += (name.empty() ? "" : "*") + key;
@@ -348,14 +352,14 @@ Plan::Plan(const PlanRequest& request)
       seed_(request.seed),
       pareto_(request.pareto) {
   if (!request.columns.empty()) {
-    require(request.sample.empty() && request.vary.empty(), [&] {
-      return fmt::format("{}: gives the points: nothing else varies or is sampled beside it", request.place("list", 0));
-    });
+    require(request.sample.empty() && request.vary.empty(),
+            [&] { return fmt::format("{}: gives all points: nothing else may vary or be sampled", request.place("list", 0)); });
     read_rows(request);
   } else {
     if (!request.sample.empty()) at_place(request, "sample", 0, [&] { read_sample(request); });
     at_place(request, is_search_ ? "sample" : "pareto", 0, [&] {
-      require(is_search_ == !pareto_.empty(), "a search for a front needs its figures (pareto) and its points (sample nsga2:N)");
+      require(is_search_ == !pareto_.empty(),
+              "a search for a Pareto front needs both its figures (pareto) and its number of points (sample nsga2:N)");
     });
     read_variables(request);
   }
@@ -376,7 +380,7 @@ void Plan::read_sample(const PlanRequest& request) {
   const bool is_latin = parts.front() == "lhs";
   is_search_ = parts.front() == "nsga2";
   const Named<PointSet>* kind = find_named(point_sets, is_latin ? "latin_hypercube" : is_search_ ? "sobol" : parts.front());
-  require(kind != nullptr && parts.size() == 2, "must be sobol:N, lhs:N or, for a front, nsga2:N with N points");
+  require(kind != nullptr && parts.size() == 2, "must be sobol:N, lhs:N or, for a Pareto front, nsga2:N with N points");
   const auto count = whole_number(parts[1]);
   require(count && *count >= 1 && *count <= SamplePoints::largest_size, [&] {
     return fmt::format("'{}' must be a whole number of points from 1 to {}", shortened(parts[1]), SamplePoints::largest_size);
@@ -409,7 +413,7 @@ void Plan::read_rows(const PlanRequest& request) {
   std::vector<double> scale;
   at_place(request, "list", 0, [&] {
     for (const std::string& column : request.columns) {
-      // The column is named "structure.length [um]"; the bracket of a list's element has no blank before it.
+      // The name is "structure.length [um]"; unlike the bracket of a unit, that of a list element follows without a blank.
       const std::size_t bracket = column.find(" [");
       const std::string name(trimmed(std::string_view(column).substr(0, bracket)));
       std::string unit;
@@ -418,7 +422,7 @@ void Plan::read_rows(const PlanRequest& request) {
         unit = column.substr(bracket + 2, column.size() - bracket - 3);
       }
       variables_.push_back(EntryReader(finder, name).of_list({"1 " + unit}));
-      require(variables_.back().words.empty(), [&] { return fmt::format("{} is no number", name); });
+      require(variables_.back().words.empty(), [&] { return fmt::format("{} must be a number", name); });
       scale.push_back(variables_.back().values.front());
       variables_.back().values.clear();
     }
@@ -426,7 +430,7 @@ void Plan::read_rows(const PlanRequest& request) {
   for (const std::vector<double>& row : request.rows) {
     std::vector<double> values;
     for (std::size_t i = 0; i < row.size(); ++i) {
-      // Numbers are scaled in decimal, so that 245 [um] is 245e-6 and not its neighbour.
+      // Numbers are scaled in decimal, so that 245 [um] becomes the double nearest to 245e-6.
       values.push_back(scale[i] == 1 ? row[i] : in_few_digits(row[i] * scale[i]));
       require(!variables_[i].is_whole || values.back() == std::round(values.back()), [&] {
         return fmt::format("{}: {} = {} must be a whole number", request.place("list", 0), variables_[i].name, values.back());
@@ -434,20 +438,20 @@ void Plan::read_rows(const PlanRequest& request) {
     }
     rows_.push_back(std::move(values));
   }
-  require(!rows_.empty(), [&] { return fmt::format("{}: there are no rows", request.place("list", 0)); });
+  require(!rows_.empty(), [&] { return fmt::format("{}: must have at least one row of points", request.place("list", 0)); });
 }
 
 void Plan::count_points() {
   if (!rows_.empty()) {
     points_ = rows_.size();
   } else if (is_search_) {
-    require(points_ <= most_searched, [&] { return fmt::format("a search has at most {} points", most_searched); });
+    require(points_ <= most_searched, [&] { return fmt::format("must have at most {} points in a search", most_searched); });
   } else if (sample_) {
     sampled_.emplace(*sample_, variables_.size(), seed_, Stream::plan, points_);
   } else {
     for (const PlanVariable& variable : variables_) {
       require(points_ <= most_points / variable.values.size(),
-              [&] { return fmt::format("the plan has more than {} points; there may be no more", most_points); });
+              [&] { return fmt::format("the plan must have at most {} points", most_points); });
       points_ *= variable.values.size();
     }
   }
@@ -463,7 +467,7 @@ std::vector<double> Plan::values_in_box(std::vector<double> place) const {
 
 std::vector<double> Plan::values(std::uint64_t k) const {
   require(k < points_, [&] { return fmt::format("point {} must be below {}: points are counted from 0", k, points_); });
-  require(!is_search_, "the points of a search for a front are known only where they are computed");
+  require(!is_search_, "the points of a search for a Pareto front are not known before they are computed");
   if (!rows_.empty()) return rows_[k];
   std::vector<double> values(variables_.size());
   if (sampled_) {
@@ -580,7 +584,8 @@ class PlanReader {
     if (!section->is_table()) file_.fail(std::string(plan_section), "expected a section [plan]");
     for (const auto& [name, node] : file_.root) {
       if (name.str() != plan_section)
-        file_.fail(internal::join_path("", name.str()), "a plan has the one section [plan]; the scene is a file of its own");
+        file_.fail(internal::join_path("", name.str()),
+                   "a plan file must hold the section [plan] only; the scene is a separate file");
     }
     std::vector<std::string_view> known{"scene", "scene_text", "set",  "study", "vary",   "sample",
                                         "list",  "columns",    "rows", "seed",  "pareto", "options"};
@@ -597,7 +602,7 @@ class PlanReader {
   [[noreturn]] void fail(std::string_view key, std::string_view rule) const { file_.fail(path(key), rule); }
   [[nodiscard]] static std::string path(std::string_view key) { return internal::join_path(std::string(plan_section), key); }
 
-  /// Returns a text; numbers and flags as they are written.
+  /// Returns the value of a key as text; numbers and flags as they are written.
   [[nodiscard]] std::optional<std::string> text(std::string_view key) const {
     const toml::node* node = find(key);
     if (node == nullptr) return std::nullopt;
@@ -638,7 +643,7 @@ class PlanReader {
   [[nodiscard]] SceneFile scene() const {
     const std::optional<std::string> name = text("scene"), own = text("scene_text");
     if (name.has_value() == own.has_value())
-      file_.fail_section(std::string(plan_section), "needs one of 'scene' (the name of a file) and 'scene_text'");
+      file_.fail_section(std::string(plan_section), "needs either 'scene' (the name of a file) or 'scene_text'");
     try {
       SceneFile scene = own ? SceneFile::parse(*own, "scene", file_.directory) : SceneFile::load(file_.directory / *name);
       for (const std::string& assignment : texts("set")) scene.set(assignment);
@@ -648,7 +653,7 @@ class PlanReader {
     }
   }
   [[nodiscard]] PlanRequest::Place place() const {
-    // Places are copied: the file may be gone when one is needed.
+    // The places are copied, because the file may not exist any more when a message needs one.
     std::map<std::string, std::string, std::less<>> places;
     for (const auto& [key, node] : *find_section()) {
       const std::string at = path(key.str());
@@ -701,7 +706,7 @@ PlanRequest read_plan(const SceneFile& file) {
   request.columns = in.texts("columns");
   request.rows = in.rows(request.columns.size());
   if (in.find("list") != nullptr) {
-    if (!request.columns.empty()) in.fail("list", "cannot stand beside 'columns'");
+    if (!request.columns.empty()) in.fail("list", "must not be given together with 'columns'");
     try {
       read_list(request, (file.impl().directory / in.text("list").value()).string());
     } catch (const InvalidInput& error) {

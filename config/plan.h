@@ -5,8 +5,9 @@
 //   grid     all combinations of the values of the variables, the last one fastest
 //   sample   a point set in the box of the ranges (sampling/points.h)
 //   list     the rows of a table
-//   nsga2    points in the box of the ranges that a search for a front finds one after the other (optimizers/nsga2.h): point k is
-//            known when those before it are computed
+//   nsga2    points in the box of the ranges that a search for a Pareto front finds one after the other (optimizers/nsga2.h):
+//   point k is
+//            known when all earlier points are computed
 // Values between the ends of a range are rounded to 15 significant digits, so that a finer grid reproduces the values of a
 // coarser one exactly, and every number has a short text.
 #pragma once
@@ -25,7 +26,7 @@
 
 namespace softland {
 
-/// A plan as requested by options of the command line or by a file.
+/// The request for a plan, from options of the command line or from a file.
 struct PlanRequest {
   /// Returns the place of an entry for messages: "--vary gap.contact=1 um:2 um" for ("vary", 0), "map.toml:4: plan.study =
   /// "optimise"".
@@ -34,7 +35,7 @@ struct PlanRequest {
   SceneFile scene;
   std::vector<std::string> vary = {};               ///< ranges of variables: "structure.length=245 um:275 um:7"
   std::string sample = {};                          ///< point set: "sobol:128"; empty for a grid
-  std::string pareto = {};                          ///< figures that a search for a front minimises
+  std::string pareto = {};                          ///< figures that a search for a Pareto front minimises
   std::vector<std::string> columns = {};            ///< columns of a list: "gap.contact [um]"; empty without a list
   std::vector<std::vector<double>> rows = {};       ///< rows of a list
   std::string study = "simulate";                   ///< study of every point
@@ -43,7 +44,8 @@ struct PlanRequest {
   Place place = {};
 };
 
-/// Reads the plan of a file with a section [plan]. The scene is a file named there, relative to this one, or stands in it.
+/// Reads a plan file, which has a section [plan]. The section names the file of the scene, relative to the plan file, or holds
+/// the text of the scene.
 /// Throws InvalidInput with file, line, key, value and rule.
 [[nodiscard]] PlanRequest read_plan(const SceneFile& file);
 /// True when the file is a plan: it has a section [plan].
@@ -53,7 +55,7 @@ struct PlanRequest {
 void read_list(PlanRequest& request, const std::string& path);
 /// Adds options of the study, "impact-velocity=1 mm/s". Throws InvalidInput.
 void add_options(PlanRequest& request, const std::vector<std::string>& told);
-/// The options that have a key of their own in a [plan]; others stand in its list `options`.
+/// Options of the study that are keys of [plan]; all other options are in the list `options` of [plan].
 inline constexpr std::string_view plan_options[] = {"certify",  "samples",   "target", "actuator",
                                                     "waveform", "optimizer", "budget"};
 
@@ -61,7 +63,7 @@ inline constexpr std::string_view plan_options[] = {"certify",  "samples",   "ta
 struct PlanKey {
   std::string path;         ///< path of the key: "electrode.main.span"
   std::size_t element = 0;  ///< element of a list, counted from 1; 0 for a key without a list
-  Quantity base = {};       ///< value of the scene, where a factor varies
+  Quantity base = {};       ///< value in the scene, if the variable is a factor
 };
 
 /// A varied number of the scene, or several numbers varied by one factor.
@@ -92,14 +94,14 @@ class Plan {
   [[nodiscard]] const std::string& study() const { return study_; }
   [[nodiscard]] const std::map<std::string, std::string>& options() const { return options_; }
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
-  /// True when a search for a front finds the points; pareto() names the figures that it minimises.
+  /// Returns true if a search for a Pareto front finds the points; pareto() names the minimised figures.
   [[nodiscard]] bool is_search() const { return is_search_; }
   [[nodiscard]] const std::string& pareto() const { return pareto_; }
-  /// Returns the values of the variables at a place of the unit cube that stands for the box of their ranges [SI unit].
+  /// Maps a place in the unit cube to the box of the ranges; returns the values of the variables there [SI unit].
   [[nodiscard]] std::vector<double> values_in_box(std::vector<double> place) const;
   /// Returns the values of the variables at point k, in their order [SI unit]. Throws InvalidInput for the points of a search.
   [[nodiscard]] std::vector<double> values(std::uint64_t k) const;
-  /// Returns the scene at these values. It may be impossible; its reader reports that.
+  /// Returns the scene with these values of the variables. The scene may be invalid; read_scene() checks it.
   [[nodiscard]] SceneFile scene(const std::vector<double>& values) const;
   /// Returns the canonical text, a file that read_plan() accepts.
   [[nodiscard]] const std::string& text() const { return text_; }

@@ -44,7 +44,7 @@ ReadKeys read_keys(const std::vector<std::string>& assignments) {
   for (const std::string_view key :
        {internal::file_keys::unit, internal::file_keys::scale, internal::file_keys::shift, internal::before_key})
     in.require(!in.is_given(key), key,
-               "says what a scene makes of a file; a file is read by column, time_column, interval, skip, time_unit and decimal");
+               "is not a key for reading a file; choose column, time_column, interval, skip, time_unit or decimal");
   return internal::read_keys(in);
 }
 

@@ -8,14 +8,14 @@
 
 namespace softland {
 
-/// Reads assignments KEY=VALUE as --set has them, such as `column=CH1`: those that tell how to read a file, not how a scene
-/// uses it. Throws InvalidInput with the option, the value and the rule.
+/// Reads assignments KEY=VALUE, such as `column=CH1`, of the keys that describe how a file is read. Throws InvalidInput with the
+/// option, the value and the rule.
 [[nodiscard]] ReadKeys read_keys(const std::vector<std::string>& assignments);
 
 namespace internal {
 
 class SectionReader;
-/// Reads the keys of [waveform.NAME].
+/// Reads the same keys from [waveform.NAME] of a scene.
 [[nodiscard]] ReadKeys read_keys(const SectionReader& in);
 
 }  // namespace internal

@@ -38,7 +38,7 @@ void check_section_names(const SceneFile::Impl& file) {
   }
 }
 
-/// Sets the members that one section's keys are bound to, and checks them together.
+/// Sets the members of the scene that the keys of one section describe, and checks them together.
 void read_section(Scene& scene, const internal::Section& section, const SectionReader& in, std::string_view name = {}) {
   if (!in.is_present() && !section.always_in_force) return;
   const std::size_t entry = section.begin(scene, in, name);
@@ -60,7 +60,7 @@ void read_sections(Scene& scene, const SceneFile::Impl& file) {
   }
 }
 
-/// Checks that the electrodes have room beside each other.
+/// Checks that no two electrodes on one side overlap.
 void check_electrodes(const Device& device, const SceneFile::Impl& file) {
   const auto conflict = electrode_conflict(device.structure, device.electrodes);
   if (!conflict) return;
@@ -99,16 +99,16 @@ Calibration read_calibration(const SceneFile::Impl& file, const Device& device) 
     *measured = error.value;
   }
   if (calibration.piezo_error && !device.piezo)
-    file.fail_section("calibration.piezo", "there is no [piezo] whose deflection could be measured");
+    file.fail_section("calibration.piezo", "needs a [piezo] layer, whose deflection is measured");
   if (calibration.time_error && calibration.pull_in_error)
-    file.fail_section("calibration.time", "tells the volts of a device, as Vdp does: measure one of them");
+    file.fail_section("calibration.time", "must not be combined with Vdp, which gives the voltage scale of a device as well");
   if (const toml::node* classes = file.find({"calibration", std::string(internal::classes_key)})) {
     const std::string path = internal::join_path("calibration", internal::classes_key);
     const auto number = classes->is_integer() ? classes->as_integer()->get() : 0;
     if (number < 2 || number > most_classes) file.fail(path, fmt::format("must be a whole number from 2 to {}", most_classes));
     if (calibration.is_empty())
-      file.fail(path, fmt::format("nothing to sort devices by: add [calibration.{}] or [calibration.{}]", measured_pull_in,
-                                  measured_frequency));
+      file.fail(path, fmt::format("needs a measurement by which devices are sorted: add [calibration.{}] or [calibration.{}]",
+                                  measured_pull_in, measured_frequency));
     calibration.classes = static_cast<int>(number);
   }
   return calibration;
@@ -117,12 +117,12 @@ Calibration read_calibration(const SceneFile::Impl& file, const Device& device) 
 std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device& device) {
   std::vector<std::string> warnings;
   if (device.electrodes.empty() && !device.piezo && !file.find({"waveform", "dispersion"})) {
-    warnings.push_back(file.name + ": neither an electrode nor a piezo layer: nothing drives this switch");
+    warnings.push_back(file.name + ": no drive can move this switch: add [electrode.NAME] or [piezo]");
   }
   if (const auto& surface = device.surface; surface && surface->residual_stress != 0 && !device.structure.has_far_clamp() &&
                                             surface->cantilever_load == ResidualLoad::none) {
     warnings.push_back(fmt::format(
-        "{}: surface.residual_stress does nothing to a cantilever unless surface.cantilever_load says so", file.name));
+        "{}: surface.residual_stress has no effect on a cantilever; surface.cantilever_load selects its effect", file.name));
   }
   constexpr double wide = 5;          // width over thickness above which the beam bends more like a plate
   constexpr double rounding = 1e-12;  // 20 um does not count as more than five times 4 um because of the last bit
@@ -131,48 +131,46 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
   if (beam != nullptr && structure.is_built() && !beam->plate_strain && !file.find({"structure", "plate_strain"})) {
     for (const LocalSection& local : local_sections(structure)) {
       if (std::max(local.width, local.end_width) <= wide * local.thickness * (1 + rounding)) continue;
-      warnings.push_back(
-          fmt::format("{}: structure: wider than five thicknesses from {} to {}; moduli are used as given (plate_strain = "
-                      "false), plate_strain "
-                      "= true with poissons_ratio would use E / (1 - nu^2)",
-                      file.origin("structure").text, engineering(local.begin, "m"), engineering(local.end, "m")));
+      warnings.push_back(fmt::format(
+          "{}: structure: wider than five thicknesses from {} to {}; "
+          "moduli are used as given (plate_strain = false), plate_strain = true with poissons_ratio would use E / (1 - nu^2)",
+          file.origin("structure").text, engineering(local.begin, "m"), engineering(local.end, "m")));
       break;
     }
   } else if (beam != nullptr && !file.find({"structure", "plate_strain"}) &&
              structure.width > wide * structure.thickness * (1 + rounding)) {
-    warnings.push_back(fmt::format(
-        "{}: {}: more than five thicknesses; youngs_modulus is used as given (plate_strain = false), plate_strain = true with "
-        "poissons_ratio would use E / (1 - nu^2)",
-        file.origin("structure.width").text, file.written("structure.width")));
+    warnings.push_back(
+        fmt::format("{}: {}: more than five thicknesses; youngs_modulus is used as given (plate_strain = false), "
+                    "plate_strain = true with poissons_ratio would use E / (1 - nu^2)",
+                    file.origin("structure.width").text, file.written("structure.width")));
   }
   if (beam != nullptr && beam->plate_strain && device.piezo && std::isnan(device.piezo->e31)) {
     const double more = 1 / (1 - beam->poissons_ratio) - 1;
     warnings.push_back(fmt::format(
-        "{}: with plate_strain = true a layer pulls across the width as well: its moment is {:.0f} % above that of d31 at the "
-        "beam's Poisson's ratio; give e31 = d31 E / (1 - nu) of the layer",
+        "{}: with plate_strain = true a layer pulls across the width as well: "
+        "its moment is {:.0f} % above that of d31 at the beam's Poisson's ratio; give e31 = d31 E / (1 - nu) of the layer",
         file.origin("piezo.d31").text, 100 * more));
   }
   if (const auto* const modal = structure.find<ModalStructure>();
       modal != nullptr && modal->table->has_far_clamp() && std::isnan(modal->axial_stiffness)) {
     warnings.push_back(
-        fmt::format("{}: between two clamps bending stretches the structure, which is simulated where structure.axial_stiffness "
-                    "(E A / L of an "
-                    "even beam) is given; without it deflections must be small against the thickness",
+        fmt::format("{}: between two clamps bending stretches the structure, "
+                    "which is simulated where structure.axial_stiffness (E A / L of an even beam) is given; "
+                    "without it deflections must be small against the thickness",
                     file.origin("structure.far_anchor").text));
   }
   if (const auto* adhesive = device.has_contact() ? std::get_if<AdhesiveAsperities>(&device.contacts.front().model) : nullptr) {
     const double tabor = adhesive->tabor_number();
     if (tabor > AdhesiveAsperities::largest_tabor_number)
-      warnings.push_back(
-          fmt::format("{}: the Tabor number of its summits is {:.2g}; the adhesion of this law (DMT) is for numbers below about "
-                      "{:.1g}: soft or "
-                      "sticky summits pull off at as little as three quarters of its force, and dissipate",
-                      file.origin("contact.adhesion_energy").text, tabor, AdhesiveAsperities::largest_tabor_number));
+      warnings.push_back(fmt::format(
+          "{}: the Tabor number of its summits is {:.2g}; the adhesion of this law (DMT) is for numbers below about {:.1g}: "
+          "soft or strongly adhesive summits have as little as 3/4 of its pull-off force, and dissipate energy",
+          file.origin("contact.adhesion_energy").text, tabor, AdhesiveAsperities::largest_tabor_number));
   }
   return warnings;
 }
 
-/// Warns of sections of a beam that keep a number of their own while that of [structure] varies.
+/// Warns if a number of [structure] varies while sections of the beam have their own fixed value of it.
 void warn_of_fixed_sections(const SceneFile::Impl& file, const DeviceSpread& spread, std::vector<std::string>& warnings) {
   const auto* const beam_sections = file.find({"structure", "sections"});
   if (beam_sections == nullptr || !beam_sections->is_array()) return;
@@ -198,7 +196,7 @@ void warn_of_fixed_sections(const SceneFile::Impl& file, const DeviceSpread& spr
   }
 }
 
-/// Returns every section in force, except [spread] as resolved_spread() gives it; `keys_of` makes the table of one.
+/// Returns all sections that apply to the scene, with [spread] from resolved_spread(). `keys_of` makes the table of a section.
 template <class KeysOf>
 toml::table sections_of(const SceneFile::Impl& file, KeysOf&& keys_of) {
   toml::table root;
@@ -232,7 +230,7 @@ Scene read_scene(const SceneFile& file) {
   read_sections(scene, impl);
   if (impl.own_contact) {
     if (scene.device.has_contact())
-      impl.fail_section("contact", "the scene was given a contact law of a program: there can be no other");
+      impl.fail_section("contact", "must be omitted: a program has already given this scene a contact law");
     scene.device.contacts = {*impl.own_contact};
   }
   check_electrodes(scene.device, impl);
@@ -268,7 +266,7 @@ const Drive* Drives::find(std::string_view name) const {
 
 std::size_t Drives::place(std::string_view name) const {
   const Drive* const found = find(name);
-  require(found != nullptr, [&] { return fmt::format("there is no drive '{}'", name); });
+  require(found != nullptr, [&] { return fmt::format("unknown drive '{}'", name); });
   return static_cast<std::size_t>(found - drives_.data());
 }
 
@@ -340,7 +338,7 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
   }
   if (!drivers.empty()) root.insert("driver", std::move(drivers));
 
-  // The scene is written and read once more: like any other file, the result then has lines to cite.
+  // Write the scene and read it again, so that messages can cite lines of the result.
   SceneFile file = SceneFile::parse(internal::write_scene(root), impl.name + " (resolved)", impl.directory);
   if (impl.own_contact) file.add_contact(*impl.own_contact);
   for (const auto& [name, waveform] : drives.waveforms()) file.set_waveform(name, waveform);

@@ -1,4 +1,4 @@
-// A scene file, read and checked: the only place that sees text, units and keys. All other code uses plain SI.
+// Reads and checks a scene file, which describes a switch, its drives and the simulation. All other code uses numbers in SI.
 #pragma once
 
 #include <algorithm>
@@ -38,19 +38,18 @@ class SceneFile {
   /// Reads a text. `name` stands for the file in messages; relative paths inside the scene are taken from `directory`.
   static SceneFile parse(std::string_view text, std::string name, std::filesystem::path directory = ".");
 
-  /// Applies one `--set key.path=value`. The value is read as TOML; bare text that is not TOML is a string. May create
-  /// sections. The option replaces the other way where a quantity can be given in one of two ways (accuracy or tolerance).
-  /// Messages about such a key name the option ("--set gap.contact=...") instead of file and line. Throws InvalidInput for an
-  /// invalid assignment.
+  /// Applies one `--set key.path=value`. The value is read as TOML; text that is not TOML is a string. May create sections. If
+  /// a quantity can be given by one of two keys (accuracy or tolerance), the other key is removed. Messages about the key name
+  /// the option ("--set gap.contact=...") instead of file and line. Throws InvalidInput for an invalid assignment.
   void set(std::string_view assignment);
-  /// Gives a key this value; a number counts in the key's SI unit. Throws std::logic_error for a key that no scene has.
+  /// Sets a key to a value; a number is in the SI unit of the key. Throws std::logic_error for a key that no scene has.
   void assign(const std::string& path, const SceneValue& value);
   /// Sets a key of one quantity, in the unit of its dimension; in a list its element number `element`, counted from 1. Throws
   /// std::logic_error for a key or an element that does not exist.
   void assign(const std::string& path, const Quantity& value, std::size_t element = 0);
-  /// Gives the switch a contact that no scene file can describe, whose model is an OwnContact (model/contact/own.h). The scene
-  /// must have no [contact]: read_scene() refuses both. Scenes made from the file have that contact as well, but text() and
-  /// json() throw InvalidInput, since they cannot express it.
+  /// Adds a contact whose law is defined by a program: an OwnContact (model/contact/own.h). The scene must not have [contact];
+  /// read_scene() refuses both. Scenes made from this file have the contact as well, but text() and json() throw InvalidInput,
+  /// because a file cannot express the law.
   void add_contact(const Contact& contact);
   /// Removes a section or a key, if it exists.
   void erase(const std::string& path);
@@ -59,23 +58,23 @@ class SceneFile {
   /// outside its family's rules.
   void set_waveform(const std::string& drive, const Waveform& given);
 
-  /// Forgets where keys were written: messages about them then give the name of the file alone.
+  /// Removes the lines of all keys: messages then give the name of the file only.
   void forget_places();
 
-  /// Returns the same scene, written as text and read again under another name, with the contact that was added.
+  /// Returns the same scene under another name: its text is written and read again, and an added contact is kept.
   [[nodiscard]] SceneFile again(std::string name) const;
   /// Returns the scene as TOML text: parsing it again gives the same scene, digit for digit. Throws InvalidInput where a
   /// contact was added.
   [[nodiscard]] std::string text() const;
   [[nodiscard]] nlohmann::json json() const;
-  /// Returns the content of a key path: text as it is, other values as JSON, for a section its model, if it has one. Returns
-  /// nothing where the path is not written.
+  /// Returns the value at a key path as text: a string as it is, another value as JSON, and for a section its key `model`, if
+  /// any. Returns none if the scene does not contain the path.
   [[nodiscard]] std::optional<std::string> written(const std::string& path) const;
-  /// Returns the keys of a section, in order; none where it is not written.
+  /// Returns the keys that the scene contains in a section, in order.
   [[nodiscard]] std::vector<std::string> keys(const std::string& section) const;
   [[nodiscard]] const std::string& name() const;
-  /// Throws InvalidInput about a key ("structure.length"), with file and line or option, key, value, rule; about its section
-  /// where the key is not written.
+  /// Throws InvalidInput about a key such as "structure.length", with file and line (or option), key, value and rule. The message
+  /// is about the section if the scene does not contain the key.
   [[noreturn]] void refuse(const std::string& path, std::string_view rule) const;
 
   struct Impl;
@@ -97,7 +96,7 @@ struct PullInVoltages {
   double dynamic_pull_in = 0;  ///< Vdp [V]
 };
 
-/// The limit of an electrode without [driver], in a search, over the larger of Vsp and Vdp.
+/// Voltage limit of a search for an electrode without [driver], as a multiple of the larger of Vsp and Vdp.
 inline constexpr double default_max_voltage = 1.5;
 [[nodiscard]] inline double default_limit(const PullInVoltages& pull_in) {
   return default_max_voltage * std::max(pull_in.static_pull_in, pull_in.dynamic_pull_in);
@@ -108,17 +107,18 @@ inline constexpr double default_max_voltage = 1.5;
 /// The names of the piezo and of the dispersion force among the drives.
 inline constexpr std::string_view piezo_drive = "piezo", dispersion_drive = "dispersion";
 
-/// One drive of a switch, in volts: an electrode or the piezo. The dispersion force has its factor less one, so that every
-/// drive rests at 0.
+/// One drive of a switch: an electrode or the piezo, with values in volts. The dispersion force is a drive as well; its value
+/// is the factor on the force minus 1, so that every drive is 0 at rest.
 struct Drive {
   std::string name = {};                    ///< name of the electrode, piezo_drive or dispersion_drive
   std::optional<Waveform> waveform = {};    ///< waveform; 0 V without one
   std::optional<double> before = {};        ///< given value before t = 0 [V]; 0 V without one
   bool begins_closed = false;               ///< true when its before_state is closed: see Scene::begins_closed
   std::optional<DriverLimits> limits = {};  ///< none if unlimited; [0, default_limit()] for electrodes whose Vdp is known
-  DriverModel source = {};                  ///< ideal where the scene does not describe it; without load before prepare()
-  std::optional<double> amplifier = {};     ///< volts at the switch, as all voltages here, per volt of the source
-  SourceErrors errors = {};                 ///< gain, offset and delay of the source
+  DriverModel source = {};                  ///< source; ideal if the scene does not describe one; prepare() adds its load
+  std::optional<double> amplifier =
+      {};                    ///< gain: volts at the switch per volt of the source; all other voltages are those at the switch
+  SourceErrors errors = {};  ///< gain, offset and delay of the source
 
   [[nodiscard]] double hold_level() const;                                  ///< [V]
   [[nodiscard]] double value_before() const { return before.value_or(0); }  ///< value before t = 0 [V]
@@ -145,13 +145,13 @@ class Drives {
   /// Throws InvalidInput where the switch has no such drive.
   [[nodiscard]] const Drive& at(std::string_view name) const { return drives_[place(name)]; }
   [[nodiscard]] Drive& at(std::string_view name) { return drives_[place(name)]; }
-  /// Returns k of Switch::drives(). Throws InvalidInput where the switch has no such drive.
+  /// Returns the index of a drive in Switch::drives(). Throws InvalidInput if the switch has no such drive.
   [[nodiscard]] std::size_t place(std::string_view name) const;
   /// Returns the drives of these names, in the order of the names. Throws InvalidInput where one is missing.
   [[nodiscard]] Drives of(const std::vector<std::string>& names) const;
-  /// Returns the given waveforms, by name.
+  /// Returns the waveforms of the drives that have one, by name of the drive.
   [[nodiscard]] DriveWaveforms waveforms() const;
-  /// Returns the given values before t = 0, by name [V].
+  /// Returns the given values before t = 0, by name of the drive [V].
   [[nodiscard]] std::map<std::string, double> before() const;
 
  private:
@@ -167,19 +167,20 @@ struct SimulateOptions {
   double effects_tolerance = 1e-3;  ///< relative tolerance of t_i, v_i and B_H
 };
 
-/// The per-device calibration before actuation. The waveform is then a recipe in the device's own units, V(t) = Vdp f(t f_1),
-/// for a piezo V(t) = f(t f_1) / p with p its unit, and the scene's own waveform is that of the nominal device.
+/// The per-device calibration: figures measured on every device before actuation. The waveform is scaled by the figures of the
+/// device, V(t) = Vdp f(t f_1), or V(t) = f(t f_1) / p for a piezo, with p its deflection per volt over the contact gap. The
+/// waveform in the scene is that of the nominal device.
 struct Calibration {
   /// Relative standard deviation of the measurement; none where the quantity is not measured.
   std::optional<double> pull_in_error = {}, frequency_error = {};
-  /// Relative standard deviation of a piezo's unit: the static deflection of the contact point per volt over the contact gap
-  /// [1/V].
+  /// Relative standard deviation of the measured p of a piezo: the static deflection of the contact point per volt, divided by
+  /// the contact gap. None where it is not measured.
   std::optional<double> piezo_error = {};
   /// Standard deviation of the closing time of a step to closing_step times the nominal Vdp [s]; none where it is not measured.
-  /// This time gives the voltage unit, and is never measured beside Vdp.
+  /// This time gives the scale of the voltages, and is never measured together with Vdp.
   std::optional<double> time_error = {};
-  /// Number of classes into which devices are sorted by the measurement, each with one waveform; none where every device has
-  /// its own.
+  /// Number of classes into which devices are sorted by the measurement, each with one waveform; none if every device has its
+  /// own waveform.
   std::optional<int> classes = {};
 
   [[nodiscard]] bool is_empty() const { return !pull_in_error && !frequency_error && !piezo_error && !time_error; }
@@ -188,8 +189,8 @@ struct Calibration {
 inline constexpr std::string_view measured_pull_in = "Vdp", measured_frequency = "frequency", measured_piezo = "piezo",
                                   measured_time = "time";
 inline constexpr std::array measurement_names{measured_pull_in, measured_frequency, measured_piezo, measured_time};
-/// The step whose closing time is measured, in nominal pull-in voltages (Vdp): slow enough to depend on what a landing depends
-/// on.
+/// Voltage of the step whose closing time is measured, as a multiple of the nominal Vdp. The step is slow enough that its
+/// closing time depends on the same properties of the device as a soft landing.
 inline constexpr double closing_step = 1.2;
 /// Default error of a closing time: that of a generator and an oscilloscope [s].
 inline constexpr double usual_time_error = 50e-9;
@@ -202,26 +203,27 @@ struct Scene {
   std::string title;
   Device device;
   SimulateOptions simulate;
-  /// True for modes = "auto": device has the default number until it is chosen (studies/closing/auto_modes.h).
+  /// True for modes = "auto": `device` has the default number of modes until the number is chosen (studies/closing/auto_modes.h).
   bool auto_modes = false;
   MetricsOptions metrics;
   DeviceSpread spread;
   Calibration calibration;
-  /// True when runs begin in the closed equilibrium under the drives' values before t = 0, not in the open one.
+  /// True if simulations begin in the closed equilibrium under the values of the drives before t = 0; false: in the open one.
   bool begins_closed = false;
   /// Drives (electrode names) whose waveform or written limits use Vsp or Vdp.
   std::vector<std::string> need_pull_in;
-  /// Drives among them whose limits alone are in Vsp or Vdp.
+  /// Drives in need_pull_in of which only the limits use Vsp or Vdp.
   std::vector<std::string> limits_in_pull_in = {};
-  /// Value of each drive while the pull-in voltages of another are computed, in the order of Switch::drives(): its hold level
-  /// where that does not depend on Vsp or Vdp, else 0 V; for the dispersion force the factor less one.
+  /// Value of each drive while the pull-in voltages of another drive are computed, in the order of Switch::drives(): the hold
+  /// voltage if it does not depend on Vsp or Vdp, else 0 V; for the dispersion force the factor minus 1.
   std::vector<double> standing;
   std::vector<std::string> file_notes = {};  ///< notes on files of instruments, one line each
   std::vector<std::string> warnings;
   SceneFile file;
 
-  /// Returns waveforms and limits in volts. `pull_in` must hold every electrode of need_pull_in; electrodes missing from it get
-  /// no default limit. Throws InvalidInput for a waveform outside its family's rules or outside its driver's limits.
+  /// Returns waveforms and limits in volts. `pull_in` must hold every electrode of need_pull_in; an electrode that is not in
+  /// `pull_in` gets no default limit. Throws InvalidInput for a waveform outside its family's rules or outside its driver's
+  /// limits.
   [[nodiscard]] Drives drives(const std::map<std::string, PullInVoltages>& pull_in) const;
 };
 
@@ -229,14 +231,14 @@ struct Scene {
 /// file, line, key path, value, rule and, for an unknown key, the nearest known one.
 [[nodiscard]] Scene read_scene(const SceneFile& file);
 
-/// Returns the scene with every default written out and every voltage in volts; a value without fixed default (a duration that
-/// is chosen) stays absent. Throws as Scene::drives does. Its messages say "NAME (resolved)", because its lines are not those
-/// of the file.
+/// Returns the scene with every default written out and every voltage in volts. A value without a fixed default, such as a
+/// duration that is chosen, is not written. Throws as Scene::drives does. Messages about the result name the file
+/// "NAME (resolved)", because its lines differ from those of the file.
 [[nodiscard]] SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltages>& pull_in);
 
-/// Returns the scene with every default written out, quantities in SI units, multiples of pull-in voltages as such, and the
-/// content of its files in their place. Equal scenes have equal texts, however they are written, and this one needs no other
-/// file. Messages about it say `name` and no line. Throws as read_scene() does.
+/// Returns the canonical form of a scene: every default is written out, quantities are in SI units or multiples of pull-in
+/// voltages, and names of files are replaced by their content. Two files of the same scene have the same canonical text.
+/// Messages about the result give `name` without a line. Throws as read_scene() does.
 [[nodiscard]] SceneFile canonical(const SceneFile& file, const std::string& name);
 
 }  // namespace softland

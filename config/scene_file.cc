@@ -44,8 +44,8 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// Returns where a dotted key gets too deep, npos if none does. toml++ bounds nested values but not dotted keys, and a table
-/// some ten thousand levels deep overflows the stack when it is destroyed.
+/// Returns the place where a dotted key has too many parts, npos if none has. toml++ limits nested values but not dotted keys;
+/// a table of some ten thousand levels overflows the stack when it is destroyed.
 std::size_t find_deep_dotted_key(std::string_view text) {
   constexpr std::string_view ends_of_key = "\n=,[]{}";
   std::size_t dots = 0;
@@ -153,7 +153,7 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
-    // Explain a common beginner's error, which the parser reports only in its own terms: length = 2 um.
+    // A quantity without quotes, as in length = 2 um, is a common error that the message of the parser does not explain.
     const bool may_miss_quotes = error.description().find("expected a comment or whitespace") != std::string_view::npos;
     throw InvalidInput(fmt::format("{}:{}:{}: not TOML: {}{}", name, at.line, at.column, shortened(error.description(), 200),
                                    may_miss_quotes ? " (a quantity needs quotes: \"2 um\")" : ""));
@@ -248,7 +248,7 @@ const toml::node* child_of(const toml::table& table, const std::string& key) {
 }
 
 std::vector<std::string> split_path(std::string_view given) {
-  // A part that is an element of a list is one key here: structure."sections[2]".width.
+  // An element of a list is one part of the path: structure."sections[2]".width.
   std::string path;
   for (std::size_t begin = 0; begin <= given.size();) {
     std::size_t end = begin;
@@ -265,7 +265,7 @@ std::vector<std::string> split_path(std::string_view given) {
     if (end < given.size()) path += '.';
     begin = end + 1;
   }
-  // TOML itself reads the keys, so that quoting means the same here and in a file.
+  // The TOML parser reads the path, so that quotes have the same meaning as in a file.
   const std::string rule = "not a key path such as structure.length";
   std::vector<std::string> parts;
   try {
@@ -327,7 +327,7 @@ void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::
     }
     const auto* inner = node.as_table();
     if (!inner) continue;
-    // A section and a dotted key in it, each short enough, may form a path that could be written but not read again.
+    // A section and a dotted key may together form a path that is too deep to be read again.
     require(parts < internal::deepest_path, fmt::format("{}: a key has more than {} parts", place, internal::deepest_path));
     record_origins(impl, *inner, key_path, parts + 1);
   }
@@ -352,13 +352,13 @@ const toml::node* SceneFile::Impl::find(const std::vector<std::string>& path) co
 
 SceneFile::Impl::Origin SceneFile::Impl::origin(std::string_view path) const {
   if (const auto exact = origins.find(path); exact != origins.end()) return exact->second;
-  // Find a key inside a value given as a whole, e.g. an option that replaced a section.
+  // Find the origin of a value that contains this key, such as an option that replaced a whole section.
   const Origin* nearest = nullptr;
   for (const auto& [known, place] : origins) {
     if (is_below(path, known)) nearest = &place;  // ancestors sort from the shortest to the longest
   }
   if (nearest) return *nearest;
-  // Find a section that exists only because an option set something in it.
+  // Find a section that exists only because an option set one of its keys.
   for (const auto& [known, place] : origins) {
     if (is_below(known, path)) return place;
   }
@@ -440,7 +440,7 @@ void SceneFile::Impl::insert(const std::vector<std::string>& path, const toml::n
 
 std::string SceneFile::Impl::replaced_in(std::string_view section) const {
   for (const auto& [path, place] : origins) {
-    if (!place.replaced.empty() && is_below(path, section)) return fmt::format("; {} took the place of {}", path, place.replaced);
+    if (!place.replaced.empty() && is_below(path, section)) return fmt::format("; {} replaced {}", path, place.replaced);
   }
   return {};
 }
@@ -450,8 +450,8 @@ toml::array SceneFile::Impl::with_element(const std::vector<std::string>& path, 
   const toml::node* there = find(path);
   const toml::array* list = there == nullptr ? nullptr : there->as_array();
   require(list != nullptr, [&] {
-    return fmt::format("{}: {} is no list in this scene: give the whole list, such as --set '{}=[\"10 um\", \"tip\"]'", option,
-                       fmt::join(path, "."), fmt::join(path, "."));
+    return fmt::format("{}: {} must be a list in this scene: give the whole list, such as --set '{}=[\"10 um\", \"tip\"]'",
+                       option, fmt::join(path, "."), fmt::join(path, "."));
   });
   require(element >= 1 && element <= list->size(),
           [&] { return fmt::format("{}: {} is a list of {}, counted from 1", option, fmt::join(path, "."), list->size()); });
@@ -479,7 +479,7 @@ std::vector<std::string> SceneFile::Impl::names_in(const std::string& section) c
       const std::string key_beside = beside.empty() ? "" : fmt::format(" or the key '{}'", beside);
       if (internal::find_section(section)->may_be_named)
         fail(join_path(section, key.str()),
-             fmt::format("[{}] is the only one of its kind: it cannot stand beside [{}.NAME]", section, section));
+             fmt::format("[{}] must not be combined with [{}.NAME]: use one of the two forms", section, section));
       fail(join_path(section, key.str()), fmt::format("expected a section [{}.NAME]{}", section, key_beside));
     }
     names.emplace_back(key.str());
@@ -511,7 +511,7 @@ SceneFile SceneFile::parse(std::string_view text, std::string name, std::filesys
 void SceneFile::set(std::string_view assignment) {
   const std::string option = "--set " + shortened(printable_line(assignment));
   const auto equals = assignment.find('=');
-  require(equals != std::string_view::npos, option + ": not of the form key.path=value");
+  require(equals != std::string_view::npos, option + ": must be of the form key.path=value");
   const std::string_view value = assignment.substr(equals + 1);
 
   const auto [key, element] = internal::without_element(assignment.substr(0, equals));
@@ -644,7 +644,7 @@ namespace {
 void require_writable(const SceneFile::Impl& impl) {
   const auto* const own = impl.own_contact ? std::get_if<OwnContact>(&impl.own_contact->model) : nullptr;
   require(!impl.own_contact, [&] {
-    return fmt::format("{}: the contact law '{}' is a program's own: no scene file can say it", impl.name,
+    return fmt::format("{}: the contact law '{}' is defined by a program, and a scene file cannot express it", impl.name,
                        own && own->own ? own->own->name() : name_of(impl.own_contact->model));
   });
 }

@@ -1,4 +1,4 @@
-// The content of a SceneFile. Internal to config/: our only header that includes TOML.
+// The content of a SceneFile, a table of toml++. Internal to config/; no other header includes toml++.
 #pragma once
 
 #include <toml++/toml.h>
@@ -19,12 +19,12 @@ namespace softland::internal {
 
 /// Returns a path of keys as text, parts quoted where TOML needs it: spread."structure.thickness".
 [[nodiscard]] std::string join_path(const std::string& path, std::string_view key);
-/// Returns the parts of such a text. Throws InvalidInput with the rule only.
+/// Splits the text of a path of keys into its parts. Throws InvalidInput with the rule only.
 [[nodiscard]] std::vector<std::string> split_path(std::string_view path);
-/// Returns "electrode.main.span[2]" as its path and 2; a name that ends otherwise as it is, without a number. The parts of a
-/// path may be elements of lists of tables: structure.sections[2].width.
+/// Splits "electrode.main.span[2]" into its path and 2. A name without a final number in brackets is returned as it is. Parts
+/// of the path may be elements of lists of tables: structure.sections[2].width.
 [[nodiscard]] std::pair<std::string, std::optional<std::size_t>> without_element(std::string_view name);
-/// Returns the node of this key, or of an element of the list there: "sections[2]". Returns null where it does not exist.
+/// Returns the node of a key or, for a text such as "sections[2]", of an element of its list; null if it does not exist.
 [[nodiscard]] const toml::node* child_of(const toml::table& table, const std::string& key);
 /// True when TOML accepts this key without quotes.
 [[nodiscard]] bool is_bare_key(std::string_view key);
@@ -40,7 +40,7 @@ namespace softland::internal {
 [[nodiscard]] toml::table parse_value(std::string_view toml_text);
 inline constexpr std::string_view value_key = "v";
 
-/// Calls insert(node) with the TOML value that gives `key` this quantity, which reads back to the same bits.
+/// Calls insert(node) with the TOML value of a quantity for `key`; the value reads back to the same bits.
 template <class Insert>
 void insert_quantity(const Key& key, const Quantity& quantity, Insert&& insert) {
   if (key.is_bare_number()) return insert(quantity.value);
@@ -63,7 +63,7 @@ struct SceneFile::Impl {
   std::string name;
   std::filesystem::path directory;
   toml::table root;
-  // The origins are kept apart from the nodes, because toml++ forgets source positions when a table is copied.
+  // The origins are separate from the nodes, because a copy of a toml++ table loses its source positions.
   std::map<std::string, Origin, std::less<>> origins;
   /// Contact with a law that no scene file can express: see SceneFile::add_contact().
   std::optional<Contact> own_contact = {};
@@ -74,27 +74,27 @@ struct SceneFile::Impl {
   [[nodiscard]] std::string written(std::string_view path) const;
   /// Throws InvalidInput with place, key path, value as written, and rule.
   [[noreturn]] void fail(std::string_view path, std::string_view rule) const;
-  /// Throws InvalidInput about a section: the value is not shown, and an option that set something in the section is cited
-  /// first.
+  /// Throws InvalidInput about a section, without a value. If an option set a key of the section, the message begins with the
+  /// option.
   [[noreturn]] void fail_section(std::string_view path, std::string_view rule) const;
 
-  /// Returns "; --set structure.length=1 m took the place of structure.sections" for messages, if a value in this section
-  /// replaced one.
+  /// Returns "; --set structure.length=1 m replaced structure.sections" for messages, if an option replaced a value in this
+  /// section.
   [[nodiscard]] std::string replaced_in(std::string_view section) const;
 
-  /// Returns the list there with another value in the place of an element, counted from 1. Throws InvalidInput that begins with
-  /// `option` where there is no such list.
+  /// Returns the list at a path with a new value for one element, counted from 1. Throws InvalidInput that begins with `option`
+  /// if there is no such list.
   [[nodiscard]] toml::array with_element(const std::vector<std::string>& path, std::size_t element, const toml::node& value,
                                          const std::string& option) const;
-  /// Returns NAME of every [section.NAME], sorted. Throws InvalidInput when something else stands there.
+  /// Returns NAME of every [section.NAME], sorted. Throws InvalidInput if the section holds anything else.
   [[nodiscard]] std::vector<std::string> names_in(const std::string& section) const;
-  /// True when the keys of a section stand in [section.NAME] in this file.
+  /// Returns true if this file has the section as [section.NAME].
   [[nodiscard]] bool is_named(const internal::Section& section) const;
 
-  /// Puts a value at this path, which comes from `place`, and creates the sections on the way. A value that can be given in one
-  /// of two ways replaces the other way. Throws InvalidInput where a section cannot be created.
+  /// Sets the value at a path, with `place` as its origin, and creates missing sections. If a quantity can be given by one of two
+  /// keys, the other key is removed. Throws InvalidInput if a section cannot be created.
   void insert(const std::vector<std::string>& path, const toml::node& value, const Origin& place);
-  /// Forgets where the keys at and below `path` were written.
+  /// Removes the origins of the keys at and below `path`.
   void forget(std::string_view path);
   [[nodiscard]] Origin origin(std::string_view path) const;
 };

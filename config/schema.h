@@ -1,4 +1,5 @@
-// Every section and key of a scene, in one table: it drives reading, checking, hints, defaults and the order of written scenes.
+// The table of all sections and keys of a scene. Reading, checking, hints, defaults and the order of written scenes follow from
+// it.
 #pragma once
 
 #include <cstddef>
@@ -20,16 +21,16 @@ namespace softland::internal {
 
 class SectionReader;
 
-/// The word for the end of the beam, in the place of a position.
+/// Word for the end of the beam, used instead of a position.
 inline constexpr std::string_view tip = "tip";
 
 struct Section;
 
-/// The type of a key's value. `table`: keys in braces; `tables`: a list of such.
+/// The type of the value of a key. `table`: keys in braces; `tables`: a list of such tables.
 enum class KeyType { text, texts, flag, integer, choice, quantity, quantities, table, tables };
 
-/// The member of a scene that a key sets, by its kind. At most one is set, except that a word may stand for a table. The second
-/// argument selects the electrode, or the table of a list, `element` the element of a list.
+/// The member of a scene that a key sets. At most one of these functions is set, except that a word may replace a table. Their
+/// second argument selects the electrode or the table of a list; `element` selects the element of a list.
 struct Bound {
   double& (*number)(Scene&, std::size_t) = nullptr;
   Place& (*place)(Scene&, std::size_t, std::size_t element) = nullptr;
@@ -43,28 +44,28 @@ struct Bound {
 struct Key {
   std::string_view name;
   KeyType type = KeyType::quantity;
-  /// Dimensions of a quantity or quantities; empty if another key decides. The first one names the key's SI
-  /// unit.
+  /// Permitted dimensions of the value; empty if another key decides. The first one gives the SI unit of the key.
   std::vector<Dimension> dimensions = {};
   Range range = {};         ///< see range_of()
   std::size_t count = 0;    ///< quantities: their number; 0 for any number
-  bool any_word = false;    ///< integer: true when any text may stand instead of a number
-  bool may_be_one = false;  ///< quantities: true when a single one may stand instead of a list
-  bool is_nested = false;   ///< quantities: true when it may be a list of such lists, read one after the other
+  bool any_word = false;    ///< integer: true if any text may replace the number
+  bool may_be_one = false;  ///< quantities: true if a single quantity may replace the list
+  bool is_nested = false;   ///< quantities: true if it may be a list of lists, which are read in sequence
   std::vector<std::string_view> choices = {};
-  /// Words that may stand instead of an integer, a quantity, or an element of quantities.
+  /// Words that may replace an integer, a quantity, or an element of quantities.
   std::vector<std::string_view> words = {};
   std::string_view fallback = {};  ///< default as TOML; empty for none
   bool required = false;
-  std::vector<std::string_view> only_for = {};    ///< choices of the section's selector this key belongs to; empty for all
-  std::vector<std::string_view> instead_of = {};  ///< keys this one excludes; any of them satisfies `required`
-  std::string_view about = {};                    ///< one line of description for people
-  std::string_view beyond = {};                   ///< advice where a value must lie outside the range
-  std::string_view why_fixed = {};                ///< reason why varied devices cannot vary it; empty where they can
-  std::string_view if_list = {};                  ///< quantity: advice where a list is wanted
-  std::string_view like = {};                     ///< a value that a switch may have; empty: see example_of()
-  std::string_view unless = {};                   ///< key in whose presence it is not required
-  const Section* (*part)() = nullptr;             ///< table, tables: the keys of one table
+  std::vector<std::string_view> only_for = {};  ///< choices of the selector to which this key belongs; empty: all
+  std::vector<std::string_view> instead_of =
+      {};                           ///< keys that may be given instead of this one; one of them suffices if this one is required
+  std::string_view about = {};      ///< description, one line
+  std::string_view beyond = {};     ///< advice for a user who needs a value outside the range
+  std::string_view why_fixed = {};  ///< reason why varied devices cannot vary it; empty where they can
+  std::string_view if_list = {};    ///< quantity: advice for a user who gives a list
+  std::string_view like = {};       ///< an example value as text; empty: see example_of()
+  std::string_view unless = {};     ///< if this other key is given, the key is not required
+  const Section* (*part)() = nullptr;  ///< table, tables: the keys of one table
   Bound bound = {};
 
   // Properties that the makers of keys (config/schema/sections.h) leave open.
@@ -80,44 +81,44 @@ struct Key {
   /// Returns a valid value of this dimension for messages, such as "2 um": the key's own example, its default, or a usual value
   /// of the dimension.
   [[nodiscard]] std::string example_of(const Dimension& dimension) const;
-  /// Returns the range for a value of this dimension: ends that `range` leaves open are those of the dimension.
+  /// Returns the permitted range of a value of this dimension. An end that `range` leaves open is that of the dimension.
   [[nodiscard]] Range range_of(const Dimension& dimension) const;
-  /// True when the key has no dimension: a TOML number is accepted as well.
+  /// Returns true if the key has no dimension; a TOML number is then accepted as well as a text.
   [[nodiscard]] bool is_bare_number() const;
   [[nodiscard]] bool belongs_to(std::string_view choice) const;
 };
 
-/// An answer to an unknown key that contains this word: the key that describes such a thing.
+/// Advice for an unknown key that contains a certain word: it names the key that the user may need.
 struct Advice {
   std::string_view word, text;
 };
 
 struct Section {
   std::string_view name;         ///< name of the section; empty for the keys above the first section
-  std::string_view entry = {};   ///< NAME of a named section that these keys are for; empty: every other one
+  std::string_view entry = {};   ///< NAME of the [section.NAME] to which these keys apply; empty: every other NAME
   bool is_named = false;         ///< true for [name.NAME], any number of them
   bool may_be_named = false;     ///< true for [name], or [name.NAME] of several
-  std::string_view beside = {};  ///< a key that stands among the NAMEs and is read by separate code
+  std::string_view beside = {};  ///< a key in the section that holds the [section.NAME]; separate code reads it
   bool required = false;
-  bool always_in_force = false;    ///< true when its defaults hold while the section is absent
+  bool always_in_force = false;    ///< true if the defaults apply even without the section
   bool may_vary = false;           ///< true when [spread] may name its numbers
-  std::string_view selector = {};  ///< key whose choice decides which other keys exist
+  std::string_view selector = {};  ///< key whose value decides which other keys the section has
   std::vector<Key> keys = {};
   std::string_view about = {};
-  std::vector<Advice> advice = {};  ///< answers to unknown keys; the first that fits counts
-  /// Creates the part of the scene that the keys set, [section.NAME] being its name, and returns the number of an electrode.
-  /// Null where the keys set no member: separate code reads waveforms, drivers and spread.
+  std::vector<Advice> advice = {};  ///< advice for unknown keys; the first one that applies is shown
+  /// Creates the part of the scene that the section describes; `name` is NAME of [section.NAME]. Returns the number of an
+  /// electrode or contact. Null if separate code reads the keys, as for waveforms, drivers and spread.
   std::size_t (*begin)(Scene& scene, const SectionReader& in, std::string_view name) = nullptr;
-  /// Checks what one key alone cannot decide, after the keys are set. Throws InvalidInput.
+  /// Checks rules between several keys, after all keys are set. Throws InvalidInput.
   void (*check)(Scene& scene, const SectionReader& in, std::size_t entry) = nullptr;
 
-  /// Returns the key, or null. The key that belongs to `choice` of the selector wins over others of its name.
+  /// Returns a key by its name, or null. Of several keys of that name, the one for `choice` of the selector is returned.
   [[nodiscard]] const Key* find(std::string_view key, std::string_view choice = {}) const;
 };
 
 /// Returns all sections in the order of a written scene.
 [[nodiscard]] const std::vector<Section>& schema();
-/// Returns [name] or [name.ENTRY], or null.
+/// Returns the description of [name] or [name.ENTRY], or null.
 [[nodiscard]] const Section* find_section(std::string_view name, std::string_view entry = {});
 
 /// Returns the key at a path whose parts may name elements of lists, or null: {"structure", "sections[2]", "width"}.

@@ -102,7 +102,7 @@ std::vector<Quantity> parse_list(const Key& key, const toml::array& array) {
     for (std::size_t k = 0; k < array.size(); ++k) {
       in_list(k + 1, [&] {
         const toml::array* inner = array[k].as_array();
-        if (inner == nullptr) throw InvalidInput("a list of lists holds nothing else");
+        if (inner == nullptr) throw InvalidInput("a list of lists must hold lists only");
         if (inner->empty() && key.count == 0) throw InvalidInput(fmt::format("is empty (expected {})", wanted(key)));
         std::ranges::copy(parse_list(key, *inner), std::back_inserter(values));
       });
@@ -115,7 +115,7 @@ std::vector<Quantity> parse_list(const Key& key, const toml::array& array) {
   return values;
 }
 
-// A percentage is of the beam's length.
+// Returns a position on the beam; a percentage is a share of the length of the beam.
 Place place_of(const Quantity& quantity) {
   return quantity.dimension == dimension::none ? Place::share(quantity.value) : Place(quantity.value);
 }
@@ -162,7 +162,7 @@ void SectionReader::read() {
 }
 
 void SectionReader::check_keys() const {
-  if (!table_ || path_.empty()) return;  // sections stand beside the keys above the first one
+  if (!table_ || path_.empty()) return;  // the top level also holds the sections, which are not keys
   std::vector<std::string_view> known;
   for (const Key& key : section_.keys) {
     if (std::find(known.begin(), known.end(), key.name) == known.end()) known.push_back(key.name);
@@ -200,7 +200,8 @@ bool SectionReader::is_replaced(const Key& key) const {
 void SectionReader::read_key(const Key& key) {
   if (is_given(key.name)) {
     for (const std::string_view other : key.instead_of) {
-      if (is_given(other)) file_.fail(path(key.name), fmt::format("cannot stand beside {}: give one of them", written(other)));
+      if (is_given(other))
+        file_.fail(path(key.name), fmt::format("must not be given together with {}: give one of them", written(other)));
     }
     try {
       values_[key.name] = parse(key, *table_->get(key.name));
@@ -456,7 +457,7 @@ void SectionReader::require_on_beam(std::string_view key, const Structure& beam)
   const std::vector<Quantity>& places = quantities(key);
   for (std::size_t k = 0; k + 1 < places.size(); k += 2) {
     const double begin = place_of(places[k]).on(length), end = place_of(places[k + 1]).on(length);
-    require(begin < end, key, "the end must lie beyond the begin");
+    require(begin < end, key, "the end must be greater than the begin");
     require(end <= length * (1 + rounding), key, "must end on the beam: " + written_length(beam));
   }
 }

@@ -28,22 +28,22 @@ class SectionReader {
   /// or range. Keys that are not given take their defaults. `file` must outlive the reader.
   explicit SectionReader(const SceneFile::Impl& file, std::string_view section, std::string_view name = {});
 
-  /// Returns the tables of a key in force: the one of a `table`, none where a word stands instead, or those of `tables`.
+  /// Returns the tables of a key: one for a `table`, none if a word replaces it, all for `tables`.
   [[nodiscard]] std::vector<SectionReader> parts(std::string_view key) const;
-  /// Returns the table that holds the last key of a path below this one, as {"sections[2]", "holes", "pitch"}, and its number
-  /// in the list; none where there is no such table.
+  /// Returns the table that holds the last key of a path below this section, such as {"sections[2]", "holes", "pitch"}, and the
+  /// number of the table in its list; none if there is no such table.
   [[nodiscard]] std::optional<std::pair<SectionReader, std::size_t>> holder(std::span<const std::string> path,
                                                                             std::size_t entry = 0) const;
   [[nodiscard]] const std::vector<Key>& keys() const { return section_.keys; }
 
-  /// True when the section stands in the file.
+  /// Returns true if the file contains the section.
   [[nodiscard]] bool is_present() const { return table_ != nullptr; }
-  /// True when the key stands in the file.
+  /// Returns true if the file contains the key.
   [[nodiscard]] bool is_given(std::string_view key) const { return table_ && table_->contains(key); }
 
-  /// True when the key is in force: given or with a default.
+  /// Returns true if the key has a value, given or by default.
   [[nodiscard]] bool has_value(std::string_view key) const { return values_.contains(key); }
-  /// Returns the schema's entry of a key, or null.
+  /// Returns the description of a key, or null.
   [[nodiscard]] const Key* find(std::string_view key) const { return section_.find(key, choice_); }
 
   /// Returns the value or the default [SI unit]; NaN without either.
@@ -51,11 +51,11 @@ class SectionReader {
   [[nodiscard]] const std::vector<Quantity>& quantities(std::string_view key) const;
   [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
   [[nodiscard]] int integer(std::string_view key) const;
-  /// True when a word stands where a number could.
+  /// Returns true if the value is a word instead of a number.
   [[nodiscard]] bool is_word(std::string_view key) const;
-  /// True when the key has a list.
+  /// Returns true if the value is a list.
   [[nodiscard]] bool is_list(std::string_view key) const { return is_given(key) && table_->get(key)->is_array(); }
-  /// True when the key has a list of lists.
+  /// Returns true if the value is a list of lists.
   [[nodiscard]] bool is_nested(std::string_view key) const;
   [[nodiscard]] bool flag(std::string_view key) const;
   /// Returns the value of a text or a choice.
@@ -64,25 +64,25 @@ class SectionReader {
 
   /// Returns the keys whose values are multiples of a pull-in voltage.
   [[nodiscard]] std::vector<std::string_view> keys_in_pull_in_units() const;
-  /// Returns every key in force with its TOML value: as written, or the default.
+  /// Returns every key that has a value, with its TOML value as written or by default.
   [[nodiscard]] toml::table with_defaults() const;
-  /// Returns the same with quantities in SI units: a value has one text, however it was written.
+  /// Returns every key that has a value, with quantities in SI units, so that equal values have equal texts.
   [[nodiscard]] toml::table in_si_units() const;
 
-  /// Sets the members of the scene that the keys in force are bound to; `entry` is the number of an electrode.
+  /// Sets the members of the scene that the keys describe; `entry` is the number of the electrode or contact.
   void set_members(Scene& scene, std::size_t entry) const;
 
-  /// Throws InvalidInput about this key unless the rule holds.
+  /// Throws InvalidInput about `key` with the text `rule` unless `holds`.
   void require(bool holds, std::string_view key, std::string_view rule) const {
     if (!holds) file_.fail(path(key), rule);
   }
   /// Throws InvalidInput about the section.
   [[noreturn]] void fail(std::string_view rule) const { file_.fail_section(path_, rule); }
-  /// Throws InvalidInput about this key where [structure] lacks the key that it needs and may leave out.
+  /// Throws InvalidInput about `key` if [structure] does not have the optional key `needed`.
   void require_of_structure(std::string_view key, std::string_view needed, const Structure& structure) const;
-  /// Throws InvalidInput unless the two lengths of this key increase and lie on the beam.
+  /// Throws InvalidInput unless the two positions of `key` increase and lie on the beam.
   void require_on_beam(std::string_view key, const Structure& beam) const;
-  /// Returns the written length of the moving structure for messages, or its value.
+  /// Returns the length of the moving structure for messages, as written in the file or as a value.
   [[nodiscard]] std::string written_length(const Structure& structure) const;
 
   [[nodiscard]] const SceneFile::Impl& file() const { return file_; }

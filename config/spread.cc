@@ -94,7 +94,7 @@ FoundKey find_drive_error(const SceneFile::Impl& file, const Device& device, con
     file.fail_section(in.path(), fmt::format("'{}' is not an error of a drive, such as driver.main.gain{}", name, why));
   };
   if (parts.size() != 3) fail("");
-  if (parts[1] == dispersion_drive) fail(": a force factor has no source");
+  if (parts[1] == dispersion_drive) fail(": the dispersion force has no source");
   if (const std::string why = why_no_drive(device, parts[1]); !why.empty()) fail(": " + why);
   const auto* error = find_named(drive_errors, parts[2]);
   if (error == nullptr) fail(hint(parts[2], names_of(drive_errors)));
@@ -121,7 +121,7 @@ bool is_tip(const SceneFile::Impl& file, const std::vector<std::string>& path, s
   return end != nullptr && end->is_string() && end->as_string()->get() == tip;
 }
 
-/// Returns the key that an entry of [spread] names. Throws InvalidInput unless it is a number in force in this scene.
+/// Returns the key that an entry of [spread] names. Throws InvalidInput unless the key has a number in this scene.
 FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader& in, const std::string& name) {
   std::vector<std::string> parts;
   const auto [path, given_element] = without_element(name);
@@ -145,7 +145,7 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
     for (const Key& key : of_key.keys()) {
       const std::size_t size =
           key.bound.element != nullptr && of_key.has_value(key.name) ? of_key.quantities(key.name).size() : 0;
-      // A fixed number of a list is refused with the reason, too.
+      // An element of a list that cannot vary is refused with the reason as well.
       const bool is_fixed_list = key.type == KeyType::quantities && !key.why_fixed.empty();
       const bool is_number =
           is_fixed_list                   ? true
@@ -159,10 +159,12 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
       const Key& key = *of_key.find(parts.back());
       if (!key.why_fixed.empty()) file.fail_section(in.path(), fmt::format("{} cannot vary: {}", name, key.why_fixed));
       if (element > 0 && is_tip(file, parts, element)) {
-        file.fail_section(in.path(),
-                          fmt::format("{} is the tip of every device, and does not differ from it: write a length or a "
-                                      "percentage of structure.length there to let it vary",
-                                      name));
+        file.fail_section(
+            in.path(),
+            fmt::format(
+                "{} is the tip of the beam in every device: write a length or a percentage of structure.length there to let it "
+                "vary",
+                name));
       }
       const Quantity given = of_key.quantities(key.name)[element == 0 ? 0 : element - 1];
       FoundKey found{.varied = {.path = path,
@@ -214,13 +216,13 @@ class Scale {
       return;
     }
     if (is_factor_) return;
-    in_.require(ratio_.empty() || nominal() != 0, ratio_, "is a ratio to a value that is 0");
+    in_.require(ratio_.empty() || nominal() != 0, ratio_, "is relative to the value in the scene, which is 0: give it a unit");
     const auto& first = keys_.front().varied.drive;
     const bool are_one_error = first && std::all_of(keys_.begin(), keys_.end(), [&](const FoundKey& key) {
                                  return key.varied.drive && key.varied.drive->error == first->error;
                                });
     in_.require(keys_.size() == 1 || are_one_error, blamed_,
-                "several keys vary by one factor: give a percentage, or weights with which one amount is added to them");
+                "several keys vary by one factor: give a percentage, or weights with which one amount is added to each key");
   }
 
   [[nodiscard]] bool is_factor() const { return is_factor_; }
@@ -231,11 +233,11 @@ class Scale {
     return is_factor_ || q.dimension != dimension::none ? q.value : q.value * keys_.front().varied.nominal;
   }
   [[nodiscard]] double of(std::string_view key) const { return of(in_.quantities(key).front()); }
-  /// Returns the size of a value that cannot be negative.
+  /// Returns the absolute value of a key that gives a width.
   [[nodiscard]] double width(std::string_view key) const { return std::abs(of(key)); }
   [[nodiscard]] double of(std::string_view key, double otherwise) const { return in_.is_given(key) ? of(key) : otherwise; }
 
-  /// Returns one unit of the values in a file.
+  /// Returns the quantity 1 in the unit of the values in a file.
   [[nodiscard]] Quantity unit() const {
     try {
       return parse_quantity("1 " + in_.text("unit"));
@@ -245,22 +247,22 @@ class Scale {
   }
 
  private:
-  // Checks weights: one amount in a unit is added to keys that have it.
+  // Checks the weights, with which one amount is added to several keys of the same unit.
   void check_weights() const {
     const std::vector<Quantity> weights = in_.quantities("weights");
     in_.require(weights.size() == keys_.size(), "weights",
-                fmt::format("there are {} of them for {} keys", weights.size(), keys_.size()));
+                fmt::format("must be one weight for each key, but there are {} for {} keys", weights.size(), keys_.size()));
     in_.require(std::all_of(weights.begin(), weights.end(), [](const Quantity& one) { return one.value != 0; }), "weights",
                 "must not be 0");
     in_.require(!is_factor_ && ratio_.empty() && !in_.is_given("cov"), "weights",
-                "add an amount that is 0 in this scene: give the numbers of its distribution in a unit");
+                "add an amount to the keys: give the numbers of its distribution with a unit");
     for (const FoundKey& key : keys_) {
       const bool fits = !key.varied.drive && key.varied.measured_in == keys_.front().varied.measured_in;
       in_.require(fits, "keys",
                   fmt::format("one amount cannot be added to {} and {}", keys_.front().varied.name(), key.varied.name()));
     }
   }
-  // A plain number is a ratio, whatever the key; any other value must have the key's dimension.
+  // Checks the dimension of a value: a plain number is a factor on any key, any other value must have the dimension of the key.
   void check(std::string_view key, const Dimension& given) {
     if (given == dimension::none) {
       ratio_ = key;
@@ -268,10 +270,11 @@ class Scale {
     }
     const std::vector<Dimension>& allowed = keys_.front().dimensions;
     const bool is_share = keys_.front().varied.element > 0 && allowed.front() == dimension::none;
-    in_.require(!is_share, key,
-                fmt::format("{} is a percentage of structure.length in this scene: give a percentage of it here too, or write a "
-                            "length there",
-                            keys_.front().varied.name()));
+    in_.require(
+        !is_share, key,
+        fmt::format(
+            "{} is a percentage of structure.length in this scene: give a percentage of it here too, or write a length there",
+            keys_.front().varied.name()));
     in_.require(std::find(allowed.begin(), allowed.end(), given) != allowed.end(), key,
                 fmt::format("expected {}, got {}", describe(allowed.front()), describe(given)));
     is_factor_ = false;
@@ -288,7 +291,7 @@ class Scale {
 std::vector<double> file_values(const SectionReader& in) {
   const std::string& name = in.text("file");
   in.require(!name.empty() && name.find('\0') == std::string::npos, "file", "must be the name of a file");
-  if (!in.is_given("column")) in.fail("missing key 'column': which column of the file holds the values");
+  if (!in.is_given("column")) in.fail("missing key 'column': it names the column of the file that holds the values");
   const std::string path = (in.file().directory / name).string(), &column = in.text("column");
   std::vector<double> values;
   try {
@@ -361,13 +364,13 @@ SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const st
     const VariedKey& varied = key.varied;
     if (scale.is_added()) key.varied.weight = in.quantities("weights")[i].value;
     if (scale.is_factor() && varied.nominal == 0) {
-      in.fail(varied.drive ? fmt::format("{} is nominally 0, and stays 0 by any factor: give it a distribution in {}",
+      in.fail(varied.drive ? fmt::format("{} is nominally 0, so that no factor changes it: give its distribution in {}",
                                          varied.name(), varied.unit)
-                           : fmt::format("{} is 0 in this scene, and stays 0 by any factor{}", varied.name(),
+                           : fmt::format("{} is 0 in this scene, so that no factor changes it{}", varied.name(),
                                          varied.unit.empty() ? "" : ": give it a standard_deviation in " + varied.unit));
     }
     if (varied.drive && varied.drive->error == DriveError::jitter) {
-      // The value is not a time: the times of the edges are drawn from it.
+      // The value of the variable seeds the random delays of the edges; it is not itself a time.
       variable.is_drawn_per_edge = true;
       key.varied.refusal = [](double) { return std::string(); };
     }
@@ -419,11 +422,11 @@ void read_correlation(const SceneFile::Impl& file, DeviceSpread& spread) {
       require_that(found != names.end(), fmt::format("'{}' does not vary{}", name, hint(name, known)));
       at[i] = found - names.begin();
       require_that(!spread.variables[static_cast<std::size_t>(at[i])].is_drawn_per_edge,
-                   fmt::format("'{}' is drawn anew for every edge: there is no correlation with it", name));
+                   fmt::format("'{}' has a new random value for every edge, and cannot be correlated", name));
     }
     require_that(at[0] != at[1], fmt::format("'{}' is correlated with itself", names[static_cast<std::size_t>(at[0])]));
     require_that(spread.correlation(at[0], at[1]) == 0,
-                 fmt::format("'{}' and '{}' stand here twice", names[static_cast<std::size_t>(at[0])],
+                 fmt::format("the pair '{}' and '{}' is given twice", names[static_cast<std::size_t>(at[0])],
                              names[static_cast<std::size_t>(at[1])]));
     spread.correlation(at[0], at[1]) = spread.correlation(at[1], at[0]) = pair->get(2)->value<double>().value();
   }
@@ -440,7 +443,7 @@ void check_keys_once(const SceneFile::Impl& file, const DeviceSpread& spread) {
   for (const SpreadVariable& variable : spread.variables) {
     for (const VariedKey& key : variable.keys) {
       if (!seen.insert(key.name()).second)
-        file.fail_section(join_path("spread", variable.name), fmt::format("{} varies by another entry already", key.name()));
+        file.fail_section(join_path("spread", variable.name), fmt::format("{} already varies by another entry", key.name()));
     }
   }
 }

@@ -22,7 +22,7 @@ struct Scene;
 
 /// An error of the source of a drive.
 enum class DriveError {
-  gain,    ///< factor of its volts, nominally 1
+  gain,    ///< gain of the source, nominally 1
   offset,  ///< offset from t = 0 on [V]
   delay,   ///< delay of the whole waveform [s]
   jitter,  ///< delay of every edge on its own [s]
@@ -39,10 +39,10 @@ struct VariedKey {
   std::size_t element = 0;     ///< element of a list, counted from 1; 0 for a key without a list
   std::string unit;            ///< SI unit
   double nominal = 0;          ///< the scene's value
-  Dimension measured_in = {};  ///< dimension of its values, one of those that the key may have
+  Dimension measured_in = {};  ///< dimension of the varied values, one of those that the key may have
   double weight = 1;           ///< weight of an amount that is added to the value
-  /// Returns the member of a scene with the same sections. Null where the key sets no member by itself: the scene must then be
-  /// read anew with this value.
+  /// Returns the number in a scene that the key sets. Null if the key does not set a single number; the scene must then be read
+  /// again with the new value.
   std::function<double&(Scene&)> member;
   /// Error of a drive; it is not a key of the scene and has no member.
   std::optional<VariedDrive> drive;
@@ -53,24 +53,24 @@ struct VariedKey {
   [[nodiscard]] std::string name() const { return element == 0 ? path : path + "[" + std::to_string(element) + "]"; }
 };
 
-/// A quantity that varies, with the keys that follow it.
+/// A quantity that varies from device to device, with the keys whose values it sets.
 struct SpreadVariable {
   std::string name;  ///< name of its entry in [spread]
   std::vector<VariedKey> keys;
-  bool is_factor = true;  ///< true when it multiplies the scene's values; otherwise it is the value of its one key, or
-  bool is_added = false;  ///< true when it is added to the scene's values, times the weights of the keys
+  bool is_factor = true;  ///< true: multiplies the values of the scene; otherwise it is the value of its one key, or
+  bool is_added = false;  ///< true: is added to the values of the scene, times the weights of the keys
   Distribution distribution;
-  /// True for jitter: the distribution is that of every edge of every device. The value of a device is a number in (0, 1), from
-  /// which the generator draws for its edges.
+  /// True for jitter, which has a random value for every edge of every device. The value of the variable for a device is then a
+  /// number in (0, 1) that seeds the random numbers of its edges.
   bool is_drawn_per_edge = false;
 
-  /// Returns the value in the scene itself [SI unit, or factor].
+  /// Returns the value of the variable in the nominal design [SI unit, or factor].
   [[nodiscard]] double nominal() const { return is_factor ? 1 : is_added ? 0 : keys.front().nominal; }
 };
 
 struct DeviceSpread {
   std::vector<SpreadVariable> variables;  ///< varied quantities, by name
-  Eigen::MatrixXd correlation;            ///< correlation of the underlying normals, variables x variables
+  Eigen::MatrixXd correlation;            ///< correlation matrix of the normal variables of the copula, variables x variables
   std::optional<GaussianCopula> copula;   ///< none where all variables are independent
 
   [[nodiscard]] bool empty() const { return variables.empty(); }
@@ -83,12 +83,12 @@ struct DeviceSpread {
   /// Turns a point of the open unit cube into values of the variables [SI unit, factor, or for jitter a number in (0, 1)], in
   /// place.
   void to_values(std::span<double> u) const;
-  /// Returns the value of a key where its variable has the value `x` [SI unit].
+  /// Returns the value of a key if its variable has the value `x` [SI unit].
   [[nodiscard]] static double value(const SpreadVariable& variable, const VariedKey& key, double x) {
     if (variable.is_added) return key.nominal + key.weight * x;
     return variable.is_factor ? key.nominal * x : x;
   }
-  /// Returns the delay of an edge [s] where the value of its variable is `x`; edges are numbered over all drives.
+  /// Returns the delay of an edge [s] if its variable has the value `x`; edges are numbered over all drives.
   [[nodiscard]] static double jitter(const SpreadVariable& variable, double x, std::uint64_t edge);
 };
 

@@ -6,7 +6,7 @@
 
 namespace softland::internal {
 
-/// Sets scene.spread after everything else of the scene has been read. Throws InvalidInput.
+/// Reads [spread] into scene.spread; call it after all other sections are read. Throws InvalidInput.
 void read_spread(Scene& scene, const SceneFile::Impl& file);
 
 /// Returns [spread] with every default written out, and the values of a file instead of its name; empty without [spread].

@@ -1,4 +1,4 @@
-// A quantity given beside a scene, by an option.
+// Reads a quantity that an option gives.
 #pragma once
 
 #include <fmt/format.h>

@@ -60,7 +60,7 @@ constexpr std::array prefixes{Prefix{'y', -24}, Prefix{'z', -21}, Prefix{'a', -1
                               Prefix{'p', -12}, Prefix{'n', -9},  Prefix{'u', -6},  Prefix{'m', -3},
                               Prefix{'k', 3},   Prefix{'M', 6},   Prefix{'G', 9},   Prefix{'T', 12}};
 
-/// Printed characters, as in reports and other programs, and their form in the grammar.
+/// A printed character, as used in reports, and the ASCII text that the grammar has for it.
 struct Spelling {
   std::string_view printed;
   std::string_view plain;
@@ -200,7 +200,7 @@ void apply_factor(Scale& scale, std::string_view factor, int sign) {
   if (!unit) throw InvalidInput(fmt::format("unknown unit '{}'", shortened(name)));
   for (std::size_t i = 0; i < scale.dimension.powers.size(); ++i) {
     scale.dimension.powers[i] += power * unit->dimension.powers[i];
-    // A quantity is written in base units, with powers that can be read again.
+    // The power is limited, because a quantity may be written in base units and must be readable again.
     if (std::abs(scale.dimension.powers[i]) > largest_power) {
       throw InvalidInput(fmt::format("with '{}' the power of {} in the unit is {}; it must lie between -{} and {}",
                                      shortened(factor), base_units[i], scale.dimension.powers[i], largest_power, largest_power));
@@ -226,7 +226,7 @@ void apply_factors(Scale& scale, std::string_view text, int sign, std::string_vi
   }
 }
 
-/// Reads samples per second: S alone is siemens, and no quantity is siemens per second.
+/// Reads S/s, samples per second. S alone is siemens, but no quantity is in siemens per second.
 std::optional<Scale> sample_rate(std::string_view unit) {
   const auto slash = unit.find('/');
   if (slash == std::string_view::npos || trim(unit.substr(slash + 1)) != "s") return std::nullopt;
@@ -275,7 +275,7 @@ std::size_t number_length(std::string_view text) {
   return i;
 }
 
-/// True when a unit may follow a number at once: "100um", but neither "2,5 um" nor "1_000 um".
+/// Returns true if this character may follow a number directly: "100um", but neither "2,5 um" nor "1_000 um".
 bool begins_unit(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%'; }
 
 /// Returns number * 10^exponent, rounded once.
@@ -311,7 +311,7 @@ Quantity parse_quantity(std::string_view given) {
   const std::string_view unit = trim(text.substr(length));
   if (length == 0 ||
       (length < text.size() && blanks.find(text[length]) == std::string_view::npos && !begins_unit(text[length]))) {
-    throw InvalidInput("not a number and a unit");
+    throw InvalidInput("must be a number and a unit");
   }
   if (unit.empty()) return {scaled_number(number, 0), dimension::none};
   if (unit == "degC") {

@@ -17,8 +17,8 @@
 
 namespace softland {
 
-/// Powers of m, kg, s, A, K, rad, Vsp, Vdp. An angle is a dimension, so that rad/s and Hz cannot be mixed up. The pull-in
-/// voltages of an electrode are dimensions too: their volts are known only later.
+/// A physical dimension: powers of m, kg, s, A, K, rad, Vsp and Vdp. Angle is a dimension, so that rad/s and Hz differ. The
+/// pull-in voltages Vsp and Vdp are dimensions, because their values in volts are computed later.
 struct Dimension {
   std::array<int, 8> powers{};
   friend bool operator==(const Dimension&, const Dimension&) = default;

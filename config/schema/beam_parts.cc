@@ -176,33 +176,33 @@ Key anchor_key(std::string_view name, std::vector<std::string_view> words, std::
 }  // namespace
 
 std::vector<Key> beam_part_keys() {
-  return {
-      {.name = "sections",
-       .type = KeyType::tables,
-       .instead_of = {"length"},
-       .about = "the beam from x = 0 on, stretch by stretch",
-       .like = "[{ length = \"60 um\", width = \"10 um\" }, { length = \"190 um\", width = [\"40 um\", \"20 um\"] }]",
-       .part = section_keys},
-      {.name = "layers",
-       .type = KeyType::tables,
-       .about = "on the faces of the beam; of several on a face the later one lies outside",
-       .like = "[{ face = \"far\", span = [\"0 um\", \"tip\"], thickness = \"0.2 um\", youngs_modulus = \"70 GPa\", density = "
-               "\"2200 kg/m^3\" }]",
-       .part = layer_keys},
-      anchor_key<&Beam::anchor>("anchor", {"clamped"}, "the end at x = 0; absent: clamped"),
-      anchor_key<&Beam::far_anchor>("far_anchor", {"free", "clamped"}, "the far end; absent: what the kind says"),
-      {.name = "rest_shape",
-       .type = KeyType::table,
-       .instead_of = {"stress_gradient"},
-       .about = "how the released beam rests: straight lines between heights at places along it",
-       .like = "{ positions = [\"0 um\", \"50 %\", \"tip\"], heights = [\"0 nm\", \"20 nm\", \"80 nm\"] }",
-       .part = rest_shape_keys}};
+  return {{.name = "sections",
+           .type = KeyType::tables,
+           .instead_of = {"length"},
+           .about = "the beam from x = 0 on, stretch by stretch",
+           .like = "[{ length = \"60 um\", width = \"10 um\" }, { length = \"190 um\", width = [\"40 um\", \"20 um\"] }]",
+           .part = section_keys},
+          {.name = "layers",
+           .type = KeyType::tables,
+           .about = "on the faces of the beam; of several on a face the later one lies outside",
+           .like = "[{ face = \"far\", span = [\"0 um\", \"tip\"], thickness = \"0.2 um\", youngs_modulus = \"70 GPa\", "
+                   "density = \"2200 kg/m^3\" }]",
+           .part = layer_keys},
+          anchor_key<&Beam::anchor>("anchor", {"clamped"}, "the end at x = 0; absent: clamped"),
+          anchor_key<&Beam::far_anchor>("far_anchor", {"free", "clamped"}, "the far end; absent: what the kind says"),
+          {.name = "rest_shape",
+           .type = KeyType::table,
+           .instead_of = {"stress_gradient"},
+           .about = "how the released beam rests: straight lines between heights at places along it",
+           .like = "{ positions = [\"0 um\", \"50 %\", \"tip\"], heights = [\"0 nm\", \"20 nm\", \"80 nm\"] }",
+           .part = rest_shape_keys}};
 }
 
 std::vector<Advice> part_advice() {
   constexpr std::string_view sections =
-      "'sections' describes a beam whose width, thickness or material changes along it, such as a hinge narrower than the "
-      "plate: sections = [{ length = \"60 um\", width = \"10 um\" }, { length = \"190 um\", width = \"40 um\" }]";
+      "'sections' describes a beam whose width, thickness or material changes along it, "
+      "such as a hinge narrower than the plate: sections = [{ length = \"60 um\", width = \"10 um\" }, { length = \"190 um\", "
+      "width = \"40 um\" }]";
   constexpr std::string_view layers = "'layers' describes films on the faces of a beam, with their stress";
   constexpr std::string_view holes =
       "holes stand in a section: sections = [{ length = \"250 um\", holes = { pitch = \"20 um\", size = \"8 um\" } }]";

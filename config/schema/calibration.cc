@@ -11,8 +11,8 @@ Section calibration_section() {
                           "of the measurement, one standard deviation; of a time in its unit")
                        .by_default("'0 %'")},
           .about =
-              "what is measured on every device before it is driven: NAME is Vdp, frequency, piezo, the static deflection per "
-              "volt on it over the contact gap, or time, that of closing under a step to 1.2 Vdp"};
+              "what is measured on every device before it is driven: NAME is Vdp, frequency, piezo, "
+              "the static deflection per volt on it over the contact gap, or time, that of closing under a step to 1.2 Vdp"};
 }
 
 }  // namespace softland::internal

@@ -173,8 +173,8 @@ Section contact_section() {
           .advice = {{"dimple", "'count' stands for equal contacts side by side, [contact.NAME] for several places"},
                      {"number", "'count' stands for equal contacts side by side, [contact.NAME] for several places"},
                      {"rough",
-                      "the roughness of a face is 'asperity_deviation' with model = \"asperity-gaussian\", and "
-                      "'asperity_height' with model = \"asperity-uniform\""}},
+                      "the roughness of a face is 'asperity_deviation' with model = \"asperity-gaussian\", "
+                      "and 'asperity_height' with model = \"asperity-uniform\""}},
           .begin =
               [](Scene& scene, const SectionReader& in, std::string_view name) {
                 scene.device.contacts.push_back({.model = law_of<ContactModel>(in), .name = std::string(name)});

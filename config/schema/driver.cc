@@ -3,9 +3,8 @@
 namespace softland::internal {
 
 constexpr std::string_view no_amplification =
-    "gain is an error of the source; an amplifier between source and switch is the key amplifier, volts at the switch per volt "
-    "of "
-    "the source, and all voltages are then those at the switch";
+    "gain is an error of the source; an amplifier between source and switch is the key amplifier, "
+    "volts at the switch per volt of the source, and all voltages are then those at the switch";
 
 Section driver_section() {
   Key bits{.name = "bits",

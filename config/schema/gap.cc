@@ -53,18 +53,18 @@ void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
 }  // namespace
 
 Section gap_section() {
-  return {.name = "gap",
-          .required = true,
-          .may_vary = true,
-          .keys = {OfGap::number<&Gap::electrode>("electrode", dimension::length, positive, "rest distance beam to electrode")
-                       .needed(),
-                   OfGap::number<&Gap::contact>(
-                       "contact", dimension::length, positive,
-                       "rest distance contact point to contact plane; not where a [contact.NAME] has its own, nor where a "
-                       "dielectric has a landing")},
-          .about = "rest distances",
-          .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
-          .check = check_gap};
+  return {
+      .name = "gap",
+      .required = true,
+      .may_vary = true,
+      .keys =
+          {OfGap::number<&Gap::electrode>("electrode", dimension::length, positive, "rest distance beam to electrode").needed(),
+           OfGap::number<&Gap::contact>("contact", dimension::length, positive,
+                                        "rest distance contact point to contact plane; not where a [contact.NAME] has its own, "
+                                        "nor where a dielectric has a landing")},
+      .about = "rest distances",
+      .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
+      .check = check_gap};
 }
 
 }  // namespace softland::internal
