@@ -1,9 +1,10 @@
-// Reduced-order models of ANSYS (.rom, of the elements ROM144): frequencies of modes, which of them are used, and their shapes at
-// a few nodes, each 1 at its largest. No mass stands in the file, and its units are those of the model.
+// Reads reduced-order models of ANSYS (.rom, for elements ROM144). The file has the frequencies of the modes and their shapes at
+// a few nodes, each shape scaled to 1 at its largest value. It has no masses, and its units are those of the finite-element
+// model.
 //
-// Blocks of numbers that are not needed here follow the frequencies (damping, ranges of the modal coordinates, loads). Next are
-// the numbers of the nodes, their direction of motion, their positions and a row of shapes per mode. The ranges say which modes
-// are used. Source: the layout of files written by ANSYS 18; the element: ANSYS Mechanical APDL,
+// After the frequencies the file has damping, ranges of the modal coordinates, and loads. A mode is used by the model if its
+// range is not empty. Next are the numbers of the nodes, their direction of motion, their positions, and a row of shape values
+// per mode. Source: the layout of files written by ANSYS 18; the element: ANSYS Mechanical APDL,
 // Coupled-Field Analysis Guide, "Reduced Order Modeling".
 #include <fmt/format.h>
 
@@ -25,7 +26,7 @@ namespace {
 /// Lines of the file that hold numbers alone.
 struct Row {
   std::size_t line = 0;
-  bool is_real = false;  ///< some number has a point
+  bool is_real = false;  ///< true if a number has a decimal point
   std::vector<double> numbers;
 };
 
@@ -35,7 +36,7 @@ class RomReader {
     Lines lines(text);
     bool first = true;
     while (lines.next()) {
-      if (std::exchange(first, false)) continue;  // RELEASE
+      if (std::exchange(first, false)) continue;  // the first line, RELEASE, has no numbers
       std::vector<std::string_view> words;
       split_cells(lines.line(), ' ', words);
       Row row{.line = lines.number()};
@@ -58,14 +59,14 @@ class RomReader {
 
   NodalModes read() {
     NodalModes made{.format = "ANSYS .rom", .needs_length_unit = true};
-    if (rows_.empty()) refusals_.fail("the file ends above its numbers");
+    if (rows_.empty()) refusals_.fail("the file must hold numbers, but ends before them");
     const auto modes = static_cast<std::size_t>(count(rows_[0], 0, "the number of modes"));
     std::size_t at = 1;
     while (at < rows_.size() && !rows_[at].is_real) ++at;
     const std::vector<double> frequencies = reals(at, modes, "frequencies");
     for (std::size_t k = 0; k < modes; ++k) {
       if (!(frequencies[k] > 0) || (k > 0 && frequencies[k] < frequencies[k - 1]))
-        fail(at, "the frequencies must be positive and rise");
+        fail(at, "the frequencies must be positive and increasing");
     }
     const std::vector<double> low = reals(at + 2, modes, "lower ends of the ranges"),
                               high = reals(at + 3, modes, "upper ends of the ranges");
@@ -81,8 +82,7 @@ class RomReader {
       }
       made.modes.push_back(std::move(mode));
     }
-    if (at_shapes_ + modes != rows_.size() || end_ == 0)
-      refusals_.fail("other numbers follow the shapes, or the file ends in them");
+    if (at_shapes_ + modes != rows_.size() || end_ == 0) refusals_.fail("the file must end with the last number of the shapes");
     return made;
   }
 
@@ -96,29 +96,29 @@ class RomReader {
     return static_cast<long long>(value);
   }
 
-  // The first numbers of a row, of which the rest must be 0.
+  // Returns the first `count` numbers of a row; the rest of the row must be 0.
   std::vector<double> reals(std::size_t at, std::size_t count, const char* what) const {
     if (at >= rows_.size()) refusals_.fail(fmt::format("the file ends before the {}", what));
     const Row& row = rows_[at];
-    if (!row.is_real || row.numbers.size() < count) fail(at, fmt::format("{} {} must stand here", count, what));
+    if (!row.is_real || row.numbers.size() < count) fail(at, fmt::format("must have {} {}", count, what));
     if (std::any_of(row.numbers.begin() + static_cast<std::ptrdiff_t>(count), row.numbers.end(), [](double v) { return v != 0; }))
-      fail(at, fmt::format("more than {} {} stand here", count, what));
+      fail(at, fmt::format("must have at most {} {}", count, what));
     return {row.numbers.begin(), row.numbers.begin() + static_cast<std::ptrdiff_t>(count)};
   }
 
-  // Numbers of nodes, ten a line, then directions in the same way, then three rows of positions.
+  // Reads the numbers of the nodes, ten per line, then their directions in the same form, then three rows of positions.
   void read_nodes(NodalModes& made, std::size_t at) {
     std::size_t end = at;
     while (end < rows_.size() && !rows_[end].is_real) ++end;
     const std::size_t lines = end - at;
-    if (lines == 0 || lines % 2 != 0) refusals_.fail("numbers and directions of the nodes must stand below the ranges");
+    if (lines == 0 || lines % 2 != 0) refusals_.fail("the numbers and the directions of the nodes must follow the ranges");
     std::vector<double> numbers, ways;
     for (std::size_t k = 0; k < lines; ++k) {
       std::vector<double>& into = k < lines / 2 ? numbers : ways;
       into.insert(into.end(), rows_[at + k].numbers.begin(), rows_[at + k].numbers.end());
     }
     while (!numbers.empty() && numbers.back() == 0) numbers.pop_back();
-    if (numbers.empty() || lines != 2) refusals_.fail("between one and ten nodes are read");
+    if (numbers.empty() || lines != 2) refusals_.fail("the file must have one to ten nodes");
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       if (numbers[i] < 1 || i >= ways.size() || (ways[i] != 1 && ways[i] != 2 && ways[i] != 3))
         fail(at, "a node must have a number, and one of the directions 1, 2 and 3");
@@ -127,7 +127,7 @@ class RomReader {
     made.holds = {false, false, false};
     made.holds[directions_.front()] = true;
     if (std::any_of(directions_.begin(), directions_.end(), [&](std::size_t d) { return d != directions_.front(); }))
-      fail(at + 1, "nodes with motions of different directions");
+      fail(at + 1, "all nodes must have the same direction of motion");
     made.nodes.assign(numbers.size(), no_motion);
     for (std::size_t d = 0; d < 3; ++d) {
       const std::vector<double> places = reals(end + d, numbers.size(), "positions");

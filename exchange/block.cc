@@ -17,7 +17,7 @@ namespace softland::internal {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-// Rows beside which a preamble may stand.
+// Largest number of rows that may have settings of a preamble beside their numbers.
 constexpr std::size_t longest_preamble = 64;
 
 class BlockReader {
@@ -57,25 +57,24 @@ class BlockReader {
   const ReadKeys& keys_;
   DecimalSign decimal_;
   char separator_ = ',';
-  bool pairs_ = false;        // a decimal comma beside a comma that separates
-  bool may_be_pairs_ = true;  // all rows so far could be such pairs
+  bool pairs_ = false;        // true: the comma is both the decimal sign and the separator
+  bool may_be_pairs_ = true;  // true while every row could consist of numbers with a decimal comma
   std::vector<bool> is_numeric_;
   Block block_;
-  CellList headings_;  // headings of all columns
+  CellList headings_;  // headings of all columns, above the numbers
   std::string_view first_row_;
   std::size_t width_ = 0;  // cells of a row
   std::size_t rows_with_words_ = 0;
-  std::vector<std::optional<Unit>> cell_units_;  // unit that the numbers of each column have beside them
+  std::vector<std::optional<Unit>> cell_units_;  // unit written beside the numbers of each column
   std::size_t last_length_ = 0;                  // length of the last cell of all rows so far; 0 where they differ
 };
 
 void BlockReader::find_layout() {
   const std::vector<Line> last = last_lines(text_, static_cast<std::size_t>(keys_.skip));
-  if (last.empty()) refusals_.fail("the file holds no lines; it must hold columns of numbers");
+  if (last.empty()) refusals_.fail("the file must hold columns of numbers, but has no lines");
   separator_ = separator_of(last);
   is_numeric_ = numeric_columns(last, separator_);
-  if (is_numeric_.empty())
-    refusals_.fail("no columns of numbers were found; what is read are exports as text, with times and volts");
+  if (is_numeric_.empty()) refusals_.fail("no columns of numbers were found; export times and volts as text");
   pairs_ = keys_.decimal == ',' && separator_ == ',' && text_.find('"') == std::string_view::npos;
   if (pairs_) {
     CellList cells;
@@ -93,7 +92,7 @@ bool BlockReader::begins_block(const CellList& cells) const {
     if (!may_be_value(cells[i])) return false;
     has_number |= holds_number(cells[i]);
   }
-  // A key before the only column of numbers has its value there.
+  // A row that has a key in front of the only column of numbers is a setting, and the number is its value.
   const std::size_t last = is_numeric_.size() - 1;
   const bool is_only = std::count(is_numeric_.begin(), is_numeric_.end(), true) == 1;
   const bool has_key = is_only && std::any_of(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(last),
@@ -101,14 +100,14 @@ bool BlockReader::begins_block(const CellList& cells) const {
   return has_number && !has_key;
 }
 
-// Two cells each are the whole and the fraction of one number.
+// Joins pairs of cells to numbers with a decimal comma: the whole and the fraction.
 CellList BlockReader::paired(const CellList& cells, std::size_t line) const {
   std::size_t count = cells.size();
   while (count > 0 && cells[count - 1].empty()) --count;
   if (count % 2 != 0 || count / 2 != is_numeric_.size())
     fail(line, 0,
-         fmt::format("the row has {} parts between commas; with decimal = \",\" every number takes two, and rows have as many "
-                     "as the last one",
+         fmt::format("the row has {} parts between commas; with decimal = \",\" each number has two parts, "
+                     "and every row must have as many as the last one",
                      count));
   CellList numbers;
   for (std::size_t i = 0; i < count; i += 2) {
@@ -158,7 +157,7 @@ void BlockReader::take_beside(const CellList& cells, std::size_t line, std::stri
 // Returns the number of characters of a number without its sign.
 std::size_t digits_in(std::string_view cell) { return cell.size() - (cell.starts_with('-') || cell.starts_with('+') ? 1 : 0); }
 
-// Tells if the last number of a last line without a line end is shorter than all numbers above it, which are of one length.
+// Returns true if the file may end within its last number: all numbers above have one length, and the last one is shorter.
 bool BlockReader::was_cut(const CellList& cells) const {
   constexpr std::size_t fewest = 3;
   return block_.lines.size() >= fewest && digits_in(cells[is_numeric_.size() - 1]) < last_length_;
@@ -169,7 +168,7 @@ void BlockReader::take_number(std::size_t k, const Cell& cell, std::string_view 
   block_.values[k].push_back(cell.kind == CellKind::number ? cell.value : not_a_number);
   Missing& missing = block_.missing[k];
   if (cell.kind == CellKind::number) {
-    // Look only at rows whose number is a power of two: they are few.
+    // Count digits only in rows whose number is a power of two, to save time.
     if ((row & (row - 1)) == 0 || unended) block_.digits[k] = std::max(block_.digits[k], significant_digits(text));
   } else if (missing.count++ == 0) {
     missing.line = line;
@@ -177,7 +176,8 @@ void BlockReader::take_number(std::size_t k, const Cell& cell, std::string_view 
   }
 }
 
-// A number with a unit is taken in the first unit of its column, "-999 ns" above "1 us", and so must be all others.
+// Converts a number with a unit to the first unit of its column, as for "-999 ns" above "1 us". Either all numbers of a column
+// have a unit, or none.
 void BlockReader::take_unit(std::size_t k, Cell& cell, std::string_view text, std::size_t line, bool unended) {
   std::optional<Unit>& unit = cell_units_[k];
   const auto refuse = [&](const std::string& why) {
@@ -204,7 +204,7 @@ void BlockReader::take_unit(std::size_t k, Cell& cell, std::string_view text, st
 
 void BlockReader::read_row(const CellList& cells, std::size_t line, bool unended) {
   const auto cut = [&](const std::string& why) {
-    // A row that the file's end cuts is shorter than a full row.
+    // A row that is cut by the end of the file is shorter than a full row.
     if (cells.back().data() + cells.back().size() - cells.front().data() > static_cast<std::ptrdiff_t>(2 * first_row_.size()))
       fail(line, 0, why);
     block_.left_out.push_back(fmt::format("line {}: {}: the file ends in the middle of it", line, why));
@@ -213,7 +213,7 @@ void BlockReader::read_row(const CellList& cells, std::size_t line, bool unended
   if (unended && cells.size() < width_) return cut(fmt::format("it has {} cells, and rows have {}", cells.size(), width_));
   if (cells.size() != width_)
     fail(line, 0,
-         fmt::format("the row has {} cells; it must have {} as the rows above{}", cells.size(), width_,
+         fmt::format("the row has {} cells; it must have {}, as the rows above{}", cells.size(), width_,
                      separator_ == ',' && decimal_.sign != '.' ? " (decimal = \",\" reads commas as decimal signs)" : ""));
   if (unended && was_cut(cells)) return cut("its last number is shorter than those above");
   std::size_t k = 0;
@@ -231,10 +231,9 @@ void BlockReader::read_row(const CellList& cells, std::size_t line, bool unended
                        block_.lines.empty() ? " (skip leaves out lines at the beginning)" : ""));
     }
     if (cell.kind == CellKind::other_sign)
-      fail(
-          line, i + 1,
-          fmt::format("is \"{}\", and numbers before it have the decimal sign \"{}\"; decimal = \".\" or \",\" says which is one",
-                      shown_cell(cells[i]), decimal_.sign));
+      fail(line, i + 1,
+           fmt::format("is \"{}\", but earlier numbers have the decimal sign \"{}\"; give decimal = \".\" or \",\"",
+                       shown_cell(cells[i]), decimal_.sign));
     take_number(k, cell, cells[i], line, unended);
     ++k;
   }
@@ -244,14 +243,14 @@ void BlockReader::read_row(const CellList& cells, std::size_t line, bool unended
   block_.lines.push_back(static_cast<std::uint32_t>(line));
 }
 
-// Tells if a line has a cell for nearly every column of numbers.
+// Returns true if a line has a cell for nearly every column of numbers.
 bool BlockReader::may_be_headings(const CellList& cells) const {
   const auto filled = std::count_if(cells.begin(), cells.end(), [](std::string_view cell) { return !cell.empty(); });
   const auto due = std::count(is_numeric_.begin(), is_numeric_.end(), true);
   return filled > 0 && filled + 1 >= due && !(due > 1 && cells.size() == 1);
 }
 
-// The cells, where all above columns of numbers are units; else none.
+// Returns the cells of a line if all cells above columns of numbers are units; else none.
 CellList BlockReader::units_in(const CellList& cells) const {
   bool has_unit = false;
   for (std::size_t i = 0; i < std::min(cells.size(), is_numeric_.size()); ++i) {
@@ -262,20 +261,19 @@ CellList BlockReader::units_in(const CellList& cells) const {
   return has_unit ? cells : CellList{};
 }
 
-// Units beyond the last column: a name holds the separator, and all behind it stand one column too far.
+// Refuses units beyond the last column: a name then contains the separator, and the names behind it are shifted.
 void BlockReader::refuse_shifted(const CellList& cells, std::size_t line) const {
   for (std::size_t i = is_numeric_.size(); i < cells.size(); ++i) {
     if (unit_of(cells[i]) || heading_of(cells[i]).unit)
-      fail(
-          line, i + 1,
-          fmt::format(
-              "\"{}\" has a unit, and the rows end before it, with {} columns: quote the name that holds the separator, or leave "
-              "the line out by skip and say unit and time_unit",
-              shown_cell(cells[i]), is_numeric_.size()));
+      fail(line, i + 1,
+           fmt::format("\"{}\" has a unit, but the rows have only {} columns: quote the name that contains the separator, "
+                       "or skip the line and give unit and time_unit",
+                       shown_cell(cells[i]), is_numeric_.size()));
   }
 }
 
-// The lines above the numbers: the last one holds units where all its cells do, the one above it, or else it, names.
+// Reads names and units above the numbers. The last line has units if all its cells are units, and the line above has the
+// names; otherwise the last line has the names.
 void BlockReader::take_headings(const std::vector<Line>& above) {
   std::vector<CellList> cells(above.size());
   for (std::size_t i = 0; i < above.size(); ++i) {
@@ -289,7 +287,7 @@ void BlockReader::take_headings(const std::vector<Line>& above) {
   if (next > 0 && may_be_headings(cells[next - 1])) units = units_in(cells[next - 1]);
   if (!units.empty()) --next;
   CellList names;
-  // A comment, or one key with its value, is no line of names.
+  // A comment, or a single key with its value, is not a line of names.
   const bool is_comment =
       next > 0 && std::string_view("#;%").find(trimmed(above[next - 1].text).front()) != std::string_view::npos;
   if (next > 0 && may_be_headings(cells[next - 1]) && !is_comment) {
@@ -355,8 +353,8 @@ void BlockReader::read_lines() {
   }
 }
 
-// A line above the numbers that is a row but for one cell: it stands below units or a heading of times, or begins as a number
-// does.
+// Refuses a line above the numbers that would be a row but for one cell: it follows units or a heading of times, or begins like
+// a number.
 void BlockReader::refuse_broken_row(const std::vector<Line>& above) const {
   CellList cells, before;
   if (!above.empty()) {
@@ -364,7 +362,7 @@ void BlockReader::refuse_broken_row(const std::vector<Line>& above) const {
     const bool is_row = numbers_in(cells) > 0 && std::all_of(cells.begin(), cells.end(), may_be_value);
     if (is_row)
       fail(above.back().number, 0,
-           fmt::format("the row has {} cells; it must have {} as those below (skip leaves out lines at the beginning)",
+           fmt::format("the row has {} cells; it must have {}, as the rows below (skip leaves out lines at the beginning)",
                        cells.size(), is_numeric_.size()));
   }
   for (std::size_t i = 0; i < above.size(); ++i) {
@@ -398,7 +396,7 @@ void BlockReader::refuse_broken_row(const std::vector<Line>& above) const {
   }
 }
 
-// A row such as 0,5,1,25 may be four numbers or two.
+// Refuses rows such as 0,5,1,25, which may be four numbers or two.
 void BlockReader::refuse_two_meanings() const {
   if (decimal_.is_given || separator_ != ',' || !may_be_pairs_) return;
   const auto named = std::count_if(headings_.begin(), headings_.end(), [](std::string_view cell) { return !cell.empty(); });
@@ -406,7 +404,7 @@ void BlockReader::refuse_two_meanings() const {
       std::count_if(block_.units.begin(), block_.units.end(), [](const std::string& unit) { return !unit.empty(); });
   if (static_cast<std::size_t>(std::max(named, with_units)) == is_numeric_.size()) return;
   fail(block_.lines.front(), 0,
-       fmt::format("\"{}\" can be {} whole numbers or {} with a decimal comma; decimal = \".\" or decimal = \",\" says which",
+       fmt::format("\"{}\" can be {} whole numbers or {} with a decimal comma; give decimal = \".\" or decimal = \",\"",
                    shown_cell(first_row_), is_numeric_.size(), is_numeric_.size() / 2));
 }
 
@@ -416,7 +414,7 @@ Block BlockReader::read() {
   read_lines();
   if (block_.lines.empty()) refusals_.fail("no row of numbers was found below the headings");
   if (2 * rows_with_words_ >= block_.lines.size() && rows_with_words_ > 0)
-    refusals_.fail("no columns of numbers were found: most lines hold words as well");
+    refusals_.fail("no columns of numbers were found: most lines contain words");
   refuse_two_meanings();
   return std::move(block_);
 }

@@ -1,4 +1,4 @@
-// The numbers of a file in columns, and what stands above them. Internal to exchange/.
+// Reads the columns of numbers of a file, and the lines above them. Internal to exchange/.
 #pragma once
 
 #include <cstdint>
@@ -18,21 +18,21 @@ struct Block {
   std::vector<std::vector<double>> values;  ///< NaN where a number is missing
   std::vector<Missing> missing;
   std::vector<std::uint32_t> lines;       ///< line of each row
-  std::vector<std::string> names, units;  ///< name and unit of each column, from above or in it; empty without any
-  std::vector<int> digits;                ///< significant ones of the numbers of each column, of some rows
+  std::vector<std::string> names, units;  ///< name and unit of each column, from its heading or its cells; empty if there is none
+  std::vector<int> digits;                ///< number of significant digits in each column, from some of its rows
   bool has_headings = false;
   Preamble preamble;
   std::vector<std::string> left_out, notes;
 };
 
-/// The note about a last line without a line end.
+/// Note on a last line without a line end.
 inline constexpr std::string_view may_be_cut = "the last line has no line end: its last number may have been cut";
 
-/// Columns of numbers below any lines. Throws InvalidInput with line, column and rule.
+/// Reads columns of numbers below any other lines. Throws InvalidInput with line, column and rule.
 [[nodiscard]] Block read_block(std::string_view text, const Refusals& refusals, const ReadKeys& keys);
 
-/// Rows that are channels, each with as many numbers: a name, and then numbers; or numbers alone. Nothing where the text is not
-/// such rows. Throws InvalidInput for rows of other lengths.
+/// Reads a text in which every channel is a row: an optional name, then numbers. Returns none for any other text. Throws
+/// InvalidInput for rows of different lengths.
 [[nodiscard]] std::optional<Block> read_lying_rows(std::string_view text, const Refusals& refusals, const ReadKeys& keys);
 
 }  // namespace softland::internal

@@ -43,7 +43,7 @@ bool is_not_finite(std::string_view cell) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-// Applies from_chars to the whole text, which begins with a digit, a point or a minus.
+// Converts a text that begins with a digit, a point or a minus; none if not all of it is a number.
 std::optional<double> converted(const char* first, const char* last) {
   double value = 0;
   const auto [stop, error] = std::from_chars(first, last, value);
@@ -117,7 +117,7 @@ Cell read_cell(std::string_view cell, DecimalSign& decimal) {
     if (decimal.sign == '\0') decimal.sign = sign;
     if (decimal.sign != sign) return {.kind = CellKind::other_sign, .value = *value};
   }
-  // Instruments that speak SCPI write these for what they do not know and for an overflow.
+  // SCPI instruments write these numbers for an unknown value and for an overflow.
   constexpr double scpi_overflow = 9.9e37;
   if (std::abs(*value) >= scpi_overflow) return {.kind = CellKind::not_finite};
   return {.kind = CellKind::number, .value = *value};

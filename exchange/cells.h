@@ -1,4 +1,4 @@
-// Cells of a line, and the numbers in them.
+// Splits a line into cells, and reads the numbers in cells.
 #pragma once
 
 #include <cstddef>
@@ -9,19 +9,19 @@
 
 namespace softland::internal {
 
-/// The decimal sign: the first cell that has one decides for all, unless it is given.
+/// The decimal sign of a file. If it is not given, the first cell with a decimal sign decides.
 struct DecimalSign {
   char sign = '\0';  ///< '.', ',' or not known yet
   bool is_given = false;
 };
 
-/// The cells of a line, without the blanks and quotation marks around them. A blank as separator stands for any number of them,
-/// tabs included. Separators between quotation marks belong to the cell.
+/// Splits a line into cells, without surrounding blanks and quotation marks. A blank as separator stands for any number of
+/// blanks and tabs. A separator between quotation marks belongs to the cell.
 void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
 
 enum class CellKind {
   number,
-  blank,       ///< nothing, or a dash
+  blank,       ///< empty, or a dash
   not_finite,  ///< inf, nan, overrange
   other_sign,  ///< a number with the other decimal sign
   no_number,
@@ -30,19 +30,20 @@ struct Cell {
   CellKind kind = CellKind::blank;
   double value = 0;
 };
-/// The content of a cell; a first decimal sign is kept in `decimal`.
+/// Reads a cell. The first decimal sign found is stored in `decimal`.
 [[nodiscard]] Cell read_cell(std::string_view cell, DecimalSign& decimal);
 
-/// ASCII letters in lower case.
+/// Returns the text with its ASCII letters in lower case.
 [[nodiscard]] std::string lower_case(std::string_view text);
 
-/// A finite number with a decimal point and nothing around it, or nothing. A leading plus and the minus sign of print are read.
+/// Reads a text that is a finite number with a decimal point; none for any other text. A leading plus and the typographic minus
+/// sign are accepted.
 [[nodiscard]] std::optional<double> plain_decimal(std::string_view text);
 
-/// True if a cell is a number with either decimal sign.
+/// Returns true if a cell is a number, with a decimal point or a decimal comma.
 [[nodiscard]] bool looks_like_number(std::string_view cell);
 
-/// Number of digits of a number that are written down from the first one that is not 0: of "-9.9998e+00" 5, of "0.00120" 3.
+/// Returns the number of significant digits as written: 5 for "-9.9998e+00", 3 for "0.00120".
 [[nodiscard]] int significant_digits(std::string_view cell);
 
 }  // namespace softland::internal

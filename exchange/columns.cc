@@ -21,10 +21,11 @@ namespace {
 
 constexpr std::string_view own_format = "softland CSV";
 
-// "closed", "left_closed": the states of a contact in a record of our own, whose rows of one time are a jump.
+// Returns true for a column of contact states as softland writes it: "closed" or "left_closed". Two rows of the same time are a
+// jump in such a file.
 bool is_contact_state(std::string_view name) { return name == "closed" || name.ends_with("_closed"); }
 
-/// Makes a recording of columns of numbers and what is known of them.
+/// Makes a recording from columns of numbers and from the lines above them.
 class RecordingMaker {
  public:
   RecordingMaker(Block block, const Refusals& refusals, const ReadKeys& keys)
@@ -52,7 +53,7 @@ class RecordingMaker {
   Recording made_;
 };
 
-// Returns the unit that the row of units names, or else the one that the heading names.
+// Returns the unit of a column from the row of units, else from its heading.
 std::optional<Unit> RecordingMaker::unit_of_column(std::size_t k) const {
   std::optional<Unit> unit = unit_of(block_.units[k]);
   return unit ? unit : heading_of(block_.names[k]).unit;
@@ -85,8 +86,8 @@ std::optional<std::size_t> RecordingMaker::named_place(const std::string& name, 
   for (std::size_t k = 0; k < block_.columns.size(); ++k) {
     if (number != 0 ? block_.columns[k] == number : block_.names[k] == name || heading_of(block_.names[k]).name == name) return k;
   }
-  fail(number != 0 ? fmt::format("{} = {}: there is no column of numbers in that place", key, number)
-                   : fmt::format("{} = \"{}\": no column of numbers has this name", key, printable_line(name)));
+  fail(number != 0 ? fmt::format("{} = {}: must be the number of a column of numbers", key, number)
+                   : fmt::format("{} = \"{}\": must be the name of a column of numbers", key, printable_line(name)));
 }
 
 std::optional<std::size_t> RecordingMaker::time_place() const {
@@ -102,25 +103,25 @@ std::optional<std::size_t> RecordingMaker::time_place() const {
     }
     return std::nullopt;
   };
-  // A number of the row counts only where there is no time.
+  // A column of row numbers is used only if there is no column of times.
   constexpr std::array<std::string_view, 11> times{"time",      "t",    "x",     "x-axis", "xpos",  "times",
                                                    "timestamp", "zeit", "temps", "tempo",  "tiempo"};
   constexpr std::array<std::string_view, 3> rows{"index", "sample", "n"};
   if (const auto time = named_one_of(times)) return time;
   if (const auto row = named_one_of(rows)) return row;
   if (block_.has_headings || count < 2) return std::nullopt;
-  // Columns without names: the times are the first one if it never falls, and does not stand still.
+  // Without names, the first column is the times if it never decreases and is not constant.
   const std::vector<double>& first = block_.values.front();
   const bool rises = std::is_sorted(first.begin(), first.end()) && first.front() < first.back();
   return rises ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
-// True if a column is a second one of times, which must be the same, unless the user says which one is meant.
+// Returns true if a column is a second column of times. Its times must equal those of the first, unless a key selects one.
 bool RecordingMaker::is_second_time(std::size_t k, std::size_t time) const {
   const bool is_said = !keys_.time_column.empty() || keys_.time_column_number > 0;
   if (is_said || !block_.has_headings || block_.names[time].empty() || block_.names[k] != block_.names[time]) return false;
   if (block_.values[k] != block_.values[time])
-    fail(fmt::format("columns {} and {} are both times, and differ; time_column says which one belongs to the channel",
+    fail(fmt::format("columns {} and {} are both times, but differ; give time_column for that of the channel",
                      block_.columns[time], block_.columns[k]));
   return true;
 }
@@ -144,7 +145,7 @@ void RecordingMaker::set_times(std::optional<std::size_t> place) {
   made_.notes.insert(made_.notes.end(), rows.notes.begin(), rows.notes.end());
 }
 
-// Codes of a converter that stand for volts.
+// Converts codes of an analogue-to-digital converter to volts.
 void RecordingMaker::scale_codes() {
   constexpr double largest_code = 32767, codes_per_division = 25;
   std::size_t whole = 0, fractions = 0;
@@ -152,12 +153,12 @@ void RecordingMaker::scale_codes() {
     for (const double v : c.values) ++(v == std::floor(v) ? whole : fractions);
   }
   const bool are_codes = made_.format == "GW Instek CSV" && !made_.has_times && whole > fractions;
-  if (are_codes && fractions > 0) fail("codes and fractions: one of both is no sample");
+  if (are_codes && fractions > 0) fail("the channel must hold either codes or fractions of volts, not both");
   if (are_codes && (made_.channels.size() > 1 || !preamble_.vertical_scale))
-    fail("codes whose volts per division cannot be told; save one channel per file");
+    fail("the volts per division of these codes are not known; save one channel per file");
   if (made_.channels.size() != 1) return;
   Channel& channel = made_.channels.front();
-  double full_scale = 1, factor = 1, offset = 0;  // a value at full scale is offset + factor, to the bit
+  double full_scale = 1, factor = 1, offset = 0;  // the voltage at full scale is exactly offset + factor
   if (preamble_.high && preamble_.low && made_.format == "Keysight arb") {
     const bool is_short = preamble_.text.find("short") != std::string::npos;
     if (is_short) full_scale = largest_code;
@@ -169,7 +170,7 @@ void RecordingMaker::scale_codes() {
   } else if (are_codes) {
     full_scale = codes_per_division, factor = *preamble_.vertical_scale;
     made_.notes.push_back(
-        fmt::format("numbers are codes, {} of them a division of {} V", codes_per_division, *preamble_.vertical_scale));
+        fmt::format("numbers are codes, {} per division of {} V", codes_per_division, *preamble_.vertical_scale));
   } else {
     return;
   }
@@ -178,17 +179,17 @@ void RecordingMaker::scale_codes() {
 
 void RecordingMaker::refuse_spectrum() const {
   if (preamble_.horizontal_unit && preamble_.horizontal_unit->measure == Measure::frequency)
-    fail(fmt::format("a spectrum over {}; a record over time is due", preamble_.horizontal_unit->symbol));
+    fail(fmt::format("the file holds a spectrum over {}; give a record over time", preamble_.horizontal_unit->symbol));
   for (std::size_t k = 0; k < block_.columns.size(); ++k) {
     const Heading heading = heading_of(block_.names[k]);
     const std::optional<Unit> unit = unit_of_column(k);
     const bool is_frequency = (unit && unit->measure == Measure::frequency) || lower_case(heading.name).starts_with("freq");
     if (is_frequency && k == 0)
-      fail(fmt::format("a spectrum: column {} is a frequency; a record over time is due", block_.columns[k]));
+      fail(fmt::format("the file holds a spectrum (column {} is a frequency); give a record over time", block_.columns[k]));
   }
 }
 
-// "d0", "dio 3", "channel 0"
+// Returns true for a name that logic analysers give a channel: "d0", "dio 3", "channel 0".
 bool is_logic_name(std::string_view name) {
   constexpr std::array words{"dio", "d", "bit", "logic", "bus", "channel", "probe"};
   for (const std::string_view word : words) {
@@ -209,7 +210,7 @@ void RecordingMaker::refuse_logic_states() const {
         return is_named_so && c.unit.empty() &&
                std::all_of(c.values.begin(), c.values.end(), [](double v) { return v == 0 || v == 1; });
       });
-  if (is_logic) fail("a capture of logic states: every channel is 0 or 1; a record of volts over time is due");
+  if (is_logic) fail("the file holds logic states, 0 or 1; give a record of volts over time");
 }
 
 void RecordingMaker::add_channel(std::size_t k, bool is_only) {
@@ -237,7 +238,7 @@ void RecordingMaker::add_channel(std::size_t k, bool is_only) {
 
 Recording RecordingMaker::make() {
   drop_rows_without_numbers();
-  if (block_.lines.empty()) fail("no row has numbers");
+  if (block_.lines.empty()) fail("must have at least one row with numbers");
   made_.file = refusals_.file();
   made_.left_out.insert(made_.left_out.begin(), block_.left_out.begin(), block_.left_out.end());
   made_.notes = block_.notes;
@@ -249,12 +250,12 @@ Recording RecordingMaker::make() {
   set_times(place);
   const TimeClaim* const samples = preamble_.first(TimeClaim::Of::samples);
   if (samples != nullptr && samples->value > static_cast<double>(block_.lines.size()))
-    made_.notes.push_back(fmt::format("the file speaks of {} samples and holds {}", samples->value, block_.lines.size()));
+    made_.notes.push_back(fmt::format("the file states {} samples, but holds {}", samples->value, block_.lines.size()));
   for (std::size_t k = 0; k < block_.columns.size(); ++k) {
     if (k == place || (place && is_second_time(k, *place))) continue;
     add_channel(k, block_.columns.size() == (place ? 2U : 1U));
   }
-  if (made_.channels.empty()) fail("there is a column of times and none of values");
+  if (made_.channels.empty()) fail("there is a column of times, but no column of values");
   made_.is_breakpoints = std::ranges::any_of(made_.channels, &Channel::is_state);
   scale_codes();
   refuse_logic_states();

@@ -1,5 +1,5 @@
-// Fields on nodes as COMSOL exports them, text or CSV: lines that begin with '%', the last of which names the columns, such as
-// "w (m) @ freq=27513"; numbers may be complex. Names of columns may hold the separator of a CSV, which is then no end of them.
+// Reads fields on nodes that COMSOL exports as text or CSV. Header lines begin with '%'; the last one names the columns, such as
+// "w (m) @ freq=27513". Numbers may be complex. In a CSV, the name of a column may contain commas.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -24,7 +24,7 @@ constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 std::string shown(std::string_view text) { return printable_line(shortened(text, 60)); }
 
-/// "1.5", "-3E-5-0.004i", "2i"; NaN of what has no value.
+/// Reads a number such as "1.5", "-3E-5-0.004i" or "2i"; returns NaN for a missing value.
 std::optional<Complex> complex_number(std::string_view text) {
   if (lower_case(text) == "nan") return Complex(nan_value, nan_value);
   if (!text.ends_with('i')) {
@@ -42,7 +42,7 @@ std::optional<Complex> complex_number(std::string_view text) {
   return Complex(*real, *imaginary);
 }
 
-/// Metres of one of a unit of length.
+/// Returns the size of a unit of length [m]; none for an unknown unit.
 std::optional<double> metres(std::string_view unit) {
   static const std::map<std::string_view, double> known{{"m", 1},       {"dm", 0.1},    {"cm", 1e-2},    {"mm", 1e-3},
                                                         {"um", 1e-6},   {"µm", 1e-6},   {"μm", 1e-6},    {"nm", 1e-9},
@@ -51,10 +51,10 @@ std::optional<double> metres(std::string_view unit) {
   return found == known.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// A column beyond the positions: "solid.w (m) @ freq=27513, p=1".
+/// A column of a displacement, named for example "solid.w (m) @ freq=27513, p=1".
 struct Column {
   std::string heading, parameters;
-  int component = -1;  ///< 0 to 2 of u, v and w
+  int component = -1;  ///< 0, 1 or 2 for u, v or w
   double per_unit = 1;
   double frequency = nan_value;  ///< [Hz]
 };
@@ -73,7 +73,7 @@ class ComsolReader {
  private:
   [[noreturn]] void fail(const std::string& rule) const { refusals_.fail(lines_.number(), 0, rule); }
 
-  // "% Nodes:    8", "% Nodes,8": what follows the key.
+  // Returns the text behind a key of the header: "8" in "% Nodes:    8" or "% Nodes,8".
   static std::string_view setting(std::string_view line, std::string_view key) {
     if (!line.starts_with(key)) return {};
     line.remove_prefix(key.size());
@@ -90,7 +90,7 @@ class ComsolReader {
       is_csv_ = is_csv_ || line.starts_with("Model,");
       if (const std::string_view unit = setting(line, "Length unit"); !unit.empty()) {
         made_.length_unit = metres(unit);
-        if (!made_.length_unit) fail(fmt::format("the unit of length is \"{}\", which is not known", shown(unit)));
+        if (!made_.length_unit) fail(fmt::format("the unit of length \"{}\" is not known", shown(unit)));
       } else if (const std::string_view count = setting(line, "Nodes"); !count.empty()) {
         nodes_ = plain_decimal(count);
       }
@@ -106,7 +106,7 @@ class ComsolReader {
 
   void cells_of(std::string_view line) { split_cells(line, is_csv_ ? ',' : ' ', cells_); }
 
-  // Names as many columns as there are numbers: of a CSV a comma ends a name only where no parameter of it follows.
+  // Splits the header into as many names as a row has numbers. In a CSV, a comma ends a name unless a parameter follows.
   void name_columns(std::string_view line, std::size_t count) {
     std::vector<std::string> names;
     if (is_csv_) {
@@ -125,13 +125,15 @@ class ComsolReader {
       }
     }
     if (names.size() != count)
-      refusals_.fail(columns_line_, 0, fmt::format("{} names of columns above {} numbers a row", names.size(), count));
+      refusals_.fail(columns_line_, 0,
+                     fmt::format("the header has {} names of columns, but a row has {} numbers", names.size(), count));
     std::size_t k = 0;
     for (; k < names.size() && is_position(names[k]); ++k) continue;
     if (k == 0)
-      refusals_.fail(columns_line_, 0, fmt::format("the first column is \"{}\"; positions x, y, z are due", shown(names[0])));
+      refusals_.fail(columns_line_, 0,
+                     fmt::format("the first columns must be positions x, y, z, but the first is \"{}\"", shown(names[0])));
     for (; k < names.size(); ++k) columns_.push_back(column(names[k]));
-    if (columns_.empty()) refusals_.fail(columns_line_, 0, "there are positions, but no motion beside them");
+    if (columns_.empty()) refusals_.fail(columns_line_, 0, "there are positions, but no displacements");
   }
 
   bool is_position(const std::string& name) {
@@ -161,8 +163,7 @@ class ComsolReader {
     if (made.component < 0 || !size)
       refusals_.fail(
           columns_line_, 0,
-          fmt::format("\"{}\" is no displacement: u, v or w in a unit of length, of a study of eigenfrequencies, is due",
-                      shown(heading)));
+          fmt::format("\"{}\" must be a displacement of an eigenfrequency study: u, v or w in a unit of length", shown(heading)));
     made.per_unit = *size;
     made.frequency = frequency(made.parameters);
     return made;
@@ -194,7 +195,8 @@ class ComsolReader {
       if (trimmed(lines_.line()).empty()) continue;
       cells_of(lines_.line());
       if (cells_.size() != positions_.size() + columns_.size())
-        fail(fmt::format("{} numbers, where there are {} columns", cells_.size(), positions_.size() + columns_.size()));
+        fail(fmt::format("the row has {} numbers; it must have {}, one per column", cells_.size(),
+                         positions_.size() + columns_.size()));
       Vector3 node{nan_value, nan_value, nan_value};
       for (std::size_t k = 0; k < positions_.size(); ++k) {
         const std::optional<double> place = plain_decimal(cells_[k]);
@@ -207,7 +209,7 @@ class ComsolReader {
     if (lines_.is_unended()) made_.notes.emplace_back("the last line has no end: it may have been cut");
     if (nodes_ && static_cast<double>(made_.nodes.size() + missing_) != *nodes_)
       refusals_.fail(
-          fmt::format("{} rows, but the file says {} nodes: its end is missing", made_.nodes.size() + missing_, *nodes_));
+          fmt::format("the file has {} rows, but states {} nodes: its end is missing", made_.nodes.size() + missing_, *nodes_));
     if (made_.nodes.empty()) refusals_.fail("no node has a value (NaN everywhere): the points lie outside the model");
     if (missing_ > 0)
       made_.left_out.push_back(fmt::format("{} of {} nodes without values (NaN)", missing_, made_.nodes.size() + missing_));
@@ -228,12 +230,12 @@ class ComsolReader {
       ++missing_;
       return;
     }
-    if (empty > 0) fail("some of the node's values are NaN and others are not");
+    if (empty > 0) fail("either all values of a node must be NaN, or none");
     made_.nodes.push_back(node);
     for (std::size_t k = 0; k < row.size(); ++k) values_[k].push_back(row[k] * columns_[k].per_unit);
   }
 
-  // Columns of the same parameters are directions of one mode.
+  // Makes modes: columns with equal parameters are the components of one mode.
   void make_modes() {
     made_.holds = {false, false, false};
     std::vector<std::string> order;
@@ -243,7 +245,7 @@ class ComsolReader {
       const Column& c = columns_[k];
       if (!by_parameters.contains(c.parameters)) order.push_back(c.parameters);
       const std::vector<Complex>*& place = by_parameters[c.parameters][static_cast<std::size_t>(c.component)];
-      if (place != nullptr) refusals_.fail(columns_line_, 0, fmt::format("two columns are \"{}\"", shown(c.heading)));
+      if (place != nullptr) refusals_.fail(columns_line_, 0, fmt::format("the column \"{}\" is given twice", shown(c.heading)));
       place = &values_[k];
       frequencies[c.parameters] = c.frequency;
       made_.holds[static_cast<std::size_t>(c.component)] = true;
@@ -253,7 +255,7 @@ class ComsolReader {
       for (std::size_t d = 0; d < 3; ++d) {
         if (made_.holds[d] && parts[d] == nullptr)
           refusals_.fail(columns_line_, 0,
-                         fmt::format("a direction of motion is there for other modes, but not for \"{}\"", shown(parameters)));
+                         fmt::format("a component that other modes have is missing for \"{}\"", shown(parameters)));
       }
       made_.modes.push_back(
           {.frequency = frequencies[parameters],
@@ -262,7 +264,8 @@ class ComsolReader {
     }
   }
 
-  // A mode has one phase everywhere, up to which it is known: the one that leaves the least outside it.
+  // Returns the real motion of a complex mode. A mode is known up to a phase; the phase that leaves the smallest imaginary part
+  // is removed.
   std::vector<Vector3> in_phase(const std::array<const std::vector<Complex>*, 3>& parts, const std::string& parameters) {
     constexpr double rounding = 1e-6, most = 0.1;
     Complex squares = 0;
@@ -283,11 +286,11 @@ class ComsolReader {
     }
     const double share = whole > 0 ? std::sqrt(outside / whole) : 0;
     if (share > most)
-      refusals_.fail(fmt::format("the motion at \"{}\" has no one phase ({:.0f} % are outside of it): it is no mode",
+      refusals_.fail(fmt::format("the motion at \"{}\" must have a single phase, as a mode has, but {:.0f} % is out of phase",
                                  shown(parameters), 100 * share));
     if (share > rounding)
-      made_.notes.push_back(
-          fmt::format("of the complex motion at \"{}\" {:.2g} % out of phase are left out", shown(parameters), 100 * share));
+      made_.notes.push_back(fmt::format("{1:.2g} % of the complex motion at \"{0}\", which is out of phase, is left out",
+                                        shown(parameters), 100 * share));
     return motion;
   }
 

@@ -47,8 +47,8 @@ std::string from_utf16(std::string_view bytes, bool big_endian) {
   return text;
 }
 
-// Text of ASCII characters in UTF-16 has a zero in every other byte: 0 where those are the first ones, 1 the second ones, -1
-// where it has not.
+// ASCII text in UTF-16 has a zero in every other byte. Returns 0 if the first byte of each pair is zero, 1 if the second one is,
+// and -1 otherwise.
 int zero_bytes(std::string_view bytes) {
   constexpr std::size_t enough = 64;
   const std::size_t count = std::min(enough, bytes.size() / 2);
@@ -88,7 +88,7 @@ bool Lines::next() {
   const char* const begin = rest_.data();
   const auto* end = static_cast<const char*>(std::memchr(begin, '\n', rest_.size()));
   const std::size_t to_feed = end == nullptr ? rest_.size() : static_cast<std::size_t>(end - begin);
-  // A carriage return that no line feed follows ends a line by itself.
+  // A carriage return ends a line even without a line feed after it.
   const auto* carriage = static_cast<const char*>(std::memchr(begin, '\r', to_feed));
   const std::size_t length = carriage == nullptr ? to_feed : static_cast<std::size_t>(carriage - begin);
   line_ = rest_.substr(0, length);

@@ -1,4 +1,4 @@
-// Bytes of a file as UTF-8 text: what byte order marks say, UTF-16 with or without one, and line ends of all systems.
+// Converts the bytes of a file to UTF-8 text, from UTF-8 or UTF-16 with or without a byte order mark, and splits it into lines.
 #pragma once
 
 #include <string>
@@ -7,22 +7,22 @@
 
 namespace softland::internal {
 
-/// The content as UTF-8, without a byte order mark. UTF-16 is known by its mark, or by every other byte of its beginning being
-/// zero. `storage` holds the text where it is not the content itself; `left_out` names what cannot be decoded.
+/// Returns the content as UTF-8, without a byte order mark. UTF-16 is recognised by its mark, or by zeros in every other byte of
+/// its beginning. `storage` holds converted text; a description of what cannot be decoded is added to `left_out`.
 [[nodiscard]] std::string_view decoded(std::string_view content, std::string& storage, std::vector<std::string>& left_out);
 
-/// True if a text holds bytes that no text has.
+/// Returns true if the bytes are binary data, not text.
 [[nodiscard]] bool is_binary(std::string_view text);
 
 /// The lines of a text, which end with LF, CR LF or CR.
 class Lines {
  public:
   explicit Lines(std::string_view text) : rest_(text) {}
-  /// True if there was one more line; it is then in line() and has number().
+  /// Reads the next line into line() and number(); returns false at the end of the text.
   bool next();
   [[nodiscard]] std::string_view line() const { return line_; }
   [[nodiscard]] std::size_t number() const { return number_; }
-  /// True if the line ended with the file instead of a line end.
+  /// Returns true if the end of the file ended the line, without a line end.
   [[nodiscard]] bool is_unended() const { return is_unended_; }
 
  private:

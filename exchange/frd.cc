@@ -1,8 +1,8 @@
-// Results of CalculiX (.frd): modes of *FREQUENCY, which CalculiX normalises to a mass of 1 in the units of its input.
+// Reads results of CalculiX (.frd): modes of *FREQUENCY, which CalculiX normalises to a modal mass of 1 in its units.
 //
-// Columns are fixed and may run together. A record " -1" holds the number of a node in 10 columns (5 in the short format), then
-// numbers of 12 columns. Source: CalculiX GraphiX user manual, "Result Format", sections "Nodal Point Coordinate Block" and
-// "Nodal Results Block".
+// Numbers stand in fixed columns, without blanks between them. A record " -1" holds the number of a node in 10 columns (5 in the
+// short format), then numbers of 12 columns. Source: CalculiX GraphiX user manual, "Result Format", sections "Nodal Point
+// Coordinate Block" and "Nodal Results Block".
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ class FrdReader {
         fail("this line belongs to a block (2C, 3C, 100C) whose first line is missing");
       }
     }
-    if (!has_end_) made_.left_out.emplace_back("whatever the end of the file cut off: the mark 9999 is missing");
+    if (!has_end_) made_.left_out.emplace_back("data after the end of the file: the mark 9999 is missing");
     finish();
     return std::move(made_);
   }
@@ -73,7 +73,7 @@ class FrdReader {
       fail(fmt::format("{} is \"{}\"; it must be a whole number", what, printable_line(shortened(text, 20))));
     return value;
   }
-  // The width of a node's number, by the format at the end of a block's first line.
+  // Returns the width of the number of a node. The format at the end of the first line of a block gives it.
   [[nodiscard]] std::size_t node_width(std::string_view format) const {
     if (format == "1") return 10;
     if (format == "0") return 5;
@@ -82,7 +82,7 @@ class FrdReader {
   }
   [[nodiscard]] std::size_t node(std::size_t width) const { return whole(field(key_width, width), "the number of the node"); }
   [[nodiscard]] Vector3 vector(std::size_t begin) const {
-    // A line with a character more or less has its numbers in other columns.
+    // The length of the line is checked, because with one character more or less all numbers are shifted.
     const std::size_t end = begin + 3 * number_width;
     if (lines_.line().size() < end || !trimmed(lines_.line().substr(end)).empty())
       fail(fmt::format("the line of a node must have {} columns, and has {}", end, lines_.line().size()));
@@ -96,23 +96,23 @@ class FrdReader {
   }
 
   void read_nodes() {
-    if (!indices_.empty()) fail("a second block of nodes: one mesh is read");
+    if (!indices_.empty()) fail("the file must have a single block of nodes");
     const std::size_t count = whole(field(24, number_width), "the number of nodes"), width = node_width(last_word());
     for (bool ended = false; !ended;) {
-      if (!lines_.next()) fail("the file ends among the nodes");
+      if (!lines_.next()) fail("the file ends within the block of nodes");
       if (lines_.line().starts_with(" -3")) {
         ended = true;
       } else if (lines_.line().starts_with(" -1")) {
-        if (!indices_.emplace(node(width), made_.nodes.size()).second) fail("this node stands above already");
+        if (!indices_.emplace(node(width), made_.nodes.size()).second) fail("this node is given twice");
         made_.nodes.push_back(vector(key_width + width));
       } else {
-        fail("a line of a node (-1) or the end of the block (-3) must stand here");
+        fail("expected a line of a node (-1) or the end of the block (-3)");
       }
     }
-    if (made_.nodes.size() != count) fail(fmt::format("{} nodes, but the block says {}", made_.nodes.size(), count));
+    if (made_.nodes.size() != count) fail(fmt::format("the block has {} nodes, but states {}", made_.nodes.size(), count));
   }
 
-  // A block of results, of which the displacements of modes are taken.
+  // Reads a block of results; the displacements of modes are used.
   void read_step() {
     constexpr std::string_view modal = "2";
     const bool is_modal = field(56, 2) == modal;
@@ -122,13 +122,13 @@ class FrdReader {
     const std::string_view format = field(73, 2);
     const std::size_t width = node_width(format);
     if (!lines_.next()) return cut(mode);
-    if (!lines_.line().starts_with(" -4")) fail("the line of a result (-4) must stand here");
+    if (!lines_.line().starts_with(" -4")) fail("expected the line of a result (-4)");
     const std::string what(field(5, 8));
     if (!is_modal) static_results_ = true;
     if (is_modal && (modal_steps_.empty() || modal_steps_.back() != mode)) modal_steps_.push_back(mode);
     const bool is_taken = is_modal && what == "DISP";
-    if (is_modal && what == "PDISP") fail("displacements as magnitude and phase; modes of *FREQUENCY are read");
-    if (is_taken && made_.nodes.empty()) fail("displacements before the nodes");
+    if (is_modal && what == "PDISP") fail("displacements must be those of *FREQUENCY, not magnitude and phase");
+    if (is_taken && made_.nodes.empty()) fail("the nodes must precede the displacements");
     std::vector<bool> given(made_.nodes.size());
     std::vector<Vector3> motion(is_taken ? made_.nodes.size() : 0, no_motion);
     std::size_t rows = 0;
@@ -137,43 +137,44 @@ class FrdReader {
       if (lines_.line().starts_with(" -3")) break;
       if (!is_taken || lines_.line().starts_with(" -5")) continue;
       if (lines_.is_unended()) return cut(mode);
-      if (!lines_.line().starts_with(" -1")) fail("a line of a node (-1) or the end of the block (-3) must stand here");
+      if (!lines_.line().starts_with(" -1")) fail("expected a line of a node (-1) or the end of the block (-3)");
       const auto found = indices_.find(node(width));
-      if (found == indices_.end()) fail("there is no such node");
-      if (given[found->second]) fail("this node stands above already");
+      if (found == indices_.end()) fail("unknown node");
+      if (given[found->second]) fail("this node is given twice");
       given[found->second] = true;
       motion[found->second] = vector(key_width + width);
       ++rows;
     }
     if (!is_taken) return;
     if (rows != count || rows != made_.nodes.size())
-      fail(fmt::format("displacements of {} nodes, where the mesh has {}", rows, made_.nodes.size()));
+      fail(fmt::format("the mode has displacements of {} nodes, but the mesh has {} nodes", rows, made_.nodes.size()));
     check_frequency(value);
     taken_steps_.push_back(mode);
     made_.modes.push_back(
         {.frequency = value, .modal_mass = modal_mass_, .motion = std::move(motion), .name = fmt::format("mode {}", mode)});
   }
 
-  // Checks the frequency of a mode [Hz] against its square [rad^2/s^2] times the generalised mass, which the file has as well.
+  // Checks the frequency of a mode [Hz] against the generalised stiffness (1PGK), which is its squared angular frequency times
+  // the generalised mass.
   void check_frequency(double frequency) const {
-    constexpr double printed = 1e-4;  // six digits of either
+    constexpr double printed = 1e-4;  // relative rounding of six printed digits
     const double angular = 2 * std::numbers::pi * frequency, squared = squared_frequency_ / modal_mass_;
     if (!(frequency >= 0)) fail(fmt::format("the frequency is {}; it must not be negative", frequency));
     if (!std::isnan(squared) && !(std::abs(angular * angular - squared) <= printed * std::abs(squared)))
-      fail(fmt::format("a frequency of {} Hz, but {} rad/s by the generalised stiffness (1PGK)", frequency,
+      fail(fmt::format("the frequency of {} Hz must agree with {} rad/s from the generalised stiffness (1PGK)", frequency,
                        std::sqrt(std::abs(squared))));
   }
 
-  void cut(std::size_t mode) { made_.left_out.push_back(fmt::format("mode {}: the file ends in it", mode)); }
+  void cut(std::size_t mode) { made_.left_out.push_back(fmt::format("mode {}: the file ends within it", mode)); }
 
   void finish() {
     if (made_.modes.empty() && made_.left_out.size() < 2) {
       refusals_.fail(static_results_
-                         ? "a static result of CalculiX: there is no mode in it; a step *FREQUENCY with *NODE FILE, U is due"
-                         : "a mesh of CalculiX without modes; a step *FREQUENCY with *NODE FILE, U is due");
+                         ? "the file holds a static result of CalculiX and no modes; run a step *FREQUENCY with *NODE FILE, U"
+                         : "the file holds a mesh of CalculiX and no modes; run a step *FREQUENCY with *NODE FILE, U");
     }
-    if (made_.modes.empty()) refusals_.fail("the file ends before the first mode does");
-    if (static_results_) made_.left_out.emplace_back("results that are no modes");
+    if (made_.modes.empty()) refusals_.fail("the file ends within the first mode");
+    if (static_results_) made_.left_out.emplace_back("results other than modes");
     for (const std::size_t step : modal_steps_) {
       if (std::find(taken_steps_.begin(), taken_steps_.end(), step) == taken_steps_.end())
         made_.left_out.push_back(fmt::format("mode {}: no displacements (DISP)", step));

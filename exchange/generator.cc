@@ -15,7 +15,7 @@ namespace {
 struct Range {
   double low, high;
 };
-// Returns the range of the samples; a constant one is extended to 0 V, and a zero one is one volt wide.
+// Returns the range of the samples. The range of constant samples is extended to 0 V, that of zeros to 1 V.
 Range range_of(const std::vector<double>& volts) {
   const auto [low, high] = std::ranges::minmax(volts);
   if (low < high) return {low, high};
@@ -28,15 +28,15 @@ std::string keysight_arb(const GeneratorSamples& s) {
   constexpr double full_scale = 32767;
   const auto [low, high] = range_of(s.volts);
   std::string text = fmt::format(
-      "File Format:1.10\nChecksum:0\nChannel Count:1\nSample Rate:{}\nHigh Level:{}\nLow Level:{}\nMarker Point:{}\nData "
-      "Type:\"short\"\nFilter:\"off\"\nData Points:{}\nData:\n",
+      "File Format:1.10\nChecksum:0\nChannel Count:1\nSample Rate:{}\nHigh Level:{}\nLow Level:{}\nMarker Point:{}\n"
+      "Data Type:\"short\"\nFilter:\"off\"\nData Points:{}\nData:\n",
       s.rate, high, low, s.marker.value_or(s.volts.size() / 2), s.volts.size());
   const double middle = (high + low) / 2, half = (high - low) / 2;
   for (const double v : s.volts) fmt::format_to(std::back_inserter(text), "{}\n", std::round(full_scale * ((v - middle) / half)));
   return text;
 }
 
-// Writes as EasyWave writes and reads: the record is one period.
+// Writes the format of EasyWave, in which the record is one period.
 std::string siglent_csv(const GeneratorSamples& s) {
   const auto [low, high] = range_of(s.volts);
   const auto count = static_cast<double>(s.volts.size());
@@ -53,7 +53,7 @@ void append_rows(std::string& text, const GeneratorSamples& s) {
     fmt::format_to(std::back_inserter(text), "{},{}\n", static_cast<double>(k) / s.rate, s.volts[k]);
 }
 
-// Times and volts under the preamble of an oscilloscope, which ArbExpress and ArbBuilder import.
+// Writes times and volts below the preamble of an oscilloscope file, which ArbExpress and ArbBuilder import.
 std::string tektronix_csv(const GeneratorSamples& s) {
   std::string text = fmt::format("Record Length,{}\nSample Interval,{}\nVertical Units,V\nHorizontal Units,s\n\nTIME,{}\n",
                                  s.volts.size(), 1 / s.rate, s.name);
@@ -61,7 +61,7 @@ std::string tektronix_csv(const GeneratorSamples& s) {
   return text;
 }
 
-// Writes as Ultra Station does: volts behind an empty cell.
+// Writes the format of Ultra Station, in which the volts follow an empty cell.
 std::string rigol_csv(const GeneratorSamples& s) {
   const auto [low, high] = range_of(s.volts);
   std::string text = fmt::format(
@@ -92,13 +92,14 @@ constexpr std::array formats{
 std::span<const GeneratorFormat> generator_formats() { return formats; }
 
 std::string generator_file(const GeneratorFormat& format, GeneratorSamples samples) {
-  require(!samples.volts.empty(), "there are no samples to export");
+  require(!samples.volts.empty(), "must have at least one sample to export");
   require(samples.volts.size() <= format.most, [&] {
-    return fmt::format("{} samples; a {} takes {}: a sample rate of at most {} S/s has that many", samples.volts.size(),
+    return fmt::format("{} samples: a {} takes at most {}; choose a sample rate of at most {} S/s", samples.volts.size(),
                        format.instrument, format.most,
                        samples.rate * static_cast<double>(format.most - 1) / static_cast<double>(samples.volts.size() - 1));
   });
-  require(!samples.marker || format.has_marker, [&] { return fmt::format("a file for {} holds no marker", format.instrument); });
+  require(!samples.marker || format.has_marker,
+          [&] { return fmt::format("a file for {} cannot hold a marker; omit the marker", format.instrument); });
   samples.volts.resize(std::max(samples.volts.size(), format.fewest), samples.volts.back());
   return format.write(samples);
 }

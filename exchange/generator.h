@@ -1,5 +1,5 @@
-// Files that arbitrary waveform generators load: samples at a rate, each held until the next, played once. recording.h reads all
-// of them back.
+// Writes files for arbitrary waveform generators: samples at a constant rate, each held until the next. recording.h reads the
+// same files.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@ struct GeneratorSamples {
   std::string name;
   double rate = 0;                         ///< [Hz]
   std::vector<double> volts;               ///< samples at the output of the generator
-  std::optional<std::size_t> marker = {};  ///< the sample at which its sync output falls
+  std::optional<std::size_t> marker = {};  ///< sample at which the sync output of the generator falls
 };
 
-/// A kind of file, with the samples that the instrument named takes at the fewest and at the most.
+/// A file format, with the smallest and the largest number of samples that the named instrument accepts.
 struct GeneratorFormat {
   std::string_view name, instrument;
   std::size_t fewest = 1, most = 1;
@@ -27,8 +27,8 @@ struct GeneratorFormat {
 };
 [[nodiscard]] std::span<const GeneratorFormat> generator_formats();
 
-/// The file; the last sample is repeated up to the fewest that the instrument takes. Throws InvalidInput where there are none,
-/// more than the instrument takes, or a marker that the format cannot say.
+/// Returns the content of the file. If there are too few samples for the instrument, the last one is repeated. Throws
+/// InvalidInput for no samples, for too many, or for a marker that the format cannot hold.
 [[nodiscard]] std::string generator_file(const GeneratorFormat& format, GeneratorSamples samples);
 
 }  // namespace softland

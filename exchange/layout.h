@@ -16,11 +16,11 @@ struct Line {
   std::size_t number = 0;
 };
 
-/// Messages about a file.
+/// Throws messages about a file.
 class Refusals {
  public:
   explicit Refusals(std::string file) : file_(std::move(file)) {}
-  /// Throws InvalidInput "file:line: column 2: rule"; column 0: none is meant.
+  /// Throws InvalidInput "file:line: column 2: rule"; column 0: the message names no column.
   [[noreturn]] void fail(std::size_t line, std::size_t column, const std::string& rule) const;
   /// Throws InvalidInput "file: rule".
   [[noreturn]] void fail(const std::string& rule) const;
@@ -30,26 +30,26 @@ class Refusals {
   std::string file_;
 };
 
-/// The part of a cell that a message shows.
+/// Returns the beginning of a cell, as messages show it.
 [[nodiscard]] std::string shown_cell(std::string_view cell);
-/// The cells of a line; a unit behind a number belongs to its cell, "5.0 V", where blanks separate, too.
+/// Splits a line into cells. A number and its unit, "5.0 V", are one cell even if blanks separate the cells.
 void split_row(std::string_view line, char separator, CellList& cells);
 [[nodiscard]] bool is_blank(const CellList& cells);
-/// True if a cell is a number, with or without a unit.
+/// Returns true if a cell is a number, with or without a unit.
 [[nodiscard]] bool holds_number(std::string_view cell);
-/// True if a cell is such a number, blank, or the word that instruments write for a number that they do not have.
+/// Returns true if a cell is a number with or without a unit, blank, or a word that instruments write for a missing number.
 [[nodiscard]] bool may_be_value(std::string_view cell);
 [[nodiscard]] std::size_t numbers_in(const CellList& cells);
 
-/// The last lines of a text that are not blank, from the last one up, beyond `skip` lines. A last line that the end of the file
-/// may have cut comes last of all. Their numbers count from some line on.
+/// Returns the last lines of a text that are not blank, from the last one upwards, without the first `skip` lines. A last line
+/// without a line end, which may be incomplete, comes at the end of the list. Line numbers are relative.
 [[nodiscard]] std::vector<Line> last_lines(std::string_view text, std::size_t skip);
 
-/// The separator of the cells of these lines: that with which most of them are numbers alone, or else hold one.
+/// Returns the separator for which most lines consist of numbers only or, if there are none, contain a number.
 [[nodiscard]] char separator_of(const std::vector<Line>& lines);
 
-/// The columns that hold numbers: those with more of them than words in the last lines, as far up as lines hold any. Numbers of
-/// lines without words decide if there are such lines. The last one is true; empty where there are no numbers.
+/// Returns for every column if it holds numbers, that is more numbers than words in the last lines of the text. If there are
+/// lines without words, only those count. The last element is true; empty if there are no numbers.
 [[nodiscard]] std::vector<bool> numeric_columns(const std::vector<Line>& last, char separator);
 
 }  // namespace softland::internal

@@ -12,13 +12,13 @@
 namespace softland {
 namespace {
 
-// Leaves out what lasts for less than `least` from an edge to `state` on.
+// Removes intervals of the state `state` that are shorter than `least`.
 void merge_short(std::vector<LevelEdge>& edges, bool state, double least) {
   std::vector<LevelEdge> kept;
   for (std::size_t k = 0; k < edges.size(); ++k) {
     const bool is_short = edges[k].closed == state && k + 1 < edges.size() && edges[k + 1].time - edges[k].time < least;
     if (is_short) {
-      ++k;  // its end
+      ++k;  // the edge that ends the interval
     } else {
       kept.push_back(edges[k]);
     }
@@ -79,8 +79,8 @@ std::vector<LevelEdge> contact_edges(const Trace& trace, const ThresholdKeys& ke
   while (before < edges.size() && (edges[before].time < 0 || (before == 0 && edges[0].time <= trace.times.front()))) ++before;
   require(before == 0 || !edges[before - 1].closed, [&] {
     return fmt::format(
-        "{}: the contact is closed at t = 0 already; closed = \"below\" takes voltages below the threshold for a closed one, and "
-        "shift moves t = 0 to where the drives begin",
+        "{}: the contact must be open at t = 0; closed = \"below\" if it is closed below the threshold; "
+        "shift moves t = 0 to the beginning of the drives",
         name);
   });
   edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(before));

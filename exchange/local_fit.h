@@ -1,4 +1,4 @@
-// A quantity of scattered points at one place: least squares of a polynomial nearby. Internal to exchange/.
+// Fits a quantity on scattered points near one place by a polynomial (least squares). Internal to exchange/.
 #pragma once
 
 #include <array>
@@ -7,15 +7,16 @@
 
 namespace softland::internal {
 
-/// A point near the place: `along` from it, in units of the window, from -1 to 1; `p` and `q` across, in units of the extent.
+/// A point near the place: `along` is the distance from the place in units of the window, -1 to 1; `p` and `q` are the
+/// coordinates across the axis in units of the extent of the mesh.
 struct NearPoint {
   double along = 0, p = 0, q = 0;
   double value = 0;
 };
 
-/// a0 of value = a0 + a1 along + a2 along^2 + a3 along^3 + (b0 + b1 along) p + (c0 + c1 along) q, weighted by 1 - along^2: what
-/// stands on the axis, whatever the rotation of the section. Nothing where the points do not tell it: fewer than sixteen, or all
-/// of them at few places along.
+/// Returns the value on the axis: a0 of the fit value = a0 + a1 along + a2 along^2 + a3 along^3 + (b0 + b1 along) p +
+/// (c0 + c1 along) q with weights 1 - along^2. The terms in p and q account for the rotation of the section. None if the points
+/// do not determine a0: fewer than sixteen points, or points at too few places along the axis.
 [[nodiscard]] std::optional<double> value_on_axis(std::span<const NearPoint> points);
 
 }  // namespace softland::internal

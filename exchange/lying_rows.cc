@@ -12,16 +12,16 @@
 namespace softland::internal {
 namespace {
 
-/// Lines of a text that are rows of numbers, and those above them.
+/// Lines that are channels written as rows of numbers, and the lines above them.
 struct LyingRows {
   std::vector<Line> above, places;
   std::vector<CellList> rows;
-  std::size_t width = 0;  ///< numbers of the longest row
-  bool named = false;     ///< every row begins with a name
+  std::size_t width = 0;  ///< number of values in the longest row
+  bool named = false;     ///< true if every row begins with a name
   char separator = ',';
 };
 
-// A few lines; nothing where the text has more.
+// Returns the lines of a text of few lines; none if the text has more.
 std::vector<Line> few_lines(std::string_view text, const ReadKeys& keys, bool& ends_unended) {
   constexpr std::size_t most = 64;
   std::vector<Line> all;
@@ -58,7 +58,7 @@ LyingRows rows_in(const std::vector<Line>& all) {
   return found;
 }
 
-// Rows without names are long, and no line above them has names of columns.
+// Returns true if the rows are channels. Rows without names must be long, without names of columns above them.
 bool are_channels(const LyingRows& found) {
   constexpr std::size_t fewest_named = 3, fewest_unnamed = 16;
   if (found.rows.size() < 2) return false;
@@ -107,9 +107,10 @@ std::optional<Block> read_lying_rows(std::string_view text, const Refusals& refu
     block.values.push_back(numbers_of(row, found.named, found.places[r], decimal, refusals));
     const std::size_t count = block.values.back().size();
     if (count != found.width)
-      refusals.fail(found.places[r].number, 0,
-                    fmt::format("the row has {} numbers, and the longest has {}; rows that are channels must have as many", count,
-                                found.width));
+      refusals.fail(
+          found.places[r].number, 0,
+          fmt::format("the row has {} numbers, and the longest row has {}; rows that are channels must have equal lengths", count,
+                      found.width));
   }
   if (ends_unended) block.notes.emplace_back(may_be_cut);
   block.lines.assign(found.width, static_cast<std::uint32_t>(found.places.front().number));

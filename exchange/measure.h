@@ -1,4 +1,4 @@
-// Units as instruments write them beside names of columns: "Time (s)", "C1 in V", "Second", "(mV)", "x/voltage".
+// Reads units as instruments write them in headings of columns: "Time (s)", "C1 in V", "Second", "(mV)", "x/voltage".
 #pragma once
 
 #include <optional>
@@ -11,37 +11,37 @@ enum class Measure { time, voltage, frequency, samples, level, other };  // leve
 
 struct Unit {
   Measure measure = Measure::other;
-  std::string symbol;  ///< "s", "mV"; the text itself where it is not known
-  double per_si = 1;   ///< number of these units that make one SI unit: 1000 of ms
+  std::string symbol;  ///< symbol of the unit, "s" or "mV"; the text itself if the unit is not known
+  double per_si = 1;   ///< number of these units in one SI unit: 1000 for ms
   [[nodiscard]] double in_si(double value) const { return value / per_si; }
 };
 
-/// The unit that a text names, in brackets or not; nothing where it is not known.
+/// Returns the unit that a text names, with or without brackets; none for an unknown unit.
 [[nodiscard]] std::optional<Unit> unit_of(std::string_view text);
 
 struct Heading {
   std::string name;
   std::optional<Unit> unit;
 };
-/// Name and unit of a column of which the heading is known.
+/// Splits the heading of a column into its name and its unit.
 [[nodiscard]] Heading heading_of(std::string_view text);
 
-/// A number with the unit that stands behind it, where there is one.
+/// A number with its unit, if any.
 struct Measured {
   double value = 0;         ///< value as written
-  std::string_view number;  ///< the text of it
+  std::string_view number;  ///< text of the number
   std::optional<Unit> unit = {};
   [[nodiscard]] double si() const { return unit ? unit->in_si(value) : value; }
 };
-/// Reads "160000Hz", "8 ns", "5"; nothing if the text has no number, or an unknown unit behind it.
+/// Reads a text such as "160000Hz", "8 ns" or "5"; none if it has no number, or an unknown unit.
 [[nodiscard]] std::optional<Measured> measured(std::string_view text);
-/// The same of a value in a preamble, which may have the name of a channel before it, "CH1:2e-06", but is no time of the day. A
-/// unit that is given by the key of the number, "Sample interval (us)", comes in `unit`.
+/// Reads a value of a preamble, which may begin with the name of a channel ("CH1:2e-06"), but must not be a time of day. `unit`
+/// is the unit that the key of the value names, as in "Sample interval (us)".
 [[nodiscard]] std::optional<Measured> measured_value(std::string_view text, const std::optional<Unit>& unit);
 
-/// True if a unit is one that stands beside numbers in cells: "5.0 V", "-52.43 us".
+/// Returns true for a unit that instruments write beside numbers in cells, as in "5.0 V" or "-52.43 us".
 [[nodiscard]] bool is_unit_of_cells(const std::optional<Unit>& unit);
-/// A cell that is a number with such a unit; nothing for any other.
+/// Reads a cell that is a number with such a unit; none for any other cell.
 [[nodiscard]] std::optional<Measured> measured_cell(std::string_view cell);
 
 }  // namespace softland::internal

@@ -14,9 +14,9 @@
 namespace softland::internal {
 namespace {
 
-constexpr double printed = 2e-5;             // rounding of the six digits of a file, as a share of the length
-constexpr std::size_t nodes_of_section = 3;  // a mean needs as many
-constexpr std::size_t nearby = 3;            // even places on either side
+constexpr double printed = 2e-5;             // rounding of six printed digits, as a share of the length
+constexpr std::size_t nodes_of_section = 3;  // least number of nodes for the mean of a section
+constexpr std::size_t nearby = 3;            // number of even places on either side that a fit uses
 constexpr int place_digits = 6;
 
 }  // namespace
@@ -30,13 +30,13 @@ MeshSections::MeshSections(const std::vector<Vector3>& nodes, Way axis, Way dire
   clamp_ = clamp.value_or(first_);
   for (Section& section : sections_) section.place -= clamp_;
   if (sections_.size() + (clamp ? 1 : 0) < fewest)
-    refusals_.fail(fmt::format("the nodes stand at {} places along the axis; at least three are due, the clamp among them",
+    refusals_.fail(fmt::format("the nodes must have at least three places along the axis, including the clamp, but have {}",
                                sections_.size()));
   measure_extent();
   if (lacks_sections()) divide_evenly();
 }
 
-// To divide keeps 100 um at 1e-4 m to the bit.
+// Division instead of multiplication makes 100 um exactly 1e-4 m.
 double MeshSections::along_axis(const Vector3& v) const { return axis_.sign * v[axis_.direction] / (1 / length_unit_); }
 
 void MeshSections::gather() {
@@ -78,10 +78,10 @@ void MeshSections::divide_evenly() {
   constexpr std::size_t nodes_of_place = 24, fewest = 12, most = 100;
   const std::size_t parts = std::min(most, nodes_.size() / nodes_of_place);
   if (parts < fewest)
-    refusals_.fail(fmt::format(
-        "an irregular mesh of {} nodes at {} places along the axis: at least {} are due for one whose nodes do not stand in "
-        "layers across the axis",
-        nodes_.size(), sections_.size(), fewest * nodes_of_place));
+    refusals_.fail(
+        fmt::format("an irregular mesh of {} nodes at {} places along the axis: "
+                    "a mesh without layers across the axis must have at least {} nodes",
+                    nodes_.size(), sections_.size(), fewest * nodes_of_place));
   const double first = sections_.front().place, last = sections_.back().place;
   step_ = (last - first) / static_cast<double>(parts);
   std::vector<Section> even(parts + 1);
@@ -93,7 +93,7 @@ void MeshSections::divide_evenly() {
   }
   for (const Section& section : even) {
     if (section.nodes.size() < nodes_of_section)
-      refusals_.fail(fmt::format("an irregular mesh with {} nodes near {} along the axis: too few to tell how it moves there",
+      refusals_.fail(fmt::format("an irregular mesh with {} nodes near {} along the axis: too few to find the motion there",
                                  section.nodes.size(), engineering(section.place, "m", place_digits)));
   }
   sections_ = std::move(even);
@@ -109,7 +109,7 @@ std::vector<double> MeshSections::widths() const {
   const double rounding = printed * sections_.back().place;
   std::vector<double> all;
   for (std::size_t k = 0; k < sections_.size(); ++k) {
-    // The edges of an irregular mesh have nodes nearby.
+    // In an irregular mesh, nodes near a place serve for its edges.
     const std::size_t reach = is_irregular() ? nearby : 0;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t s = k - std::min(k, reach); s <= std::min(k + reach, sections_.size() - 1); ++s) {
@@ -158,7 +158,7 @@ void MeshSections::add_motion(const Section& section, const NodalMode& mode, Sec
   }
   for (const std::size_t node : section.nodes) {
     for (std::size_t d = 0; d < 3; ++d) {
-      // The difference along the axis over a section is its rotation as it bends.
+      // Differences of the motion along the axis within a section are its rotation in bending, not torsion.
       if (d != axis_.direction) motion.torsion += std::pow(mode.motion[node][d] - mean[d], 2);
     }
   }
@@ -201,12 +201,12 @@ double MeshSections::fitted(std::size_t place, const NodalMode& mode) const {
   }
   const std::optional<double> value = value_on_axis(near);
   if (!value)
-    refusals_.fail(fmt::format("an irregular mesh with too few nodes near {} along the axis to tell how it moves there",
+    refusals_.fail(fmt::format("an irregular mesh with too few nodes near {} along the axis to find the motion there",
                                engineering(sections_[place].place, "m", place_digits)));
   return *value;
 }
 
-// True if the motion at the first place is zero within the digits of the file.
+// Returns true if the motion at the first place is zero within the printed digits of the file.
 bool MeshSections::stands_still_at_first(const NodalMode& mode) const {
   const double rounding = printed * (sections_.back().place - sections_.front().place);
   double most = 0, here = 0;

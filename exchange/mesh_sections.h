@@ -1,8 +1,8 @@
-// Nodes of a mesh by their places along an axis, and how they move there. Internal to exchange/.
+// Sections of a mesh along an axis, and their motion in each mode. Internal to exchange/.
 //
-// Nodes at one place are a section, which counts by its mean motion. There are no sections where most places have fewer than
-// three nodes, as in meshes of tetrahedra. The nodes then belong to the nearest of even places, where the motion on the axis is
-// fitted (exchange/local_fit.h).
+// All nodes at one place along the axis form a section, whose motion is the mean of its nodes. If most places have fewer than
+// three nodes, as in meshes of tetrahedra, the mesh is called irregular. The motion on the axis is then fitted at evenly spaced
+// places from the nodes nearby (exchange/local_fit.h).
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,13 @@
 
 namespace softland::internal {
 
-/// A direction of a file: which one, and its sense.
+/// A coordinate direction of a file (0, 1 or 2 for x, y or z) with its sign.
 struct Way {
   std::size_t direction = 0;
   double sign = 1;
 };
 
-/// Motion of the sections in one mode, in the unit of the mode's motion, and the squared motions of all nodes by their kind.
+/// Motion of the sections in one mode, in the unit of the mode, and the squared motion of all nodes by kind.
 struct SectionMotion {
   std::vector<double> along, across, axial;  ///< motion by place: in the direction of motion, across both, along the axis
   std::vector<double> twist;                 ///< motion by rotation about the axis, half the extent of the mesh from the middle
@@ -31,16 +31,18 @@ struct SectionMotion {
 
 class MeshSections {
  public:
-  /// `clamp` [m] is where the clamp is on the axis; nothing: at the first node. Throws InvalidInput by `refusals` for fewer than
-  /// three places, the clamp among them, and for an irregular mesh that does not tell how it moves somewhere.
+  /// `clamp` [m] is the position of the clamp on the axis; none: the first node. Throws InvalidInput by `refusals` for fewer than
+  /// three places, including the clamp, and for an irregular mesh with too few nodes to find the motion at some place.
   MeshSections(const std::vector<Vector3>& nodes, Way axis, Way direction, double length_unit, std::optional<double> clamp,
                const Refusals& refusals);
 
   [[nodiscard]] std::vector<double> places() const;      ///< distances from the clamp [m]
   [[nodiscard]] double first() const { return first_; }  ///< place of the first node on the axis [m]
   [[nodiscard]] bool is_irregular() const { return step_ > 0; }
-  [[nodiscard]] std::vector<double> widths() const;   ///< across axis and direction, by place [m]; NaN where there is no extent
-  [[nodiscard]] std::vector<double> offsets() const;  ///< face towards the direction, above that at the first place [m]
+  [[nodiscard]] std::vector<double> widths()
+      const;  ///< extent across the axis and the direction of motion, by place [m]; NaN if there is none
+  [[nodiscard]] std::vector<double> offsets()
+      const;  ///< height of the face in the direction of motion, by place, relative to the first place [m]
   [[nodiscard]] SectionMotion motion(const NodalMode& mode) const;
 
  private:
@@ -48,7 +50,7 @@ class MeshSections {
     double place = 0;  ///< distance from the clamp [m]
     std::vector<std::size_t> nodes;
   };
-  [[nodiscard]] double along_axis(const Vector3& v) const;  ///< [m]
+  [[nodiscard]] double along_axis(const Vector3& v) const;  ///< component along the axis [m]
   [[nodiscard]] double across_of(const Vector3& v) const { return v[3 - axis_.direction - direction_.direction]; }
   void gather();
   [[nodiscard]] bool lacks_sections() const;

@@ -7,21 +7,22 @@
 
 namespace softland {
 
-/// Numbers are NaN-free: what is not said is not there.
+/// Members that are not given are empty, 0 or none; no number is NaN.
 struct ModeKeys {
-  std::string axis = {};                   ///< "x", "-y": from the clamp to the far end; empty: of a table only
-  std::string direction = {};              ///< "-z": direction of motion, towards the near electrode; empty for a table only
+  std::string axis = {};       ///< axis from the clamp to the far end, "x" or "-y"; empty for a table of softland only
+  std::string direction = {};  ///< direction of motion towards the near electrode, "-z"; empty for a table of softland only
   std::optional<double> length_unit = {};  ///< unit of the file's positions [m]
   std::optional<double> mass_unit = {};    ///< unit of mass in which the file's modes are normalised [kg]
-  std::optional<double> mass = {};         ///< mass of the structure, even along its axis: normalises modes that are not [kg]
-  bool mass_normalised = false;            ///< true if the modes of the file are normalised, though it does not say so
-  std::optional<double> clamp = {};        ///< place of the clamp on the axis of the file, if there is no node [m]
-  std::vector<double> frequencies = {};    ///< frequencies of the modes of a file that does not hold them [Hz]
+  std::optional<double> mass =
+      {};  ///< mass of a structure of constant mass per length; normalises modes that are not mass-normalised [kg]
+  bool mass_normalised = false;          ///< true if the modes of the file are mass-normalised, although the file does not say so
+  std::optional<double> clamp = {};      ///< position of the clamp on the axis of the file, if there is no node at the clamp [m]
+  std::vector<double> frequencies = {};  ///< frequencies of the modes of a file that does not hold them [Hz]
 
-  // The name of a key in a message, such as "structure.mass" or "--mass".
+  // These members make the names of keys in messages, such as "structure.mass" or "--mass".
   std::string prefix = {};    ///< "structure.", "--"
-  char word_separator = '_';  ///< separator of their words: '_' or '-'
-  /// The name of a key in a message.
+  char word_separator = '_';  ///< separator of the words of a name: '_' or '-'
+  /// Returns the name of a key for a message.
   [[nodiscard]] std::string name(std::string key) const {
     for (char& c : key) {
       if (c == '_') c = word_separator;

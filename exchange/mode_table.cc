@@ -39,7 +39,7 @@ Way way_of(const std::string& text, const ModeKeys& keys, const char* key, const
   const std::string_view bare = std::string_view(text).substr(text.starts_with('-') || text.starts_with('+') ? 1 : 0);
   const std::size_t direction = bare.size() == 1 ? axis_names.find(bare) : std::string_view::npos;
   require(direction != std::string_view::npos, [&] {
-    return fmt::format("{} = \"{}\": must be x, y or z, with a minus where the sense is the other one: {}", keys.name(key),
+    return fmt::format("{} = \"{}\": must be x, y or z, with a minus for the opposite direction: {}", keys.name(key),
                        printable_line(text), what);
   });
   return {.direction = direction, .sign = text.starts_with('-') ? -1.0 : 1.0};
@@ -81,17 +81,18 @@ class TableMaker {
     axis_ = way_of(keys_.axis, keys_, "axis", along);
     direction_ = way_of(keys_.direction, keys_, "direction", towards);
     if (axis_.direction == direction_.direction)
-      fail(fmt::format("{} = \"{}\": must be across the axis \"{}\"", keys_.name("direction"), keys_.direction, keys_.axis));
+      fail(fmt::format("{} = \"{}\": must be perpendicular to the axis \"{}\"", keys_.name("direction"), keys_.direction,
+                       keys_.axis));
     if (!read_.holds[direction_.direction]) {
       std::vector<std::string> held;
       for (std::size_t d = 0; d < 3; ++d) {
         if (read_.holds[d]) held.emplace_back(1, axis_names[d]);
       }
-      fail(fmt::format("{} = \"{}\": the file holds no motion along it, but along {}", keys_.name("direction"), keys_.direction,
+      fail(fmt::format("{} = \"{}\": must be a direction of motion in the file: {}", keys_.name("direction"), keys_.direction,
                        fmt::join(held, " and ")));
     }
     if (std::any_of(read_.nodes.begin(), read_.nodes.end(), [&](const Vector3& v) { return std::isnan(v[axis_.direction]); }))
-      fail(fmt::format("{} = \"{}\": the file holds no positions along it", keys_.name("axis"), keys_.axis));
+      fail(fmt::format("{} = \"{}\": must be a direction in which the file holds positions", keys_.name("axis"), keys_.axis));
   }
 
   void take_frequencies() {
@@ -100,13 +101,14 @@ class TableMaker {
     const bool all_known =
         std::none_of(read_.modes.begin(), read_.modes.end(), [](const NodalMode& m) { return std::isnan(m.frequency); });
     if (all_known) {
-      if (!keys_.frequencies.empty()) fail(fmt::format("{}: the file holds its frequencies", keys_.name("frequencies")));
+      if (!keys_.frequencies.empty())
+        fail(fmt::format("{}: must be omitted, because the file holds frequencies", keys_.name("frequencies")));
       return;
     }
     if (keys_.frequencies.empty()) {
       const auto without =
           std::find_if(read_.modes.begin(), read_.modes.end(), [](const NodalMode& m) { return std::isnan(m.frequency); });
-      fail(fmt::format("no frequency of {} stands in the file; {} says those of its {} modes", without->name,
+      fail(fmt::format("the file does not hold the frequency of {}; give {} with those of its {} modes", without->name,
                        keys_.name("frequencies"), used));
     }
     if (keys_.frequencies.size() != read_.modes.size())
@@ -117,19 +119,19 @@ class TableMaker {
 
   void take_units() {
     if (read_.needs_length_unit && !keys_.length_unit)
-      fail(fmt::format("the file does not say its unit of length; {} says it (m, mm, um)", keys_.name("length_unit")));
+      fail(fmt::format("the file does not give its unit of length; give {} (m, mm, um)", keys_.name("length_unit")));
     if (read_.length_unit && keys_.length_unit && *read_.length_unit != *keys_.length_unit)
-      fail(fmt::format("{}: the file says that its unit of length is {}", keys_.name("length_unit"),
+      fail(fmt::format("{}: must be the unit of length that the file gives, {}, or be omitted", keys_.name("length_unit"),
                        engineering(*read_.length_unit, "m")));
     length_unit_ = keys_.length_unit.value_or(read_.length_unit.value_or(1));
     if (!keys_.length_unit && !read_.length_unit)
-      made_.notes.push_back(fmt::format("lengths are taken as m ({} says otherwise)", keys_.name("length_unit")));
+      made_.notes.push_back(fmt::format("lengths are taken as m ({} changes this)", keys_.name("length_unit")));
   }
 
   void gather_sections() {
     sections_.emplace(read_.nodes, axis_, direction_, length_unit_, keys_.clamp, refusals_);
     if (keys_.clamp && !(*keys_.clamp < sections_->first()))
-      fail(fmt::format("{} = \"{}\": must lie below the first node, at {}: it is for a file without a node at the clamp",
+      fail(fmt::format("{} = \"{}\": must be below the first node, at {}: the key is for a file without a node at the clamp",
                        keys_.name("clamp"), engineering(*keys_.clamp, "m"), engineering(sections_->first(), "m", shown_digits)));
     made_.places = sections_->places();
     if (sections_->is_irregular())
@@ -175,7 +177,8 @@ class TableMaker {
     }
     if (!unused.empty())
       made_.left_out.push_back(fmt::format("modes {}, not used by the reduced-order model", fmt::join(unused, ", ")));
-    if (taken.empty()) fail(fmt::format("no mode bends along {}: {}", keys_.direction, fmt::join(made_.left_out, "; ")));
+    if (taken.empty())
+      fail(fmt::format("the file must have a mode that bends along {}: {}", keys_.direction, fmt::join(made_.left_out, "; ")));
     std::stable_sort(taken.begin(), taken.end(),
                      [&](std::size_t a, std::size_t b) { return made_.found[a].frequency < made_.found[b].frequency; });
     made_.positions = made_.places;
@@ -195,35 +198,34 @@ class TableMaker {
     }
   }
 
-  // Normalises to a modal mass of 1 kg, by the file's unit of mass or by the mass of an even structure.
+  // Normalises the modes to a modal mass of 1 kg, by the unit of mass of the file or by the mass of a uniform structure.
   void normalise() {
     const double mass_unit = keys_.mass_unit.value_or(1);
     if (keys_.mass) {
       if (keys_.mass_normalised || !read_.normalised_by.empty())
-        fail(fmt::format("{}: the modes of the file are mass-normalised already{}", keys_.name("mass"),
+        fail(fmt::format("{}: must be omitted, because the modes of the file are mass-normalised{}", keys_.name("mass"),
                          read_.normalised_by.empty() ? "" : ", by " + read_.normalised_by));
       for (std::vector<double>& shape : made_.shapes) scale(shape, 1 / std::sqrt(*keys_.mass * mean_square(shape)));
       made_.notes.push_back(
-          fmt::format("normalised by a mass of {}, even along the axis", engineering(1e3 * *keys_.mass, "g", shown_digits)));
+          fmt::format("normalised by a mass of {}, constant per length", engineering(1e3 * *keys_.mass, "g", shown_digits)));
       return;
     }
     if (read_.normalised_by.empty() && !keys_.mass_normalised)
-      fail(fmt::format(
-          "the file does not say which mass its modes have; {} gives that of the structure, even along its axis; {} says "
-          "that the modes are mass-normalised",
-          keys_.name("mass"), keys_.name("mass_normalised")));
+      fail(
+          fmt::format("the file does not give the modal masses; give {}, the mass of a structure of constant mass per length, "
+                      "or {} for mass-normalised modes",
+                      keys_.name("mass"), keys_.name("mass_normalised")));
     for (std::size_t k = 0; k < made_.shapes.size(); ++k)
       scale(made_.shapes[k], 1 / std::sqrt(mass_unit * (read_.normalised_by.empty() ? 1 : modal_masses_[k])));
     made_.notes.push_back(
         fmt::format("mass-normalised by {}", read_.normalised_by.empty() ? keys_.name("mass_normalised") : read_.normalised_by));
-    if (!keys_.mass_unit)
-      made_.notes.push_back(fmt::format("masses are taken as kg ({} says otherwise)", keys_.name("mass_unit")));
+    if (!keys_.mass_unit) made_.notes.push_back(fmt::format("masses are taken as kg ({} changes this)", keys_.name("mass_unit")));
   }
 
   static void scale(std::vector<double>& shape, double factor) {
     for (double& value : shape) value *= factor;
   }
-  // Over the length, of the shape between its places as a cubic that is clamped at the first one.
+  // Returns the mean square of a shape over the length; the shape is a cubic spline clamped at the first place.
   [[nodiscard]] double mean_square(const std::vector<double>& shape) const;
 
   NodalModes read_;
@@ -236,7 +238,7 @@ class TableMaker {
   std::vector<double> modal_masses_;
 };
 
-constexpr double still = 1e-4;  // threshold, as a share of the largest motion
+constexpr double still = 1e-4;  // largest motion that counts as zero, as a share of the largest motion of the mode
 
 double largest_motion(const std::vector<double>& shape) {
   double most = 0;
@@ -254,12 +256,12 @@ double TableMaker::mean_square(const std::vector<double>& shape) const {
   return ClampedSpline(made_.positions, shape, far_end_of(made_)).integral_of_square() / made_.positions.back();
 }
 
-// These rules hold for every table, whatever its source. Modes become positive at the far end, and exactly 0 at the clamp.
+// Checks a table from any source. Modes are made positive at the far end, and exactly 0 at the clamp.
 void check(ModeTable& table, const ModeKeys& keys) {
   constexpr std::size_t fewest = 3;
   const auto fail = [&](const std::string& rule) { throw InvalidInput(fmt::format("{}: {}", table.file, rule)); };
   if (table.positions.size() < fewest)
-    fail(fmt::format("{} positions; at least three are due, the clamp at 0 among them", table.positions.size()));
+    fail(fmt::format("must have at least three positions, including the clamp at 0, but has {}", table.positions.size()));
   if (table.positions.front() != 0)
     fail(fmt::format("the first position is {}; it must be 0, the clamp",
                      engineering(table.positions.front(), "m", shown_digits)));
@@ -268,21 +270,21 @@ void check(ModeTable& table, const ModeKeys& keys) {
     const double frequency = table.frequencies[k];
     std::vector<double>& shape = table.shapes[k];
     if (!(frequency > 0))
-      fail(fmt::format("mode_{} has a frequency of {}: the structure is not held", k + 1,
+      fail(fmt::format("mode_{} has a frequency of {}; it must be above 0, as of a clamped structure", k + 1,
                        engineering(frequency, "Hz", shown_digits)));
     if (!(frequency > last))
-      fail(fmt::format("the frequencies must rise, and mode_{} is at {}", k + 1, engineering(frequency, "Hz", shown_digits)));
+      fail(fmt::format("the frequencies must increase, but mode_{} is at {}", k + 1, engineering(frequency, "Hz", shown_digits)));
     last = frequency;
     const double most = largest_motion(shape);
     if (!(most > 0 && most < 1e30)) fail(fmt::format("mode_{} must move, by less than 1e30 1/sqrt(kg)", k + 1));
     if (!(std::abs(shape.front()) <= still * most)) {
       const bool other_end = std::abs(shape.back()) <= still * most;
-      fail(fmt::format("mode_{} moves {:.2g} % of its largest motion at the first place, which must be the clamp{}", k + 1,
-                       100 * std::abs(shape.front()) / most,
-                       table.nodes == 0 ? std::string()
-                       : other_end
-                           ? fmt::format("; the far end stands still: {} the other way round begins there", keys.name("axis"))
-                           : fmt::format("; {} says where the clamp is if the file has no node there", keys.name("clamp"))));
+      fail(fmt::format(
+          "mode_{} moves {:.2g} % of its largest motion at the first place, which must be the clamp{}", k + 1,
+          100 * std::abs(shape.front()) / most,
+          table.nodes == 0 ? std::string()
+          : other_end      ? fmt::format("; the far end does not move: reverse {} to begin there", keys.name("axis"))
+                      : fmt::format("; give {}, the position of the clamp, if the file has no node there", keys.name("clamp"))));
     }
     shape.front() = 0;
     const bool held = std::abs(shape.back()) <= still * most;
@@ -293,9 +295,9 @@ void check(ModeTable& table, const ModeKeys& keys) {
     }
   }
   table.far_end = far_end_of(table);
-  if (table.far_end == SplineEnd::clamped) table.notes.emplace_back("the far end stands still in every mode, as at a clamp");
+  if (table.far_end == SplineEnd::clamped) table.notes.emplace_back("the far end does not move in any mode, as at a clamp");
   if (is_hinged(table.positions, table.shapes.front()))
-    fail("mode_1 leaves the first place with a slope, as at a hinge: the first place must be a clamp");
+    fail("the first place must be a clamp, but mode_1 has a slope there, as at a hinge");
 }
 
 }  // namespace
@@ -317,14 +319,14 @@ std::string ModeFound::name() const {
 }
 
 ModeTable read_mode_table(const std::string& file, const ModeKeys& keys) {
-  // Public readers of binary results return garbage without a word.
+  // Binary results are refused: public readers of such files may return wrong numbers without an error.
   const auto ends_with = [&](std::string_view end) {
     return file.size() > end.size() && internal::lower_case(file).ends_with(end);
   };
   require(!ends_with(".rst"), [&] {
     return file +
-           ": a binary result of ANSYS (.rst), which is not read; export the modes as UFF 55 with the positions of the nodes, or "
-           "as a table";
+           ": a binary result of ANSYS (.rst), which is not read; "
+           "export the modes as UFF 55 with the positions of the nodes, or as a table";
   });
   return parse_mode_table(read_file(file), file, keys);
 }
@@ -337,8 +339,9 @@ ModeTable parse_mode_table(std::string_view content, const std::string& file, co
   require(!internal::is_binary(text), [&] { return file + ": binary data; modes are read from text"; });
   if (internal::is_mode_csv(text)) {
     const auto refuse = [&](bool is_given, const char* key) {
-      require(!is_given,
-              [&] { return fmt::format("{}: {}: the table is in m, Hz and 1/sqrt(kg) already", file, keys.name(key)); });
+      require(!is_given, [&] {
+        return fmt::format("{}: {}: must be omitted, because the table is in m, Hz and 1/sqrt(kg)", file, keys.name(key));
+      });
     };
     refuse(keys.length_unit.has_value(), "length_unit");
     refuse(keys.mass_unit.has_value(), "mass_unit");
@@ -353,12 +356,12 @@ ModeTable parse_mode_table(std::string_view content, const std::string& file, co
   require(is_uff || internal::is_frd(text) || internal::is_comsol(text) || internal::is_ansys_rom(text), [&] {
     if (trimmed(text.substr(0, 40)).starts_with('$'))
       return file +
-             ": polynomials of energy and capacitance of a reduced-order model of ANSYS (.pcs), no modes; they stand in the .rom "
-             "beside it";
+             ": polynomials of energy and capacitance of a reduced-order model of ANSYS (.pcs), no modes; "
+             "they stand in the .rom beside it";
     const std::string kind = internal::refused_kind(text);
     return fmt::format(
         "{}: {}; modes are read from a table of softland (x_m, mode_1), CalculiX .frd, exports of COMSOL, UFF 55 and ANSYS .rom",
-        file, kind.empty() ? "no known file of modes" : kind);
+        file, kind.empty() ? "unknown kind of file" : kind);
   });
   NodalModes modes = is_uff                      ? internal::read_uff55(text, file)
                      : internal::is_frd(text)    ? internal::read_frd(text, file)

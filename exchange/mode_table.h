@@ -1,10 +1,10 @@
-// Modes that another program computed, as a table along the axis of a structure.
+// Reads modes that another program computed, and makes a table of mode shapes along the axis of a structure.
 //
 // The reader takes tables of softland (CSV), results of *FREQUENCY of CalculiX (.frd) and exports of COMSOL as text and CSV. It
 // takes data sets 55 of the Universal File Format with the node positions (15, 2411), and reduced-order models of ANSYS (.rom).
-// Nodes at one place along the axis are a section, which counts by its mean motion. Only bending along the direction of motion
-// is taken. Modes in the plane, along the axis and of torsion are left out by name. Nothing is guessed in silence. The user
-// supplies what a file lacks (units, mass), or the error names the key that decides.
+// All nodes at one place along the axis form a section, whose motion is the mean of its nodes. Only modes that bend along the
+// direction of motion are used; in-plane, axial and torsional modes are listed as left out. Nothing is assumed without a note:
+// the user supplies what a file lacks (units, mass), or the error names the key to give.
 #pragma once
 
 #include <string>
@@ -18,12 +18,12 @@ namespace softland {
 
 enum class ModeKind { bending, in_plane, axial, torsional, unused };
 
-/// The kind of one mode of a file. Motions are means over the nodes of a section, in the unit of the file.
+/// One mode of a file and its kind. Motions are means over the nodes of a section, in the unit of the file.
 struct ModeFound {
   int number = 0;        ///< number in the file, from 1
   double frequency = 0;  ///< [Hz]
   ModeKind kind = ModeKind::bending;
-  double share = 0;  ///< share of the squared motion of all nodes that is of this kind; 1 if the file holds one direction only
+  double share = 0;  ///< share of this kind in the squared motion of all nodes; 1 if the file holds one direction only
   std::vector<double> along, across, axial;  ///< motion by section: in the direction of motion, across both, along the axis
   std::vector<double> twist;                 ///< motion by rotation about the axis, half the extent of the mesh from the middle
   /// "bending", "in-plane"
@@ -34,26 +34,26 @@ struct ModeTable {
   std::string file;
   std::string format;
   std::vector<double> positions;            ///< [m], from 0, the clamp, rising
-  std::vector<double> widths;               ///< [m], by position; NaN where the file does not say
+  std::vector<double> widths;               ///< width by position [m]; NaN where the file does not give it
   std::vector<double> rest_offsets;         ///< height of the face, towards the direction of motion, at rest [m], by position
   std::vector<double> frequencies;          ///< [Hz], rising
   std::vector<std::vector<double>> shapes;  ///< mass-normalised [kg^(-1/2)]: of each mode by position, positive at the far end
-  SplineEnd far_end = SplineEnd::free;      ///< clamped where it stands still in every mode, and mode_1 leaves it without a slope
+  SplineEnd far_end = SplineEnd::free;      ///< clamped if the far end does not move in any mode, and mode_1 has no slope there
 
   std::size_t nodes = 0;            ///< number of nodes of the mesh; 0 for a table
-  std::vector<ModeFound> found;     ///< every mode of a mesh, taken or not; empty for a table
+  std::vector<ModeFound> found;     ///< every mode of a mesh, used or not; empty for a table
   std::vector<double> places = {};  ///< places of the sections of `found`, from the clamp [m]
   std::vector<std::string> left_out = {};
   std::vector<std::string> notes = {};  ///< assumptions about what the file does not say
 };
 
-/// Reads a file. Throws InvalidInput with file, line and rule for what cannot be read, for what holds no modes (a static result,
-/// a pressure), and for what can be read in two ways, with the key that decides.
+/// Reads a file. Throws InvalidInput with file, line and rule for an unreadable file, for one without modes (a static result, a
+/// pressure), and for an ambiguous one, with the key that decides.
 [[nodiscard]] ModeTable read_mode_table(const std::string& file, const ModeKeys& keys);
-/// The same for the content of a file; `file` stands for it in messages.
+/// Reads the content of a file; `file` names it in messages.
 [[nodiscard]] ModeTable parse_mode_table(std::string_view content, const std::string& file, const ModeKeys& keys);
 
-/// One line: format, nodes, sections, length, modes and frequencies, what was left out.
+/// Returns one line with format, nodes, sections, length, modes, frequencies, and what was left out.
 [[nodiscard]] std::string summary(const ModeTable& table);
 
 }  // namespace softland

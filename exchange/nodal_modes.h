@@ -1,4 +1,4 @@
-// Modes as a program wrote them: motions of the nodes of a mesh. Internal to exchange/.
+// Modes as a finite-element program writes them: motions of the nodes of a mesh. Internal to exchange/.
 #pragma once
 
 #include <array>
@@ -16,11 +16,12 @@ using Vector3 = std::array<double, 3>;
 inline constexpr Vector3 no_motion{0, 0, 0};
 
 struct NodalMode {
-  double frequency = std::numeric_limits<double>::quiet_NaN();   ///< [Hz]; NaN where the file does not say
-  double modal_mass = std::numeric_limits<double>::quiet_NaN();  ///< mass in the file's unit; NaN where the file does not say
-  std::vector<Vector3> motion;                                   ///< motion by node, in any unit
-  std::string name;                                              ///< "mode 1", as messages name it
-  bool is_used = true;                                           ///< a reduced-order model has modes that it does not use
+  double frequency = std::numeric_limits<double>::quiet_NaN();  ///< frequency [Hz]; NaN if the file does not give it
+  double modal_mass =
+      std::numeric_limits<double>::quiet_NaN();  ///< modal mass in the unit of the file; NaN if the file does not give it
+  std::vector<Vector3> motion;                   ///< motion by node, in any unit
+  std::string name;                              ///< "mode 1", as messages name it
+  bool is_used = true;                           ///< false for a mode that a reduced-order model does not use
 };
 
 struct NodalModes {
@@ -29,12 +30,12 @@ struct NodalModes {
   std::vector<NodalMode> modes;  ///< modes in the order of the file
   std::array<bool, 3> holds{true, true, true};  ///< true for the directions of motion that the file holds
   std::optional<double> length_unit = {};       ///< unit of length that the file names [m]
-  bool needs_length_unit = false;               ///< true if there is no usual one: the user must name it
-  std::string normalised_by = {};               ///< statement of the file on the mass of its modes; empty: nothing
+  bool needs_length_unit = false;               ///< true if the format has no usual unit of length, so that the user must give it
+  std::string normalised_by = {};  ///< what the modes are normalised by according to the file; empty if it does not say
   std::vector<std::string> left_out = {}, notes = {};
 };
 
-/// Each reads one kind of content, and throws InvalidInput with file, line and rule.
+// Recognise and read one kind of file each. Readers throw InvalidInput with file, line and rule.
 [[nodiscard]] bool is_frd(std::string_view text);
 [[nodiscard]] NodalModes read_frd(std::string_view text, const std::string& file);
 

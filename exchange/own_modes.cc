@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view position_name = "x_m", width_name = "width_m", offset_name = "rest_offset_m",
                            frequency_name = "frequency_Hz", mode_name = "mode_";
 
-/// The next line that is neither blank nor a remark.
+/// Reads the next line that is neither blank nor a comment.
 bool next_row(Lines& lines, std::vector<std::string_view>& cells) {
   while (lines.next()) {
     const std::string_view line = trimmed(lines.line());
@@ -62,7 +62,7 @@ class ModeCsvReader {
                         : name == offset_name ? Kind::offset
                                               : Kind::none;
       if (kind == Kind::none || !made_.shapes.empty() || std::find(columns_.begin(), columns_.end(), kind) != columns_.end())
-        fail(k + 1, fmt::format("\"{}\": {}, {} and {}, then {}1, {}2 and so on are due, once each", shown_cell(name),
+        fail(k + 1, fmt::format("\"{}\": columns must be {}, {} and {}, then {}1, {}2 and so on, each once", shown_cell(name),
                                 position_name, width_name, offset_name, mode_name, mode_name));
       columns_.push_back(kind);
     }
@@ -72,7 +72,7 @@ class ModeCsvReader {
 
   void check_count() const {
     if (cells_.size() != columns_.size())
-      fail(0, fmt::format("{} cells below {} names of columns", cells_.size(), columns_.size()));
+      fail(0, fmt::format("the row has {} cells; it must have {}, one per name of a column", cells_.size(), columns_.size()));
   }
   double number(std::size_t column) const {
     const std::optional<double> value = plain_decimal(cells_[column]);
@@ -84,12 +84,12 @@ class ModeCsvReader {
     if (!next_row(lines_, cells_)) refusals_.fail(fmt::format("the file ends before the row {}", frequency_name));
     check_count();
     if (cells_.front() != frequency_name)
-      fail(1, fmt::format("\"{}\": the row {} must stand here", shown_cell(cells_.front()), frequency_name));
+      fail(1, fmt::format("\"{}\": expected the row {}", shown_cell(cells_.front()), frequency_name));
     for (std::size_t k = 1; k < columns_.size(); ++k) {
       if (columns_[k] == Kind::mode) {
         made_.frequencies.push_back(number(k));
       } else if (!cells_[k].empty()) {
-        fail(k + 1, "nothing must stand here");
+        fail(k + 1, "must be empty");
       }
     }
   }
@@ -117,7 +117,7 @@ class ModeCsvReader {
       }
     }
     const std::vector<double>& x = made_.positions;
-    if (x.size() > 1 && !(x.back() > x[x.size() - 2])) fail(1, "positions must rise from row to row");
+    if (x.size() > 1 && !(x.back() > x[x.size() - 2])) fail(1, "positions must increase from row to row");
     if (!std::isnan(width) && !(width > 0)) fail(0, "a width must be positive");
     made_.widths.push_back(width);
     made_.rest_offsets.push_back(offset);

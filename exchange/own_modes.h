@@ -1,4 +1,4 @@
-// The table of modes that softland writes. Internal to exchange/.
+// Reads the table of modes that softland writes (CSV). Internal to exchange/.
 #pragma once
 
 #include <string>
@@ -8,9 +8,10 @@
 
 namespace softland::internal {
 
-/// True if a text has the header of such a table: x_m and mode_1.
+/// Returns true if a text has the header of a table of modes, with columns x_m and mode_1.
 [[nodiscard]] bool is_mode_csv(std::string_view text);
-/// x_m, width_m and rest_offset_m, which may be left out, and a column per mode; the row below says frequency_Hz.
+/// Reads a table of modes. Its columns are x_m, optionally width_m and rest_offset_m, then mode_1, mode_2 ... The first row,
+/// frequency_Hz, has the frequencies of the modes; each further row has the shapes at one position.
 [[nodiscard]] ModeTable read_mode_csv(std::string_view text, const std::string& file);
 
 }  // namespace softland::internal

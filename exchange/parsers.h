@@ -1,4 +1,4 @@
-// Parsers of one kind of content each. Internal to exchange/.
+// Parsers of the kinds of recordings. Internal to exchange/.
 #pragma once
 
 #include <optional>
@@ -9,21 +9,21 @@
 
 namespace softland::internal {
 
-/// Why a content is no record over time though it is of a known kind: a mesh, a picture; empty where it is not known.
+/// Returns the kind of a file that is known but not a record over time, such as a mesh or a picture; empty for other files.
 [[nodiscard]] std::string refused_kind(std::string_view text);
 
-/// Columns, or rows, of numbers.
+/// Reads columns of numbers, or channels written as rows of numbers.
 [[nodiscard]] Recording read_columns(std::string_view text, const std::string& file, const ReadKeys& keys);
 
-/// True if a text is breakpoints as sources of SPICE have them, rather than columns of plain numbers.
+/// Returns true if a text holds the breakpoints of SPICE sources (PWL), not plain columns of numbers.
 [[nodiscard]] bool is_spice_pwl(std::string_view text);
 [[nodiscard]] Recording read_spice_pwl(std::string_view text, const std::string& file, const ReadKeys& keys);
 
-/// Returns whether a text begins as a value change dump.
+/// Returns true if a text begins like a value change dump (VCD).
 [[nodiscard]] bool is_vcd(std::string_view text);
 [[nodiscard]] Recording read_vcd(std::string_view text, const std::string& file, const ReadKeys& keys);
 
-/// True if bytes begin as the Universal File Format does.
+/// Returns true if a file begins like one of the Universal File Format.
 [[nodiscard]] bool is_uff(std::string_view content);
 [[nodiscard]] Recording read_uff(std::string_view content, const std::string& file, const ReadKeys& keys);
 

@@ -14,11 +14,11 @@ namespace {
 
 enum class Says { interval, rate, start, trigger_sample, centre, samples, frequency, period, level };
 
-/// A key of a preamble in lower case, letters and digits alone.
+/// A key of a preamble, in lower case, reduced to its letters and digits.
 struct KeyRow {
   std::string_view key;
   Says says;
-  std::optional<double> Preamble::*member = nullptr;  ///< the level that the key states; the others are claims
+  std::optional<double> Preamble::*member = nullptr;  ///< the voltage level that the key gives; null for keys about times
 };
 constexpr std::array known_keys{
     KeyRow{"sampleinterval", Says::interval},
@@ -80,7 +80,7 @@ constexpr Words vertical_keys{"verticalunits", "verticalunit", "yunits", "yunit"
 constexpr Words horizontal_keys{"horizontalunits", "horizontalunit", "xunits",       "xunit",      "hunit",    "timeunits",
                                 "timeunit",        "timebaseunits",  "timebaseunit", "xaxisunits", "xaxisunit"};
 
-/// A format by words that all stand in its preamble and headings, lower case. The first one that fits is taken.
+/// A format and the words, in lower case, that its preamble and headings contain. The first matching row is used.
 struct FormatRow {
   std::string_view name;
   Words words;
@@ -119,7 +119,7 @@ std::string letters_of(std::string_view key) {
   return letters;
 }
 
-// Returns the statement of a number about the times; nothing if its unit does not go with its key.
+// Returns what a number says about the times; none if its unit does not match its key.
 std::optional<TimeClaim> claim_of(Says says, const Measured& number) {
   using Of = TimeClaim::Of;
   const bool is_rate = says == Says::rate || says == Says::frequency;
@@ -190,7 +190,7 @@ void Preamble::take_line(std::string_view line, const std::vector<std::string_vi
       filled.push_back(cell);
     }
   }
-  // Channels in different units: none of them is that of all.
+  // If channels have different units, there is no common unit.
   const bool differs = filled.size() > 2 && letters_of(filled[0]).starts_with("vertical") &&
                        std::any_of(filled.begin() + 2, filled.end(), [&](std::string_view cell) { return cell != filled[1]; });
   if (differs) return;

@@ -22,7 +22,7 @@ std::string names_of(const Recording& recording) {
   return names;
 }
 
-/// Times that a user says are even, from the first one of the file on.
+/// Sets evenly spaced times with the interval that the user gives, from the first time of the file on.
 void take_even_times(Recording& made, double interval) {
   const double first = made.times.empty() ? 0 : made.times.front();
   made.interval = interval;
@@ -47,10 +47,9 @@ Recording parse_recording(std::string_view content, const std::string& file, con
   std::vector<std::string> left_out;
   const std::string_view text = internal::decoded(content, storage, left_out);
   const std::string kind = internal::refused_kind(text);
-  require(kind.empty(), [&] { return fmt::format("{}: {}; a record over time is due", file, kind); });
-  require(!internal::is_binary(text), [&] {
-    return file + ": binary data; what is read are exports as text, and data sets 58b of the Universal File Format";
-  });
+  require(kind.empty(), [&] { return fmt::format("{}: the file holds {}; give a record over time", file, kind); });
+  require(!internal::is_binary(text),
+          [&] { return file + ": binary data; export the file as text, or as data set 58b of the Universal File Format"; });
   Recording made = internal::is_vcd(text)         ? internal::read_vcd(text, file, keys)
                    : internal::is_spice_pwl(text) ? internal::read_spice_pwl(text, file, keys)
                                                   : internal::read_columns(text, file, keys);
@@ -65,7 +64,7 @@ const Channel& channel_of(const Recording& recording, const ReadKeys& keys, cons
     for (const Channel& channel : recording.channels) {
       if (channel.name != name && channel.heading != name) continue;
       require(found == nullptr, [&] {
-        return fmt::format("{}: two channels are called \"{}\"; column = {} takes one by its place", recording.file,
+        return fmt::format("{}: two channels are called \"{}\"; select one by its number, such as column = {}", recording.file,
                            printable_line(name), channel.column);
       });
       found = &channel;
@@ -76,13 +75,13 @@ const Channel& channel_of(const Recording& recording, const ReadKeys& keys, cons
     for (const Channel& channel : recording.channels) {
       if (channel.column == keys.column_number) return channel;
     }
-    throw InvalidInput(fmt::format("{}: column = {}: there is no channel in that place; there are {}", recording.file,
+    throw InvalidInput(fmt::format("{}: column = {}: must be the number of a channel; there are {}", recording.file,
                                    keys.column_number, names_of(recording)));
   }
   if (!keys.column.empty()) {
     const Channel* const found = named(keys.column);
     require(found != nullptr || recording.format == "SPICE PWL", [&] {
-      return fmt::format("{}: column = \"{}\": there is no such channel; there are {}", recording.file,
+      return fmt::format("{}: column = \"{}\": must be the name of a channel; there are {}", recording.file,
                          printable_line(keys.column), names_of(recording));
     });
     if (found != nullptr) return *found;
@@ -90,8 +89,8 @@ const Channel& channel_of(const Recording& recording, const ReadKeys& keys, cons
   if (recording.channels.size() == 1) return recording.channels.front();
   const Channel* const found = named(usual);
   require(found != nullptr, [&] {
-    return fmt::format("{}: there are {} channels, {}; column = \"{}\" takes one", recording.file, recording.channels.size(),
-                       names_of(recording), printable_line(recording.channels.front().name));
+    return fmt::format("{}: the file has {} channels, {}; select one, such as column = \"{}\"", recording.file,
+                       recording.channels.size(), names_of(recording), printable_line(recording.channels.front().name));
   });
   return *found;
 }

@@ -27,14 +27,14 @@ struct Token {
   std::size_t line = 0;
 };
 
-/// A number of SPICE: letters after it are a suffix, or a unit that means nothing.
+/// A number of SPICE. Letters after the digits are a scale suffix, or a unit, which is ignored.
 struct SpiceNumber {
   double value = 0;
   bool has_suffix = false;
   bool has_plus = false;
 };
 
-// A factor as what multiplies and what divides: powers of ten that are exact, so that 199.999m is the double next to 0.199999.
+// A scale suffix as an exact multiplier and an exact divisor, so that 199.999m becomes the double nearest to 0.199999.
 struct Suffix {
   std::string_view word;
   double times, over;
@@ -85,12 +85,12 @@ void add_tokens(std::string_view line, std::size_t number, std::vector<Token>& t
   }
 }
 
-// A continuation line begins with a plus and a blank; "+1u 5" is a time relative to that before.
+// Removes the mark of a continuation line, a plus and a blank. "+1u 5" is instead a time relative to the time before.
 std::string_view without_continuation(std::string_view line) {
   return line.starts_with("+ ") || line.starts_with("+\t") || line == "+" ? trimmed(line.substr(1)) : line;
 }
 
-/// The text between the brackets of one PWL( ) of a netlist, as lines.
+/// The numbers between the brackets of one PWL( ) of a netlist.
 struct Source {
   std::string name;
   std::vector<Token> tokens;
@@ -102,7 +102,7 @@ class NetlistReader {
   std::vector<Source> sources() {
     while (lines_.next()) take(lines_.line());
     require(!is_open_,
-            [&] { return fmt::format("{}: the file ends inside PWL( of \"{}\"", file_, printable_line(found_.back().name)); });
+            [&] { return fmt::format("{}: the file ends within PWL( of \"{}\"", file_, printable_line(found_.back().name)); });
     return std::move(found_);
   }
   [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
@@ -134,7 +134,7 @@ class NetlistReader {
     tell_numbers_in_comment(given, line);
     take_numbers(line.substr(open + 1));
   }
-  // A comment among the points may be one by mistake.
+  // Notes numbers in a comment among the points, which may be points by mistake.
   void tell_numbers_in_comment(std::string_view given, std::string_view line) {
     std::string_view comment = trimmed(given);
     comment.remove_prefix(line.size());
@@ -149,7 +149,7 @@ class NetlistReader {
     is_open_ = false;
     const std::string_view rest = trimmed(line.substr(close + 1));
     require(rest.empty() || is_comment(rest), [&] {
-      return fmt::format("{}:{}: \"{}\" after the numbers of PWL is not read; only points are", file_, lines_.number(),
+      return fmt::format("{}:{}: \"{}\" must not follow the numbers of PWL: only points are read", file_, lines_.number(),
                          printable_line(shortened(rest)));
     });
   }
@@ -182,14 +182,14 @@ Recording points_of(const Source& source, const std::string& file) {
   const auto fail = [&](const Token& token, const std::string& rule) {
     throw InvalidInput(fmt::format("{}:{}: \"{}\" {}", file, token.line, printable_line(shortened(token.text)), rule));
   };
-  require(!source.tokens.empty(), [&] { return fmt::format("{}: a source without points", file); });
+  require(!source.tokens.empty(), [&] { return fmt::format("{}: a source must have points", file); });
   bool is_signed = false;
   for (std::size_t i = 0; i < source.tokens.size(); i += 2) is_signed |= source.tokens[i].text.starts_with('-');
   for (std::size_t i = 0; i < source.tokens.size(); i += 2) {
     const Token& at = source.tokens[i];
     const std::optional<SpiceNumber> time = spice_number(at.text);
     if (!time) fail(at, "must be a time, such as 1.5u");
-    if (i + 1 == source.tokens.size()) fail(at, "is a time without a voltage: points have two numbers");
+    if (i + 1 == source.tokens.size()) fail(at, "is a time without a voltage: each point must have two numbers");
     const Token& level = source.tokens[i + 1];
     const std::optional<SpiceNumber> volts = spice_number(level.text);
     if (!volts) fail(level, "must be a voltage, such as 5 or 120m");
@@ -202,11 +202,11 @@ Recording points_of(const Source& source, const std::string& file) {
   return made;
 }
 
-/// Times without a suffix, in lines of two numbers.
+/// Properties of times without a suffix, in lines of two numbers.
 struct PlainTimes {
   std::vector<double> all;
-  std::size_t repeated = 0;  ///< rows of the same time as the row above
-  bool thrice = false;       ///< three rows have one time
+  std::size_t repeated = 0;  ///< number of rows with the same time as the row above
+  bool thrice = false;       ///< true if three rows have the same time
 
   void take(double time) {
     const std::size_t count = all.size();
@@ -215,7 +215,7 @@ struct PlainTimes {
     thrice |= repeats && count > 1 && all[count - 2] == time;
     all.push_back(time);
   }
-  // A jump is two points of one time. More of them, or every time twice, is a record whose times are rounded.
+  // Returns true if the times seem rounded: three rows of the same time, or every time twice. A jump has two rows of a time.
   [[nodiscard]] bool are_rounded() const {
     constexpr std::size_t fewest = 8;
     return thrice || (all.size() >= fewest && 2 * repeated + 1 >= all.size());
@@ -224,8 +224,8 @@ struct PlainTimes {
 
 }  // namespace
 
-// Two numbers on every line, and what plain columns do not have: suffixes, comments or a plus before some times, where others
-// have no sign. A plus beside times with a minus, or before all of them, is a sign.
+// Returns true if every line has two numbers and the text has a feature of PWL files that plain columns lack: suffixes,
+// comments, or a plus before some times while others have no sign. A plus beside negative times, or before all times, is a sign.
 bool is_spice_pwl(std::string_view text) {
   constexpr std::size_t enough = 64;
   if (has_pwl_bracket(text)) return true;
@@ -276,7 +276,8 @@ Recording read_spice_pwl(std::string_view text, const std::string& file, const R
       const bool is_cut = lines.is_unended() && is_odd;
       require(!is_cut, [&] { return fmt::format("{}:{}: the file ends in the middle of a row", file, lines.number()); });
       require(!is_odd, [&] {
-        return fmt::format("{}:{}: the row has {} numbers; points have two", file, lines.number(), source.tokens.size() - before);
+        return fmt::format("{}:{}: the row has {} numbers; each point must have two", file, lines.number(),
+                           source.tokens.size() - before);
       });
     }
     Recording made = points_of(source, file);
@@ -290,7 +291,7 @@ Recording read_spice_pwl(std::string_view text, const std::string& file, const R
   require(chosen != sources.end() || sources.size() == 1, [&] {
     std::string names;
     for (const Source& source : sources) names += (names.empty() ? "" : ", ") + printable_line(source.name);
-    return fmt::format("{}: there are {} sources ({}); column = \"{}\" takes one", file, sources.size(), names,
+    return fmt::format("{}: the file has {} sources ({}); select one, such as column = \"{}\"", file, sources.size(), names,
                        printable_line(sources.empty() ? std::string() : sources.front().name));
   });
   Recording made = points_of(chosen != sources.end() ? *chosen : sources.front(), file);

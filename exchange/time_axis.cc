@@ -15,15 +15,16 @@ namespace {
 
 using Of = TimeClaim::Of;
 
-// The relative error of an interval or a time that is written with few digits.
+// Relative rounding of an interval or a time that is written with few digits.
 constexpr double printed_digits = 1e-5;
-// Single precision, in which some instruments compute their times, relative.
+// Relative rounding of times that some instruments compute in single precision.
 constexpr double single_precision = 1.2e-7;
 
 std::string seconds(double time) { return engineering(time, "s", 6); }
 std::string quoted(const std::string& key) { return "\"" + printable_line(key) + "\""; }
 
-/// An interval that the file says. `value` is in seconds where it has no unit, `in_units` in the horizontal unit of the file.
+/// An interval that the file states. For an interval without a unit, `value` takes it in seconds, and `in_units` in the
+/// horizontal unit of the file.
 struct Interval {
   std::string source;
   double value = 0;
@@ -34,7 +35,7 @@ class RowTimer {
  public:
   RowTimer(const TimeColumn* column, std::size_t count, const Preamble& preamble, const ReadKeys& keys, const Refusals& refusals)
       : column_(column), count_(count), preamble_(preamble), keys_(keys), refusals_(refusals) {
-    // Siglent names the unit of its display there.
+    // In a Siglent file this is the unit of the display, not that of the times.
     if (format_of(preamble.text) != "Siglent CSV") unit_above_ = preamble.horizontal_unit;
   }
   RowTimes make();
@@ -67,12 +68,12 @@ class RowTimer {
   const Preamble& preamble_;
   const ReadKeys& keys_;
   const Refusals& refusals_;
-  std::optional<Unit> unit_, unit_above_;  // unit of the column, and unit that the file names for the horizontal axis
+  std::optional<Unit> unit_, unit_above_;  // unit of the column, and unit of the horizontal axis in the preamble
   std::vector<Interval> intervals_;
   RowTimes made_;
 };
 
-// The samples of a generator are one period, which its file says.
+// Returns true for the file of a generator, which gives the period; the samples are one period.
 bool RowTimer::is_generator() const {
   return (column_ == nullptr || column_->name == "xpos") &&
          (column_ != nullptr || preamble_.text.find("rigol:dg") != std::string::npos || preamble_.first(Of::interval) == nullptr);
@@ -94,16 +95,16 @@ void RowTimer::take_unit() {
   if (!keys_.time_unit.empty()) {
     unit_ = unit_of(keys_.time_unit);
     if (!unit_ || unit_->measure != Measure::time)
-      fail(fmt::format("time_unit = \"{}\" is no unit of time; there are s, ms, us, ns and ps", printable_line(keys_.time_unit)));
+      fail(fmt::format("time_unit = \"{}\" must be s, ms, us, ns or ps", printable_line(keys_.time_unit)));
   }
 }
 
-// More samples than the file speaks of: `last` counts them, or is the number of the last one.
+// Refuses more samples than the file states; `last` is the number of samples, or the number of the last one.
 void RowTimer::require_count(double last) const {
   if (is_decided()) return;
   for (const TimeClaim& claim : preamble_.claims) {
     if (claim.of == Of::samples && claim.value < last)
-      fail(fmt::format("the file speaks of {} samples and holds {} ({}); interval = \"...\" or \"uneven\" takes all its rows",
+      fail(fmt::format("the file states {} samples, but holds {} ({}); give interval = \"...\" or \"uneven\" to use all rows",
                        claim.value, last, quoted(claim.key)));
   }
 }
@@ -125,7 +126,7 @@ void RowTimer::find_intervals() {
   }
 }
 
-// All intervals must be the same where no times tell which one is right.
+// Requires all stated intervals to be equal, unless the times show which one is right.
 void RowTimer::require_same_intervals() {
   if (intervals_.empty()) return;
   const Interval& first = intervals_.front();
@@ -133,14 +134,16 @@ void RowTimer::require_same_intervals() {
   if (is_decided()) return;
   if (first.in_units)
     fail(
-        fmt::format("{} is {} without a unit, and \"{}\" is the horizontal unit of the file: it may be {} or {}; interval = "
-                    "\"...\" says the time between rows",
+        fmt::format("{} is {} without a unit, and \"{}\" is the horizontal unit of the file: it may be {} or {}; "
+                    "give interval = \"...\", the time between rows",
                     first.source, first.value, unit_above_->symbol, seconds(*first.in_units), seconds(first.value)));
   for (const Interval& other : intervals_) {
     const double off = std::abs(other.value - first.value) * intervals();
     if (!(off <= std::max(std::min(first.value, other.value), printed_digits * first.value * intervals())))
-      fail(fmt::format("rows are {} apart by {}, and {} by {}; interval = \"...\" says the time between rows",
-                       seconds(first.value), first.source, seconds(other.value), other.source));
+      fail(
+          fmt::format("rows are {} apart according to {}, but {} according to {}; "
+                      "give interval = \"...\", the time between rows",
+                      seconds(first.value), first.source, seconds(other.value), other.source));
   }
 }
 
@@ -161,19 +164,19 @@ void RowTimer::require_same_starts() const {
     if (first == nullptr) first = &claim;
     const double one = start_of(*first, *made_.interval), other = start_of(claim, *made_.interval);
     if (!(std::abs(one - other) <= *made_.interval + printed_digits * std::abs(one)))
-      fail(fmt::format(
-          "the first sample is at {} by {}, and at {} by {}; interval = \"{}\" takes the first of both, and skip leaves "
-          "out lines at the beginning",
-          seconds(one), quoted(first->key), seconds(other), quoted(claim.key), seconds(*made_.interval)));
+      fail(
+          fmt::format("the first sample is at {} according to {}, but at {} according to {}; "
+                      "interval = \"{}\" uses the first time, and skip leaves out lines at the beginning",
+                      seconds(one), quoted(first->key), seconds(other), quoted(claim.key), seconds(*made_.interval)));
   }
 }
 
-// Times that follow from the interval; the first row is the sample of that number.
+// Sets the times that follow from the interval; `first_sample` is the number of the sample in the first row.
 void RowTimer::set_even(double first_sample) {
   require_same_intervals();
   if (!made_.interval) return;
   if (!is_decided()) require_same_starts();
-  // The first of them that the file says, a time before the number of a sample before the middle.
+  // The start follows from the first of these that the file states: a time, the number of a sample, the middle of the record.
   double start = 0;
   for (const Of of : {Of::start, Of::trigger_sample, Of::centre}) {
     if (const TimeClaim* const claim = preamble_.first(of)) {
@@ -181,7 +184,7 @@ void RowTimer::set_even(double first_sample) {
       break;
     }
   }
-  // One sample is at 0 exactly if the first sample is a whole number of intervals from t = 0.
+  // If the first sample is a whole number of intervals from t = 0, one sample is set to exactly 0.
   constexpr double whole = 1e-6;
   const double steps = start / *made_.interval, rounded = std::round(steps);
   made_.times.resize(count_);
@@ -191,7 +194,7 @@ void RowTimer::set_even(double first_sample) {
   }
 }
 
-// True if the column numbers the samples, whose interval the file says.
+// Returns true if the column numbers the samples, and the file states their interval.
 bool RowTimer::is_sample_count() const {
   if (unit_) return unit_->measure == Measure::samples;
   const std::vector<double>& raw = column_->raw;
@@ -205,9 +208,9 @@ void RowTimer::set_even_from_numbers() {
     if (raw[i] != raw[i - 1] + 1)
       refusals_.fail(
           column_->lines[i], static_cast<std::size_t>(column_->column),
-          fmt::format("the number of the sample is {}, and that above {}; they must follow each other", raw[i], raw[i - 1]));
+          fmt::format("the number of the sample is {}, and that above is {}; numbers must be consecutive", raw[i], raw[i - 1]));
   }
-  // Samples in a column of that unit count from 0, those of a generator from 1, and others from either.
+  // Sample numbers begin at 0 in a column with this unit, at 1 for a generator, and at 0 or 1 otherwise.
   const bool counts_from_one = !unit_ && (raw.front() == 1 || (column_->name == "xpos" && raw.front() > 1));
   const double first = raw.front() - (counts_from_one ? 1 : 0);
   require_count(first + static_cast<double>(count_));
@@ -217,13 +220,14 @@ void RowTimer::set_even_from_numbers() {
         fmt::format("its first row is number {}: {} after the first sample", raw.front(), seconds(first * *made_.interval)));
 }
 
-// EasyWave writes the number of a sample, its share of the period or its time.
+// Sets the times from the column "xpos" of EasyWave: sample numbers, shares of the period, or times.
 void RowTimer::set_shares_of_period() {
   const std::vector<double>& raw = column_->raw;
   if (intervals_.empty())
     fail(
-        "\"xpos\" is a share of a period or the number of a sample, and the file does not say \"data length\" and \"frequency\"; "
-        "interval = \"...\" says the time between rows, time_unit takes \"xpos\" for times");
+        "\"xpos\" may be a share of the period or the number of a sample, "
+        "but the file lacks \"data length\" and \"frequency\"; "
+        "give interval = \"...\", the time between rows, or time_unit if \"xpos\" holds times");
   require_same_intervals();
   const double samples = due_samples(), interval = *made_.interval;
   const double step = count_ > 1 ? (raw.back() - raw.front()) / intervals() : 0;
@@ -237,8 +241,9 @@ void RowTimer::set_shares_of_period() {
   }
   if (is_decided()) return set_even(0);
   fail(
-      fmt::format("\"xpos\" rises by {} from row to row, which is no number of a sample (1), no share of a period of {} samples "
-                  "({}) and no time ({}, by {}); interval = \"...\" says the time between rows",
+      fmt::format("\"xpos\" increases by {} per row; it must increase by 1 (sample numbers), "
+                  "or by the share of a period of {} samples ({}), or by the time between rows ({}, from {}); "
+                  "give interval = \"...\", the time between rows",
                   step, samples, 1 / samples, seconds(interval), intervals_.front().source));
 }
 
@@ -252,8 +257,8 @@ void RowTimer::require_interval() {
     }
     if (!agreed && !is_decided())
       fail(fmt::format(
-          "the file says that rows are {} apart ({}), and its times drift from that by {}; interval = \"{}\" takes the "
-          "first, interval = \"uneven\" the times, and time_unit says the unit of the times",
+          "the file states that rows are {} apart ({}), but its times deviate by {}; "
+          "interval = \"{}\" uses that interval, interval = \"uneven\" the times; time_unit gives the unit of the times",
           seconds(claimed.value), claimed.source, seconds(std::abs(claimed.value * intervals() - duration())),
           seconds(claimed.value)));
     if (!made_.interval) made_.interval = agreed.value_or(claimed.value);
@@ -264,7 +269,7 @@ void RowTimer::require_start() const {
   if (is_decided() || count_ < 2) return;
   const double interval = made_.interval.value_or(std::abs(duration()) / intervals());
   for (const TimeClaim& claim : preamble_.claims) {
-    // The middle is known of GW Instek alone, and a start without a unit may be of something else.
+    // Only the middle in GW Instek files has a known meaning. A start without a unit may refer to another quantity.
     const bool is_axis = claim.of == Of::centre ? preamble_.text.find("sampling period") != std::string::npos
                                                 : claim.has_unit || !intervals_.empty();
     if (!is_start(claim) || !is_axis) continue;
@@ -274,18 +279,18 @@ void RowTimer::require_start() const {
     const bool agrees =
         std::abs(due - found) <= tolerance || (other && claim.of == Of::start && std::abs(*other - found) <= tolerance);
     if (!agrees)
-      fail(fmt::format(
-          "the first row is at {} by {}, and its time is {}; interval = \"uneven\" takes the times, and skip leaves out "
-          "lines at the beginning",
-          seconds(due), quoted(claim.key), seconds(found)));
+      fail(
+          fmt::format("the first row is at {} according to {}, but its time is {}; "
+                      "interval = \"uneven\" uses the times, and skip leaves out lines at the beginning",
+                      seconds(due), quoted(claim.key), seconds(found)));
   }
 }
 
-// The unit of a column and another one above it: an interval in seconds tells which is right.
+// Refuses different units of times in the column and in the preamble, unless an interval in seconds shows which is right.
 void RowTimer::require_unit() const {
   if (is_decided() || !keys_.time_unit.empty() || !unit_above_ || !column_->unit || unit_above_->measure != Measure::time) return;
   if (unit_above_->per_si == column_->unit->per_si || !intervals_.empty()) return;
-  fail(fmt::format("the times are in {} by their column, and in {} by the horizontal unit of the file; time_unit says which",
+  fail(fmt::format("the times are in {} according to their column, but in {} according to the preamble; give time_unit",
                    column_->unit->symbol, unit_above_->symbol));
 }
 
@@ -294,8 +299,9 @@ void RowTimer::set_times() {
   made_.have_unit = unit_.has_value();
   if (!unit_) unit_ = Unit{.measure = Measure::time, .symbol = "s"};
   if (unit_->measure != Measure::time)
-    fail(fmt::format("column {} is in {} and no time; time_column names another, or time_unit says its unit", column_->column,
-                     unit_->symbol));
+    fail(fmt::format(
+        "column {} is in {}, which is not a unit of time; give time_column for another column, or time_unit for its unit",
+        column_->column, unit_->symbol));
   require_unit();
   made_.stand_in_file = true;
   for (const double value : column_->raw) made_.times.push_back(unit_->in_si(value));

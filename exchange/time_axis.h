@@ -1,4 +1,4 @@
-// The times of the rows of a file: its column of times, and all that it says beside them, which must agree. Internal to
+// Finds the times of the rows of a file, from its column of times and from its preamble, which must agree. Internal to
 // exchange/.
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace softland::internal {
 
-/// A column that is times, or numbers the samples.
+/// A column that holds times or sample numbers.
 struct TimeColumn {
   const std::vector<double>& raw;
   const Missing& missing;
@@ -27,7 +27,7 @@ struct TimeColumn {
 };
 
 struct RowTimes {
-  std::vector<double> times = {};       ///< [s]; empty where the file has none and says no interval
+  std::vector<double> times = {};       ///< times [s]; empty if the file has neither times nor an interval
   std::optional<double> interval = {};  ///< interval that the file states [s]
   bool stand_in_file = false;           ///< true if the file has the times, false if they follow from the interval
   bool have_unit = false;
@@ -35,8 +35,8 @@ struct RowTimes {
   std::vector<std::string> notes = {};
 };
 
-/// The times of `count` rows. Throws InvalidInput where two sources disagree by more than an interval, with the names of both and
-/// the keys that decide; `keys.interval` and `keys.uneven` have decided.
+/// Returns the times of `count` rows. Throws InvalidInput if two statements of the file differ by more than an interval; the
+/// message names both and the keys that decide. `keys.interval` or `keys.uneven` decides in advance.
 [[nodiscard]] RowTimes times_of_rows(const TimeColumn* column, std::size_t count, const Preamble& preamble, const ReadKeys& keys,
                                      const Refusals& refusals);
 

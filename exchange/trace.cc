@@ -20,7 +20,7 @@ using internal::Unit;
 using internal::unit_of;
 
 constexpr int digits = 6;
-// Single precision, in which some instruments compute their times, relative.
+// Relative rounding of times that some instruments compute in single precision.
 constexpr double single_precision = 1.2e-7;
 
 std::string seconds(double time) { return engineering(time, "s", digits); }
@@ -28,18 +28,16 @@ std::string seconds(double time) { return engineering(time, "s", digits); }
 double volts_divisor(const Recording& recording, const Channel& channel, const ReadKeys& keys, bool any_unit, std::string& told) {
   if (!keys.unit.empty()) {
     const std::optional<Unit> unit = unit_of(keys.unit);
-    require(unit && (any_unit || unit->measure == Measure::voltage), [&] {
-      return fmt::format("{}: unit = \"{}\" is no unit of voltage; there are V, mV, uV and kV", recording.file,
-                         printable_line(keys.unit));
-    });
+    require(unit && (any_unit || unit->measure == Measure::voltage),
+            [&] { return fmt::format("{}: unit = \"{}\" must be V, mV, uV or kV", recording.file, printable_line(keys.unit)); });
     return unit->per_si;
   }
   if (channel.unit.empty()) {
-    if (!any_unit && !channel.is_state) told += "; the file names no unit: V taken";
+    if (!any_unit && !channel.is_state) told += "; the file names no unit: V is assumed";
     return 1;
   }
   require(channel.is_voltage || any_unit, [&] {
-    return fmt::format("{}: \"{}\" is in {}, not in volts; unit = \"V\" takes its numbers for volts, and scale multiplies them",
+    return fmt::format("{}: \"{}\" is in {}, not in volts; unit = \"V\" reads its numbers as volts, and scale multiplies them",
                        recording.file, printable_line(channel.name), channel.unit);
   });
   return channel.per_si;
@@ -51,7 +49,7 @@ std::vector<double> even(double first, double interval, std::size_t count) {
   return times;
 }
 
-/// Largest distance of times from even ones that begin with them [s].
+/// Returns the largest deviation of times from even ones with the same first time [s].
 double deviation(const std::vector<double>& times, double interval) {
   double most = 0;
   for (std::size_t i = 0; i < times.size(); ++i)
@@ -59,13 +57,13 @@ double deviation(const std::vector<double>& times, double interval) {
   return most;
 }
 
-/// Rounding error of times as they are written [s].
+/// Returns the rounding error of the written times [s].
 double rounding(const Recording& recording) {
   const std::vector<double>& t = recording.times;
   return 1.01 * recording.last_digit + single_precision * std::max(std::abs(t.front()), std::abs(t.back()));
 }
 
-// The row at which a step is unlike most others though nine of ten are alike; nothing where steps are uneven anyway.
+// Returns the first row with an unusual time step if nine of ten steps are equal; none if the steps are uneven in general.
 std::optional<std::size_t> odd_step(const Recording& recording) {
   constexpr double most_of = 0.9;
   const std::vector<double>& t = recording.times;
@@ -92,8 +90,8 @@ void require_not_back(const Recording& recording, const TimeAxis& axis) {
   if (!axis.back) return;
   const std::size_t row = *axis.back;
   throw InvalidInput(
-      fmt::format("{}: the time goes back from {} to {}; interval = \"...\" takes rows as even, and skip leaves out lines, such "
-                  "as a first segment",
+      fmt::format("{}: the time decreases from {} to {}; interval = \"...\" sets even times, and skip leaves out lines, "
+                  "such as a first segment",
                   recording.place(row), seconds(recording.times[row - 1]), seconds(recording.times[row])));
 }
 
@@ -103,21 +101,20 @@ void require_no_repeats(const Recording& recording, const TimeAxis& axis) {
   std::size_t row = 1;
   while (t[row] != t[row - 1]) ++row;
   throw InvalidInput(
-      fmt::format("{}: the time {} stands twice, and {} rows have the time of the row above; interval = \"...\" gives the time "
-                  "between rows that are even, interval = \"uneven\" makes rows of one time a jump",
+      fmt::format("{}: the time {} is given twice, and {} rows have the time of the row above; "
+                  "interval = \"...\" sets even times, interval = \"uneven\" makes two rows of the same time a jump",
                   recording.place(row), seconds(t[row]), axis.repeated));
 }
 
-// Times of the rows, where the file has some, as the keys and the file say.
+// Returns the times of the rows according to the keys and to the file.
 std::vector<double> resolved_times(const Recording& recording, const ReadKeys& keys, std::string& told) {
   const std::size_t count = recording.rows();
   require(!recording.times.empty(), [&] {
     return fmt::format(
-        "{}: the file has no times and says no interval; interval = \"...\" gives the time between rows, or time_column "
-        "the column of times",
+        "{}: the file has neither times nor an interval; give interval = \"...\", the time between rows, or time_column",
         recording.file);
   });
-  if (keys.interval) return recording.times;  // even already
+  if (keys.interval) return recording.times;  // these times are even
   const TimeAxis axis = time_axis(recording);
   if (keys.uneven || recording.is_breakpoints) {
     require_not_back(recording, axis);
@@ -129,14 +126,13 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
     const double off = deviation(recording.times, *recording.interval), duration = std::abs(axis.last - axis.first);
     if (!(off <= rounding(recording) + printed * duration)) {
       throw InvalidInput(
-          fmt::format("{}: the file says that rows are {} apart, and its times drift from that by {}; interval = \"{}\" takes "
-                      "the first, interval = "
-                      "\"uneven\" the times",
+          fmt::format("{}: the file states that rows are {} apart, but its times deviate by {}; "
+                      "interval = \"{}\" uses that interval, interval = \"uneven\" the times",
                       recording.file, seconds(*recording.interval), seconds(off), seconds(*recording.interval)));
     }
-    constexpr double exact = 1e-3;  // share of an interval: times that are nearer to even ones are taken as they are
+    constexpr double exact = 1e-3;  // times closer to even ones than this share of the interval are used as written
     if (axis.repeated == 0 && !axis.back && off <= exact * *recording.interval) return recording.times;
-    told += fmt::format("; times are rounded to {}: taken from the first and the interval of the file",
+    told += fmt::format("; times are rounded to {}: replaced by even times from the first one with the interval of the file",
                         seconds(recording.last_digit));
     return even(recording.times.front(), *recording.interval, count);
   }
@@ -145,22 +141,22 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
   if (count > 2 && deviation(recording.times, axis.interval) > rounding(recording)) {
     if (const auto row = odd_step(recording)) {
       throw InvalidInput(
-          fmt::format("{}: the time is {} after that of the row above, where most rows are {} apart; interval = \"uneven\" takes "
-                      "the times as they "
-                      "are, interval = \"...\" rows as even",
+          fmt::format("{}: the time is {} after that of the row above, but most rows are {} apart; "
+                      "interval = \"uneven\" uses the times as written, interval = \"...\" sets even times",
                       recording.place(*row), seconds(recording.times[*row] - recording.times[*row - 1]), seconds(axis.interval)));
     }
   }
   return recording.times;
 }
 
-// Rows at the ends without a number are left out; between others a blank is passed over, and what is out of range refused.
+// Removes rows without a number at both ends. Between other rows, a blank is skipped, and a value out of range is refused.
 void drop_missing(const Recording& recording, const Channel& channel, Trace& trace, std::string& told) {
   if (channel.missing.count == 0) return;
   std::size_t first = 0, last = trace.values.size();
   while (first < last && !std::isfinite(trace.values[first])) ++first;
   while (last > first && !std::isfinite(trace.values[last - 1])) --last;
-  require(first < last, [&] { return fmt::format("{}: \"{}\" has no numbers", recording.file, printable_line(channel.name)); });
+  require(first < last,
+          [&] { return fmt::format("{}: \"{}\" must have numbers", recording.file, printable_line(channel.name)); });
   Trace kept;
   std::size_t between = 0;
   for (std::size_t i = first; i < last; ++i) {
@@ -172,10 +168,11 @@ void drop_missing(const Recording& recording, const Channel& channel, Trace& tra
     ++between;
   }
   require(between == 0 || !channel.missing.is_overrange, [&] {
-    return fmt::format("{}:{}: column {}: \"{}\" is not finite there (overrange, inf or nan), between finite numbers",
+    return fmt::format("{}:{}: column {}: \"{}\" must be finite between finite numbers, but is overrange, inf or nan",
                        recording.file, channel.missing.line, channel.column, printable_line(channel.name));
   });
-  told += fmt::format("; left out: {} rows without a number, the first in line {}", channel.missing.count, channel.missing.line);
+  told +=
+      fmt::format("; {} rows without a number are left out, the first in line {}", channel.missing.count, channel.missing.line);
   trace.times = std::move(kept.times);
   trace.values = std::move(kept.values);
 }
@@ -187,7 +184,7 @@ Trace trace_of(const Recording& recording, const ReadKeys& keys, const std::stri
   std::string told;
   const double divisor = volts_divisor(recording, channel, keys, any_unit, told);
   if (recording.has_times && !recording.times_have_unit && keys.time_unit.empty())
-    told += "; the file names no unit of time: s taken";
+    told += "; the file names no unit of time: s is assumed";
   Trace trace{.times = resolved_times(recording, keys, told), .values = channel.values, .told = {}};
   for (double& value : trace.values) value /= divisor;
   drop_missing(recording, channel, trace, told);

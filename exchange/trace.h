@@ -1,4 +1,4 @@
-// One channel of a recording as voltages over times that do not go back.
+// One channel of a recording as voltages over times that do not decrease.
 #pragma once
 
 #include <string>
@@ -9,15 +9,15 @@
 namespace softland {
 
 struct Trace {
-  std::vector<double> times;   ///< [s], not decreasing; two of one time are a jump
-  std::vector<double> values;  ///< [V], or of the unit where `keys.unit` is none of voltage
-  std::string told;            ///< one line: what was taken, and what was left out
+  std::vector<double> times;   ///< times [s], not decreasing; two rows of the same time are a jump
+  std::vector<double> values;  ///< values [V], or in another unit if `keys.unit` is not one of voltage
+  std::string told;            ///< one line for the user: which channel and times are used, and what was left out
 };
 
-/// The channel of channel_of() over the times that `keys`, with which it was read, and the file say. Throws InvalidInput with
-/// file, line and the key that decides. It does so if there is no such channel, or if times repeat, go back or drift from the
-/// interval of the file, or where there are none. It also does where a value is not finite between finite ones, and where the
-/// unit is not a voltage unless `any_unit`.
+/// Returns the channel that channel_of() selects, over the times according to the file and to `keys`. Throws InvalidInput with
+/// file, line and the key that decides: for a missing channel, for times that are missing, repeat, decrease or deviate from the
+/// interval of the file, for a value that is not finite between finite ones, and for a unit other than a voltage unless
+/// `any_unit`.
 [[nodiscard]] Trace trace_of(const Recording& recording, const ReadKeys& keys, const std::string& usual, bool any_unit = false);
 
 }  // namespace softland

@@ -1,6 +1,6 @@
-// Modes in the Universal File Format: data sets 55 (motion of nodes) with 15 or 2411 (positions of nodes) and 164 (units).
+// Reads modes in the Universal File Format: data sets 55 (motion of nodes) with 15 or 2411 (positions of nodes) and 164 (units).
 //
-// Fields of numbers have 13 or more columns and may run together; they are told apart by their signs. Source: Structural Dynamics
+// Fields of numbers have 13 or more columns, without blanks between them; their signs separate them. Source: Structural Dynamics
 // Research Corporation, Universal File Datasets 15, 55, 164, 2411.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -40,7 +40,7 @@ class Uff55Reader {
     made_.format = "UFF 55";
     while (lines_.next()) {
       if (trimmed(lines_.line()).empty()) continue;
-      if (!is_mark()) fail("the mark -1 must stand here, before a data set");
+      if (!is_mark()) fail("expected the mark -1 before a data set");
       if (!lines_.next()) break;
       const std::string_view kind = trimmed(lines_.line()).substr(0, trimmed(lines_.line()).find(' '));
       if (kind == "55") {
@@ -65,7 +65,8 @@ class Uff55Reader {
     if (!lines_.next() || is_mark()) fail(fmt::format("the data set ends before {}", what));
   }
 
-  // The numbers of a line, which may touch: a sign that no exponent has begins another one. Exponents may be written with D.
+  // Returns the numbers of a line. They may follow each other without a blank: a sign begins a new number unless it belongs to an
+  // exponent. Exponents may be written with D.
   std::vector<double> numbers() const {
     std::vector<double> all;
     std::string text(lines_.line());
@@ -97,34 +98,35 @@ class Uff55Reader {
   }
 
   void add_node(long long number, const Vector3& place) {
-    if (!places_.emplace(number, place).second) fail(fmt::format("node {} stands above already", number));
+    if (!places_.emplace(number, place).second) fail(fmt::format("node {} is given twice", number));
   }
 
-  // 15: number, two systems, colour and the position on one line; 2411: the position on a line of its own.
+  // Reads nodes. Data set 15 has number, two coordinate systems, colour and position on one line; 2411 has the position on a
+  // second line.
   void read_nodes(bool in_one_line) {
     while (true) {
-      if (!lines_.next()) fail("the file ends among the nodes");
+      if (!lines_.next()) fail("the file ends within the nodes");
       if (is_mark()) return;
       std::vector<double> all = numbers();
-      if (all.empty()) fail("a node must stand here");
+      if (all.empty()) fail("expected a node");
       const double number = all[0];
       if (number != std::round(number) || std::abs(number) > 1e15) fail("the number of a node must be a whole number");
       if (all.size() > 1 && all[1] > 1)
-        made_.notes.emplace_back("positions are taken as of one system, though nodes name others");
+        made_.notes.emplace_back("all positions are assumed to be in one coordinate system, although nodes name several");
       if (in_one_line) {
-        if (all.size() != 7) fail(fmt::format("{} numbers of a node; seven are due", all.size()));
+        if (all.size() != 7) fail(fmt::format("a node must have seven numbers, but has {}", all.size()));
         add_node(static_cast<long long>(number), {all[4], all[5], all[6]});
         continue;
       }
-      if (all.size() != 4) fail(fmt::format("{} numbers of a node; four are due, and three below", all.size()));
+      if (all.size() != 4) fail(fmt::format("a node must have four numbers and three in the next line, but has {}", all.size()));
       due("the position of a node");
       all = numbers();
-      if (all.size() != 3) fail(fmt::format("{} numbers of a position; three are due", all.size()));
+      if (all.size() != 3) fail(fmt::format("a position must have three numbers, but has {}", all.size()));
       add_node(static_cast<long long>(number), {all[0], all[1], all[2]});
     }
   }
 
-  // The factor of length divides what is in the file to make it metres.
+  // Reads the units. Dividing positions by the factor of length converts them to metres.
   void read_units() {
     due("the name of the units");
     due("the factors of the units");
@@ -142,14 +144,15 @@ class Uff55Reader {
     if (kind.size() < 6) fail("the kind of a data set 55 must have six numbers");
     const long long analysis = kind[1], characteristic = kind[2], type = kind[4], per_node = kind[5];
     if (analysis != 2 && analysis != 3 && analysis != 7)
-      fail(fmt::format("the data set is of analysis type {}, which is no mode (2, 3 or 7)", analysis));
-    if (characteristic != 2 && characteristic != 3) fail(fmt::format("data of kind {} are no motion (2 or 3)", characteristic));
-    if (type != 2 && type != 5) fail(fmt::format("numbers of type {}; real (2) and complex (5) are read", type));
-    if (per_node < 3 || per_node > 6) fail(fmt::format("{} numbers to a node; three or six are due", per_node));
+      fail(fmt::format("the data set must be of the analysis type of a mode (2, 3 or 7), but has {}", analysis));
+    if (characteristic != 2 && characteristic != 3)
+      fail(fmt::format("the data must be motion (kind 2 or 3), but have kind {}", characteristic));
+    if (type != 2 && type != 5) fail(fmt::format("numbers must be real (type 2) or complex (type 5), but have type {}", type));
+    if (per_node < 3 || per_node > 6) fail(fmt::format("a node must have three or six numbers, but has {}", per_node));
     due("the numbers of its mode");
     const std::vector<long long> of_mode = integers();
     if (of_mode.size() < 4 || of_mode[0] != static_cast<long long>(of_mode.size()) - 2)
-      fail("number of integers and of reals, load case and mode must stand here");
+      fail("expected the number of integers and of reals, the load case and the mode");
     std::vector<double> reals;
     const auto count = static_cast<std::size_t>(std::clamp(of_mode[1], 1LL, 60LL));
     while (reals.size() < count) {
@@ -158,7 +161,7 @@ class Uff55Reader {
     }
     const bool is_normal = analysis == 2;
     if (reals.size() != count || count < (is_normal ? 1U : 2U))
-      fail(fmt::format("{} numbers of the mode, where {} are due, the frequency first", reals.size(), of_mode[1]));
+      fail(fmt::format("the mode has {} numbers; it must have {}, beginning with the frequency", reals.size(), of_mode[1]));
     Set55 set{.mode = of_mode[3]};
     // The eigenvalue of a complex mode is in rad/s.
     set.frequency = is_normal ? reals[0] : std::hypot(reals[0], reals[1]) / (2 * std::numbers::pi);
@@ -172,25 +175,25 @@ class Uff55Reader {
     const std::size_t count = per_node * (is_complex ? 2 : 1);
     std::vector<std::vector<std::complex<double>>> values;
     while (true) {
-      if (!lines_.next()) fail(fmt::format("the file ends in mode {}: the mark -1 is missing", set.mode));
+      if (!lines_.next()) fail(fmt::format("the file ends within mode {}: the mark -1 is missing", set.mode));
       if (is_mark()) break;
       const std::vector<long long> node = integers();
-      if (node.size() != 1) fail("the number of a node must stand here");
+      if (node.size() != 1) fail("expected the number of a node");
       if (std::find(set.nodes.begin(), set.nodes.end(), node[0]) != set.nodes.end() && set.nodes.size() < 2000)
-        fail("this node stands above already");
+        fail("this node is given twice");
       std::vector<double> row;
       while (row.size() < count) {
         due("the motion of its last node");
         for (const double value : numbers()) row.push_back(value);
       }
-      if (row.size() != count) fail(fmt::format("{} numbers of a node; {} are due", row.size(), count));
+      if (row.size() != count) fail(fmt::format("the node has {} numbers; it must have {}", row.size(), count));
       set.nodes.push_back(node[0]);
       std::vector<std::complex<double>> of_node;
       for (std::size_t k = 0; k < 3; ++k)
         of_node.push_back(is_complex ? std::complex(row[2 * k], row[2 * k + 1]) : std::complex(row[k]));
       values.push_back(std::move(of_node));
     }
-    if (set.nodes.empty()) fail("a data set 55 without a node");
+    if (set.nodes.empty()) fail("a data set 55 must have a node");
     put_in_phase(set, values);
   }
 
@@ -213,39 +216,44 @@ class Uff55Reader {
       set.motion.push_back(motion);
     }
     if (whole > 0 && std::sqrt(outside / whole) > rounding)
-      made_.notes.push_back(
-          fmt::format("of the complex mode {} {:.2g} % out of phase are left out", set.mode, 100 * std::sqrt(outside / whole)));
+      made_.notes.push_back(fmt::format("{1:.2g} % of the complex mode {0}, which is out of phase, is left out", set.mode,
+                                        100 * std::sqrt(outside / whole)));
   }
 
   void join() {
     if (sets_.empty())
-      refusals_.fail(fmt::format("no modes (data set 55){}", made_.left_out.empty() ? "" : ", but " + made_.left_out.front()));
+      refusals_.fail(fmt::format("the file must have modes (data set 55){}",
+                                 made_.left_out.empty() ? "" : ", but " + made_.left_out.front()));
     std::vector<std::string> frequencies;
     for (const Set55& set : sets_) frequencies.push_back(engineering(set.frequency, "Hz", 6));
     if (places_.empty())
-      refusals_.fail(fmt::format(
-          "UFF 55: modes of {} at {} nodes, but no positions of the nodes: export data set 2411 or 15 into the same file",
-          fmt::join(frequencies, ", "), sets_.front().nodes.size()));
+      refusals_.fail(
+          fmt::format("UFF 55: the file has modes of {} at {} nodes, but no positions of the nodes: "
+                      "export data set 2411 or 15 into the same file",
+                      fmt::join(frequencies, ", "), sets_.front().nodes.size()));
     std::unordered_map<long long, std::size_t> indices;
     for (const long long node : sets_.front().nodes) {
       const auto found = places_.find(node);
       if (found == places_.end())
-        refusals_.fail(fmt::format("node {} has a motion, but no position (data set 2411 or 15)", node));
+        refusals_.fail(fmt::format("node {} has a motion, but lacks a position (data set 2411 or 15)", node));
       if (!indices.emplace(node, made_.nodes.size()).second)
-        refusals_.fail(fmt::format("node {} stands twice in a data set 55", node));
+        refusals_.fail(fmt::format("node {} is given twice in a data set 55", node));
       made_.nodes.push_back(found->second);
     }
     bool all_say = true;
     for (Set55& set : sets_) {
       if (set.nodes.size() != made_.nodes.size())
-        refusals_.fail(fmt::format("mode {} has {} nodes, and the first one {}", set.mode, set.nodes.size(), made_.nodes.size()));
+        refusals_.fail(
+            fmt::format("mode {} has {} nodes, but the first mode has {}", set.mode, set.nodes.size(), made_.nodes.size()));
       NodalMode mode{.frequency = set.frequency, .modal_mass = set.modal_mass, .name = fmt::format("mode {}", set.mode)};
       mode.motion.assign(made_.nodes.size(), no_motion);
       std::vector<bool> given(made_.nodes.size());
       for (std::size_t i = 0; i < set.nodes.size(); ++i) {
         const auto found = indices.find(set.nodes[i]);
         if (found == indices.end() || given[found->second])
-          refusals_.fail(fmt::format("mode {} names node {} other than the first mode does", set.mode, set.nodes[i]));
+          refusals_.fail(
+              fmt::format("mode {} must have the nodes of the first mode in their order, but has node {} in another place",
+                          set.mode, set.nodes[i]));
         given[found->second] = true;
         mode.motion[found->second] = set.motion[i];
       }

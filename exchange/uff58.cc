@@ -45,7 +45,7 @@ constexpr std::array function_names{"a general or unknown function",
                                     "a spectrum",
                                     "a cumulative frequency distribution"};
 
-/// Bytes that are read line by line, and whole where data are binary.
+/// Reads bytes line by line, and binary data as a whole.
 class Reader {
  public:
   Reader(std::string_view bytes, const std::string& file) : rest_(bytes), file_(file) {}
@@ -62,7 +62,7 @@ class Reader {
     return text;
   }
   void skip(std::size_t bytes) { rest_.remove_prefix(std::min(bytes, rest_.size())); }
-  /// True if the last line ended with the file.
+  /// Returns true if the end of the file ended the last line.
   [[nodiscard]] bool is_cut() const { return is_cut_; }
   [[noreturn]] void fail(const std::string& rule) const { throw InvalidInput(fmt::format("{}:{}: {}", file_, number_, rule)); }
 
@@ -108,7 +108,7 @@ double real(const Reader& in, std::string_view text, std::string_view what) {
   return *value;
 }
 
-// Label and unit of an axis: columns 27 to 46 and 48 to 67.
+// Returns the label and the unit of an axis, in columns 27 to 46 and 48 to 67.
 std::pair<std::string, std::string> axis_words(std::string_view line) {
   const auto field = [&](std::size_t from) {
     return from < line.size() ? std::string(trimmed(line.substr(from, 20))) : std::string();
@@ -163,26 +163,26 @@ Header read_header(Reader& in, std::string_view first_line) {
       std::tie(header.label, header.unit) = axis_words(header.lines[taken]);
     }
   }
-  if (taken < header_lines) in.fail("the file ends above the numbers of a data set 58");
+  if (taken < header_lines) in.fail("the file ends before the numbers of a data set 58");
   return header;
 }
 
 void refuse_other_functions(const Reader& in, const Header& header) {
   const auto known = static_cast<std::size_t>(std::max(header.function, 0));
   if (header.function > 1 || header.function < 0)
-    in.fail(fmt::format("{} (function type {}); a record over time is due",
+    in.fail(fmt::format("the data set holds {} (function type {}); give a record over time",
                         known < function_names.size() ? function_names[known] : "a function of another kind", header.function));
-  if (header.is_complex()) in.fail("complex numbers; a record over time is due");
+  if (header.is_complex()) in.fail("the numbers are complex; give a record over time");
   if (header.type != 2 && header.type != 4)
     in.fail(fmt::format("the type of the numbers is {}; it must be 2 or 4 (real)", header.type));
   if (header.is_even && !(header.step > 0))
     in.fail(fmt::format("the increment of the abscissa is {}; it must be above 0", header.step));
   const std::optional<Unit> unit = unit_of(header.time_unit);
   if (unit && unit->measure != Measure::time)
-    in.fail(fmt::format("the abscissa is in {}; a record over time is due", unit->symbol));
+    in.fail(fmt::format("the abscissa is in {}; give a record over time", unit->symbol));
 }
 
-// Numbers in columns, which may run together where the next one has a sign.
+// Reads numbers in columns. There may be no blank before a number with a sign.
 std::vector<double> ascii_numbers(Reader& in, std::size_t due, std::vector<std::string>& left_out) {
   std::vector<double> numbers;
   numbers.reserve(std::min<std::size_t>(due, in.rest().size() / 6 + 1));
@@ -208,18 +208,19 @@ std::vector<double> ascii_numbers(Reader& in, std::size_t due, std::vector<std::
                              (stop == end || *stop == ' ' || *stop == '-' || *stop == '+' || *stop == '\t');
       if (!is_number && in.is_cut()) break;
       if (!is_number)
-        in.fail(fmt::format("column {}: \"{}\" is no finite number", at - text.data() + 1, printable_line(shortened(at, 20))));
+        in.fail(
+            fmt::format("column {}: \"{}\" must be a finite number", at - text.data() + 1, printable_line(shortened(at, 20))));
       numbers.push_back(value);
       at = stop;
     }
   }
-  if (numbers.size() > due) in.fail(fmt::format("there are {} numbers; the data set says {}", numbers.size(), due));
+  if (numbers.size() > due) in.fail(fmt::format("there are {} numbers, but the data set states {}", numbers.size(), due));
   if (!ended && !numbers.empty() && numbers.size() <= due) {
     numbers.pop_back();
     left_out.push_back(
-        fmt::format("the last number: the file ends without the mark of its end, after {} of {} numbers", numbers.size(), due));
+        fmt::format("the last number: the file ends without its end mark, after {} of {} numbers", numbers.size(), due));
   } else if (numbers.size() < due) {
-    in.fail(fmt::format("there are {} numbers; the data set says {}", numbers.size(), due));
+    in.fail(fmt::format("there are {} numbers, but the data set states {}", numbers.size(), due));
   }
   return numbers;
 }
@@ -239,14 +240,14 @@ double binary_number(std::string_view bytes, bool big_endian) {
 }
 
 struct Values {
-  std::vector<double> abscissas, ordinates;  // no abscissas where they are even
+  std::vector<double> abscissas, ordinates;  // abscissas are empty if they are even
 };
 
 Values binary_values(Reader& in, const Header& header, std::vector<std::string>& left_out) {
   const std::size_t size = header.is_double() ? 8 : 4;
   if (header.count > header.bytes / size)
     in.fail(fmt::format("{} bytes cannot hold {} values of {} bytes", header.bytes, header.count, size));
-  // Abscissas that are uneven have four bytes in some files and as many as the values in others.
+  // Uneven abscissas have four bytes in some files, and the size of the values in others.
   const std::size_t row = header.bytes / header.count, abscissa = row - size;
   const bool fits = row * header.count == header.bytes && (header.is_even ? abscissa == 0 : abscissa == 4 || abscissa == size);
   if (!fits) in.fail(fmt::format("{} bytes do not hold {} values of {} bytes", header.bytes, header.count, size));
@@ -266,7 +267,7 @@ Values binary_values(Reader& in, const Header& header, std::vector<std::string>&
   if (whole_rows == header.count && !in.at_end()) {
     std::string_view rest = in.rest();
     rest.remove_prefix(std::min(rest.find_first_not_of("\r\n"), rest.size()));
-    if (!rest.starts_with(end_mark)) in.fail("the mark of the end, -1, must follow the bytes of a data set 58b");
+    if (!rest.starts_with(end_mark)) in.fail("the end mark, -1, must follow the bytes of a data set 58b");
     while (!in.at_end() && !is_mark(in.line())) continue;
   }
   return values;
@@ -294,7 +295,7 @@ std::vector<double> times_of(const Header& header, const Values& values) {
   return times;
 }
 
-// First abscissa and increment of uneven abscissas are 0, or else those of the abscissas.
+// Checks the header of uneven abscissas: its first abscissa and increment must be 0 or agree with the abscissas.
 void require_same_axis(const Header& header, const Values& values, const std::vector<double>& times, std::size_t line,
                        const Refusals& refusals, const ReadKeys& keys) {
   if (header.is_even || (header.first == 0 && header.step == 0)) return;
@@ -333,7 +334,7 @@ void add_channel(Recording& made, const Header& header, Values values) {
   made.channels.push_back(std::move(channel));
 }
 
-// The rest of a data set of another kind.
+// Skips the rest of a data set of another kind.
 void pass(Reader& in) {
   while (!in.at_end() && !is_mark(in.line())) continue;
 }
@@ -369,12 +370,12 @@ Recording read_uff(std::string_view content, const std::string& file, const Read
     refuse_other_functions(in, header);
     const auto first_line = static_cast<std::uint32_t>(in.line_number() + 1);
     Values values = read_values(in, header, made.left_out);
-    if (values.ordinates.empty()) in.fail("a data set 58 without a whole value");
+    if (values.ordinates.empty()) in.fail("a data set 58 must have at least one whole value");
     std::vector<double> times = times_of(header, values);
     require_same_axis(header, values, times, first_line, Refusals(file), keys);
     if (header.is_binary) made.format = "UFF 58b";
     if (!made.channels.empty() && times != made.times) {
-      made.left_out.push_back(fmt::format("data set \"{}\", whose times are others", printable_line(header.label)));
+      made.left_out.push_back(fmt::format("data set \"{}\", which has other times", printable_line(header.label)));
       continue;
     }
     made.times_have_unit = unit_of(header.time_unit).has_value();
@@ -385,7 +386,7 @@ Recording read_uff(std::string_view content, const std::string& file, const Read
   }
   for (const std::string& other : others) made.left_out.push_back("data set " + other);
   require(!made.channels.empty(), [&] {
-    return fmt::format("{}: no record over time (data set 58), but {}; modes and meshes are none", file,
+    return fmt::format("{}: must hold a record over time (data set 58), but holds {}; modes and meshes are not records", file,
                        others.empty() ? "nothing" : "data set " + others.front());
   });
   return made;

@@ -1,7 +1,8 @@
-// Value change dumps (VCD), as logic analysers and simulators of digital circuits write them.
+// Reads value change dumps (VCD), as logic analysers and simulators of digital circuits write them.
 //
-// A variable keeps its value until the next change. Every instant of change is two rows, with the values before and after it, so
-// that straight lines between rows are steps. Variables of one identifier have the same values. The states x and z, and W, U and
+// A variable keeps its value until the next change. Every time of a change becomes two rows, with the values before and after,
+// so that straight lines between rows are steps. Variables with the same identifier have the same values. The states x and z, and
+// W, U and
 // - of VHDL, are missing numbers; vectors are whole numbers.
 //
 // Source: IEEE Std 1364-2005, clause 18.
@@ -32,7 +33,7 @@ namespace {
 
 constexpr double missing_number = std::numeric_limits<double>::quiet_NaN();
 
-/// The words of a text, between blanks and line ends.
+/// Splits a text into words, which blanks and line ends separate.
 class Words {
  public:
   explicit Words(std::string_view text) : text_(text) {}
@@ -45,7 +46,7 @@ class Words {
   }
   [[nodiscard]] std::string_view word() const { return word_; }
   [[nodiscard]] std::size_t line() const { return line_; }
-  /// Returns whether the file ends in the word, or just after it.
+  /// Returns true if the file ends within the word or directly after it.
   [[nodiscard]] bool is_unended() const { return at_ == text_.size(); }
 
  private:
@@ -55,28 +56,28 @@ class Words {
   std::size_t at_ = 0, line_ = 1;
 };
 
-/// A scope with those around it.
+/// A scope of variables, with a link to the enclosing scope.
 struct Scope {
-  std::size_t around = 0;  ///< 0: the file
+  std::size_t around = 0;  ///< index of the enclosing scope; 0: the file
   std::string_view name = {};
-  std::size_t length = 0;  ///< the length of its whole path
+  std::size_t length = 0;  ///< length of the path of the scope
 };
 
 struct Variable {
-  std::string name;  ///< has its range, "data[7:0]"
+  std::string name;  ///< name with its range, such as "data[7:0]"
   std::size_t scope = 0, signal = 0;
   bool is_state = false;
 };
 
 struct Change {
-  std::uint64_t time = 0;  ///< steps of the file
+  std::uint64_t time = 0;  ///< time in time steps of the file
   double value = missing_number;
 };
 
-/// The variables of one identifier share their changes.
+/// The changes of all variables with one identifier.
 struct DumpedSignal {
   std::vector<Change> changes;
-  std::size_t bits = 0;  ///< 0: a real number
+  std::size_t bits = 0;  ///< number of bits; 0: a real number
   bool has_sign = false, is_wanted = false, is_left_out = false;
 };
 
@@ -102,7 +103,7 @@ class VcdReader {
   [[noreturn]] void fail_at_word(const std::string& rule) const {
     fail(fmt::format("\"{}\" {}", printable_line(shortened(words_.word())), rule));
   }
-  /// The words up to $end.
+  /// Returns the words up to $end.
   std::vector<std::string_view> words_to_end() {
     std::vector<std::string_view> all;
     while (words_.next() && words_.word() != "$end") all.push_back(words_.word());
@@ -130,7 +131,7 @@ class VcdReader {
   Words words_;
   const ReadKeys& keys_;
   Recording made_;
-  double steps_ = 0, per_second_ = 1;  // a step of the file is steps_ / per_second_ [s]
+  double steps_ = 0, per_second_ = 1;  // a time step of the file is steps_ / per_second_ [s]
   std::vector<Scope> scopes_{Scope{}};
   std::size_t scope_ = 0;
   std::vector<Variable> variables_;
@@ -144,7 +145,7 @@ class VcdReader {
     std::uint64_t time;
     std::uint32_t line;
   };
-  std::vector<Moment> moments_;  // moments of changes, in order
+  std::vector<Moment> moments_;  // times of changes, in order
 };
 
 void VcdReader::declarations() {
@@ -161,11 +162,11 @@ void VcdReader::declarations() {
       scope_ = scopes_.size() - 1;
     }
     if (word == "$upscope") {
-      if (scope_ == 0) fail("$upscope without a $scope that it leaves");
+      if (scope_ == 0) fail("$upscope must follow the $scope that it ends");
       scope_ = scopes_[scope_].around;
     }
   }
-  fail("the file ends among its declarations, before $enddefinitions");
+  fail("the file ends within its declarations, before $enddefinitions");
 }
 
 void VcdReader::set_timescale(const std::vector<std::string_view>& words) {
@@ -181,7 +182,7 @@ void VcdReader::set_timescale(const std::vector<std::string_view>& words) {
   per_second_ = known->second;
 }
 
-// Words of $var: type, number of bits, identifier and name, of which a range may stand apart.
+// Reads the words of $var: type, number of bits, identifier, and name; a range may follow the name as a word of its own.
 void VcdReader::declare(const std::vector<std::string_view>& words) {
   std::size_t bits = 0;
   if (words.size() < 4 || std::from_chars(words[1].data(), words[1].data() + words[1].size(), bits).ec != std::errc())
@@ -199,7 +200,7 @@ void VcdReader::declare(const std::vector<std::string_view>& words) {
   variables_.push_back(std::move(variable));
 }
 
-// "top.counter.clk"
+// Returns the path of a variable, such as "top.counter.clk".
 std::string VcdReader::path(const Variable& variable) const {
   std::vector<std::string_view> names;
   for (std::size_t scope = variable.scope; scope != 0; scope = scopes_[scope].around) names.push_back(scopes_[scope].name);
@@ -213,10 +214,10 @@ bool VcdReader::is_called(const Variable& variable, std::string_view name) const
          (scopes_[variable.scope].length + variable.name.size() == name.size() && path(variable) == name);
 }
 
-// The variables that the keys name, or all.
+// Selects the variables that the keys name, or all variables.
 void VcdReader::choose() {
   if (steps_ == 0) {
-    if (keys_.time_unit.empty()) fail("there is no $timescale; time_unit = \"ns\" gives the unit of the times");
+    if (keys_.time_unit.empty()) fail("the file has no $timescale; give the unit of the times, such as time_unit = \"ns\"");
     set_timescale({"1", keys_.time_unit});
   }
   const auto number = static_cast<std::size_t>(keys_.column_number);
@@ -237,7 +238,7 @@ void VcdReader::changes() {
       take_word();
     } catch (const InvalidInput&) {
       if (!words_.is_unended()) throw;
-      made_.left_out.emplace_back("the last change, in which the file ends");
+      made_.left_out.emplace_back("the last change, within which the file ends");
       return;
     }
     if (words_.is_unended()) made_.notes.emplace_back(cut);
@@ -273,7 +274,8 @@ void VcdReader::take_word() {
         return change(word.substr(1), missing_number);
       fail_at_word("must be a time, such as #100, or a change, such as 1! or b101 !");
   }
-  if (!words_.next()) fail(fmt::format("\"{}\" is a value without a variable", printable_line(shortened(word))));
+  if (!words_.next())
+    fail(fmt::format("\"{}\" must be followed by the identifier of a variable", printable_line(shortened(word))));
   const std::string_view digits = word.substr(1);
   double value = missing_number;
   if (word.front() == 'b' || word.front() == 'B') {
@@ -282,7 +284,7 @@ void VcdReader::take_word() {
     const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     const bool is_number = error == std::errc() && stop == digits.data() + digits.size();
     if (!is_number && digits != "x" && digits != "z")
-      fail(fmt::format("\"{}\" must be a number behind the r", printable_line(shortened(word))));
+      fail(fmt::format("\"{}\" must be r followed by a number", printable_line(shortened(word))));
     if (!is_number || !std::isfinite(value)) value = missing_number;
   } else {
     signal_of(words_.word()).is_left_out = true;
@@ -296,12 +298,12 @@ void VcdReader::take_time() {
   const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), time);
   if (error != std::errc() || stop != digits.data() + digits.size()) fail_at_word("must be a time, a whole number below 2^64");
   if (!has_begun_) {
-    // Changes before the first time are those at it.
+    // Changes before the first time count as changes at that time.
     for (DumpedSignal& signal : signals_)
       for (Change& change : signal.changes) change.time = time;
     moments_.assign(1, {.time = time, .line = static_cast<std::uint32_t>(words_.line())});
   }
-  if (has_begun_ && time < now_) fail_at_word(fmt::format("is before #{}: times must not go back", now_));
+  if (has_begun_ && time < now_) fail_at_word(fmt::format("is before #{}: times must not decrease", now_));
   if (!std::exchange(has_begun_, true)) first_ = time;
   now_ = time;
 }
@@ -309,11 +311,11 @@ void VcdReader::take_time() {
 DumpedSignal& VcdReader::signal_of(std::string_view identifier) {
   const auto found = identifiers_.find(identifier);
   if (found == identifiers_.end())
-    fail(fmt::format("a change of \"{}\", which no $var declares", printable_line(shortened(identifier))));
+    fail(fmt::format("\"{}\" must be declared by $var before it changes", printable_line(shortened(identifier))));
   return signals_[found->second];
 }
 
-// NaN where a bit is unknown.
+// Returns the number that the bits of a vector represent; NaN if a bit is unknown.
 double VcdReader::vector_value(std::string_view digits, const DumpedSignal& signal) const {
   double value = 0;
   for (const char c : digits) {
@@ -327,7 +329,7 @@ double VcdReader::vector_value(std::string_view digits, const DumpedSignal& sign
   return std::isfinite(value) ? value : missing_number;
 }
 
-// The last one of several changes at one time counts.
+// Stores a change of a variable. Of several changes at one time, the last one is used.
 void VcdReader::change(std::string_view identifier, double value) {
   DumpedSignal& signal = signal_of(identifier);
   if (!signal.is_wanted) return;
@@ -342,7 +344,7 @@ void VcdReader::change(std::string_view identifier, double value) {
 }
 
 void VcdReader::make_rows() {
-  if (!has_begun_) fail("there is no time, such as #0, below the declarations");
+  if (!has_begun_) fail("the file must have a time, such as #0, below the declarations");
   std::erase_if(chosen_, [&](std::size_t k) { return signals_[variables_[k].signal].is_left_out; });
   std::unordered_map<std::string_view, std::size_t> names;
   std::size_t left_out = 0;
@@ -353,7 +355,7 @@ void VcdReader::make_rows() {
       ++names[variable.name];
   }
   if (left_out > 0) made_.left_out.push_back(fmt::format("{} variables that are text or events", left_out));
-  if (chosen_.empty()) fail("there is no variable that is a number");
+  if (chosen_.empty()) fail("the file must have a variable that is a number");
 
   const bool goes_on = now_ > moments_.back().time;
   const std::size_t rows = 2 * moments_.size() - 1 + (goes_on ? 1 : 0);
@@ -363,7 +365,7 @@ void VcdReader::make_rows() {
     bytes += sizeof(double) * rows + of_channel + 2 * (scopes_[variables_[k].scope].length + variables_[k].name.size());
     require(bytes <= most_bytes, [&] {
       const std::string name = names[variables_[k].name] > 1 ? path(variables_[k]) : variables_[k].name;
-      return fmt::format("{}: {} variables that change at {} times are more than is read at once; column = \"{}\" takes one",
+      return fmt::format("{}: {} variables that change at {} times are too many to read; select one, such as column = \"{}\"",
                          made_.file, chosen_.size(), moments_.size(), printable_line(shortened(name)));
     });
   }
